@@ -7,6 +7,7 @@ use picture::Format;
 use picture::animation::{Timing, Writer};
 use picture::limits::MAX_FRAMES;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `sinew animate FILE -o OUT.png|OUT.gif --frames N [--fps F] [--once] [-r W H] [-s N] [--threads N]`.
 #[derive(Args)]
@@ -91,7 +92,7 @@ impl Animate {
                     size: Some(size),
                     ..wishes
                 };
-                let traced = wishes.trace(&mut loaded.compiled.scene, &|_| ())?;
+                let traced = wishes.trace(Arc::make_mut(&mut loaded.compiled.scene), &|_| ())?;
                 let picture = &traced.picture;
                 match (&mut writer, file.take()) {
                     (None, Some(file)) => {

@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Text that `-?` prints.
@@ -187,7 +188,9 @@ impl Request {
                 "nosave is on: the picture is neither traced nor written (-o NAME asks for it)",
             );
         } else if has_picture {
-            let traced = self.wishes.trace(&mut compiled.scene, &self.progress())?;
+            let traced = self
+                .wishes
+                .trace(Arc::make_mut(&mut compiled.scene), &self.progress())?;
             let [width, height] = traced.picture.size();
             let wrote = match &self.output {
                 Some(path) => trace::write(path, &traced.picture)

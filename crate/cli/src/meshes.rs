@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Fewest triangles of a level of detail.
@@ -206,7 +207,7 @@ impl Mesh {
         let scenes: Vec<scene::Scene> = (0..self.frames.unwrap_or(usual))
             .map(|frame| {
                 let frame = f64::from(frame);
-                rats::compile_at(&loaded.project, &loaded.assets, frame).scene
+                Arc::unwrap_or_clone(rats::compile_at(&loaded.project, &loaded.assets, frame).scene)
             })
             .collect();
         let scene = &loaded.compiled.scene;

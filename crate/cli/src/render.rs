@@ -5,6 +5,7 @@ use crate::{Outcome, files, report};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -51,7 +52,7 @@ impl Render {
         };
         let mut loaded = files::load(&self.file)?;
         let clean = report::to_stderr(&loaded);
-        let scene = &mut loaded.compiled.scene;
+        let scene = Arc::make_mut(&mut loaded.compiled.scene);
         let traced = wishes.trace(scene, &|_| ())?;
         let start = Instant::now();
         trace::write(&self.output, &traced.picture)?;

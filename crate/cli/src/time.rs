@@ -11,6 +11,7 @@ use field::Kernel;
 use scene::Scene;
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 use tracer::Pass;
 
@@ -95,7 +96,7 @@ impl Time {
             (Some(file), _) => {
                 let loaded = files::load(file)?;
                 let clean = report::to_stderr(&loaded);
-                (loaded.compiled.scene, clean)
+                (Arc::unwrap_or_clone(loaded.compiled.scene), clean)
             }
             (None, count) => {
                 let count = count.unwrap_or(1);

@@ -144,7 +144,7 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
     let again = compile(&project);
     // Places move, and hints tell of them.
     let scene = |compiled: &Compiled| {
-        let mut scene = compiled.scene.clone();
+        let mut scene = scene::Scene::clone(&compiled.scene);
         let forget = |elements: &mut [Element]| {
             for element in elements {
                 element.origin = Origin::default();

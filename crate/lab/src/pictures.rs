@@ -17,6 +17,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::rc::Rc;
+use std::sync::Arc;
 use widgets::theme;
 use worker::Kind;
 
@@ -207,7 +208,8 @@ impl Pictures {
                 self.keep(&wish, Kept::Refused(reason));
                 continue;
             }
-            let mut scene = compiled.scene;
+            let mut shared = compiled.scene;
+            let scene = Arc::make_mut(&mut shared);
             scene.background = wish.background.into();
             // Enough for something so small.
             scene.settings.samples = scene.settings.samples.min(2);
@@ -215,7 +217,8 @@ impl Pictures {
             let mut assembly = Assembly::default();
             assembly.begin(self.number, wish.size);
             self.pool.borrow_mut().start(Job {
-                scene: &scene,
+                scene: &shared,
+                camera: None,
                 size: wish.size,
                 generation: self.number,
                 kind: wish.kind,

@@ -1,14 +1,15 @@
-//! The part of a pool that is the same for web workers and threads: scheduler, packed scene, finished tiles.
+//! The manager of the tracing workers: scheduler, packed scene, finished tiles.
 
 use crate::job::{Job, TILE, TileDone};
 use crate::progress::Progress;
 use crate::run::Plan;
 use crate::scheduler::{Command, Scheduler};
 use crate::shared_samples::SharedSamples;
-use crate::workers::Workers;
+use crate::workers::{Manager, Message, Workers};
+use tools::message::DIFFERENT_VERSIONS;
 use tracer::{Known, Pass};
 use worker::engine::KEPT;
-use worker::message::pack;
+use worker::message::{pack, unpack};
 use worker::{Answer, Kind, Request};
 
 /// A pool without its workers.
@@ -55,7 +56,8 @@ impl<W: Workers> Core<W> {
         self.scheduler.start(plan, now);
         let request = Request::Begin {
             generation: self.scheduler.number(),
-            scene: Box::new(job.scene.clone()),
+            scene: job.scene.clone(),
+            camera: job.camera,
             size: job.size,
             kind: job.kind,
             shared,
@@ -72,17 +74,8 @@ impl<W: Workers> Core<W> {
         self.carry_out(now);
     }
 
-    pub fn launch(&mut self, now: f64) {
-        self.scheduler.launch(now);
-        self.carry_out(now);
-    }
-
-    pub fn tick(&mut self, now: f64) {
-        self.scheduler.tick(now);
-        self.carry_out(now);
-    }
-
-    /// Takes a worker's answers. Returns whether a pass was completed or a worker failed, so that the app should draw.
+    /// Takes a worker's answers. Returns whether a pass was completed or a worker failed, so that
+    /// the app should draw.
     pub fn answers(&mut self, index: usize, answers: Vec<Answer>, now: f64) -> bool {
         let mut news = false;
         for answer in answers {
@@ -141,8 +134,8 @@ impl<W: Workers> Core<W> {
         self.scheduler.progress(now)
     }
 
-    /// Carries out the scheduler's commands. A worker that cannot be started leads to new commands, so this repeats until
-    /// there are none; the scheduler gives up after some attempts.
+    /// Carries out the scheduler's commands. A worker that cannot be started leads to new commands,
+    /// so this repeats until there are none; the scheduler gives up after some attempts.
     fn carry_out(&mut self, now: f64) {
         loop {
             let commands = self.scheduler.commands();
@@ -192,9 +185,48 @@ impl<W: Workers> Core<W> {
 
     fn send(&mut self, index: usize, request: &Request) {
         // Packing fails only when memory runs out; the worker then misses a message, hangs as far as
-        // the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes samples again.
+        // the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes samples
+        // again.
         if let Ok(bytes) = pack(request) {
             self.workers.send(index, &bytes);
         }
+    }
+}
+
+impl<W: Workers + 'static> Manager for Core<W> {
+    type Workers = W;
+
+    fn workers(&mut self) -> &mut W {
+        &mut self.workers
+    }
+
+    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
+        match outcome {
+            Ok(()) => self.scheduler.launch(now),
+            Err(reason) => {
+                let reason = format!("{reason}. Check the connection and render again.");
+                self.scheduler.unavailable(&reason, now);
+            }
+        }
+        self.carry_out(now);
+    }
+
+    fn receive(&mut self, index: usize, message: Message, now: f64) -> bool {
+        let answers = match message {
+            Message::Bytes(bytes) => unpack(&bytes)
+                .unwrap_or_else(|_| vec![Answer::Failed(DIFFERENT_VERSIONS.to_owned())]),
+            Message::Failed(reason) => vec![Answer::Failed(reason)],
+        };
+        self.answers(index, answers, now)
+    }
+
+    fn tick(&mut self, now: f64) -> bool {
+        self.scheduler.tick(now);
+        self.carry_out(now);
+        false
+    }
+
+    fn is_busy(&self) -> bool {
+        self.scheduler.is_busy()
     }
 }

@@ -1,6 +1,7 @@
 //! Pictures to trace and their finished tiles.
 
-use scene::{Digger, Scene};
+use scene::{Camera, Digger, Scene};
+use std::sync::Arc;
 use tracer::{Pass, Tile};
 use worker::Kind;
 
@@ -18,7 +19,9 @@ pub const MAX_WORKERS: usize = 16;
 pub struct Job<'a> {
     /// Scene to draw. With `settings.samples` 1 there is no [`Pass::Smooth`]: it would equal
     /// [`Pass::Full`].
-    pub scene: &'a Scene,
+    pub scene: &'a Arc<Scene>,
+    /// The camera that sees it, if it is another than the scene's.
+    pub camera: Option<Camera>,
     /// Width and height in pixels. A side of 0 gives an empty picture, finished at once.
     pub size: [u32; 2],
     /// The caller's number for it, given back with each tile.

@@ -8,9 +8,10 @@
 //! ```
 //! # #[cfg(not(target_arch = "wasm32"))] {
 //! let mut pool = pool::Pool::new(|| {});
-//! let scene = scene::Scene::default();
+//! let scene = std::sync::Arc::new(scene::Scene::default());
 //! pool.start(pool::Job {
 //!     scene: &scene,
+//!     camera: None,
 //!     size: [80, 60],
 //!     generation: 1,
 //!     kind: worker::Kind::Colours,
@@ -26,45 +27,43 @@
 //! # }
 //! ```
 //!
-//! Decisions, and what happens when a worker dies or hangs, are in [`scheduler`], a state machine
-//! that is tested without workers; `web_workers` and `threads` carry them out. [`Tools`] runs jobs that
-//! draw nothing, such as reading a mesh, in a worker of its own, which [`supervisor`] replaces likewise.
+//! [`Tools`] carries out jobs that take long and draw nothing, such as reading a mesh, and gives a
+//! [`Ticket`] for the result of each.
+//!
+//! Decisions, and what happens when a worker dies or hangs, are in three state machines that are
+//! tested without workers: [`life`], the life of any worker; [`scheduler`], the tiles of the tracing
+//! workers; [`queue`], the jobs of a tools worker. `web` and `threads` carry them out.
 //! [`Assembly`] puts the tiles of a picture together as they come.
 
 pub mod assembly;
 mod assign;
 mod core;
 pub mod job;
+pub mod life;
 mod partition;
+mod pool;
 pub mod progress;
+pub mod queue;
 mod run;
 pub mod scheduler;
 mod shared_samples;
-pub mod supervisor;
-mod tool_jobs;
+mod tickets;
 mod workers;
 
 #[cfg(not(target_arch = "wasm32"))]
-mod thread_pool;
-#[cfg(not(target_arch = "wasm32"))]
-mod thread_tools;
-#[cfg(not(target_arch = "wasm32"))]
 mod threads;
 #[cfg(target_arch = "wasm32")]
-mod web_pool;
+mod web;
+#[cfg(not(target_arch = "wasm32"))]
+use threads as platform;
 #[cfg(target_arch = "wasm32")]
-mod web_tools;
-#[cfg(target_arch = "wasm32")]
-mod web_workers;
+use web as platform;
 
 pub use assembly::{Assembly, Change, Image};
 pub use job::{Job, TileDone};
+pub use pool::Pool;
 pub use progress::Progress;
-pub use tool_jobs::ToolEvent;
-#[cfg(not(target_arch = "wasm32"))]
-pub use {thread_pool::Pool, thread_tools::Tools};
-#[cfg(target_arch = "wasm32")]
-pub use {web_pool::Pool, web_tools::Tools};
+pub use tickets::{Ticket, Tools};
 
 #[cfg(all(test, not(target_arch = "wasm32")))]
 mod tests;

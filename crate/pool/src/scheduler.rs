@@ -2,17 +2,20 @@
 //!
 //! Events go in (a worker started, answered, died; time passed), [`Command`]s come out. Rules:
 //!
-//! - Tiles are assigned pass by pass, the coarse pass to all in turn. From then on each worker has its part of the picture
-//!   ([`partition`](crate::partition::partition)) and makes smooth what it has sampled; an idle worker helps the others where that
-//!   pays, and else starts its own tiles of the next pass. A worker holds the tile it traces and some more, about [`AHEAD`](crate::assign::AHEAD) seconds of work, so that it need not wait
-//!   for a page that is busy drawing. It drops those itself when a new picture begins.
+//! - Tiles are assigned pass by pass, the coarse pass to all in turn. From then on each worker has
+//!   its part of the picture ([`partition`](crate::partition::partition)) and makes smooth what it
+//!   has sampled; an idle worker helps the others where that pays, and else starts its own tiles of
+//!   the next pass. A worker holds the tile it traces and some more, about
+//!   [`AHEAD`](crate::assign::AHEAD) seconds of work, so that it need not wait for a page that is
+//!   busy drawing. It drops those itself when a new picture begins.
 //! - A worker that is still at an older picture [`PATIENCE`] seconds after a new one began is
 //!   replaced, so a slow tile never delays the new picture.
-//! - A worker that dies, or that gives no sign of life for its time limit, is replaced and the tiles
-//!   it held are done again, each alone, as any of them may have been the cause. A tile with which
-//!   [`ATTEMPTS`] workers failed is given up, so nothing is tried forever. The same holds for
-//!   preparing a scene and for starting a worker.
+//! - A worker that dies, or that gives no sign of life for its time limit, is replaced (see
+//!   [`Life`]) and the tiles it held are done again, each alone, as any of them may have been the
+//!   cause. A tile with which [`ATTEMPTS`] workers failed is given up, so nothing is tried forever.
+//!   The same holds for preparing a scene.
 
+use crate::life::{Deadline, Life, Stage};
 use crate::progress::Progress;
 use crate::run::{ATTEMPTS, Plan, Run};
 use std::collections::VecDeque;
@@ -21,10 +24,6 @@ use worker::Order;
 
 /// Seconds after which a worker that is still at an older picture is replaced.
 pub const PATIENCE: f64 = 0.25;
-/// Times in a row a worker may die without having finished a tile.
-pub const DEATHS: u32 = 10;
-/// Seconds a worker may take to start.
-pub const START_LIMIT: f64 = 30.0;
 /// Seconds a worker may take to prepare a scene.
 pub const PREPARE_LIMIT: f64 = 60.0;
 
@@ -43,19 +42,7 @@ pub enum Command {
     Stop(usize),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Life {
-    /// Not running, and not wanted at the moment.
-    Asleep,
-    /// On its way.
-    Starting,
-    /// Takes requests.
-    Awake,
-    /// Could not be started [`ATTEMPTS`] times.
-    GivenUp,
-}
-
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Slot {
     life: Life,
     /// Tasks it holds; the first is being traced.
@@ -65,14 +52,6 @@ struct Slot {
     prepared: bool,
     /// Time at which it was told to leave its picture, until it confirms that.
     stale: Option<f64>,
-    /// Whether the last tick found it too late. Its answer may only have been waiting for a busy
-    /// page, so it gets until the next tick.
-    suspected: bool,
-    /// Last sign of life, or when its present work began.
-    since: f64,
-    failed_starts: u32,
-    /// Times it died since it last finished a tile.
-    deaths: u32,
 }
 
 impl Slot {
@@ -86,15 +65,6 @@ impl Slot {
         self.begun = false;
         self.prepared = false;
     }
-}
-
-/// Why a worker is too late.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Late {
-    /// It is still at an older picture.
-    Stale,
-    /// It gives no sign of life, with the reason to report.
-    Hanging(&'static str),
 }
 
 /// The state of the pool.
@@ -115,19 +85,8 @@ impl Scheduler {
     /// Creates a pool of `workers` workers, none of which runs before [`Scheduler::launch`].
     #[must_use]
     pub fn new(workers: usize) -> Self {
-        let slot = Slot {
-            life: Life::Asleep,
-            holds: VecDeque::new(),
-            begun: false,
-            prepared: false,
-            stale: None,
-            suspected: false,
-            since: 0.0,
-            failed_starts: 0,
-            deaths: 0,
-        };
         Self {
-            slots: vec![slot; workers],
+            slots: vec![Slot::default(); workers],
             run: None,
             number: 0,
             launched: false,
@@ -194,7 +153,7 @@ impl Scheduler {
     /// Assigns the whole coarse pass, a tile to each worker in turn: tracing it takes less time than asking a page that is
     /// busy drawing for more. Waits until all workers are awake, as the first would get all of it.
     fn deal(&mut self, now: f64) {
-        if self.slots.iter().any(|slot| slot.life != Life::Awake) {
+        if self.slots.iter().any(|slot| !slot.life.is_awake()) {
             return;
         }
         let mut enough = 1;
@@ -223,7 +182,7 @@ impl Scheduler {
         self.clear_work(now);
         self.number += 1;
         for (index, slot) in self.slots.iter().enumerate() {
-            if slot.life == Life::Awake {
+            if slot.life.is_awake() {
                 self.commands.push(Command::Stop(index));
             }
         }
@@ -234,18 +193,14 @@ impl Scheduler {
 
     /// A worker takes requests.
     pub fn started(&mut self, index: usize, now: f64) {
-        let slot = &mut self.slots[index];
-        if slot.life == Life::Starting {
-            slot.life = Life::Awake;
-            slot.failed_starts = 0;
-            slot.since = now;
+        if self.slots[index].life.awake(now) {
             self.begin(index, now);
         }
     }
 
     /// A worker has taken note of the picture of this number.
     pub fn noted(&mut self, index: usize, number: u64, now: f64) {
-        self.heard(index, now);
+        self.slots[index].life.hear(now);
         if number == self.number {
             self.slots[index].stale = None;
         }
@@ -253,7 +208,7 @@ impl Scheduler {
 
     /// A worker has prepared the picture of this number.
     pub fn prepared(&mut self, index: usize, number: u64, now: f64) {
-        self.heard(index, now);
+        self.slots[index].life.hear(now);
         if number == self.number && self.slots[index].begun {
             self.slots[index].prepared = true;
             self.fill(index, now);
@@ -269,7 +224,7 @@ impl Scheduler {
         seconds: f64,
         now: f64,
     ) -> bool {
-        self.heard(index, now);
+        self.slots[index].life.hear(now);
         let number = self.number;
         let (Some(run), slot) = (&mut self.run, &mut self.slots[index]) else {
             return false;
@@ -281,7 +236,7 @@ impl Scheduler {
             return false;
         }
         slot.holds.pop_front();
-        slot.deaths = 0;
+        slot.life.succeed();
         let complete = run.complete_passes();
         run.done(task, stats, seconds, now);
         let news = run.complete_passes() > complete;
@@ -297,26 +252,23 @@ impl Scheduler {
 
     /// Handles a worker that died, or reported that it cannot continue.
     pub fn died(&mut self, index: usize, reason: &str, now: f64) {
-        let slot = &mut self.slots[index];
-        slot.deaths += 1;
-        match slot.life {
-            Life::Asleep | Life::GivenUp => return,
-            Life::Starting => slot.failed_starts += 1,
-            Life::Awake => self.blame(index, reason, now),
+        match self.slots[index].life.die() {
+            None => return,
+            Some(true) => self.blame(index, reason, now),
+            Some(false) => {}
         }
         self.restarted += 1;
-        let slot = &mut self.slots[index];
-        let wanted = self.run.as_ref().is_some_and(|run| run.ended.is_none());
-        if slot.failed_starts >= ATTEMPTS || slot.deaths >= DEATHS {
-            self.end(index, Life::GivenUp);
-            if self.slots.iter().all(|slot| slot.life == Life::GivenUp) {
-                self.fail(format!("No worker could be kept running: {reason}"), now);
-            }
-        } else if wanted {
+        let given_up = self.slots[index].life.stage() == Stage::GivenUp;
+        let is_wanted = self.run.as_ref().is_some_and(|run| run.ended.is_none());
+        if is_wanted && !given_up {
             self.restart(index, now);
         } else {
             // Without work to do, it could die again and again; it is started with the next picture.
-            self.end(index, Life::Asleep);
+            self.end(index);
+        }
+        let is_given_up = |slot: &Slot| slot.life.stage() == Stage::GivenUp;
+        if given_up && self.slots.iter().all(is_given_up) {
+            self.fail(format!("No worker could be kept running: {reason}"), now);
         }
         self.fill_all(now);
     }
@@ -351,56 +303,44 @@ impl Scheduler {
     /// Time has passed: replaces workers that hang or are too long at an older picture.
     pub fn tick(&mut self, now: f64) {
         for index in 0..self.slots.len() {
-            let late = self.late(index, now);
+            let work = self.deadline(index);
             let slot = &mut self.slots[index];
-            if late.is_none() || !slot.suspected {
-                slot.suspected = late.is_some();
+            let Some(trouble) = slot.life.overdue(now, work) else {
+                continue;
+            };
+            if slot.stale.is_none() {
+                self.died(index, trouble, now);
                 continue;
             }
-            match late {
-                Some(Late::Stale) => {
-                    let held = std::mem::take(&mut slot.holds);
-                    if let Some(run) = &mut self.run {
-                        run.again.extend(held.into_iter().rev());
-                    }
-                    self.restart(index, now);
-                    self.fill_all(now);
-                }
-                Some(Late::Hanging(what)) => self.died(index, what, now),
-                None => {}
+            let held = std::mem::take(&mut slot.holds);
+            if let Some(run) = &mut self.run {
+                run.again.extend(held.into_iter().rev());
             }
+            self.restart(index, now);
+            self.fill_all(now);
         }
     }
 
-    /// Whether a worker has had too much time.
-    fn late(&self, index: usize, now: f64) -> Option<Late> {
+    /// Returns when the work of a worker that is awake should be done.
+    fn deadline(&self, index: usize) -> Option<Deadline> {
         let slot = &self.slots[index];
-        let waited = now - slot.since;
-        match slot.life {
-            Life::Asleep | Life::GivenUp => None,
-            Life::Starting => {
-                (waited > START_LIMIT).then_some(Late::Hanging("a worker took too long to start"))
-            }
-            Life::Awake if slot.stale.is_some() => slot
-                .stale
-                .filter(|since| now - since > PATIENCE)
-                .map(|_| Late::Stale),
-            Life::Awake if slot.begun && !slot.prepared => {
-                (waited > PREPARE_LIMIT).then_some(Late::Hanging("it took too long"))
-            }
-            Life::Awake => {
-                let (run, task) = (self.run.as_ref()?, slot.holds.front()?);
-                (waited > run.limit(*task)).then_some(Late::Hanging("a tile took too long"))
-            }
+        let since = slot.life.since();
+        if let Some(stale) = slot.stale {
+            return Some((stale + PATIENCE, "it is at an older picture"));
         }
+        if slot.begun && !slot.prepared {
+            return Some((since + PREPARE_LIMIT, "it took too long"));
+        }
+        let (run, task) = (self.run.as_ref()?, slot.holds.front()?);
+        Some((since + run.limit(*task), "a tile took too long"))
     }
 
     /// Whether [`Scheduler::tick`] must be called: a worker is starting, busy or at an older picture.
     #[must_use]
     pub fn is_busy(&self) -> bool {
-        self.slots
-            .iter()
-            .any(|slot| slot.life == Life::Starting || slot.stale.is_some() || slot.is_busy())
+        self.slots.iter().any(|slot| {
+            slot.life.stage() == Stage::Starting || slot.stale.is_some() || slot.is_busy()
+        })
     }
 
     /// How far the picture has come.
@@ -409,7 +349,7 @@ impl Scheduler {
         let workers = self
             .slots
             .iter()
-            .filter(|slot| matches!(slot.life, Life::Starting | Life::Awake))
+            .filter(|slot| slot.life.is_running())
             .count();
         let mut progress = Progress {
             workers,
@@ -429,17 +369,9 @@ impl Scheduler {
             return;
         }
         for index in 0..self.slots.len() {
-            let slot = &mut self.slots[index];
-            match slot.life {
-                // One more attempt with every picture.
-                Life::GivenUp => {
-                    slot.failed_starts = ATTEMPTS - 1;
-                    slot.deaths = DEATHS - 1;
-                }
-                Life::Asleep => {}
-                Life::Starting | Life::Awake => continue,
+            if !self.slots[index].life.is_running() {
+                self.restart(index, now);
             }
-            self.restart(index, now);
         }
     }
 
@@ -448,18 +380,15 @@ impl Scheduler {
         let slot = &mut self.slots[index];
         slot.clear_work();
         slot.stale = None;
-        slot.suspected = false;
-        slot.life = Life::Starting;
-        slot.since = now;
+        slot.life.start(now);
         self.commands.push(Command::Restart(index));
     }
 
-    /// Ends a worker for now.
-    fn end(&mut self, index: usize, life: Life) {
+    /// Ends a worker that died.
+    fn end(&mut self, index: usize) {
         let slot = &mut self.slots[index];
         slot.clear_work();
         slot.stale = None;
-        slot.life = life;
         self.commands.push(Command::End(index));
     }
 
@@ -472,7 +401,7 @@ impl Scheduler {
     /// Takes all work from all workers.
     fn clear_work(&mut self, now: f64) {
         for slot in &mut self.slots {
-            if slot.life == Life::Awake && slot.is_busy() {
+            if slot.life.is_awake() && slot.is_busy() {
                 slot.stale.get_or_insert(now);
             }
             slot.clear_work();
@@ -482,20 +411,13 @@ impl Scheduler {
         }
     }
 
-    /// Notes a sign of life.
-    fn heard(&mut self, index: usize, now: f64) {
-        let slot = &mut self.slots[index];
-        slot.suspected = false;
-        slot.since = now;
-    }
-
     /// Sends the scene to a worker, and its first tile.
     fn begin(&mut self, index: usize, now: f64) {
         let wanted = self.run.as_ref().is_some_and(|run| run.ended.is_none());
         let slot = &mut self.slots[index];
-        if wanted && slot.life == Life::Awake && !slot.begun {
+        if wanted && slot.life.is_awake() && !slot.begun {
             slot.begun = true;
-            slot.since = now;
+            slot.life.hear(now);
             self.commands.push(Command::Begin(index));
             self.fill(index, now);
         }
@@ -532,14 +454,10 @@ impl Scheduler {
         let (Some(run), slot) = (&mut self.run, &self.slots[index]) else {
             return;
         };
-        if slot.life != Life::Awake || !slot.begun {
+        if !slot.life.is_awake() || !slot.begun {
             return;
         }
-        run.awake = self
-            .slots
-            .iter()
-            .map(|slot| slot.life == Life::Awake)
-            .collect();
+        run.awake = self.slots.iter().map(|slot| slot.life.is_awake()).collect();
         let slot = &mut self.slots[index];
         let mut orders = Vec::new();
         let workers = run.awake.iter().filter(|awake| **awake).count();
@@ -551,7 +469,7 @@ impl Scheduler {
                 break;
             };
             if slot.holds.is_empty() {
-                slot.since = now;
+                slot.life.hear(now);
             }
             slot.holds.push_back(task);
             orders.push(run.order(task, self.number));

@@ -3,9 +3,10 @@
 use crate::Pool;
 use crate::core::Core;
 use crate::job::{Job, MAX_WORKERS, TILE, TileDone};
-use crate::workers::Workers;
-use scene::{Digger, Scene};
+use crate::workers::{Manager, Workers};
+use scene::{Digger, Scene, Settings};
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tracer::{Pass, Tile};
 use worker::message::unpack;
@@ -25,10 +26,10 @@ fn finish(pool: &mut Pool) -> Vec<TileDone> {
     }
 }
 
-fn scene() -> Scene {
+fn scene() -> Arc<Scene> {
     let mut scene = Scene::default();
     scene.settings.samples = 2;
-    scene
+    Arc::new(scene)
 }
 
 #[test]
@@ -37,6 +38,7 @@ fn picture_is_complete_and_replaced_by_a_new_one() {
     let scene = scene();
     let job = |generation| Job {
         scene: &scene,
+        camera: None,
         size: [100, 70],
         generation,
         kind: Kind::Colours,
@@ -68,6 +70,7 @@ fn picture_completes_without_a_killed_worker() {
     let scene = scene();
     let job = Job {
         scene: &scene,
+        camera: None,
         size: [64, 64],
         generation: 1,
         kind: Kind::Colours,
@@ -85,7 +88,7 @@ fn picture_completes_without_a_killed_worker() {
 #[test]
 fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     let mut pool = Pool::new(|| {});
-    let mut scene = scene();
+    let mut scene = Scene::clone(&scene());
     scene.flesh.push(scene::Flesh {
         blobbiness: -1.0,
         ..Default::default()
@@ -103,9 +106,11 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     let mut means = Vec::new();
     for (generation, digger) in [(1, Digger::Hermite), (2, Digger::Spans(2))] {
         scene.settings.digger = digger;
+        let shared = Arc::new(scene.clone());
         let mut trace = |kind| {
             let job = Job {
-                scene: &scene,
+                scene: &shared,
+                camera: None,
                 size: [40, 32],
                 generation,
                 kind,
@@ -166,16 +171,17 @@ impl Workers for Asked {
 /// Traces a picture with so many workers that take turns, each of which may tell others what it sampled. The first one fails
 /// in the middle if that is wanted. Gives the picture's last pixels, tile by tile, and the rays.
 fn taking_turns(
-    scene: &Scene,
+    scene: &Arc<Scene>,
     workers: usize,
     tells: bool,
     fails: bool,
 ) -> (HashMap<Tile, Vec<u8>>, u64) {
     let engines = (0..workers).map(|_| Engine::default()).collect();
     let mut core = Core::new(workers, Desks(engines));
-    core.launch(0.0);
+    core.loaded(Ok(()), 0.0);
     let job = Job {
         scene,
+        camera: None,
         size: [300, 260],
         generation: 1,
         kind: Kind::Colours,
@@ -241,7 +247,7 @@ fn several_workers_share_samples() {
 }
 
 /// A scene of two balls.
-fn balls(at: [&str; 2]) -> Scene {
+fn balls(at: [&str; 2]) -> Arc<Scene> {
     let [a, b] = at;
     let text = format!(
         "surface flesh diffuse Coral, blobbiness -2\nsphere flesh 0.5 {a}\nsphere flesh 0.4 {b}"
@@ -253,7 +259,7 @@ fn balls(at: [&str; 2]) -> Scene {
     let compiled = rats::compile(&rats::Project { files: vec![file] });
     assert_eq!(compiled.diagnostics, []);
     let mut scene = compiled.scene;
-    scene.settings.samples = 3;
+    Arc::make_mut(&mut scene).settings.samples = 3;
     scene
 }
 
@@ -275,7 +281,7 @@ fn picture_shows_nothing_of_an_older_one() {
             center: [0.7 * place[0], 0.7 * place[1], 0.0].into(),
             radius: 0.2,
         };
-        scenes[1].elements.push(ball);
+        Arc::make_mut(&mut scenes[1]).elements.push(ball);
     }
     let truth = scenes.each_ref().map(|scene| {
         let picture = tracer::Picture::new(scene, size);
@@ -290,7 +296,7 @@ fn picture_shows_nothing_of_an_older_one() {
     for workers in [2, 3, 5] {
         let engines = (0..workers).map(|_| Engine::default()).collect();
         let mut core = Core::new(workers, Desks(engines));
-        core.launch(0.0);
+        core.loaded(Ok(()), 0.0);
         let mut late: Vec<Vec<Answer>> = vec![Vec::new(); workers];
         let mut now = 0.0;
         for picture in 0..60 {
@@ -299,6 +305,7 @@ fn picture_shows_nothing_of_an_older_one() {
             let which = picture % 2;
             let job = Job {
                 scene: &scenes[which],
+                camera: None,
                 size,
                 generation: picture as u64,
                 kind: Kind::Colours,
@@ -383,9 +390,10 @@ fn samples_of_a_failed_picture_are_dropped() {
     let desks = Desks((0..2).map(|_| Engine::default()).collect());
     let tile = tracer::tiles(260, 200, TILE)[0];
     let mut core = Core::new(2, Stuck(desks, Vec::new(), tile));
-    core.launch(0.0);
+    core.loaded(Ok(()), 0.0);
     let job = Job {
         scene: &scene,
+        camera: None,
         size: [260, 200],
         generation: 1,
         kind: Kind::Colours,
@@ -419,18 +427,21 @@ fn samples_of_a_failed_picture_are_dropped() {
 #[test]
 fn samples_are_shared_only_where_useful() {
     let mut scene = scene();
-    let mut shared = |workers, change: fn(&mut Scene, &mut Job<'_>)| {
-        scene.settings.samples = 2;
+    let mut shared = |workers, change: fn(&mut Settings, &mut Job<'_>)| {
+        let plain = Arc::default();
+        let settings = &mut Arc::make_mut(&mut scene).settings;
+        settings.samples = 2;
         let mut job = Job {
-            scene: &Scene::default(),
+            scene: &plain,
+            camera: None,
             size: [300, 260],
             generation: 1,
             kind: Kind::Colours,
             small: false,
         };
-        change(&mut scene, &mut job);
+        change(settings, &mut job);
         let mut core = Core::new(workers, Asked(None));
-        core.launch(0.0);
+        core.loaded(Ok(()), 0.0);
         core.start(
             Job {
                 scene: &scene,
@@ -443,7 +454,7 @@ fn samples_are_shared_only_where_useful() {
     };
     assert!(shared(2, |_, _| {}));
     assert!(!shared(1, |_, _| {}));
-    assert!(!shared(2, |scene, _| scene.settings.samples = 1));
+    assert!(!shared(2, |settings, _| settings.samples = 1));
     assert!(!shared(2, |_, job| job.kind = Kind::Errors));
     assert!(!shared(2, |_, job| job.small = true));
     assert!(!shared(2, |_, job| job.size = [64, 64 * 321]));

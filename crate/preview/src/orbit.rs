@@ -81,12 +81,11 @@ pub fn zoom(camera: Camera, factor: f64) -> Camera {
 /// The share of the picture's shorter side that [`frame`] leaves free around a scene.
 const MARGIN: f64 = 0.05;
 
-/// A camera that sees all of a scene in the middle of a picture of the given size, for a text that
-/// gives none or to recover a lost view. It keeps the direction, up vector and angle of
-/// view of the scene's own camera.
+/// Returns a camera that sees all of a scene in the middle of a picture of the given size, for a
+/// text that gives none or to recover a lost view. It keeps the direction, up vector and angle of
+/// view of `camera`.
 #[must_use]
-pub fn frame(scene: &Scene, size: [u32; 2]) -> Camera {
-    let camera = scene.camera;
+pub fn frame(scene: &Scene, camera: Camera, size: [u32; 2]) -> Camera {
     let bounds = Bounds::of(scene);
     let projection = camera.projection(size[0], size[1]);
     let narrow = projection.half_width.min(projection.half_height) * (1.0 - MARGIN);

@@ -9,8 +9,8 @@ use std::sync::Arc;
 /// The scene of a text, and all else that a run gives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compiled {
-    /// The scene, as far as the text could be understood.
-    pub scene: Scene,
+    /// The scene, as far as the text could be understood. Shared by all who draw or mesh it.
+    pub scene: Arc<Scene>,
     /// How each element of the scene came from its command, for those who move it by hand.
     pub placements: Vec<Placement>,
     /// All that is to be said about the text, in the order of the text.

@@ -54,6 +54,7 @@ use crate::sources::Sources;
 use moments::Exposure;
 use scene::{Origin, Scene};
 use state::Evaluator;
+use std::sync::Arc;
 use watched::Watch;
 
 /// Runs the first file of the project to the end.
@@ -86,7 +87,7 @@ pub fn run<'a>(
         scene.moments = exposure.moments(&scene);
     }
     Compiled {
-        scene,
+        scene: Arc::new(scene),
         placements,
         diagnostics: state.report.finish(project),
         hot: state.hot,

@@ -11,7 +11,8 @@
 //! let text = "var y = 0 += 1\nsurface s, diffuse Red, radius 0.3\n\
 //!     skeleton s, ARM { node A <0 0 0> node B <2 0 0> node C <4 y 0> curve A B C }";
 //! let project = rats::Project::single(text);
-//! let scenes: Vec<_> = (0..3).map(|f| rats::compile_at(&project, &[], f64::from(f)).scene).collect();
+//! let scene = |f| rats::compile_at(&project, &[], f64::from(f)).scene;
+//! let scenes: Vec<_> = (0..3).map(scene).map(std::sync::Arc::unwrap_or_clone).collect();
 //! // Two vertices above the ends.
 //! let mesh = TriangleMesh::new(vec![DVec3::new(0.0, 0.3, 0.0), DVec3::new(4.0, 0.3, 0.0)], vec![]);
 //! let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();

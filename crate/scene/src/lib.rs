@@ -36,6 +36,7 @@ pub mod limbs;
 mod local;
 pub mod parts;
 pub mod quadric;
+mod same;
 pub mod settings;
 mod shared;
 pub mod soft;

@@ -184,7 +184,7 @@ impl App {
             }
             Command::ShowAll => {
                 if let Some(scene) = session.scene() {
-                    let camera = preview::orbit::frame(&scene, session.frame());
+                    let camera = preview::orbit::frame(scene, session.camera(), session.frame());
                     session.set_camera(Some(camera));
                 }
             }

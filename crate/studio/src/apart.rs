@@ -149,7 +149,7 @@ impl Drawer {
         let Self { device, queue, .. } = self;
         let (generation, camera, size) = subject;
         if self.scene != Some(generation) {
-            self.draft.set_scene(device, queue, &session.scene()?);
+            self.draft.set_scene(device, queue, session.scene()?);
             self.scene = Some(generation);
         }
         self.drawn = Some(subject);

@@ -32,7 +32,7 @@ use crate::{Backend, fonts, platform, size};
 use egui::Context;
 use lab::{Lab, Lesson};
 use modeling::Sculpting;
-use pool::Pool;
+use pool::{Pool, Tools};
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
 
@@ -239,12 +239,13 @@ impl App {
         let pool = Pool::new(move || once(&repaint));
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
-        let [repaint, repaint_fit, repaint_mesh, repaint_live] = [0; 4].map(|_| ctx.clone());
+        let repaint = ctx.clone();
+        let tools = Tools::new(move || once(&repaint));
         let mut app = Self {
-            reading: MeshReading::new(move || once(&repaint)),
-            fitting: Fitting::new(move || once(&repaint_fit)),
-            mesh_export: MeshExport::new(move || once(&repaint_mesh)),
-            live: LiveMesh::new(move || once(&repaint_live)),
+            reading: MeshReading::new(tools.clone()),
+            fitting: Fitting::new(tools.clone()),
+            mesh_export: MeshExport::new(tools.clone()),
+            live: LiveMesh::new(tools),
             stand_in: None,
             lab: Lab::new(pool.clone(), lesson),
             renderer: Renderer::new(pool),
@@ -350,7 +351,12 @@ impl App {
         if self.fitting.tick(&mut self.work.session, now) {
             self.work.session.compile();
         }
-        let rests = !matches!(self.renderer.phase(), Phase::Waiting | Phase::Tracing);
+        let reads = self.reading.current().is_some() || self.fitting.is_reading();
+        if reads {
+            self.live.give_way();
+        }
+        let is_tracing = matches!(self.renderer.phase(), Phase::Waiting | Phase::Tracing);
+        let rests = !is_tracing && !reads;
         let is_drawn = self.draft.is_some() && self.stand_in.is_some();
         self.live.tick(&self.work.session, now, is_drawn, rests);
         if self.settings != self.saved_settings {
@@ -434,7 +440,8 @@ impl App {
             self.lab.pictures.tick(ctx);
         } else {
             self.lab.pictures.pause();
-            self.renderer.tick(ctx, now, || session.scene());
+            let scene = session.scene();
+            self.renderer.tick(ctx, now, scene, session.chosen_camera());
         }
     }
 

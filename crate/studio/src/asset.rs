@@ -15,7 +15,7 @@ pub const MAX_ASSETS: usize = 16;
 /// Longest side of an image, pixels.
 pub const MAX_SIDE: u32 = 4096;
 
-/// A mesh file of more bytes than this is read by the tools worker, not by the page's thread.
+/// A mesh file of more bytes than this is read by a tools worker, not by the page's thread.
 pub const LARGE_MESH: usize = 256 << 10;
 
 /// Kind of an asset.

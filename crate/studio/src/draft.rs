@@ -46,7 +46,7 @@ impl Draft {
         let size = size.map(|side| side.clamp(1.0, 8192.0) as u32);
         if self.scene != Some(session.shape()) {
             let scene = session.scene()?;
-            self.draft.set_scene(device, queue, &scene);
+            self.draft.set_scene(device, queue, scene);
             self.scene = Some(session.shape());
         }
         let number = mesh.map(|made| made.number);

@@ -1,4 +1,4 @@
-//! Fitting a mesh of the work to measured points and outlines, in the tools worker.
+//! Fitting a mesh of the work to measured points and outlines, in a tools worker.
 //!
 //! The result is text: the `deform` of the mesh is written, or written anew, while the fit goes on, all as one undo step.
 //! Measured files are kept here, not in the work, until the page is closed.
@@ -7,11 +7,11 @@ use crate::report;
 use crate::session::Session;
 use fit::{Kind, Observations, Options};
 use glam::DVec3;
-use pool::{ToolEvent, Tools};
+use pool::{Ticket, Tools};
 use rats::{Deform, TextEdit};
 use scene::{Form, Origin, Shape};
 use std::ops::Range;
-use tools::{Controls, FitJob, FitStep, Job, Output};
+use tools::{Controls, FitMesh, FitStep, ReadMeasured};
 
 /// Measured files that are kept.
 pub const MOST_FILES: usize = 8;
@@ -22,14 +22,12 @@ const LARGE: usize = 8000;
 const DRAWN: usize = 2500;
 
 /// A measured file.
-#[derive(Debug)]
 pub struct Measured {
     /// Its name.
     pub name: String,
     /// Its points or lines of sight, once they are read.
     pub found: Option<Observations>,
-    /// The job that reads it.
-    id: u64,
+    reading: Ticket<Observations>,
 }
 
 impl Measured {
@@ -96,7 +94,7 @@ impl Default for Settings {
 
 /// A fit that runs.
 struct Run {
-    id: u64,
+    ticket: Ticket<FitStep>,
     file: usize,
     /// Where its text begins.
     start: usize,
@@ -140,12 +138,11 @@ pub struct Fitting {
 }
 
 impl Fitting {
-    /// Fits nothing yet; the worker is started for the first job. `repaint` is called when [`Fitting::tick`] has something to
-    /// do.
+    /// Fits nothing yet.
     #[must_use]
-    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+    pub fn new(tools: Tools) -> Self {
         Self {
-            tools: Tools::new(repaint),
+            tools,
             open: false,
             files: Vec::new(),
             settings: Settings::default(),
@@ -161,9 +158,7 @@ impl Fitting {
 
     /// Another work is open: the fit ends, and the measured files stay.
     pub fn forget(&mut self) {
-        if let Some(run) = self.run.take() {
-            self.tools.cancel(run.id);
-        }
+        self.run = None;
         self.target = None;
         self.listed = None;
         self.residuals.clear();
@@ -184,26 +179,28 @@ impl Fitting {
         if self.files.len() >= MOST_FILES {
             self.files.remove(0);
         }
-        let job = Job::ReadMeasured {
+        let reading = self.tools.submit(ReadMeasured {
             name: name.clone(),
             bytes,
-        };
-        let id = self.tools.submit(job);
+        });
         self.files.push(Measured {
             name,
             found: None,
-            id,
+            reading,
         });
     }
 
     /// Takes a measured file away.
     pub fn remove(&mut self, index: usize) {
         if index < self.files.len() {
-            let file = self.files.remove(index);
-            if file.found.is_none() {
-                self.tools.cancel(file.id);
-            }
+            self.files.remove(index);
         }
+    }
+
+    /// Whether a measured file is being read.
+    #[must_use]
+    pub fn is_reading(&self) -> bool {
+        self.files.iter().any(|file| file.found.is_none())
     }
 
     /// Whether there is anything to fit to.
@@ -308,7 +305,7 @@ impl Fitting {
 
     /// Begins the fit of what is chosen.
     pub fn start(&mut self, session: &Session, now: f64) {
-        self.stop_worker();
+        self.run = None;
         self.residuals.clear();
         (self.last, self.said) = (None, None);
         if let Err(trouble) = self.try_start(session, now) {
@@ -360,7 +357,7 @@ impl Fitting {
         };
         let edge = fit::mean_edge(&deform.positions, &deform.triangles);
         let slope = 20.0 / edge.max(f64::MIN_POSITIVE);
-        let job = FitJob {
+        let job = FitMesh {
             positions: deform.positions.to_vec(),
             triangles: deform.triangles.to_vec(),
             controls,
@@ -380,9 +377,8 @@ impl Fitting {
                 ..Options::default()
             },
         };
-        let id = self.tools.submit(Job::Fit(Box::new(job)));
         self.run = Some(Run {
-            id,
+            ticket: self.tools.submit(job),
             file: place.file,
             start: place.start,
             text: place.old,
@@ -400,17 +396,10 @@ impl Fitting {
 
     /// Ends the fit; what it had found stays in the text.
     pub fn stop(&mut self, session: &mut Session, now: f64) {
-        if let Some(run) = &self.run {
-            self.tools.cancel(run.id);
+        if self.run.is_some() {
             self.write(session, now, true);
             self.finish(session);
             self.said = Some((String::from("Stopped."), false));
-        }
-    }
-
-    fn stop_worker(&mut self) {
-        if let Some(run) = self.run.take() {
-            self.tools.cancel(run.id);
         }
     }
 
@@ -422,38 +411,34 @@ impl Fitting {
             self.listed = Some(text);
             self.targets = Self::targets(session);
         }
-        for (id, event) in self.tools.poll() {
-            if let Some(index) = self.files.iter().position(|file| file.id == id) {
-                match event {
-                    ToolEvent::Done(Ok(Output::Measured(found))) => {
-                        self.files[index].found = Some(found);
-                    }
-                    ToolEvent::Done(Err(trouble)) => {
-                        let name = self.files.remove(index).name;
-                        self.said = Some((format!("{name}: {trouble}."), true));
-                    }
-                    _ => {}
-                }
-                continue;
+        let said = &mut self.said;
+        self.files.retain_mut(|file| match file.reading.result() {
+            None => true,
+            Some(Ok(found)) => {
+                file.found = Some(found);
+                true
             }
-            let Some(run) = self.run.as_mut().filter(|run| run.id == id) else {
-                continue;
-            };
-            match event {
-                ToolEvent::Partial(Output::Fit(step)) => {
-                    self.residuals.push(step.residual);
-                    run.waiting = Some(step);
-                }
-                ToolEvent::Done(Ok(Output::Fit(step))) => {
+            Some(Err(trouble)) => {
+                *said = Some((format!("{}: {trouble}.", file.name), true));
+                false
+            }
+        });
+        if let Some(run) = &mut self.run {
+            while let Some(step) = run.ticket.part() {
+                self.residuals.push(step.residual);
+                run.waiting = Some(step);
+            }
+            match run.ticket.result() {
+                None => {}
+                Some(Ok(step)) => {
                     run.waiting = Some(step);
                     run.done = true;
                 }
-                ToolEvent::Done(Err(trouble)) => {
+                Some(Err(trouble)) => {
                     self.said = Some((format!("{trouble}."), true));
                     self.finish(session);
                     return false;
                 }
-                _ => {}
             }
         }
         self.write(session, now, false)
@@ -471,7 +456,6 @@ impl Fitting {
         let text = run.worded(&step.text);
         self.last = Some(step);
         let Some(range) = run.place(session) else {
-            self.tools.cancel(run.id);
             self.said = Some((
                 String::from("The text was changed where the fit writes, so it has stopped."),
                 true,
@@ -491,7 +475,7 @@ impl Fitting {
         run.written = now;
         if let Err(refused) = replaced {
             self.said = Some((refused.to_string(), true));
-            self.stop_worker_keeping(session);
+            self.finish(session);
         } else if done {
             self.said = Some((String::from("Done."), false));
             self.finish(session);
@@ -499,13 +483,7 @@ impl Fitting {
         true
     }
 
-    fn stop_worker_keeping(&mut self, session: &mut Session) {
-        if let Some(run) = &self.run {
-            self.tools.cancel(run.id);
-        }
-        self.finish(session);
-    }
-
+    /// Ends the fit, with the step of undo that it has opened.
     fn finish(&mut self, session: &mut Session) {
         if let Some(run) = self.run.take()
             && run.is_held
@@ -714,7 +692,7 @@ mod tests {
             ),
         ] {
             let mut session = session(text);
-            let mut fitting = Fitting::new(|| {});
+            let mut fitting = Fitting::new(Tools::new(|| {}));
             fitting.add(String::from("cloud.xyz"), cloud());
             until(&mut fitting, &mut session, Fitting::has_data);
             fitting.start(&session, 0.0);
@@ -729,7 +707,7 @@ mod tests {
     fn mesh_of_a_file_is_chosen() {
         let text = "surface s, diffuse Red\nmesh s gem.obj\nmesh s, head.obj\n";
         let session = session(text);
-        let mut fitting = Fitting::new(|| {});
+        let mut fitting = Fitting::new(Tools::new(|| {}));
         fitting.choose(&session, "head.obj");
         let Some(Target::Mesh(origin)) = fitting.target else {
             panic!("{:?}", fitting.target);
@@ -740,7 +718,7 @@ mod tests {
     #[test]
     fn fit_writes_a_deform_as_one_step_and_goes_on_from_it() {
         let mut session = session(TEXT);
-        let mut fitting = Fitting::new(|| {});
+        let mut fitting = Fitting::new(Tools::new(|| {}));
         fitting.settings.count = 16;
         fitting.settings.seen = Seen::Explicit;
         fitting.start(&session, 0.0);
@@ -785,7 +763,7 @@ mod tests {
     #[test]
     fn changed_text_stops_the_fit_and_trouble_is_told() {
         let mut session = session(TEXT);
-        let mut fitting = Fitting::new(|| {});
+        let mut fitting = Fitting::new(Tools::new(|| {}));
         fitting.add(String::from("bad.xyz"), b"1 2\n".to_vec());
         until(&mut fitting, &mut session, |fitting| fitting.said.is_some());
         let said = fitting

@@ -107,7 +107,7 @@ pub fn show(ui: &mut Ui, picture: Rect, session: &Session, commands: &mut Vec<Co
 mod tests {
     use super::*;
 
-    fn scene(text: &str) -> Scene {
+    fn scene(text: &str) -> std::sync::Arc<Scene> {
         rats::compile(&Project::single(text)).scene
     }
 

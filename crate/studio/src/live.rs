@@ -1,14 +1,16 @@
 //! A mesh of the model's true surface for the draft, while a hand turns the model or drags a part of it.
 //!
-//! The tools worker makes it, apart from the page's thread: coarsely while the text changes, and finely once nothing changes and no picture is traced. Until it is there, and where it would come too late to follow a hand, the
-//! draft shows the elements before they melt together. Nothing is made, nor fetched, before a hand turns or drags for
-//! the first time.
+//! A tools worker makes it, apart from the page's thread: coarsely while the text changes, and finely
+//! once nothing changes and no picture is traced. Until it is there, and where it would come too late
+//! to follow a hand, the draft shows the elements before they melt together. Nothing is made, nor
+//! fetched, before a hand turns or drags for the first time.
 
 use crate::session::Session;
-use pool::{ToolEvent, Tools};
+use pool::{Ticket, Tools};
 use preview::Mesh;
-use scene::{Scene, Shape};
-use tools::{Detail, Job, Output, ViewJob, ViewMesh};
+use scene::{Element, Scene, Shape};
+use std::sync::Arc;
+use tools::{Detail, ViewMesh, ViewScene};
 
 /// Seconds that a coarse mesh may take to be one that follows a hand.
 const QUICK: f64 = 0.15;
@@ -23,9 +25,10 @@ const MOST: usize = 20_000;
 
 /// A mesh that is being made.
 struct Running {
-    id: u64,
+    ticket: Ticket<ViewMesh>,
     shape: u64,
     detail: Detail,
+    /// When it was last seen to wait for its turn.
     begun: f64,
 }
 
@@ -72,11 +75,11 @@ pub struct LiveMesh {
 }
 
 impl LiveMesh {
-    /// Makes nothing yet. `repaint` is called when [`LiveMesh::tick`] has something to do.
+    /// Makes nothing yet.
     #[must_use]
-    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+    pub fn new(tools: Tools) -> Self {
         Self {
-            tools: Tools::new(repaint),
+            tools,
             is_wanted: false,
             running: None,
             made: None,
@@ -95,7 +98,7 @@ impl LiveMesh {
 
     /// Forgets all: another work is open.
     pub fn forget(&mut self) {
-        self.stop();
+        self.running = None;
         self.is_wanted = false;
         self.made = None;
         self.seconds = f64::INFINITY;
@@ -103,20 +106,20 @@ impl LiveMesh {
         self.slow = None;
     }
 
-    fn stop(&mut self) {
-        if let Some(running) = self.running.take() {
-            self.tools.cancel(running.id);
-        }
+    /// Leaves the worker to a hand that waits for it: a fine mesh is made later.
+    pub fn give_way(&mut self) {
+        self.running
+            .take_if(|running| running.detail == Detail::Fine);
     }
 
-    /// Takes in what the worker has made, and begins the next mesh. `is_drawn`: a draft is on the screen; `rests`: no picture is being
-    /// traced.
+    /// Takes in what the worker has made, and begins the next mesh. `is_drawn`: a draft is on the
+    /// screen; `rests`: no picture is being traced.
     pub fn tick(&mut self, session: &Session, now: f64, is_drawn: bool, rests: bool) {
-        for (id, event) in self.tools.poll() {
-            if let ToolEvent::Done(result) = event
-                && let Some(running) = self.running.take_if(|running| running.id == id)
-            {
-                self.take(running, result, now);
+        if let Some(running) = &mut self.running {
+            if let Some(result) = running.ticket.result() {
+                self.take(result, now);
+            } else if running.ticket.fraction().is_none() {
+                running.begun = now;
             }
         }
         let shape = session.shape();
@@ -134,7 +137,7 @@ impl LiveMesh {
                 self.slow = Some(elements(session));
             }
             if is_old || is_long {
-                self.stop();
+                self.running = None;
             }
         }
         let is_slow = self.slow == Some(elements(session));
@@ -147,25 +150,30 @@ impl LiveMesh {
             Some(Detail::Coarse) if rests && now - self.seen.1 >= STILL => Detail::Fine,
             _ => return,
         };
-        let Some(scene) = session.scene().and_then(soft_part) else {
+        let whole = session.scene();
+        let Some((whole, soft)) = whole.and_then(|scene| Some((scene, soft_part(scene)?))) else {
             self.hopeless = Some(shape);
             return;
         };
-        let job = Job::View(Box::new(ViewJob {
-            looks: preview::looks(&scene),
-            scene,
+        let job = ViewScene {
+            scene: Arc::new(soft),
+            looks: preview::looks(whole),
             detail,
-        }));
+        };
         self.running = Some(Running {
-            id: self.tools.submit(job),
+            ticket: self.tools.submit(job),
             shape,
             detail,
             begun: now,
         });
     }
 
-    fn take(&mut self, running: Running, result: Result<Output, String>, now: f64) {
-        let Ok(Output::View(mesh)) = result else {
+    /// Takes the result of the mesh that was being made.
+    fn take(&mut self, result: Result<ViewMesh, String>, now: f64) {
+        let Some(running) = self.running.take() else {
+            return;
+        };
+        let Ok(mesh) = result else {
             self.hopeless = Some(running.shape);
             return;
         };
@@ -175,7 +183,7 @@ impl LiveMesh {
         self.count += 1;
         self.made = Some(Made {
             number: self.count,
-            mesh: *mesh,
+            mesh,
             shape: running.shape,
             detail: running.detail,
             current: running.begun,
@@ -205,23 +213,23 @@ fn elements(session: &Session) -> usize {
     session.compiled().scene.elements.len()
 }
 
-/// The soft elements of a scene, and what their surfaces depend on; `None` if there are none, too many, or one that has no end.
-fn soft_part(mut scene: Scene) -> Option<Scene> {
-    let mut elements = std::mem::take(&mut scene.elements);
-    elements.retain(|element| scene.is_soft(element));
-    let is_endless = |shape: &Shape| matches!(shape, Shape::Plane { .. });
-    if elements.is_empty()
-        || elements.len() > MOST
-        || elements.iter().any(|element| is_endless(&element.shape))
-    {
+/// The soft elements of a scene, and what their surfaces depend on; `None` if there are
+/// none, too many, or one that has no end.
+fn soft_part(scene: &Scene) -> Option<Scene> {
+    let soft = || scene.elements.iter().filter(|e| scene.is_soft(e));
+    let has_end = |element: &Element| !matches!(element.shape, Shape::Plane { .. });
+    if !(1..=MOST).contains(&soft().count()) || !soft().all(has_end) {
         return None;
     }
     Some(Scene {
-        elements,
-        images: Vec::new(),
-        moments: Vec::new(),
-        clouds: Vec::new(),
-        ..scene
+        elements: soft().cloned().collect(),
+        bodies: scene.bodies.clone(),
+        contacts: scene.contacts.clone(),
+        flesh: scene.flesh.clone(),
+        finishes: scene.finishes.clone(),
+        frames: scene.frames.clone(),
+        settings: scene.settings,
+        ..Scene::default()
     })
 }
 
@@ -249,7 +257,7 @@ mod tests {
     #[test]
     fn mesh_is_made_once_a_hand_moves_and_becomes_finer_when_it_rests() {
         let session = Session::of_text(BALLS);
-        let mut live = LiveMesh::new(|| {});
+        let mut live = LiveMesh::new(Tools::new(|| {}));
         settle(&mut live, &session, 0.0, true);
         assert!(live.shown(&session, 0.0).is_none());
         live.want();
@@ -273,7 +281,7 @@ mod tests {
     #[test]
     fn quick_mesh_stands_in_for_the_next_one_but_not_for_long() {
         let mut session = Session::of_text(BALLS);
-        let mut live = LiveMesh::new(|| {});
+        let mut live = LiveMesh::new(Tools::new(|| {}));
         live.want();
         settle(&mut live, &session, 1.0, false);
         let moved = BALLS.replace("1.5", "1.6");
@@ -299,7 +307,7 @@ mod tests {
         ] {
             let session = Session::of_text(text);
             assert_eq!(session.errors(), 0);
-            let mut live = LiveMesh::new(|| {});
+            let mut live = LiveMesh::new(Tools::new(|| {}));
             live.want();
             settle(&mut live, &session, 1.0, true);
             assert!(live.shown(&session, 1.0).is_none() && live.hopeless.is_some());

@@ -1,9 +1,9 @@
-//! The model as a mesh, for printers and other programs: the jobs of the tools worker, and scripts that ask for a file. The
-//! dialog is in `mesh_panel`.
+//! The model as a mesh, for printers and other programs: the jobs of the tools worker, and scripts
+//! that ask for a file. The dialog is in `mesh_panel`.
 //!
-//! The mesh is made apart from the page's thread; until it is there a coat of the skeletons is seen. Another format or
-//! size only writes the mesh again. Of a model with a skeleton the motion is asked of the language frame by frame, some at
-//! each tick, so that the page stays responsive.
+//! The mesh is made apart from the page's thread; until it is there a coat of the skeletons is seen.
+//! Another format or size only writes the mesh again. Of a model with a skeleton the motion is asked
+//! of the language frame by frame, some at each tick, so that the page stays responsive.
 
 use crate::film::MAX_FRAMES;
 use crate::mesh_panel::Show;
@@ -13,10 +13,11 @@ use crate::{asset::Asset, clock};
 use glam::DVec3;
 use mesh::{Format, TriangleMesh};
 use mesher::{Tolerance, Wishes};
-use pool::{ToolEvent, Tools};
+use pool::{Ticket, Tools};
 use rats::Project;
 use scene::Scene;
-use tools::{CoatJob, Job, MeshFacts, MeshJob, Output, RigJob, WriteJob, Written};
+use std::sync::Arc;
+use tools::{CoatScene, Coated, MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
 use viewport::{Surface, View};
 
 /// Bound of the coat that is shown until the mesh that was asked for is there.
@@ -115,23 +116,23 @@ struct Wanted {
 /// Takes a file's bytes, or the reason why there are none.
 pub type Taker = Box<dyn FnOnce(Result<Vec<u8>, String>)>;
 
-/// What a job is for.
-enum Purpose {
-    /// A coat of the skeletons, which the dialog shows until the mesh is there.
-    Coat(Shape),
-    /// The dialog's triangles.
-    Shape(Shape),
-    /// The dialog's file.
-    File(Wanted),
-    /// A script waits for the file.
-    Script(Taker),
+/// A job that is not over.
+struct Running<K, T> {
+    /// What it is for.
+    of: K,
+    ticket: Ticket<T>,
 }
 
-/// A job that runs.
-struct Running {
-    id: u64,
-    purpose: Purpose,
-    fraction: f32,
+impl<K, T> Running<K, T> {
+    /// Takes the result of a job that is over, and forgets the job.
+    fn finished(job: &mut Option<Self>) -> Option<(K, Result<T, String>)> {
+        let result = job.as_mut()?.ticket.result()?;
+        job.take().map(|job| (job.of, result))
+    }
+
+    fn fraction(&self) -> f32 {
+        self.ticket.fraction().unwrap_or(0.0)
+    }
 }
 
 /// Frames of a motion that are being asked of the language.
@@ -163,7 +164,14 @@ pub(crate) struct Made {
 pub struct MeshExport {
     tools: Tools,
     pub(crate) order: Order,
-    running: Vec<Running>,
+    /// A coat of the skeletons, which the dialog shows until the mesh is there.
+    coating: Option<Running<Shape, Coated>>,
+    /// The dialog's triangles.
+    meshing: Option<Running<Shape, Meshed>>,
+    /// The dialog's file.
+    writing: Option<Running<Wanted, Written>>,
+    /// Meshes whose files scripts wait for.
+    scripts: Vec<Running<Taker, Meshed>>,
     filming: Vec<Filming>,
     pub(crate) made: Option<Made>,
     written: Option<(Wanted, Written)>,
@@ -187,14 +195,16 @@ pub(crate) enum State<'a> {
 }
 
 impl MeshExport {
-    /// Makes nothing yet; the worker is started for the first mesh. `repaint` is called when
-    /// [`MeshExport::tick`] has something to do.
+    /// Makes nothing yet.
     #[must_use]
-    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+    pub fn new(tools: Tools) -> Self {
         Self {
-            tools: Tools::new(repaint),
+            tools,
             order: Order::default(),
-            running: Vec::new(),
+            coating: None,
+            meshing: None,
+            writing: None,
+            scripts: Vec::new(),
             filming: Vec::new(),
             made: None,
             written: None,
@@ -208,18 +218,40 @@ impl MeshExport {
     pub fn tick(&mut self) -> bool {
         // What is laid out in a new way is known, also to scripts, a frame later.
         let mut again = false;
-        for (id, event) in self.tools.poll() {
+        if let Some((shape, result)) = Running::finished(&mut self.coating) {
             again = true;
-            let Some(index) = self.running.iter().position(|job| job.id == id) else {
-                continue;
-            };
-            match event {
-                ToolEvent::Progress(fraction) => self.running[index].fraction = fraction,
-                // A mesh comes in one piece.
-                ToolEvent::Partial(_) => {}
-                ToolEvent::Done(result) => {
-                    let job = self.running.remove(index);
-                    self.finish(job.purpose, result);
+            if let Ok(Coated { parts, .. }) = result
+                && !parts.is_empty()
+            {
+                self.take(shape, parts, MeshFacts::default());
+            }
+        }
+        if let Some((shape, result)) = Running::finished(&mut self.meshing) {
+            again = true;
+            match result {
+                Ok(meshed) => self.take(shape, meshed.parts, meshed.facts),
+                Err(reason) => self.fail(shape, reason),
+            }
+        }
+        if let Some((wanted, result)) = Running::finished(&mut self.writing) {
+            again = true;
+            match result {
+                Ok(written) => {
+                    self.trouble = None;
+                    self.written = Some((wanted, written));
+                }
+                Err(reason) => self.trouble = Some((wanted, reason)),
+            }
+        }
+        for mut script in std::mem::take(&mut self.scripts) {
+            match script.ticket.result() {
+                None => self.scripts.push(script),
+                Some(result) => {
+                    again = true;
+                    // OBJ has its materials in a second file, which it can do without.
+                    let file = |meshed: Meshed| meshed.written.files.into_iter().next();
+                    let bytes = |meshed| file(meshed).map_or_else(Vec::new, |file| file.bytes);
+                    (script.of)(result.map(bytes));
                 }
             }
         }
@@ -236,7 +268,7 @@ impl MeshExport {
                 let scene = rats::compile_at(&filming.project, &filming.assets, frame).scene;
                 // The first one is meshed, of the others only the motion counts.
                 filming.scenes.push(if filming.scenes.is_empty() {
-                    scene
+                    Arc::unwrap_or_clone(scene)
                 } else {
                     rig::skeletons_of(&scene)
                 });
@@ -249,50 +281,14 @@ impl MeshExport {
                 film, scenes, next, ..
             } = self.filming.remove(0);
             let rate = f64::from(film.rate);
-            let rig = Some(RigJob { scenes, rate });
             match next {
-                Next::File(wanted) => self.write(wanted, rig),
+                Next::File(wanted) => self.write(wanted, Some(Poses { scenes, rate })),
                 Next::Script(script) => {
                     let (order, name, taker) = *script;
-                    self.make(order, name, rig, taker);
+                    let first = Arc::new(scenes[0].clone());
+                    self.make(order, name, first, Some(Poses { scenes, rate }), taker);
                 }
             }
-        }
-    }
-
-    fn finish(&mut self, purpose: Purpose, result: Result<Output, String>) {
-        let strange = || String::from("The tools worker gave no mesh.");
-        let meshed = |result: Result<Output, String>| match result {
-            Ok(Output::Meshed(meshed)) => Ok(*meshed),
-            Ok(_) => Err(strange()),
-            Err(reason) => Err(reason),
-        };
-        match purpose {
-            Purpose::Script(taker) => taker(meshed(result).map(|meshed| {
-                // OBJ has its materials in a second file, which it can do without.
-                let mut files = meshed.written.files.into_iter();
-                files.next().map_or_else(Vec::new, |file| file.bytes)
-            })),
-            Purpose::Coat(shape) => {
-                if let Ok(Output::Coated(coated)) = result
-                    && !coated.parts.is_empty()
-                {
-                    let facts = MeshFacts::default();
-                    self.take(shape, coated.parts, facts);
-                }
-            }
-            Purpose::Shape(shape) => match meshed(result) {
-                Ok(meshed) => self.take(shape, meshed.parts, meshed.facts),
-                Err(reason) => self.fail(shape, reason),
-            },
-            Purpose::File(wanted) => match result {
-                Ok(Output::Written(written)) => {
-                    self.trouble = None;
-                    self.written = Some((wanted, written));
-                }
-                Ok(_) => self.trouble = Some((wanted, strange())),
-                Err(reason) => self.trouble = Some((wanted, reason)),
-            },
         }
     }
 
@@ -343,7 +339,7 @@ impl MeshExport {
             return;
         };
         if order.rig {
-            if !rig::has_skeleton(&scene) {
+            if !rig::has_skeleton(scene) {
                 taker(Err(String::from(
                     "There is no skeleton: joints come from the command skeleton.",
                 )));
@@ -353,81 +349,56 @@ impl MeshExport {
             self.filming
                 .push(filming(session, Some(film), Next::Script(script)));
         } else {
-            self.submit(scene, order, name.to_owned(), None, Purpose::Script(taker));
+            self.make(order, name.to_owned(), scene.clone(), None, taker);
         }
     }
 
-    fn make(&mut self, order: Order, name: String, rig: Option<RigJob>, taker: Taker) {
-        match rig.as_ref().and_then(|rig| rig.scenes.first()).cloned() {
-            Some(scene) => self.submit(scene, order, name, rig, Purpose::Script(taker)),
-            None => taker(Err(String::from("There is no model yet."))),
-        }
-    }
-
-    /// Has a scene meshed. The dialog's files are written apart from that.
-    fn submit(
+    /// Has a scene meshed and written for a script.
+    fn make(
         &mut self,
-        scene: Scene,
         order: Order,
         name: String,
-        rig: Option<RigJob>,
-        purpose: Purpose,
+        scene: Arc<Scene>,
+        rig: Option<Poses>,
+        taker: Taker,
     ) {
-        let wishes = Wishes {
-            tolerance: Tolerance::OfSide(order.tolerance),
-            union: order.union,
-            ..Wishes::default()
-        };
-        let for_script = matches!(purpose, Purpose::Script(_));
-        let job = Job::Mesh(Box::new(MeshJob {
-            scene,
-            wishes,
-            format: for_script.then_some(order.format),
-            name,
-            size: order.size,
+        let job = MeshScene {
+            format: Some(order.format),
             rig,
-        }));
-        self.run(job, purpose);
-    }
-
-    fn run(&mut self, job: Job, purpose: Purpose) {
-        self.running.push(Running {
-            id: self.tools.submit(job),
-            purpose,
-            fraction: 0.0,
+            ..meshing(scene, order, name)
+        };
+        self.scripts.push(Running {
+            ticket: self.tools.submit(job),
+            of: taker,
         });
     }
 
-    fn write(&mut self, wanted: Wanted, rig: Option<RigJob>) {
+    /// Has the dialog's mesh written.
+    fn write(&mut self, wanted: Wanted, rig: Option<Poses>) {
         let Some(made) = self.made.as_ref().filter(|made| made.shape == wanted.shape) else {
             return;
         };
-        let job = WriteJob {
+        let job = WriteMesh {
             parts: made.parts.clone(),
             format: wanted.order.format,
             name: self.name.clone(),
             size: wanted.order.size,
             rig,
         };
-        self.run(Job::Write(Box::new(job)), Purpose::File(wanted));
+        self.writing = Some(Running {
+            ticket: self.tools.submit(job),
+            of: wanted,
+        });
     }
 
     /// Ends the jobs of the dialog, as it is closed or nobody wants their results any more.
     pub fn stop(&mut self) {
-        let Self {
-            tools,
-            running,
-            filming,
-            ..
-        } = self;
         // The last ones first, so that none of them is begun.
-        for job in running.iter().rev() {
-            if !matches!(job.purpose, Purpose::Script(_)) {
-                tools.cancel(job.id);
-            }
-        }
-        running.retain(|job| matches!(job.purpose, Purpose::Script(_)));
-        filming.retain(|filming| matches!(filming.next, Next::Script(_)));
+        self.writing = None;
+        self.meshing = None;
+        self.coating = None;
+        self.filming
+            .retain(|filming| matches!(filming.next, Next::Script(_)));
     }
 
     /// Ends the jobs of the dialog at a person's word.
@@ -482,8 +453,7 @@ impl MeshExport {
         name.clone_into(&mut self.name);
         let is_made = self.made.as_ref().is_some_and(|made| made.shape == shape);
         if !is_made {
-            let comes = |job: &Running| matches!(&job.purpose, Purpose::Shape(of) if *of == shape);
-            if self.running.iter().any(comes) {
+            if self.meshing.as_ref().is_some_and(|job| job.of == shape) {
                 return;
             }
             self.stop();
@@ -491,7 +461,7 @@ impl MeshExport {
                 let (project, assets) = (session.project(), session.assets());
                 Some(rats::compile_at(project, assets, 0.0).scene)
             } else {
-                session.scene()
+                session.scene().cloned()
             };
             let Some(scene) = scene else {
                 return;
@@ -501,23 +471,30 @@ impl MeshExport {
                     || made.shape.first_frame != shape.first_frame
             };
             if scene.elements.len() <= MOST_COATED && self.made.as_ref().is_none_or(is_other) {
-                let job = Job::Coat(Box::new(CoatJob {
+                let job = CoatScene {
                     scene: scene.clone(),
                     bound: COAT,
                     coatings: Vec::new(),
-                }));
+                };
                 // No mesh that is asked for is taken for it.
                 let tolerance = f64::INFINITY;
-                self.run(job, Purpose::Coat(Shape { tolerance, ..shape }));
+                self.coating = Some(Running {
+                    ticket: self.tools.submit(job),
+                    of: Shape { tolerance, ..shape },
+                });
             }
-            let purpose = Purpose::Shape(shape);
-            self.submit(scene, order, name.to_owned(), None, purpose);
+            // The dialog's files are written apart from that.
+            let job = meshing(scene, order, name.to_owned());
+            self.meshing = Some(Running {
+                ticket: self.tools.submit(job),
+                of: shape,
+            });
             return;
         }
         let is_written = matches!(&self.written, Some((of, _)) if *of == wanted);
-        let written = |job: &Running| matches!(&job.purpose, Purpose::File(of) if *of == wanted);
+        let comes = self.writing.as_ref().is_some_and(|job| job.of == wanted);
         let filmed = |filming: &Filming| matches!(&filming.next, Next::File(of) if *of == wanted);
-        if is_written || self.running.iter().any(written) || self.filming.iter().any(filmed) {
+        if is_written || comes || self.filming.iter().any(filmed) {
             return;
         }
         self.stop();
@@ -545,9 +522,9 @@ impl MeshExport {
         {
             return State::Done(&made.facts, written);
         }
-        let own = |job: &&Running| matches!(job.purpose, Purpose::Shape(_) | Purpose::File(_));
-        if let Some(job) = self.running.iter().find(own) {
-            return State::Making(job.fraction);
+        let meshing = self.meshing.as_ref().map(Running::fraction);
+        if let Some(fraction) = meshing.or(self.writing.as_ref().map(Running::fraction)) {
+            return State::Making(fraction);
         }
         let filmed = |filming: &&Filming| matches!(filming.next, Next::File(_));
         if let Some(filming) = self.filming.iter().find(filmed) {
@@ -595,6 +572,22 @@ impl MeshExport {
                 _ => None,
             },
         })
+    }
+}
+
+/// The job of meshing a scene for the eye.
+fn meshing(scene: Arc<Scene>, order: Order, name: String) -> MeshScene {
+    MeshScene {
+        scene,
+        wishes: Wishes {
+            tolerance: Tolerance::OfSide(order.tolerance),
+            union: order.union,
+            ..Wishes::default()
+        },
+        format: None,
+        name,
+        size: order.size,
+        rig: None,
     }
 }
 
@@ -673,7 +666,7 @@ mod tests {
     use std::time::{Duration, Instant};
 
     fn made_for_a_script(text: &str, order: Order) -> Result<Vec<u8>, String> {
-        let mut export = MeshExport::new(|| {});
+        let mut export = MeshExport::new(Tools::new(|| {}));
         let given = Rc::new(RefCell::new(None));
         let place = given.clone();
         let taker = Box::new(move |result| *place.borrow_mut() = Some(result));
@@ -756,7 +749,9 @@ mod tests {
         loop {
             assert!(Instant::now() < deadline);
             export.follow(session, film, "model");
-            begun.extend(export.running.iter().map(|job| job.id));
+            begun.extend(export.coating.iter().map(|job| format!("{:?}", job.of)));
+            begun.extend(export.meshing.iter().map(|job| format!("{:?}", job.of)));
+            begun.extend(export.writing.iter().map(|job| format!("{:?}", job.of)));
             if matches!(
                 export.state(session, film),
                 State::Done(..) | State::Trouble(_)
@@ -771,7 +766,7 @@ mod tests {
     #[test]
     fn another_format_or_size_makes_no_new_triangles() {
         let (ball, arm) = (Session::of_text(BALL), Session::of_text(ARM));
-        let mut export = MeshExport::new(|| {});
+        let mut export = MeshExport::new(Tools::new(|| {}));
         // Coat, mesh, file.
         assert_eq!(follow(&mut export, &ball), 3);
         assert_eq!(export.files()[0].name, "model.stl");
@@ -798,7 +793,7 @@ mod tests {
         let mut arm = arm;
         assert_eq!(arm.generation(), ball.generation());
         arm.set_film_frame(0);
-        export = MeshExport::new(|| {});
+        export = MeshExport::new(Tools::new(|| {}));
         export.order = Order {
             format: Format::Glb,
             tolerance: 1e-2,
@@ -821,12 +816,12 @@ mod tests {
     fn stopping_is_not_undone_until_one_asks() {
         let ball = Session::of_text(BALL);
         let film = Film { count: 5, rate: 12 };
-        let mut export = MeshExport::new(|| {});
+        let mut export = MeshExport::new(Tools::new(|| {}));
         export.order.tolerance = 3e-4;
         export.follow(&ball, film, "ball");
         export.stop_asked(&ball, film);
         export.follow(&ball, film, "ball");
-        assert!(export.running.is_empty());
+        assert!(export.meshing.is_none() && export.coating.is_none());
         assert!(matches!(export.state(&ball, film), State::Trouble(_)));
         export.again();
         export.order.tolerance = 1e-2;

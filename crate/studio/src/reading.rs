@@ -1,20 +1,20 @@
 //! Reading the large meshes of a work apart from the page's thread.
 //!
-//! A large mesh file goes to the tools worker; its mesh, or the reader's error message, is kept for
-//! compiling by [`rats::keep_mesh`]. Until then the session does not compile texts that name it and the
-//! last good picture stays.
+//! A large mesh file goes to a tools worker; its mesh, or the reader's error message, is kept for
+//! compiling by [`rats::keep_mesh`]. Until then the session does not compile texts that name it and
+//! the last good picture stays.
 
 use crate::asset::Asset;
 use crate::session::Session;
-use pool::{ToolEvent, Tools};
+use mesh::TriangleMesh;
+use pool::{Ticket, Tools};
 use std::sync::Arc;
-use tools::{Job, Output};
+use tools::ReadMesh;
 
 /// A file that is being read.
 struct Reading {
-    id: u64,
     asset: Asset,
-    fraction: f32,
+    ticket: Ticket<TriangleMesh>,
 }
 
 impl Reading {
@@ -30,73 +30,51 @@ pub struct MeshReading {
 }
 
 impl MeshReading {
-    /// Reads nothing yet; the worker is started for the first file. `repaint` is called when
-    /// [`MeshReading::tick`] has something to do.
+    /// Reads nothing yet.
     #[must_use]
-    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+    pub fn new(tools: Tools) -> Self {
         Self {
-            tools: Tools::new(repaint),
+            tools,
             files: Vec::new(),
         }
     }
 
-    /// Starts reading the meshes that the session waits for, gives up those it does not want any more,
-    /// and keeps those that are read. Returns whether one is, so that the session may compile.
+    /// Starts reading the meshes that the session waits for, gives up those it does not want any
+    /// more, and keeps those that are read. Returns whether one is, so that the session may compile.
     pub fn tick(&mut self, session: &Session) -> bool {
-        let events = self.tools.poll();
         let mut any_read = false;
-        for (id, event) in events {
-            let Some(index) = self.files.iter().position(|file| file.id == id) else {
-                continue;
-            };
-            match event {
-                ToolEvent::Progress(fraction) => self.files[index].fraction = fraction,
-                ToolEvent::Partial(_) => {}
-                ToolEvent::Done(result) => {
-                    let mesh = result.and_then(|output| match output {
-                        Output::Mesh(mesh) => Ok(mesh),
-                        _ => Err(String::from("the worker answered to another job")),
-                    });
-                    rats::keep_mesh(&self.files.remove(index).asset, mesh);
-                    any_read = true;
-                }
+        self.files.retain_mut(|file| match file.ticket.result() {
+            Some(mesh) => {
+                rats::keep_mesh(&file.asset, mesh);
+                any_read = true;
+                false
             }
-        }
+            None => true,
+        });
         let wanted: Vec<Asset> = if session.enabled() {
             session.unread_meshes().cloned().collect()
         } else {
             Vec::new()
         };
-        let Self { tools, files } = self;
-        files.retain(|file| {
-            let is_wanted = wanted.iter().any(|asset| file.is_of(asset));
-            if !is_wanted {
-                tools.cancel(file.id);
-            }
-            is_wanted
-        });
+        self.files
+            .retain(|file| wanted.iter().any(|asset| file.is_of(asset)));
         for asset in wanted {
-            if !files.iter().any(|file| file.is_of(&asset)) {
-                let job = Job::ReadMesh {
+            if !self.files.iter().any(|file| file.is_of(&asset)) {
+                let ticket = self.tools.submit(ReadMesh {
                     name: asset.name.clone(),
                     bytes: asset.bytes.to_vec(),
-                };
-                let id = tools.submit(job);
-                files.push(Reading {
-                    id,
-                    asset,
-                    fraction: 0.0,
                 });
+                self.files.push(Reading { asset, ticket });
             }
         }
         any_read
     }
 
-    /// The name of the file that is being read, with the fraction done, 0 … 1.
+    /// Returns the name of the file that is being read, with the fraction done, 0 … 1.
     #[must_use]
     pub fn current(&self) -> Option<(&str, f32)> {
         let file = self.files.first()?;
-        Some((&file.asset.name, file.fraction))
+        Some((&file.asset.name, file.ticket.fraction().unwrap_or(0.0)))
     }
 }
 
@@ -149,7 +127,7 @@ mod tests {
         let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
         session.compile();
         assert!(!session.is_compiled() && session.scene().is_none());
-        let mut reading = MeshReading::new(|| {});
+        let mut reading = MeshReading::new(Tools::new(|| {}));
         assert!(!reading.tick(&session));
         assert_eq!(reading.current(), Some(("big.obj", 0.0)));
         read_all(&mut reading, &session);
@@ -175,7 +153,7 @@ mod tests {
         session.compile();
         assert!(!session.is_compiled());
         assert_eq!((session.errors(), session.generation()), (0, generation));
-        let mut reading = MeshReading::new(|| {});
+        let mut reading = MeshReading::new(Tools::new(|| {}));
         read_all(&mut reading, &session);
         session.compile();
         assert!(session.is_compiled());
@@ -188,7 +166,7 @@ mod tests {
     #[test]
     fn removed_mesh_is_not_read() {
         let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
-        let mut reading = MeshReading::new(|| {});
+        let mut reading = MeshReading::new(Tools::new(|| {}));
         reading.tick(&session);
         session.remove_asset("big.obj");
         assert!(!reading.tick(&session));

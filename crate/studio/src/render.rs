@@ -7,9 +7,10 @@
 use crate::picture;
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use pool::{Assembly, Change, Image, Job, Pool, Progress};
-use scene::Scene;
+use scene::{Camera, Scene};
 use std::cell::RefCell;
 use std::rc::Rc;
+use std::sync::Arc;
 use tracer::Pass;
 use worker::Kind;
 
@@ -140,26 +141,28 @@ impl Renderer {
         (self.phase == Phase::Waiting).then_some((self.due - now).max(0.0))
     }
 
-    /// Begins the wanted picture when its time has come, and takes in tiles. Gives whether
-    /// something changed.
+    /// Begins the wanted picture when its time has come, of this scene and by this camera if it is
+    /// another than the scene's, and takes in tiles. Gives whether something changed.
     pub fn tick(
         &mut self,
         ctx: &egui::Context,
         now: f64,
-        scene: impl FnOnce() -> Option<Scene>,
+        scene: Option<&Arc<Scene>>,
+        camera: Option<Camera>,
     ) -> bool {
         let mut changed = false;
         if self.phase == Phase::Waiting
             && now >= self.due
             && let Some((generation, size)) = self.wanted
-            && let Some(scene) = scene()
+            && let Some(scene) = scene
         {
             self.number += 1;
             self.running = (generation, now);
             self.timings = Timings::default();
             self.assembly.begin(self.number, size);
             self.pool.borrow_mut().start(Job {
-                scene: &scene,
+                scene,
+                camera,
                 size,
                 generation: self.number,
                 kind: Kind::Colours,

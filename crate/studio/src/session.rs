@@ -2,15 +2,18 @@
 //! says about it, the last scene that could be drawn, and the camera chosen by hand.
 //!
 //! Three counters tell others what changed: [`Session::revision`] rises with every change of the text,
-//! [`Session::generation`] with every change of what is to be drawn, [`Session::shape`] with those that are no mere turn of the camera.
+//! [`Session::generation`] with every change of what is to be drawn, [`Session::shape`] with those
+//! that are no mere turn of the camera.
 //! Times are seconds on any clock that never goes back.
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
 use rats::{Compiled, Diagnostic, Project, Severity, TextEdit};
-use scene::{Camera, Element, Scene};
+use scene::{Camera, Scene};
 use serde::{Deserialize, Serialize};
+use std::cell::OnceCell;
 use std::sync::Arc;
+use tracer::Picker;
 
 /// Longest project the editor takes, bytes over all files. The editor lays the whole text out at
 /// every key, so this is far below what a link could carry.
@@ -124,7 +127,9 @@ pub struct Session {
     assets: Vec<Asset>,
     history: History<Project>,
     compiled: Compiled,
-    good: Option<Scene>,
+    good: Option<Arc<Scene>>,
+    /// That scene ready for clicks, and as the draft shows it.
+    pickers: [OnceCell<Picker>; 2],
     camera: Option<Camera>,
     revision: u64,
     generation: u64,
@@ -146,6 +151,7 @@ impl Session {
             history: History::default(),
             compiled: Compiled::default(),
             good: None,
+            pickers: Default::default(),
             camera: None,
             revision: 0,
             generation: 0,
@@ -173,6 +179,7 @@ impl Session {
         self.camera = kept.camera;
         self.film_frame = 0;
         self.good = None;
+        self.pickers = Default::default();
         self.changed();
     }
 
@@ -454,16 +461,27 @@ impl Session {
             .count()
     }
 
-    /// The scene to draw: that of the last text without errors, seen by the user's camera. While no
-    /// text was ever free of errors, what could be understood is better than nothing. `None` before
-    /// anything was compiled.
+    /// The scene to draw: that of the last text without errors. It is seen by [`Session::camera`].
+    /// While no text was ever free of errors, what could be understood is better than nothing.
+    /// `None` before anything was compiled.
     #[must_use]
-    pub fn scene(&self) -> Option<Scene> {
-        let mut scene = self.good.clone()?;
-        if let Some(camera) = self.camera {
-            scene.camera = camera;
-        }
-        Some(scene)
+    pub fn scene(&self) -> Option<&Arc<Scene>> {
+        self.good.as_ref()
+    }
+
+    /// The scene to draw ready for clicks, or its draft, in which shapes have not melted together.
+    #[must_use]
+    pub fn picker(&self, of_draft: bool) -> Option<&Picker> {
+        let scene = self.good.as_ref()?;
+        Some(self.pickers[usize::from(of_draft)].get_or_init(|| {
+            if of_draft {
+                let mut hard = Scene::clone(scene);
+                hard.settings.soft = false;
+                Picker::new(&hard)
+            } else {
+                Picker::new(scene)
+            }
+        }))
     }
 
     /// The dataset as the lab sees it. Its scene has the text's camera.
@@ -471,7 +489,7 @@ impl Session {
     pub fn dataset(&self) -> lab::Dataset<'_> {
         lab::Dataset {
             generation: self.generation,
-            scene: self.good.as_ref(),
+            scene: self.good.as_deref(),
             camera: self.camera(),
         }
     }
@@ -560,13 +578,13 @@ impl Session {
         self.revision
     }
 
-    /// Rises with every change of what [`Session::scene`] gives.
+    /// Rises with every change of what [`Session::scene`] and [`Session::camera`] give.
     #[must_use]
     pub fn generation(&self) -> u64 {
         self.generation
     }
 
-    /// Rises with every change of what [`Session::scene`] gives but for a camera chosen by hand.
+    /// Rises with every change of what [`Session::scene`] gives.
     #[must_use]
     pub fn shape(&self) -> u64 {
         self.shape
@@ -616,13 +634,12 @@ impl Session {
         self.compile_seconds = crate::clock::stopwatch() - start;
         if self.errors() == 0 || self.good.is_none() {
             let scene = &self.compiled.scene;
-            let same = self
-                .good
-                .as_ref()
-                .is_some_and(|good| same_picture(good, scene));
-            self.good = Some(scene.clone());
-            self.generation += u64::from(!same);
-            self.shape += u64::from(!same);
+            let good = self.good.replace(scene.clone());
+            if !good.is_some_and(|good| good.is_same_but_written(scene)) {
+                self.generation += 1;
+                self.shape += 1;
+                self.pickers = Default::default();
+            }
         }
     }
 
@@ -637,41 +654,6 @@ impl Session {
         self.revision += 1;
         self.stale = true;
     }
-}
-
-/// Whether two scenes look the same. Where in the text the elements were written does not matter:
-/// a remark above them draws no new picture.
-fn same_picture(a: &Scene, b: &Scene) -> bool {
-    a.elements.len() == b.elements.len()
-        && a.elements.iter().zip(&b.elements).all(is_same_but_written)
-        && a.flesh == b.flesh
-        && a.finishes == b.finishes
-        && a.frames == b.frames
-        && a.lights == b.lights
-        && a.background == b.background
-        && (a.sky, a.ground, a.fog, a.up) == (b.sky, b.ground, b.fog, b.up)
-        && a.clouds == b.clouds
-        && a.images == b.images
-        && (a.camera, a.lens) == (b.camera, b.lens)
-        && a.moments == b.moments
-        && a.settings == b.settings
-}
-
-/// Whether two elements are the same, wherever they are written.
-fn is_same_but_written((a, b): (&Element, &Element)) -> bool {
-    let Element {
-        shape,
-        flesh,
-        finish,
-        body,
-        frame,
-        kernel,
-        origin: _,
-        paint,
-    } = a;
-    (shape, paint) == (&b.shape, &b.paint)
-        && (flesh, finish) == (&b.flesh, &b.finish)
-        && (body, frame, kernel) == (&b.body, &b.frame, &b.kernel)
 }
 
 /// The file and the byte in the new text where it starts to differ from the old one.
@@ -722,10 +704,11 @@ mod tests {
     fn an_error_keeps_the_last_good_scene() {
         let mut session = Session::of_text(TEXT);
         assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
-        let (scene, generation) = (session.scene(), session.generation());
+        let (scene, generation) = (session.scene().cloned(), session.generation());
         edit(&mut session, &format!("{TEXT}sphree a 1, 2 0 0\n"), 1.0);
         assert_eq!(session.errors(), 1);
-        assert_eq!((session.scene(), session.generation()), (scene, generation));
+        let now = (session.scene().cloned(), session.generation());
+        assert_eq!(now, (scene, generation));
         edit(&mut session, &format!("{TEXT}sphere a 1, 2 0 0\n"), 2.0);
         assert_eq!(session.scene().unwrap().elements.len(), 2);
         assert_eq!(session.generation(), generation + 1);
@@ -739,24 +722,35 @@ mod tests {
     }
 
     #[test]
-    fn every_part_of_an_element_draws_a_new_picture_but_its_place_in_the_text() {
-        let ball = scene::Shape::Sphere {
-            center: glam::DVec3::ZERO,
-            radius: 1.0,
+    fn a_contact_draws_a_new_picture() {
+        let body = |name, at| format!("body {name}\nsphere a 1, {at} 0 0\nclose\n");
+        let text = format!(
+            "surface a, diffuse Red, blobbiness -1\n{}{}",
+            body("L", -1),
+            body("R", 1)
+        );
+        let mut session = Session::of_text(&text);
+        let generation = session.generation();
+        edit(&mut session, &format!("{text}contact L R\n"), 1.0);
+        assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
+        assert_eq!(session.generation(), generation + 1);
+    }
+
+    #[test]
+    fn scene_is_shared_and_ready_for_clicks_until_it_changes() {
+        let mut session = Session::of_text(TEXT);
+        assert!(Arc::ptr_eq(
+            session.scene().unwrap(),
+            &session.compiled().scene
+        ));
+        let met = |session: &Session| {
+            let picker = session.picker(true).unwrap();
+            let hit = picker.pick(glam::DVec3::new(0.0, 0.0, 5.0), glam::DVec3::NEG_Z);
+            hit.map(|hit| hit.t)
         };
-        let element = Element::new(ball);
-        let with = |change: &dyn Fn(&mut Element)| {
-            let mut other = element.clone();
-            change(&mut other);
-            is_same_but_written((&element, &other))
-        };
-        assert!(with(&|other| other.origin.start = 7));
-        assert!(!with(&|other| other.frame = 1));
-        let paint = scene::Paint {
-            finish: 0,
-            corners: [[1.0; 3]; 3],
-        };
-        assert!(!with(&|other| other.paint = Some(Box::new(paint.clone()))));
+        assert_eq!(met(&session), Some(4.5));
+        edit(&mut session, &TEXT.replace("0.5", "1.5"), 1.0);
+        assert_eq!(met(&session), Some(3.5));
     }
 
     #[test]
@@ -777,7 +771,7 @@ mod tests {
         };
         session.set_camera(Some(chosen));
         edit(&mut session, &format!("{TEXT}eyep 9 9 9\n"), 1.0);
-        assert_eq!(session.scene().unwrap().camera, chosen);
+        assert_eq!(session.camera(), chosen);
         session.set_camera(None);
         assert_eq!(session.camera().eye, glam::DVec3::splat(9.0));
         let shape = session.shape();

@@ -1,10 +1,10 @@
 //! Entry point of the tools worker: messages in, messages out.
 //!
-//! The script `www/tools_worker.js` receives the compiled module, instantiates it and calls [`serve`].
-//! From then on each message is one packed [`Request`], which is run to its end.
+//! The script `www/tools_worker.js` receives the compiled module, instantiates it and calls
+//! [`serve`]. From then on each message is one packed request, which is carried out to its end.
 
-use crate::job::{Progress, run};
-use crate::message::{Answer, Request, pack, unpack};
+use crate::message::Answer;
+use core::ops::ControlFlow;
 use js_sys::{Array, Uint8Array};
 use wasm_bindgen::prelude::*;
 use web_sys::{DedicatedWorkerGlobalScope, MessageEvent};
@@ -18,25 +18,18 @@ pub fn serve() -> Result<(), JsValue> {
     std::panic::set_hook(Box::new(|panic| {
         let message = panic.to_string();
         web_sys::console::error_1(&JsValue::from_str(&message));
-        send(&Answer::Failed(message));
+        send(&Answer::Failed(message).packed());
     }));
     let on_message = Closure::<dyn FnMut(MessageEvent)>::new(|event: MessageEvent| {
         let bytes = Uint8Array::new(&event.data()).to_vec();
-        let Ok(Request { id, job }) = unpack(&bytes) else {
-            send(&Answer::Failed(String::from(
-                "page and worker are of different versions; reload the page",
-            )));
-            return;
-        };
-        drop(bytes);
-        let mut report = |fraction| send(&Answer::Progress { id, fraction });
-        let mut pass = |output| send(&Answer::Partial { id, output });
-        let result = run(job, &mut Progress::new(&mut report).passing(&mut pass));
-        send(&Answer::Done { id, result });
+        crate::serve(bytes, &mut |answer| {
+            send(&answer);
+            ControlFlow::Continue(())
+        });
     });
     scope()?.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
     on_message.forget(); // lives as long as the worker
-    send(&Answer::Started);
+    send(&Answer::Started.packed());
     Ok(())
 }
 
@@ -44,11 +37,11 @@ fn scope() -> Result<DedicatedWorkerGlobalScope, JsValue> {
     Ok(js_sys::global().dyn_into::<DedicatedWorkerGlobalScope>()?)
 }
 
-/// Sends an answer, transferring its memory. The page replaces a worker whose answer could not be
-/// packed or sent, as it never comes.
-fn send(answer: &Answer) {
-    if let (Ok(scope), Ok(bytes)) = (scope(), pack(answer)) {
-        let buffer = Uint8Array::from(bytes.as_slice()).buffer();
+/// Sends a packed answer, giving its memory away. The page replaces a worker whose answer could not
+/// be packed or sent, as it never comes.
+fn send(answer: &[u8]) {
+    if let Ok(scope) = scope() {
+        let buffer = Uint8Array::from(answer).buffer();
         let _ = scope.post_message_with_transfer(&buffer, &Array::of1(&buffer));
     }
 }

@@ -1,63 +1,110 @@
 //! The job of fitting a mesh.
 
-use crate::job::Progress;
-use crate::message::{Controls, FitJob, FitStep, Output};
-use fit::{Error, Fitted, Problem, Rigid, cage, deform_lines, fit, web};
+use crate::job::{Job, Pace, Progress};
+use fit::{Fitted, Observations, Options, Problem, Rigid, cage, deform_lines, fit, web};
+use glam::DVec3;
 use mesh::TriangleMesh;
+use serde::{Deserialize, Serialize};
 
-/// Carries out a fit, passing on every iteration.
-pub(crate) fn run(job: FitJob, progress: &mut Progress<'_>) -> Result<Output, Error> {
-    let FitJob {
-        positions,
-        triangles,
-        controls,
-        observations,
-        options,
-    } = job;
-    let (frame, start) = match controls {
-        Controls::Given(given) => {
-            let places: Vec<_> = given.iter().map(|[place, _]| *place).collect();
-            let ways = given.iter().map(|[_, way]| *way).collect();
-            let between = web(&places);
-            (TriangleMesh::new(places, between), ways)
-        }
-        Controls::Around(count) => {
-            let made = cage(&positions, &triangles, count as usize);
-            let still = vec![glam::DVec3::ZERO; made.positions.len()];
-            (made, still)
-        }
-    };
-    let mesh = TriangleMesh::new(positions, triangles);
-    let problem = Problem::new(&mesh, &frame, observations, options)?.starting_at(start)?;
-    let most = options.iterations.max(1) as f32;
-    let mut rigid = Rigid::IDENTITY;
-    let step = |rigid: &Rigid, now: &fit::Progress| FitStep {
-        iteration: now.iteration as u32,
-        residual: now.residual,
-        outliers: now.outliers,
-        text: deform_lines(None, rigid, &frame.positions, &now.moves),
-    };
-    let mut tell = |now: &fit::Progress| {
-        rigid = now.rigid;
-        progress.report(now.iteration as f32 / most);
-        progress.pass(Output::Fit(step(&rigid, now)));
-        progress.goes_on().is_continue()
-    };
-    let Fitted { rigid, last, .. } = fit(&problem, &mut tell)?;
-    Ok(Output::Fit(step(&rigid, &last)))
+/// Fits a mesh to measured points and outlines. Every iteration passes on a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FitMesh {
+    /// The mesh's vertices.
+    pub positions: Vec<DVec3>,
+    /// Its triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Its control points.
+    pub controls: Controls,
+    /// What it is fitted to.
+    pub observations: Observations,
+    /// How.
+    pub options: Options,
+}
+
+/// The control points of a fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Controls {
+    /// These, each with the move that the fit begins with.
+    Given(Vec<[DVec3; 2]>),
+    /// About this number of points around the mesh.
+    Around(u32),
+}
+
+/// A moment of a fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FitStep {
+    /// Iterations done.
+    pub iteration: u32,
+    /// As [`fit::Progress::residual`].
+    pub residual: f64,
+    /// As [`fit::Progress::outliers`].
+    pub outliers: f64,
+    /// The lines of a text that carry the fit out.
+    pub text: String,
+}
+
+impl Job for FitMesh {
+    type Output = FitStep;
+    const PACE: Pace = Pace::Long;
+
+    fn run(self, progress: &mut Progress<'_, FitStep>) -> Result<FitStep, String> {
+        let Self {
+            positions,
+            triangles,
+            controls,
+            observations,
+            options,
+        } = self;
+        let (frame, start) = match controls {
+            Controls::Given(given) => {
+                let places: Vec<_> = given.iter().map(|[place, _]| *place).collect();
+                let ways = given.iter().map(|[_, way]| *way).collect();
+                let between = web(&places);
+                (TriangleMesh::new(places, between), ways)
+            }
+            Controls::Around(count) => {
+                let made = cage(&positions, &triangles, count as usize);
+                let still = vec![DVec3::ZERO; made.positions.len()];
+                (made, still)
+            }
+        };
+        let mesh = TriangleMesh::new(positions, triangles);
+        let problem = Problem::new(&mesh, &frame, observations, options)
+            .and_then(|problem| problem.starting_at(start))
+            .map_err(|error| error.to_string())?;
+        let most = options.iterations.max(1) as f32;
+        let mut rigid = Rigid::IDENTITY;
+        let step = |rigid: &Rigid, now: &fit::Progress| FitStep {
+            iteration: now.iteration as u32,
+            residual: now.residual,
+            outliers: now.outliers,
+            text: deform_lines(None, rigid, &frame.positions, &now.moves),
+        };
+        let mut tell = |now: &fit::Progress| {
+            rigid = now.rigid;
+            let fraction = now.iteration as f32 / most;
+            progress.report(fraction).is_continue()
+                && progress.pass(step(&rigid, now)).is_continue()
+        };
+        let Fitted { rigid, last, .. } =
+            fit(&problem, &mut tell).map_err(|error| error.to_string())?;
+        Ok(step(&rigid, &last))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fit::{Kind, Observations, Options, trial};
+    use crate::News;
+    use core::ops::ControlFlow;
+    use fit::{Kind, trial};
 
     #[test]
     fn fit_passes_on_its_iterations_and_ends_nearer() {
         let head = trial::head(300);
         let points = trial::sample(&head.positions, &head.triangles, 600, 3);
-        let shifted = points.iter().map(|p| *p + glam::DVec3::X * 0.1 * p.z);
-        let job = FitJob {
+        let shifted = points.iter().map(|p| *p + DVec3::X * 0.1 * p.z);
+        let job = FitMesh {
             positions: head.positions.clone(),
             triangles: head.triangles.clone(),
             controls: Controls::Around(20),
@@ -72,16 +119,15 @@ mod tests {
             },
         };
         let mut passed = Vec::new();
-        let mut pass = |output| passed.push(output);
-        let mut report = |_| ();
-        let last = run(job, &mut Progress::new(&mut report).passing(&mut pass)).unwrap();
-        let residual = |output: &Output| match output {
-            Output::Fit(step) => step.residual,
-            other => panic!("{other:?}"),
+        let mut tell = |news| {
+            if let News::Part(step) = news {
+                passed.push(step);
+            }
+            ControlFlow::Continue(())
         };
+        let last = job.run(&mut Progress::new(&mut tell)).unwrap();
         assert!(passed.len() > 3);
-        assert!(residual(&last) < 0.5 * residual(&passed[0]));
-        let Output::Fit(step) = last else { panic!() };
-        assert_eq!(step.text.matches("  control <").count(), 20);
+        assert!(last.residual < 0.5 * passed[0].residual);
+        assert_eq!(last.text.matches("  control <").count(), 20);
     }
 }

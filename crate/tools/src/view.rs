@@ -1,20 +1,24 @@
-//! Meshes of a scene's soft surfaces for the eye: what the page shows while a hand turns the model or drags a part of it.
+//! The job of meshing a scene's soft surfaces for the eye: a picture of them for as long as a hand
+//! turns the model or drags a part of it.
 //!
-//! The surfaces are followed through a grid from where rays from the skeletons leave them. The result is bytes as a GPU takes them, so
-//! that the page has nothing to do with it in the frame in which it comes.
+//! The surfaces are followed through a grid from where rays from the skeletons leave them. The
+//! result is bytes as a GPU takes them, so that the page has nothing to do with it in the frame in
+//! which it comes.
 
-use crate::job::Progress;
-use crate::message::{Detail, ViewJob, ViewMesh};
+use crate::job::{Job, Pace, Progress};
 use crate::track::{eight, jets, track};
+use core::ops::ControlFlow;
 use field::{Implicit, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
-use mesher::{Cage, Spoke};
+use mesher::{Cage, MeshError, Spoke};
 use scene::{Scene, SoftSurface, Surface};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use wide::f32x8;
 
-/// Sides of the grid's cells, in shares of the diagonal of the skeletons' box with their flesh: the least and the most.
+/// Least and most side of the grid's cells, in diagonals of the skeletons' box with their flesh.
 const CELLS: [f64; 2] = [1.0 / 300.0, 1.0 / 70.0];
 /// The same in radii of the thinnest part.
 const OF_RADIUS: f64 = 0.5;
@@ -25,60 +29,111 @@ const MOST_CELLS: usize = 300_000;
 /// Halvings of the step of a ray in which it leaves the surface.
 const HALVINGS: usize = 5;
 
-/// Meshes the soft surfaces of a scene.
-///
-/// # Errors
-/// If there is nothing to see, or too much; in words.
-pub fn run(job: ViewJob, progress: &mut Progress<'_>) -> Result<ViewMesh, String> {
-    let ViewJob {
-        scene,
-        looks,
-        detail,
-    } = job;
-    let surfaces = scene.surfaces();
-    let cages: Vec<Vec<Cage>> = surfaces
-        .iter()
-        .map(|surface| Cage::of_surface(&scene, surface))
-        .collect();
-    let spokes = || cages.iter().flatten().flat_map(|cage| &cage.spokes);
-    // A ray's reach is some radii; the flesh of one is less.
-    let room = |spoke: &Spoke| {
-        let reach = radius(spoke);
-        [spoke.origin - reach, spoke.origin + reach]
-    };
-    let bounds = Aabb::of_points(spokes().flat_map(room));
-    let thinnest = spokes().map(radius).fold(f64::INFINITY, f64::min);
-    let size = bounds.size().length();
-    let is_sound = size > 0.0 && size.is_finite() && thinnest > 0.0;
-    if !is_sound {
-        return Err("there is no soft surface to see".into());
-    }
-    let [least, most] = CELLS.map(|share| share * size);
-    let finer = match detail {
-        Detail::Coarse => 1.0,
-        Detail::Fine => FINER,
-    };
-    let step = finer * (OF_RADIUS * thinnest).clamp(least, most);
-    let mut view = ViewMesh {
-        origin: bounds.center(),
-        unit: 0.5 * size,
-        ..ViewMesh::default()
-    };
-    for (i, (surface, cages)) in surfaces.iter().zip(&cages).enumerate() {
-        let mut seeds = Vec::new();
-        for cage in cages {
-            seeds.extend(exits(surface.function(), &cage.spokes));
+/// The closeness of the mesh of a [`ViewScene`] to the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Detail {
+    /// As near as can be had while a hand moves.
+    Coarse,
+    /// As near as the eye sees.
+    Fine,
+}
+
+/// Meshes the soft surfaces of a scene for the eye, while a hand moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ViewScene {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// For each of its finishes the parameters that the view shows, 0 … 1, which are mixed by the
+    /// shares of the elements: ambient, diffuse and specular colours, and the shine.
+    pub looks: Vec<[f32; 10]>,
+    /// The closeness wanted.
+    pub detail: Detail,
+}
+
+/// A mesh for the eye: bytes as a GPU takes them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ViewMesh {
+    /// The origin of the vertices' positions in the scene.
+    pub origin: DVec3,
+    /// Length of a unit of their positions.
+    pub unit: f64,
+    /// [`ViewMesh::VERTEX`] bytes each: position (three `f32`), normal (four `i16`, parts of 32767,
+    /// the last one 0), then parts of 255: the ambient colour and the shine, the diffuse colour and
+    /// 1, the specular colour and 1.
+    #[serde(with = "serde_bytes")]
+    pub vertices: Vec<u8>,
+    /// Three `u32` a triangle.
+    #[serde(with = "serde_bytes")]
+    pub triangles: Vec<u8>,
+}
+
+impl ViewMesh {
+    /// Bytes of a vertex.
+    pub const VERTEX: usize = 32;
+}
+
+impl Job for ViewScene {
+    type Output = ViewMesh;
+    const PACE: Pace = Pace::Quick;
+
+    fn run(self, progress: &mut Progress<'_, ViewMesh>) -> Result<ViewMesh, String> {
+        let Self {
+            scene,
+            looks,
+            detail,
+        } = self;
+        let surfaces = scene.surfaces();
+        let cages: Vec<Vec<Cage>> = surfaces
+            .iter()
+            .map(|surface| Cage::of_surface(&scene, surface))
+            .collect();
+        let spokes = || cages.iter().flatten().flat_map(|cage| &cage.spokes);
+        // A ray's reach is some radii; the flesh of one is less.
+        let room = |spoke: &Spoke| {
+            let reach = radius(spoke);
+            [spoke.origin - reach, spoke.origin + reach]
+        };
+        let bounds = Aabb::of_points(spokes().flat_map(room));
+        let thinnest = spokes().map(radius).fold(f64::INFINITY, f64::min);
+        let size = bounds.size().length();
+        let is_sound = size > 0.0 && size.is_finite() && thinnest > 0.0;
+        if !is_sound {
+            return Err("there is no soft surface to see".into());
         }
-        progress.report((i as f32 + 0.3) / surfaces.len() as f32);
-        let mesh = track(surface.function(), &seeds, step, MOST_CELLS)?;
-        progress.report((i as f32 + 0.8) / surfaces.len() as f32);
-        add(&mut view, &scene, &looks, surface, &mesh);
+        let [least, most] = CELLS.map(|share| share * size);
+        let finer = match detail {
+            Detail::Coarse => 1.0,
+            Detail::Fine => FINER,
+        };
+        let step = finer * (OF_RADIUS * thinnest).clamp(least, most);
+        let mut view = ViewMesh {
+            origin: bounds.center(),
+            unit: 0.5 * size,
+            ..ViewMesh::default()
+        };
+        for (i, (surface, cages)) in surfaces.iter().zip(&cages).enumerate() {
+            let mut seeds = Vec::new();
+            for cage in cages {
+                seeds.extend(exits(surface.function(), &cage.spokes));
+            }
+            report(progress, i as f32 + 0.3, surfaces.len())?;
+            let mesh = track(surface.function(), &seeds, step, MOST_CELLS)?;
+            report(progress, i as f32 + 0.8, surfaces.len())?;
+            add(&mut view, &scene, &looks, surface, &mesh);
+        }
+        if view.triangles.is_empty() {
+            return Err("there is no soft surface to see".into());
+        }
+        Ok(view)
     }
-    if view.triangles.is_empty() {
-        return Err("there is no soft surface to see".into());
+}
+
+/// Tells that this many of the surfaces are done.
+fn report(progress: &mut Progress<'_, ViewMesh>, done: f32, surfaces: usize) -> Result<(), String> {
+    match progress.report(done / surfaces as f32) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(MeshError::Cancelled.to_string()),
     }
-    progress.report(1.0);
-    Ok(view)
 }
 
 /// The radius of the flesh around the start of a ray, which is searched in steps of half of it.
@@ -86,7 +141,7 @@ fn radius(spoke: &Spoke) -> f64 {
     2.0 * spoke.step
 }
 
-/// The places where rays first leave the inside of a function. Those that begin outside, or do not leave it, have no such place.
+/// Returns where rays first leave the inside of a function, as far as they begin inside and leave it.
 fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
     /// Rays of a cage that are looked at: the surface is followed from each.
     const RAYS: usize = 8;
@@ -234,7 +289,6 @@ fn mixed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Job, Output, run};
     use scene::{Element, Finish, Flesh, Shape};
 
     /// Two soft balls that blend, of two finishes, and a hard one.
@@ -273,15 +327,12 @@ mod tests {
     }
 
     fn view(x: f64, detail: Detail) -> ViewMesh {
-        let job = ViewJob {
-            scene: scene(x),
+        let job = ViewScene {
+            scene: Arc::new(scene(x)),
             looks: looks(),
             detail,
         };
-        match run(Job::View(Box::new(job)), &mut Progress::silent()) {
-            Ok(Output::View(view)) => *view,
-            other => panic!("{other:?}"),
-        }
+        job.run(&mut Progress::silent()).unwrap()
     }
 
     /// Places, normals, and the twelve bytes of colours.
@@ -356,12 +407,12 @@ mod tests {
     #[test]
     fn nothing_to_see_is_told() {
         for detail in [Detail::Coarse, Detail::Fine] {
-            let job = ViewJob {
-                scene: Scene::default(),
+            let job = ViewScene {
+                scene: Arc::default(),
                 looks: Vec::new(),
                 detail,
             };
-            let told = run(Job::View(Box::new(job)), &mut Progress::silent()).unwrap_err();
+            let told = job.run(&mut Progress::silent()).unwrap_err();
             assert!(told.contains("no soft surface"), "{told}");
         }
     }

@@ -3,6 +3,7 @@
 use crate::{Answer, Kind, Order, Request};
 use scene::{Digger, Scene};
 use std::collections::VecDeque;
+use std::sync::Arc;
 use tracer::{Known, Pass, Picture, SampleCache, Stats, Tile};
 
 /// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two
@@ -27,7 +28,7 @@ pub struct Engine {
     /// Whether the generation is new and the page not yet told that we know.
     new: bool,
     /// Set until the scene has been prepared.
-    wanted: Option<(Box<Scene>, [u32; 2], Kind)>,
+    wanted: Option<(Arc<Scene>, [u32; 2], Kind)>,
     /// Whether other workers want to hear of first samples.
     shared: bool,
     prepared: Option<Prepared>,
@@ -149,7 +150,8 @@ impl Engine {
         match request {
             Request::Begin {
                 generation,
-                scene,
+                mut scene,
+                camera,
                 size,
                 kind,
                 shared,
@@ -157,6 +159,9 @@ impl Engine {
                 self.forget(generation);
                 let across = size.map(|side| u64::from(side.div_ceil(SQUARE)));
                 self.shared = shared && across[0] * across[1] <= KEPT as u64;
+                if let Some(camera) = camera {
+                    Arc::make_mut(&mut scene).camera = camera;
+                }
                 self.wanted = Some((scene, size, kind));
             }
             Request::Learn { generation, known } => {
@@ -284,7 +289,8 @@ mod tests {
     fn begin(generation: u64) -> Request {
         Request::Begin {
             generation,
-            scene: Box::default(),
+            scene: Arc::default(),
+            camera: None,
             size: [8, 8],
             kind: Kind::Colours,
             shared: false,
@@ -346,7 +352,7 @@ mod tests {
             };
             let compiled = rats::compile(&rats::Project { files: vec![file] });
             assert_eq!(compiled.diagnostics, []);
-            let scene = Box::new(compiled.scene);
+            let scene = compiled.scene;
             let (size, tile) = ([90, 80], [5, 8, 70, 70]);
             let [x, y, width, height] = tile;
             let tile = Tile {
@@ -359,6 +365,7 @@ mod tests {
             engine.accept(Request::Begin {
                 generation: 1,
                 scene: scene.clone(),
+                camera: None,
                 size,
                 kind: Kind::Colours,
                 shared: false,
@@ -398,8 +405,8 @@ mod tests {
             };
             let compiled = rats::compile(&rats::Project { files: vec![file] });
             assert_eq!(compiled.diagnostics, []);
-            let mut scene = Box::new(compiled.scene);
-            scene.settings.samples = 3;
+            let mut scene = compiled.scene;
+            Arc::make_mut(&mut scene).settings.samples = 3;
             let tiles = tracer::tile::tiles(size[0], size[1], 64);
             let orders = |pass| {
                 let order = move |&tile| Order {
@@ -412,6 +419,7 @@ mod tests {
             engine.accept(Request::Begin {
                 generation,
                 scene: scene.clone(),
+                camera: None,
                 size,
                 kind: Kind::Colours,
                 shared: false,
@@ -439,15 +447,15 @@ mod tests {
     }
 
     /// A ball that is made smooth.
-    fn ball() -> Box<Scene> {
+    fn ball() -> Arc<Scene> {
         let text = "surface flesh diffuse Coral, blobbiness -2\nsphere flesh 1 <0.2 -0.3 0>";
         let file = rats::File {
             name: "main.rat".into(),
             text: text.into(),
         };
         let mut scene = rats::compile(&rats::Project { files: vec![file] }).scene;
-        scene.settings.samples = 3;
-        Box::new(scene)
+        Arc::make_mut(&mut scene).settings.samples = 3;
+        scene
     }
 
     #[test]
@@ -459,6 +467,7 @@ mod tests {
             engine.accept(Request::Begin {
                 generation: 1,
                 scene: ball(),
+                camera: None,
                 size,
                 kind: Kind::Colours,
                 shared,
@@ -572,15 +581,16 @@ mod tests {
             }
             (seen, told)
         };
-        let begin = |generation, scene: &Scene, size| Request::Begin {
+        let begin = |generation, scene: &Arc<Scene>, size| Request::Begin {
             generation,
-            scene: Box::new(scene.clone()),
+            scene: scene.clone(),
+            camera: None,
             size,
             kind: Kind::Colours,
             shared: true,
         };
         let mut other = ball();
-        other.elements.clear();
+        Arc::make_mut(&mut other).elements.clear();
         let mut engine = Engine::default();
         engine.accept(begin(1, &ball(), size));
         let (_, told) = work(&mut engine, 1, Pass::Full);

@@ -7,7 +7,8 @@
 //! let mut engine = Engine::default();
 //! engine.accept(Request::Begin {
 //!     generation: 1,
-//!     scene: Box::default(),
+//!     scene: Default::default(),
+//!     camera: None,
 //!     size: [8, 8],
 //!     kind: Kind::Colours,
 //!     shared: false,

@@ -1,7 +1,8 @@
 //! Messages between the page and a tracing worker: plain data, packed as bytes.
 
-use scene::Scene;
+use scene::{Camera, Scene};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::sync::Arc;
 use tracer::{Known, Pass, Stats, Tile};
 
 /// One tile to trace.
@@ -33,7 +34,9 @@ pub enum Request {
         /// Its number, larger than those before.
         generation: u64,
         /// Scene to draw.
-        scene: Box<Scene>,
+        scene: Arc<Scene>,
+        /// The camera that sees it, if it is another than the scene's.
+        camera: Option<Camera>,
         /// Width and height in pixels, each > 0.
         size: [u32; 2],
         /// Meaning of its pixels.

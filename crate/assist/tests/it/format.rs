@@ -170,7 +170,7 @@ fn same_meaning(project: &Project) {
 }
 
 fn without_places(compiled: &Compiled) -> scene::Scene {
-    let mut scene = compiled.scene.clone();
+    let mut scene = scene::Scene::clone(&compiled.scene);
     for element in &mut scene.elements {
         element.origin.start = 0;
         element.origin.end = 0;

@@ -300,7 +300,7 @@ fn any_rename(project: &Project) -> bool {
 }
 
 fn without_names(compiled: &Compiled) -> scene::Scene {
-    let mut scene = compiled.scene.clone();
+    let mut scene = scene::Scene::clone(&compiled.scene);
     for element in &mut scene.elements {
         element.origin.start = 0;
         element.origin.end = 0;

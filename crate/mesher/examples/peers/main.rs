@@ -181,7 +181,8 @@ fn load(path: &Path) -> Result<Scene, String> {
             files.push(rats::File { name: other, text });
         }
     }
-    Ok(rats::compile_at(&rats::Project { files }, &[], 0.0).scene)
+    let compiled = rats::compile_at(&rats::Project { files }, &[], 0.0);
+    Ok(std::sync::Arc::unwrap_or_clone(compiled.scene))
 }
 
 /// The largest distance found between mesh and surface, either way.

@@ -435,7 +435,7 @@ fn load(path: &Path) -> Scene {
     let project = rats::Project {
         files: vec![rats::File { name, text }],
     };
-    rats::compile_at(&project, &assets, 0.0).scene
+    std::sync::Arc::unwrap_or_clone(rats::compile_at(&project, &assets, 0.0).scene)
 }
 
 #[test]

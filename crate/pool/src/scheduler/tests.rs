@@ -317,8 +317,7 @@ fn tiles_of_a_lost_worker_go_to_the_others() {
                 crowd.work();
             }
             crowd.hanging.insert(0);
-            while crowd.scheduler.slots[0].life != Life::GivenUp {
-                crowd.scheduler.slots[0].failed_starts = ATTEMPTS;
+            while crowd.scheduler.slots[0].life.is_running() {
                 crowd.scheduler.died(0, "gone", crowd.now);
                 crowd.obey();
             }

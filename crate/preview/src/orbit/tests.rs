@@ -183,7 +183,7 @@ fn frame_sees_everything_and_no_more_than_needed() {
         ..Scene::default()
     };
     for size in [[400, 300], [300, 400], [1000, 10]] {
-        let camera = frame(&scene, size);
+        let camera = frame(&scene, scene.camera, size);
         let projection = camera.projection(size[0], size[1]);
         let mut widest: f64 = 0.0;
         for element in &scene.elements {

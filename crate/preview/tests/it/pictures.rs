@@ -479,7 +479,7 @@ fn hundreds_of_thousands_of_elements_are_limited() {
             .collect(),
         ..Scene::default()
     };
-    scene.camera = preview::orbit::frame(&scene, [32, 32]);
+    scene.camera = preview::orbit::frame(&scene, scene.camera, [32, 32]);
     for gpu in gpus() {
         let mut draft = Draft::new(&gpu.device, &gpu.queue);
         let drawn = draft.set_scene(&gpu.device, &gpu.queue, &scene);

@@ -6,7 +6,7 @@ use preview::{Draft, Mesh, Sampling, looks};
 use rats::{Asset, File, Project};
 use scene::Scene;
 use std::path::{Path, PathBuf};
-use tools::{Detail, Job, Output, Progress, ViewJob};
+use tools::{Detail, Job, Progress, ViewScene};
 
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www/examples")
@@ -39,7 +39,7 @@ fn scene(name: &str) -> Scene {
     }
     let compiled = rats::compile_at(&Project { files }, &assets, 0.0);
     assert!(!compiled.scene.elements.is_empty(), "{name}");
-    compiled.scene
+    std::sync::Arc::unwrap_or_clone(compiled.scene)
 }
 
 /// The traced picture of an example, as the gallery shows it.
@@ -77,14 +77,14 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
     if soft.elements.is_empty() || is_endless || soft.elements.len() > MOST {
         return (plain, None);
     }
-    let job = Job::View(Box::new(ViewJob {
+    let job = ViewScene {
         looks: looks(&soft),
-        scene: soft,
+        scene: soft.into(),
         detail: Detail::Coarse,
-    }));
-    let Ok(Output::View(view)) = tools::run(job, &mut Progress::silent()) else {
-        panic!("there is a surface");
     };
+    let view = job
+        .run(&mut Progress::silent())
+        .expect("there is a surface");
     let mesh = Mesh {
         vertices: &view.vertices,
         triangles: &view.triangles,

@@ -23,7 +23,7 @@ fn scene(text: &str) -> Scene {
         .iter()
         .find(|d| d.severity > Severity::Note && !d.message.contains("in the picture"));
     assert_eq!(complaint, None, "{text}");
-    compiled.scene
+    std::sync::Arc::unwrap_or_clone(compiled.scene)
 }
 
 /// The centre of a sphere whose place is written so.

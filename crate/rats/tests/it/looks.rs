@@ -16,7 +16,7 @@ fn scene(text: &str) -> Scene {
     let is_unused = |d: &&rats::Diagnostic| d.message.starts_with("nothing is made of");
     let complaint = compiled.diagnostics.iter().find(|d| !is_unused(d));
     assert_eq!(complaint, None, "{text}");
-    compiled.scene
+    std::sync::Arc::unwrap_or_clone(compiled.scene)
 }
 
 #[track_caller]

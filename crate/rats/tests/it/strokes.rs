@@ -107,7 +107,7 @@ fn sculpture_that_grows_equals_one_made_at_once() {
     let grown = run("mesh Clay horn.strokes\n", &format!("{HORN}{more}"));
     // By another thread, which keeps nothing of this one.
     let text = format!("{HORN}{more}# again\n");
-    let at_once = std::thread::spawn(move || run("mesh Clay horn.strokes\n", &text).scene.elements);
+    let at_once = std::thread::spawn(move || run("mesh Clay horn.strokes\n", &text).scene);
     let at_once = at_once.join().unwrap();
     assert_eq!(grown.scene.elements.len(), 512);
     assert!(
@@ -115,7 +115,7 @@ fn sculpture_that_grows_equals_one_made_at_once() {
             .scene
             .elements
             .iter()
-            .zip(&at_once)
+            .zip(&at_once.elements)
             .all(|(a, b)| a.shape == b.shape)
     );
     // And back.

@@ -15,7 +15,7 @@ fn scenes(text: &str, count: u32) -> Vec<Scene> {
             "{:?}",
             compiled.diagnostics
         );
-        compiled.scene
+        std::sync::Arc::unwrap_or_clone(compiled.scene)
     };
     (0..count).map(scene).collect()
 }
@@ -153,6 +153,7 @@ fn scenes_that_cannot_be_rigged_say_why() {
     let project = Project::single(text);
     let mut all: Vec<Scene> = (0..3)
         .map(|f| compile_at(&project, &[], f64::from(f)).scene)
+        .map(std::sync::Arc::unwrap_or_clone)
         .collect();
     all.push(scenes(SNAKE, 1).remove(0));
     assert_eq!(rig::rig(&all, 25.0, &[]).unwrap().frames.len(), 3);

@@ -18,7 +18,6 @@ use egui::{Color32, Key, Modifiers, Painter, Rect, Response, Stroke, Ui};
 use glam::DVec3;
 use scene::{Camera, Origin, Scene, Shape};
 use std::ops::Range;
-use tracer::Picker;
 
 /// Bones of one command that are lit, at most: a loop may make thousands.
 const MOST_BONES: usize = 400;
@@ -37,8 +36,6 @@ pub struct Hands {
     handles: Vec<Handle>,
     /// Key of the handles: revision, frame of the film, element; and the camera.
     made: Option<((u64, u32, usize), Camera)>,
-    /// The scene of a revision and frame, as the draft shows it or not, ready for clicks.
-    picker: Option<((u64, u32, bool), Picker)>,
     drag: Option<Drag>,
     /// The deformation whose control points are shown.
     cage: cage::Cage,
@@ -200,18 +197,7 @@ impl Hands {
     ) {
         let session = around.session;
         let scene = &session.compiled().scene;
-        let key = (session.revision(), session.film_frame(), around.draft);
-        if self.picker.as_ref().is_none_or(|(made, _)| *made != key) {
-            let picker = if around.draft {
-                let mut hard = scene.clone();
-                hard.settings.soft = false;
-                Picker::new(&hard)
-            } else {
-                Picker::new(scene)
-            };
-            self.picker = Some((key, picker));
-        }
-        let Some((_, picker)) = &self.picker else {
+        let Some(picker) = session.picker(around.draft) else {
             return;
         };
         let eye = sight.projection.eye;

@@ -27,7 +27,6 @@ use rats::TextEdit;
 use scene::Shape;
 use sketch::{Mark, Stroke};
 use tool::Tool;
-use tracer::Picker;
 
 /// Thickness of strokes, points of a picture 640 points wide: least and most.
 pub const THICKNESS: [f32; 2] = [3.0, 60.0];
@@ -53,8 +52,6 @@ pub struct Pencil {
     chosen: Option<(usize, usize)>,
     /// The node under the pointer.
     over: Option<(usize, usize)>,
-    /// The scene of a revision and frame of the film, ready for rays.
-    picker: Option<((u64, u32), Picker)>,
     grip: grip::Handles,
     /// The last stroke as it would be otherwise.
     other: Option<Other>,
@@ -112,7 +109,6 @@ impl Default for Pencil {
             gesture: None,
             chosen: None,
             over: None,
-            picker: None,
             grip: grip::Handles::default(),
             other: None,
             off: Vec::new(),
@@ -441,49 +437,14 @@ impl Pencil {
         }
     }
 
-    fn begin(
-        &mut self,
-        session: &Session,
-        sight: &Sight,
-        at: Pos2,
-        wish: Wish,
-        touch: bool,
-    ) -> Begin {
+    fn begin(&self, session: &Session, sight: &Sight, at: Pos2, wish: Wish, touch: bool) -> Begin {
         let brush = self.brush(touch);
         let home = session.camera().target;
-        let all = std::mem::take(&mut self.all);
-        let begin = edits::begin(&all, sight, at, &brush, wish, home, || {
-            let is_skeleton = |element: u32| all.iter().any(|d| d.element == element as usize);
-            let hit = self.met(session, sight, at, 0.0)?;
+        edits::begin(&self.all, sight, at, &brush, wish, home, || {
+            let hit = hit(session, sight, at, 0.0)?;
+            let is_skeleton = |element: u32| self.all.iter().any(|d| d.element == element as usize);
             (!hit.element.is_some_and(is_skeleton)).then_some(hit.position)
-        });
-        self.all = all;
-        begin
-    }
-
-    /// Where a place of the screen is on what is seen there, or at most `around` points beside it.
-    fn met(
-        &mut self,
-        session: &Session,
-        sight: &Sight,
-        at: Pos2,
-        around: f32,
-    ) -> Option<tracer::Hit> {
-        let key = (session.revision(), session.film_frame());
-        if self.picker.as_ref().is_none_or(|(made, _)| *made != key) {
-            self.picker = Some((key, Picker::new(&session.compiled().scene)));
-        }
-        let (_, picker) = self.picker.as_ref()?;
-        let rings = [0.0, 0.5, 1.0].map(|share| share * around);
-        let places = rings.into_iter().flat_map(|out| {
-            let turns = if out > 0.0 { 8 } else { 1 };
-            (0..turns).map(move |turn| {
-                at + out * egui::Vec2::angled(turn as f32 * std::f32::consts::FRAC_PI_4)
-            })
-        });
-        places
-            .into_iter()
-            .find_map(|at| picker.pick(sight.projection.eye, sight.direction(at)))
+        })
     }
 
     fn drag(&mut self, sight: &Sight, around: &Around<'_>, at: Pos2, commands: &mut Vec<Command>) {
@@ -628,7 +589,7 @@ impl Pencil {
         begin: &Begin,
     ) -> Option<Result<TextEdit, String>> {
         let reach = if touch { 16.0 } else { 5.0 };
-        let hit = self.met(session, sight, at, reach)?;
+        let hit = hit(session, sight, at, reach)?;
         let colour = self
             .colour
             .map_or(page::COLOURS[7].1, |index| page::COLOURS[index].1);
@@ -706,7 +667,7 @@ impl Pencil {
         commands: &mut Vec<Command>,
     ) {
         let reach = if touch { 20.0 } else { 9.0 };
-        if let Some(hit) = self.met(session, sight, at, 0.0)
+        if let Some(hit) = hit(session, sight, at, 0.0)
             && let Some(element) = hit.element
         {
             let scene = &session.compiled().scene;
@@ -1051,4 +1012,20 @@ fn mark(at: Pos2) -> Mark {
         at: [at.x, at.y],
         pressure: platform::pen_pressure(),
     }
+}
+
+/// Returns where a place of the screen is on what is seen there, or at most `around` points beside
+/// it.
+fn hit(session: &Session, sight: &Sight, at: Pos2, around: f32) -> Option<tracer::Hit> {
+    let picker = session.picker(false)?;
+    let rings = [0.0, 0.5, 1.0].map(|share| share * around);
+    let places = rings.into_iter().flat_map(|out| {
+        let turns = if out > 0.0 { 8 } else { 1 };
+        (0..turns).map(move |turn| {
+            at + out * egui::Vec2::angled(turn as f32 * std::f32::consts::FRAC_PI_4)
+        })
+    });
+    places
+        .into_iter()
+        .find_map(|at| picker.pick(sight.projection.eye, sight.direction(at)))
 }

@@ -51,13 +51,9 @@ fn skeletons(text: &str) -> Vec<Skeleton> {
         "{:?}\n{text}",
         compiled.diagnostics
     );
-    let shapes = compiled
-        .scene
-        .elements
-        .into_iter()
-        .map(|element| element.shape);
-    let skeleton = |shape| match shape {
-        Shape::Function(function) => match function.form {
+    let shapes = compiled.scene.elements.iter().map(|element| &element.shape);
+    let skeleton = |shape: &Shape| match shape {
+        Shape::Function(function) => match &function.form {
             Form::Skeleton(curves) => Some(curves.skeleton.clone()),
             _ => None,
         },

@@ -41,7 +41,7 @@ fn compiled(name: &str, text: &str, frame: u32) -> Scene {
     let mut errors = compiled.diagnostics.iter();
     let error = errors.find(|d| d.severity == rats::Severity::Error);
     assert_eq!(error, None, "{name}");
-    let mut scene = compiled.scene;
+    let mut scene = std::sync::Arc::unwrap_or_clone(compiled.scene);
     let soft: Vec<bool> = scene.elements.iter().map(|e| scene.is_soft(e)).collect();
     let mut soft = soft.into_iter();
     scene.elements.retain(|_| soft.next() == Some(true));

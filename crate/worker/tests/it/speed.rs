@@ -3,6 +3,7 @@
 
 use crate::common::{BENCH, compile_text};
 use scene::Scene;
+use std::sync::Arc;
 use std::time::Instant;
 use tracer::{Pass, tiles};
 use worker::{Engine, Kind, Order, Request, Step};
@@ -31,7 +32,8 @@ fn picture(scene: &Scene) -> f64 {
     let start = Instant::now();
     engine.accept(Request::Begin {
         generation: 1,
-        scene: Box::new(scene.clone()),
+        scene: Arc::new(scene.clone()),
+        camera: None,
         size,
         kind: Kind::Colours,
         shared: false,

@@ -2,6 +2,7 @@
 
 use rats::{Asset, File, Project};
 use scene::Scene;
+use std::sync::Arc;
 use tracer::{Pass, Stats, Tile};
 use worker::{Answer, Engine, Kind, Order, Request, Step};
 
@@ -97,7 +98,7 @@ pub fn compile_text(text: &str) -> Scene {
     let compiled = rats::compile_at(&project, &MESHES.map(asset), 0.0);
     let mut errors = compiled.diagnostics.iter();
     assert_eq!(errors.find(|d| d.severity == rats::Severity::Error), None);
-    compiled.scene
+    Arc::unwrap_or_clone(compiled.scene)
 }
 
 /// FNV-1a.
@@ -116,7 +117,8 @@ pub fn traced(
     let mut engine = Engine::default();
     engine.accept(Request::Begin {
         generation: 1,
-        scene: Box::new(scene.clone()),
+        scene: Arc::new(scene.clone()),
+        camera: None,
         size,
         kind: Kind::Colours,
         shared: false,

@@ -1,16 +1,11 @@
-//! Threads in the place of web workers, for tests.
+//! Threads as workers.
 
-use crate::workers::Workers;
+use super::Program;
+use crate::workers::{Message, Workers};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-
-/// A message from a thread: index, which thread of that index it was, answer.
-pub type Report<A> = (usize, u64, A);
-/// Serves requests until its inbox or the pool's is closed. The number is that of the work wanted from
-/// the thread, as the last request said; it changes when the present work is given up.
-type Body<A> = dyn Fn(&Receiver<Vec<u8>>, &AtomicU64, &dyn Fn(A) -> bool) + Send + Sync;
 
 struct Thread {
     requests: Sender<Vec<u8>>,
@@ -18,49 +13,49 @@ struct Thread {
     incarnation: u64,
 }
 
-/// No work has this number.
-const NONE: u64 = u64::MAX;
+/// A message with the index of its thread, and which thread of that index it was.
+type Report = (usize, u64, Message);
 
-/// Threads with answers of type `A`.
-pub struct Threads<A> {
+/// No work has this number.
+pub const NONE: u64 = u64::MAX;
+
+/// Threads that run the same program.
+pub struct Threads {
+    program: Program,
     slots: Vec<Option<Thread>>,
     started: u64,
-    reports: Sender<Report<A>>,
+    outbox: Sender<Report>,
+    inbox: Receiver<Report>,
     repaint: Arc<dyn Fn() + Send + Sync>,
-    body: Arc<Body<A>>,
-    failed: fn(String) -> A,
-    number: fn(&[u8]) -> Option<u64>,
 }
 
-impl<A: Send + 'static> Threads<A> {
-    /// Creates places for `count` threads, each of which runs `body`. `failed` makes the answer of a
-    /// thread that panics, `number` reads the number of the work wanted from a packed request.
-    pub fn new(
-        count: usize,
-        reports: Sender<Report<A>>,
-        repaint: impl Fn() + Send + Sync + 'static,
-        body: impl Fn(&Receiver<Vec<u8>>, &AtomicU64, &dyn Fn(A) -> bool) + Send + Sync + 'static,
-        failed: fn(String) -> A,
-        number: fn(&[u8]) -> Option<u64>,
-    ) -> Self {
+impl Threads {
+    /// Creates places for `count` threads. `repaint` is called with every message, from its thread.
+    pub fn new(program: Program, count: usize, repaint: impl Fn() + Send + Sync + 'static) -> Self {
+        let (outbox, inbox) = channel();
         Self {
+            program,
             slots: (0..count).map(|_| None).collect(),
             started: 0,
-            reports,
+            outbox,
+            inbox,
             repaint: Arc::new(repaint),
-            body: Arc::new(body),
-            failed,
-            number,
         }
     }
 
-    /// Whether a report is of the thread that has this index now.
-    pub fn is_present(&self, index: usize, incarnation: u64) -> bool {
-        let thread = self.slots[index].as_ref();
-        thread.is_some_and(|thread| thread.incarnation == incarnation)
+    /// Returns the next message with the index of its thread; `None` if no more have come.
+    pub fn message(&mut self) -> Option<(usize, Message)> {
+        self.inbox
+            .try_iter()
+            .find_map(|(index, incarnation, message)| {
+                let thread = self.slots[index].as_ref();
+                let is_present = thread.is_some_and(|thread| thread.incarnation == incarnation);
+                is_present.then_some((index, message))
+            })
     }
 
-    /// Ends a thread as if it had crashed without a message. Returns whether there was such a thread.
+    /// Ends a thread as if it had crashed without a message. Returns whether there was such a
+    /// thread.
     pub fn kill(&mut self, index: usize) -> bool {
         let Some(Some(thread)) = self.slots.get_mut(index) else {
             return false;
@@ -71,31 +66,31 @@ impl<A: Send + 'static> Threads<A> {
     }
 }
 
-impl<A: Send + 'static> Workers for Threads<A> {
+impl Workers for Threads {
     fn restart(&mut self, index: usize) -> Result<(), String> {
         self.end(index);
         self.started += 1;
         let (requests, inbox) = channel();
         let wanted = Arc::new(AtomicU64::new(0));
         let incarnation = self.started;
-        let (outbox, repaint) = (self.reports.clone(), self.repaint.clone());
-        let (body, failed, shared) = (self.body.clone(), self.failed, wanted.clone());
+        let (outbox, repaint) = (self.outbox.clone(), self.repaint.clone());
+        let (serve, shared) = (self.program.serve, wanted.clone());
         std::thread::Builder::new()
             .name(format!("worker {index}"))
             .spawn(move || {
-                let send = |answer| {
-                    let sent = outbox.send((index, incarnation, answer)).is_ok();
+                let send = |message| {
+                    let sent = outbox.send((index, incarnation, message)).is_ok();
                     repaint();
                     sent
                 };
-                let work = || body(&inbox, &shared, &send);
+                let work = || serve(&inbox, &shared, &|bytes| send(Message::Bytes(bytes)));
                 if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
                     let reason = panic
                         .downcast_ref::<String>()
                         .cloned()
                         .or_else(|| panic.downcast_ref::<&str>().map(|s| (*s).to_owned()))
                         .unwrap_or_else(|| String::from("a worker panicked"));
-                    send(failed(reason));
+                    send(Message::Failed(reason));
                 }
             })
             .map_err(|error| error.to_string())?;
@@ -116,7 +111,7 @@ impl<A: Send + 'static> Workers for Threads<A> {
 
     fn send(&mut self, index: usize, request: &[u8]) {
         if let Some(thread) = &self.slots[index] {
-            if let Some(number) = (self.number)(request) {
+            if let Some(number) = (self.program.number)(request) {
                 thread.wanted.store(number, Ordering::Relaxed);
             }
             // A thread that is gone has reported why, or is found hanging.

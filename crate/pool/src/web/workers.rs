@@ -2,25 +2,11 @@
 //!
 //! The module is fetched and compiled once and sent to each worker, whose script instantiates it.
 
-use crate::workers::Workers;
+use crate::workers::{Message, Workers};
 use js_sys::{Array, Uint8Array, WebAssembly};
 use std::rc::Rc;
 use wasm_bindgen::prelude::*;
-use wasm_bindgen_futures::JsFuture;
-use web_sys::{ErrorEvent, MessageEvent, Response, Window, Worker, WorkerOptions, WorkerType};
-
-/// How often hanging workers are looked for while something is being done, milliseconds.
-const TICK: i32 = 120;
-/// Reason of a failure to unpack a message.
-pub const DIFFERENT_VERSIONS: &str = "page and worker are of different versions; reload the page";
-
-/// An event of a worker.
-pub enum Message {
-    /// The bytes it sent.
-    Bytes(Vec<u8>),
-    /// It cannot continue, for this reason.
-    Failed(String),
-}
+use web_sys::{ErrorEvent, MessageEvent, Worker, WorkerOptions, WorkerType};
 
 /// Called with the worker's index.
 type Receiver = Rc<dyn Fn(usize, Message)>;
@@ -49,8 +35,8 @@ pub struct WebWorkers {
 }
 
 impl WebWorkers {
-    /// Creates places for `count` workers with this script, a path relative to the page. None can be
-    /// started before [`WebWorkers::set_module`].
+    /// Creates places for `count` workers with this script, a path relative to the page. None can
+    /// be started before [`WebWorkers::set_module`].
     pub fn new(
         script: &'static str,
         count: usize,
@@ -152,63 +138,4 @@ pub fn describe(error: JsValue) -> String {
         || format!("{error:?}"),
         |error| String::from(error.message()),
     )
-}
-
-/// The page's window.
-pub fn window() -> Option<Window> {
-    web_sys::window()
-}
-
-/// Seconds since the page was opened.
-pub fn now() -> f64 {
-    window()
-        .and_then(|window| window.performance())
-        .map_or(0.0, |performance| performance.now() / 1000.0)
-}
-
-/// Fetches and compiles a wasm module, by its path relative to the page.
-pub async fn load(wasm: &str) -> Result<WebAssembly::Module, JsValue> {
-    let window = window().ok_or("no window")?;
-    let response: Response = JsFuture::from(window.fetch_with_str(wasm))
-        .await?
-        .unchecked_into();
-    if !response.ok() {
-        return Err(format!("{wasm} could not be loaded: {}", response.status()).into());
-    }
-    // Not compileStreaming: it wants a MIME type that not every static host sends.
-    let bytes = JsFuture::from(response.array_buffer()?).await?;
-    Ok(JsFuture::from(WebAssembly::compile(&bytes))
-        .await?
-        .unchecked_into())
-}
-
-/// Calls a function every [`TICK`] until it is dropped.
-pub struct Timer {
-    id: i32,
-    _callback: Closure<dyn FnMut()>,
-}
-
-impl Timer {
-    /// Starts a timer; `None` if the browser refuses.
-    pub fn new(callback: impl FnMut() + 'static) -> Option<Self> {
-        let callback = Closure::<dyn FnMut()>::new(callback);
-        let id = window()?
-            .set_interval_with_callback_and_timeout_and_arguments_0(
-                callback.as_ref().unchecked_ref(),
-                TICK,
-            )
-            .ok()?;
-        Some(Self {
-            id,
-            _callback: callback,
-        })
-    }
-}
-
-impl Drop for Timer {
-    fn drop(&mut self) {
-        if let Some(window) = window() {
-            window.clear_interval_with_handle(self.id);
-        }
-    }
 }

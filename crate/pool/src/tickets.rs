@@ -1,0 +1,305 @@
+//! The tools: jobs that take long and draw nothing, and tickets for their results.
+
+use crate::platform::{Crew, PlatformWorkers, Program, TOOLS};
+use crate::queue::{Command, Queue};
+use crate::workers::{Manager, Message, Workers};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
+use std::rc::Rc;
+use tools::message::{DIFFERENT_VERSIONS, pack_request, unpack, unpack_answer};
+use tools::{Answer, Job, Pace, Request};
+
+/// Carries out jobs apart from the app, in one worker for each [`Pace`]. Clones share the workers.
+///
+/// ```
+/// # #[cfg(not(target_arch = "wasm32"))] {
+/// let tools = pool::Tools::new(|| {});
+/// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+/// let mut ticket = tools.submit(tools::ReadMesh {
+///     name: "triangle.obj".into(),
+///     bytes: text.into(),
+/// });
+/// let mesh = loop {
+///     if let Some(result) = ticket.result() {
+///         break result;
+///     }
+/// };
+/// assert_eq!(mesh.unwrap().positions.len(), 3);
+/// # }
+/// ```
+#[derive(Clone)]
+pub struct Tools {
+    crew: Crew<Jobs<PlatformWorkers>>,
+}
+
+impl Tools {
+    /// Prepares the tools; a worker is started with the first job for it. `repaint` is called when
+    /// there is news for a [`Ticket`]; native builds call it from any thread.
+    #[must_use]
+    pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
+        Self::with(TOOLS, repaint)
+    }
+
+    fn with(program: Program, repaint: impl Fn() + Send + Sync + 'static) -> Self {
+        Self {
+            crew: Crew::new(program, Pace::ALL.len(), repaint, Jobs::new),
+        }
+    }
+
+    /// Hands in a job. It is carried out after those of its [`Pace`] that were handed in before.
+    #[must_use = "a job whose ticket is dropped is cancelled"]
+    pub fn submit<J: Job>(&self, job: J) -> Ticket<J::Output> {
+        let (id, news) = self.crew.order(|jobs, now| jobs.submit(job, now));
+        Ticket {
+            crew: self.crew.clone(),
+            id,
+            news,
+        }
+    }
+}
+
+/// News of a job that have not been taken yet.
+struct News<T> {
+    /// The fraction done, once it has begun.
+    fraction: Option<f32>,
+    parts: VecDeque<T>,
+    result: Option<Result<T, String>>,
+}
+
+/// A job that was handed in. When it is dropped the job is cancelled.
+pub struct Ticket<T> {
+    crew: Crew<Jobs<PlatformWorkers>>,
+    id: u64,
+    news: Rc<RefCell<News<T>>>,
+}
+
+impl<T> Ticket<T> {
+    /// Returns the fraction done, 0 … 1; `None` while the job waits for its turn.
+    #[must_use]
+    pub fn fraction(&self) -> Option<f32> {
+        self.crew.catch_up();
+        self.news.borrow().fraction
+    }
+
+    /// Takes the next part of the result that the job has passed on before its end.
+    pub fn part(&mut self) -> Option<T> {
+        self.crew.catch_up();
+        self.news.borrow_mut().parts.pop_front()
+    }
+
+    /// Takes the result, or an error message for the user, once the job is over.
+    pub fn result(&mut self) -> Option<Result<T, String>> {
+        self.crew.catch_up();
+        self.news.borrow_mut().result.take()
+    }
+}
+
+impl<T> Drop for Ticket<T> {
+    fn drop(&mut self) {
+        self.crew.ask(|jobs, now| jobs.cancel(self.id, now));
+    }
+}
+
+/// News of a job as they come, packed.
+enum Told<'a> {
+    Fraction(f32),
+    Part(&'a [u8]),
+    Over(Result<&'a [u8], String>),
+}
+
+/// A job that is not over.
+struct Sent {
+    /// Index of its worker.
+    worker: usize,
+    request: Vec<u8>,
+    /// Unpacks news for the ticket.
+    tell: Box<dyn FnMut(Told<'_>)>,
+}
+
+/// The manager of the tools workers.
+struct Jobs<W> {
+    /// One for each worker.
+    queues: [Queue; Pace::ALL.len()],
+    workers: W,
+    last: u64,
+    sent: BTreeMap<u64, Sent>,
+    /// Whether there is news that the app was not woken for.
+    has_news: bool,
+}
+
+impl<W: Workers> Jobs<W> {
+    fn new(workers: W) -> Self {
+        Self {
+            queues: Default::default(),
+            workers,
+            last: 0,
+            sent: BTreeMap::new(),
+            has_news: false,
+        }
+    }
+
+    /// Queues a job. Returns its number, and where its news come.
+    fn submit<J: Job>(&mut self, job: J, now: f64) -> (u64, Rc<RefCell<News<J::Output>>>) {
+        self.last += 1;
+        let id = self.last;
+        let news = Rc::new(RefCell::new(News {
+            fraction: None,
+            parts: VecDeque::new(),
+            result: None,
+        }));
+        let request = Request {
+            id,
+            work: job.into(),
+        };
+        match pack_request(&request) {
+            Ok(request) => {
+                let worker = J::PACE as usize;
+                let place = news.clone();
+                let tell = move |told: Told<'_>| note::<J>(&mut place.borrow_mut(), told);
+                let sent = Sent {
+                    worker,
+                    request,
+                    tell: Box::new(tell),
+                };
+                self.sent.insert(id, sent);
+                self.queues[worker].submit(id, now);
+                self.carry_out(worker, now);
+            }
+            Err(error) => news.borrow_mut().result = Some(Err(error.to_string())),
+        }
+        (id, news)
+    }
+
+    /// Forgets a job, unless it is over.
+    fn cancel(&mut self, id: u64, now: f64) {
+        if let Some(sent) = self.sent.remove(&id) {
+            self.queues[sent.worker].cancel(id, now);
+            self.carry_out(sent.worker, now);
+        }
+    }
+
+    fn tell(&mut self, id: u64, told: Told<'_>) {
+        if let Some(sent) = self.sent.get_mut(&id) {
+            (sent.tell)(told);
+            self.has_news = true;
+        }
+    }
+
+    fn finish(&mut self, id: u64, result: Result<&[u8], String>) {
+        self.tell(id, Told::Over(result));
+        self.sent.remove(&id);
+    }
+
+    /// Carries out the commands of a worker's queue. A worker that cannot be started leads to new
+    /// commands, so this repeats until there are none; it is given up after some attempts.
+    fn carry_out(&mut self, index: usize, now: f64) {
+        loop {
+            let commands = self.queues[index].commands();
+            if commands.is_empty() {
+                return;
+            }
+            for command in commands {
+                match command {
+                    Command::Restart => {
+                        if let Err(reason) = self.workers.restart(index) {
+                            self.queues[index].died(&reason, now);
+                        }
+                    }
+                    Command::End => self.workers.end(index),
+                    Command::Run(id) => {
+                        if let Some(sent) = self.sent.get(&id) {
+                            self.workers.send(index, &sent.request);
+                        }
+                    }
+                    Command::Fail(id, reason) => {
+                        self.finish(id, Err(format!("The tools stopped: {reason}")));
+                    }
+                }
+            }
+        }
+    }
+
+    fn all(&mut self, now: f64, note: impl Fn(&mut Queue)) {
+        for index in 0..self.queues.len() {
+            note(&mut self.queues[index]);
+            self.carry_out(index, now);
+        }
+    }
+}
+
+/// Unpacks news.
+fn note<J: Job>(news: &mut News<J::Output>, told: Told<'_>) {
+    match told {
+        Told::Fraction(fraction) => news.fraction = Some(fraction),
+        Told::Part(bytes) => news.parts.extend(unpack(bytes)),
+        Told::Over(result) => {
+            let unpacked = |bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned());
+            news.result = Some(result.and_then(unpacked));
+        }
+    }
+}
+
+impl<W: Workers + 'static> Manager for Jobs<W> {
+    type Workers = W;
+
+    fn workers(&mut self) -> &mut W {
+        &mut self.workers
+    }
+
+    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
+        match outcome {
+            Ok(()) => self.all(now, |queue| queue.launch(now)),
+            Err(reason) => {
+                let reason = format!("{reason}. Check the connection and try again.");
+                self.all(now, |queue| queue.unavailable(&reason));
+            }
+        }
+    }
+
+    fn receive(&mut self, index: usize, message: Message, now: f64) -> bool {
+        let (answer, output) = match &message {
+            Message::Bytes(bytes) => unpack_answer(bytes)
+                .unwrap_or_else(|_| (Answer::Failed(DIFFERENT_VERSIONS.to_owned()), &[])),
+            Message::Failed(reason) => (Answer::Failed(reason.clone()), &[][..]),
+        };
+        let queue = &mut self.queues[index];
+        match answer {
+            Answer::Started => queue.started(now),
+            Answer::Progress { id, fraction } => {
+                if queue.progress(id, now) {
+                    self.tell(id, Told::Fraction(fraction));
+                }
+            }
+            Answer::Part { id } => {
+                if queue.progress(id, now) {
+                    self.tell(id, Told::Part(output));
+                }
+            }
+            Answer::Done { id } => {
+                if queue.done(id, now) {
+                    self.finish(id, Ok(output));
+                }
+            }
+            Answer::Refused { id, trouble } => {
+                if queue.done(id, now) {
+                    self.finish(id, Err(trouble));
+                }
+            }
+            Answer::Failed(reason) => queue.died(&reason, now),
+        }
+        self.carry_out(index, now);
+        std::mem::take(&mut self.has_news)
+    }
+
+    fn tick(&mut self, now: f64) -> bool {
+        self.all(now, |queue| queue.tick(now));
+        std::mem::take(&mut self.has_news)
+    }
+
+    fn is_busy(&self) -> bool {
+        self.queues.iter().any(Queue::is_busy)
+    }
+}
+
+#[cfg(all(test, not(target_arch = "wasm32")))]
+mod tests;

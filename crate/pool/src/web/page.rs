@@ -1,0 +1,68 @@
+//! The page that workers are started by: its clock, its timers, and the loading of wasm.
+
+use js_sys::WebAssembly;
+use wasm_bindgen::prelude::*;
+use wasm_bindgen_futures::JsFuture;
+use web_sys::{Response, Window};
+
+/// How often hanging workers are looked for while something is being done, milliseconds.
+const TICK: i32 = 120;
+
+/// The page's window.
+pub fn window() -> Option<Window> {
+    web_sys::window()
+}
+
+/// Seconds since the page was opened.
+pub fn now() -> f64 {
+    window()
+        .and_then(|window| window.performance())
+        .map_or(0.0, |performance| performance.now() / 1000.0)
+}
+
+/// Fetches and compiles a wasm module, by its path relative to the page.
+pub async fn load(wasm: &str) -> Result<WebAssembly::Module, JsValue> {
+    let window = window().ok_or("no window")?;
+    let response: Response = JsFuture::from(window.fetch_with_str(wasm))
+        .await?
+        .unchecked_into();
+    if !response.ok() {
+        return Err(format!("{wasm} could not be loaded: {}", response.status()).into());
+    }
+    // Not compileStreaming: it wants a MIME type that not every static host sends.
+    let bytes = JsFuture::from(response.array_buffer()?).await?;
+    Ok(JsFuture::from(WebAssembly::compile(&bytes))
+        .await?
+        .unchecked_into())
+}
+
+/// Calls a function every [`TICK`] until it is dropped.
+pub struct Timer {
+    id: i32,
+    _callback: Closure<dyn FnMut()>,
+}
+
+impl Timer {
+    /// Starts a timer; `None` if the browser refuses.
+    pub fn new(callback: impl FnMut() + 'static) -> Option<Self> {
+        let callback = Closure::<dyn FnMut()>::new(callback);
+        let id = window()?
+            .set_interval_with_callback_and_timeout_and_arguments_0(
+                callback.as_ref().unchecked_ref(),
+                TICK,
+            )
+            .ok()?;
+        Some(Self {
+            id,
+            _callback: callback,
+        })
+    }
+}
+
+impl Drop for Timer {
+    fn drop(&mut self) {
+        if let Some(window) = window() {
+            window.clear_interval_with_handle(self.id);
+        }
+    }
+}

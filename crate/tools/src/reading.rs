@@ -1,0 +1,102 @@
+//! The jobs of reading files.
+
+use crate::job::{Job, Pace, Progress};
+use fit::Observations;
+use mesh::TriangleMesh;
+use serde::{Deserialize, Serialize};
+
+/// Reads a mesh from an OBJ, PLY, STL or GLB file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReadMesh {
+    /// The file's name, whose ending says the format where the content does not.
+    pub name: String,
+    /// The file's content.
+    // Copied as a whole, not byte by byte.
+    #[serde(with = "serde_bytes")]
+    pub bytes: Vec<u8>,
+}
+
+impl Job for ReadMesh {
+    type Output = TriangleMesh;
+    const PACE: Pace = Pace::Quick;
+
+    fn run(self, _: &mut Progress<'_, TriangleMesh>) -> Result<TriangleMesh, String> {
+        mesh::read(&self.name, &self.bytes).map_err(|error| error.to_string())
+    }
+}
+
+/// Reads measured points from a PLY or XYZ file, or outlines from a JSON file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReadMeasured {
+    /// The file's name.
+    pub name: String,
+    /// The file's content.
+    #[serde(with = "serde_bytes")]
+    pub bytes: Vec<u8>,
+}
+
+impl Job for ReadMeasured {
+    type Output = Observations;
+    const PACE: Pace = Pace::Quick;
+
+    fn run(self, _: &mut Progress<'_, Observations>) -> Result<Observations, String> {
+        let Self { name, bytes } = self;
+        let is_outline = bytes.trim_ascii_start().first() == Some(&b'[');
+        let read = if is_outline {
+            fit::outlines(&bytes).map(|outlines| Observations {
+                points: Vec::new(),
+                sights: fit::sights(&outlines),
+            })
+        } else {
+            fit::cloud(&name, &bytes).map(|points| Observations {
+                points,
+                sights: Vec::new(),
+            })
+        };
+        read.map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+    fn read(name: &str, text: &str) -> Result<TriangleMesh, String> {
+        let job = ReadMesh {
+            name: name.into(),
+            bytes: text.into(),
+        };
+        job.run(&mut Progress::silent())
+    }
+
+    #[test]
+    fn mesh_equals_that_of_a_direct_read() {
+        let direct = mesh::read("a.obj", SQUARE.as_bytes()).unwrap();
+        assert_eq!(read("a.obj", SQUARE), Ok(direct));
+    }
+
+    #[test]
+    fn measured_files_are_read_by_their_content() {
+        let read = |name: &str, text: &str| {
+            let job = ReadMeasured {
+                name: name.into(),
+                bytes: text.into(),
+            };
+            job.run(&mut Progress::silent())
+                .map(|found| [found.points.len(), found.sights.len()])
+        };
+        assert_eq!(read("a.xyz", "0 0 1\n1 1 1\n"), Ok([2, 0]));
+        let outline = r#"[{"eye":[0,-5,0],"target":[0,0,0],"up":[0,0,1],"fov":40,"size":[9,9],"lines":[[[2,5]]]}]"#;
+        assert_eq!(read("a.json", outline), Ok([0, 1]));
+        let message = read("a.xyz", "0 0\n").unwrap_err();
+        assert!(message.contains("line 1"), "{message}");
+    }
+
+    #[test]
+    fn broken_file_gives_the_message_of_its_reader() {
+        let message = read("a.ply", "no").unwrap_err();
+        assert_eq!(message, mesh::read("a.ply", b"no").unwrap_err().to_string());
+    }
+}
