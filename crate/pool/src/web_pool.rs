@@ -16,14 +16,14 @@ use wasm_bindgen_futures::spawn_local;
 use worker::Answer;
 use worker::message::unpack;
 
-/// A build of the tracing worker.
+/// Build of the tracing worker.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Build {
     /// The script of a worker, relative to the page.
     script: &'static str,
-    /// Its wasm, relative to the page.
+    /// Wasm, relative to the page.
     wasm: &'static str,
-    /// Its name in messages.
+    /// Name in messages.
     name: &'static str,
 }
 
@@ -33,7 +33,7 @@ const CERTIFIED: Build = Build {
     name: "The tracer",
 };
 
-/// The same with the root finders for comparison.
+/// The build with the root finders for comparison.
 const COMPARING: Build = Build {
     script: "./digger_worker.js",
     wasm: "./digger_bg.wasm",
