@@ -6,6 +6,7 @@
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::dataset::Dataset;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, number};
 use crate::sample::{self, Filling, Window};
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
@@ -59,6 +60,19 @@ impl Subject {
     }
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "slice",
+    title: "A slice through the field",
+    name: "A slice of the field",
+    short: "Slice",
+    about: "your dataset, seen from inside",
+    sentences: "Here is the field of the dataset in your editor, cut by a plane. The surface that \
+                the picture shows is one of these lines, F = T, and the other lines show where it \
+                would go with another threshold. Move the plane and point at a place to read the \
+                field there.",
+};
+
 /// The lesson's state.
 pub struct Slice {
     axis: Axis,
@@ -91,6 +105,101 @@ impl Default for Slice {
             lines: Vec::new(),
             width: 0,
         }
+    }
+}
+
+impl Figure for Slice {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        self.look(bench.dataset);
+        let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.95);
+        let subject = self.subject.as_ref();
+        let soft = subject.map_or(0, |subject| elements_of(&subject.bodies));
+        bench.readings.insert("primitives", soft as f64);
+        if soft == 0 {
+            nothing(ui, &stage, bench);
+            stage.finish(ui);
+            return;
+        }
+        let place = stage.figure;
+        let tall = f64::from(place.height() / place.width().max(1.0));
+        // Samples are square, and their number does not change with every pixel of the window.
+        let tall = (tall * 40.0).round().max(1.0) / 40.0;
+        if let Some((window, _)) = self.window(bench.dataset, tall) {
+            let generation = bench.dataset.generation;
+            self.work(
+                ui,
+                Cut {
+                    generation,
+                    window,
+                    tall,
+                },
+            );
+            self.picture(ui, place, window, bench);
+        }
+        let controls = &mut stage.controls;
+        heading(controls, "The plane faces");
+        choice(
+            controls,
+            &mut self.axis,
+            &[
+                (Axis::Camera, "the camera"),
+                (Axis::X, "x"),
+                (Axis::Y, "y"),
+                (Axis::Z, "z"),
+            ],
+        );
+        slider(
+            controls,
+            "Where it stands",
+            &mut self.offset,
+            -1.0..=1.0,
+            "",
+        );
+        slider(controls, "Nearer", &mut self.zoom, 1.0..=6.0, "×");
+        controls.add_space(4.0);
+        legend(controls);
+        controls.add_space(6.0);
+        if let Some(value) = bench.readings.get("value").copied() {
+            let palette = theme::palette(controls.visuals());
+            let inside = value > THRESHOLD;
+            reading(
+                controls,
+                "Field here",
+                &format!("F = {}", number(value)),
+                palette.accent,
+            );
+            remark(
+                controls,
+                if inside {
+                    "More than T: this place is inside the flesh."
+                } else {
+                    "Less than T: this place is outside."
+                },
+            );
+        } else {
+            remark(controls, "Point at the slice to read the field there.");
+        }
+        let text = format!(
+            "{soft} soft primitive{} make this field.",
+            if soft == 1 { "" } else { "s" }
+        );
+        remark(controls, text);
+        let readings = &mut bench.readings;
+        readings.insert("offset", self.offset);
+        readings.insert(
+            "samples",
+            if self.level == 0 {
+                0.0
+            } else {
+                self.width as f64
+            },
+        );
+        readings.insert("finished", f64::from(u8::from(self.level == LEVELS.len())));
+        stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Slice", self.text())
     }
 }
 
@@ -208,96 +317,6 @@ impl Slice {
         }
     }
 
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        self.look(bench.dataset);
-        let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.95);
-        let subject = self.subject.as_ref();
-        let soft = subject.map_or(0, |subject| elements_of(&subject.bodies));
-        bench.readings.insert("primitives", soft as f64);
-        if soft == 0 {
-            nothing(ui, &stage, bench);
-            stage.finish(ui);
-            return;
-        }
-        let place = stage.figure;
-        let tall = f64::from(place.height() / place.width().max(1.0));
-        // Samples are square, and their number does not change with every pixel of the window.
-        let tall = (tall * 40.0).round().max(1.0) / 40.0;
-        if let Some((window, _)) = self.window(bench.dataset, tall) {
-            let generation = bench.dataset.generation;
-            self.work(
-                ui,
-                Cut {
-                    generation,
-                    window,
-                    tall,
-                },
-            );
-            self.picture(ui, place, window, bench);
-        }
-        let controls = &mut stage.controls;
-        heading(controls, "The plane faces");
-        choice(
-            controls,
-            &mut self.axis,
-            &[
-                (Axis::Camera, "the camera"),
-                (Axis::X, "x"),
-                (Axis::Y, "y"),
-                (Axis::Z, "z"),
-            ],
-        );
-        slider(
-            controls,
-            "Where it stands",
-            &mut self.offset,
-            -1.0..=1.0,
-            "",
-        );
-        slider(controls, "Nearer", &mut self.zoom, 1.0..=6.0, "×");
-        controls.add_space(4.0);
-        legend(controls);
-        controls.add_space(6.0);
-        if let Some(value) = bench.readings.get("value").copied() {
-            let palette = theme::palette(controls.visuals());
-            let inside = value > THRESHOLD;
-            reading(
-                controls,
-                "Field here",
-                &format!("F = {}", number(value)),
-                palette.accent,
-            );
-            remark(
-                controls,
-                if inside {
-                    "More than T: this place is inside the flesh."
-                } else {
-                    "Less than T: this place is outside."
-                },
-            );
-        } else {
-            remark(controls, "Point at the slice to read the field there.");
-        }
-        let text = format!(
-            "{soft} soft primitive{} make this field.",
-            if soft == 1 { "" } else { "s" }
-        );
-        remark(controls, text);
-        let readings = &mut bench.readings;
-        readings.insert("offset", self.offset);
-        readings.insert(
-            "samples",
-            if self.level == 0 {
-                0.0
-            } else {
-                self.width as f64
-            },
-        );
-        readings.insert("finished", f64::from(u8::from(self.level == LEVELS.len())));
-        stage.finish(ui);
-    }
-
     fn picture(&mut self, ui: &Ui, place: Rect, window: Window, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let painter = ui.painter_at(place);
@@ -399,8 +418,7 @@ impl Slice {
     }
 
     /// Three balls to cut.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         String::from(
             "# Three balls and a bar. Go back to the lab, lesson 3, to see their field from inside:\n\
              # the outline of the flesh is the line F = T.\n\n\

@@ -1,7 +1,9 @@
 //! Lesson 9: one coarse mesh with a lumpy and a thin implicit surface, fitted to points that can be dragged.
 
 use crate::bench::Bench;
+use crate::command::Command;
 use crate::contour::Grid;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot, grip, number};
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use egui::{CursorIcon, Rect, Stroke, Ui, vec2};
@@ -68,6 +70,19 @@ struct Side {
     errors: [f64; 2],
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "fitting",
+    title: "Balls or thin shells?",
+    name: "Balls or thin shells?",
+    short: "Fitting",
+    about: "implicit meshes that fit points",
+    sentences: "One coarse mesh, cut by a plane, becomes a soft surface in two ways: with a ball \
+                around each facet, or with a thin shell. Both are fitted to the same measured \
+                points, and the mesh follows its surface. Balls are as thick as facets are large, \
+                so the mesh ends where it should not; shells are as thin as you like.",
+};
+
 /// The lesson's state.
 pub struct Fitting {
     key: Key,
@@ -86,6 +101,68 @@ impl Default for Fitting {
             },
             computed: None,
         }
+    }
+}
+
+impl Figure for Fitting {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.5);
+        self.controls(&mut stage.controls);
+        if self
+            .computed
+            .as_ref()
+            .is_none_or(|(key, _)| *key != self.key)
+        {
+            let mesh = ring();
+            let [one, other] = self.key.kinds().map(|kind| self.key.side(&mesh, kind));
+            if let (Some(one), Some(other)) = (one, other) {
+                self.computed = Some((self.key.clone(), [one, other]));
+            }
+        }
+        let all = stage.figure;
+        let gap = 10.0;
+        let places = if bench.narrow {
+            let height = (all.height() - gap) / 2.0;
+            let first = Rect::from_min_size(all.min, vec2(all.width(), height));
+            [first, first.translate(vec2(0.0, height + gap))]
+        } else {
+            let width = (all.width() - gap) / 2.0;
+            let first = Rect::from_min_size(all.min, vec2(width, all.height()));
+            [first, first.translate(vec2(width + gap, 0.0))]
+        };
+        if let Some((_, sides)) = &self.computed {
+            let titles = [
+                "Balls around the facets (spherical)",
+                "Thin shells around the facets (triangular)",
+            ];
+            for (i, side) in sides.iter().enumerate() {
+                figure(ui, places[i], titles[i], i, side, &mut self.key.points);
+            }
+            let [balls, shells] = sides;
+            let ui = &mut stage.controls;
+            heading(ui, "Mean distance of the points from the mesh");
+            let hues = [plot::hue(ui, 0), plot::hue(ui, 1)];
+            reading(ui, "balls", &number(balls.errors[0]), hues[0]);
+            reading(ui, "shells", &number(shells.errors[0]), hues[1]);
+            heading(ui, "… and from the surface that is fitted");
+            reading(ui, "balls", &number(balls.errors[1]), hues[0]);
+            reading(ui, "shells", &number(shells.errors[1]), hues[1]);
+            bench.readings.extend([
+                ("spherical", balls.errors[0]),
+                ("triangular", shells.errors[0]),
+                ("spherical surface", balls.errors[1]),
+                ("triangular surface", shells.errors[1]),
+            ]);
+            remark(
+                ui,
+                "Drag a point: both meshes are fitted anew. A ball is as thick as its facet is large, so the mesh ends inside of the points, or beyond them; the shells lie on it.",
+            );
+        }
+        stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Balls and shells", self.text())
     }
 }
 
@@ -200,63 +277,6 @@ impl Key {
 }
 
 impl Fitting {
-    /// Draws the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.5);
-        self.controls(&mut stage.controls);
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(key, _)| *key != self.key)
-        {
-            let mesh = ring();
-            let [one, other] = self.key.kinds().map(|kind| self.key.side(&mesh, kind));
-            if let (Some(one), Some(other)) = (one, other) {
-                self.computed = Some((self.key.clone(), [one, other]));
-            }
-        }
-        let all = stage.figure;
-        let gap = 10.0;
-        let places = if bench.narrow {
-            let height = (all.height() - gap) / 2.0;
-            let first = Rect::from_min_size(all.min, vec2(all.width(), height));
-            [first, first.translate(vec2(0.0, height + gap))]
-        } else {
-            let width = (all.width() - gap) / 2.0;
-            let first = Rect::from_min_size(all.min, vec2(width, all.height()));
-            [first, first.translate(vec2(width + gap, 0.0))]
-        };
-        if let Some((_, sides)) = &self.computed {
-            let titles = [
-                "Balls around the facets (spherical)",
-                "Thin shells around the facets (triangular)",
-            ];
-            for (i, side) in sides.iter().enumerate() {
-                figure(ui, places[i], titles[i], i, side, &mut self.key.points);
-            }
-            let [balls, shells] = sides;
-            let ui = &mut stage.controls;
-            heading(ui, "Mean distance of the points from the mesh");
-            let hues = [plot::hue(ui, 0), plot::hue(ui, 1)];
-            reading(ui, "balls", &number(balls.errors[0]), hues[0]);
-            reading(ui, "shells", &number(shells.errors[0]), hues[1]);
-            heading(ui, "… and from the surface that is fitted");
-            reading(ui, "balls", &number(balls.errors[1]), hues[0]);
-            reading(ui, "shells", &number(shells.errors[1]), hues[1]);
-            bench.readings.extend([
-                ("spherical", balls.errors[0]),
-                ("triangular", shells.errors[0]),
-                ("spherical surface", balls.errors[1]),
-                ("triangular surface", shells.errors[1]),
-            ]);
-            remark(
-                ui,
-                "Drag a point: both meshes are fitted anew. A ball is as thick as its facet is large, so the mesh ends inside of the points, or beyond them; the shells lie on it.",
-            );
-        }
-        stage.finish(ui);
-    }
-
     fn controls(&mut self, ui: &mut Ui) {
         let key = &mut self.key;
         choice(
@@ -275,8 +295,7 @@ impl Fitting {
     }
 
     /// A dataset that shows both surfaces of a mesh, deformed.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         let thickness = self.key.thickness.max(0.005);
         format!(
             "# One mesh with balls and with thin shells around its facets, both deformed by the same control points.\n\

@@ -1,8 +1,9 @@
 //! Lesson 5: the strength of a bone as a function along it.
 
+use super::grid::refused;
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::grid::refused;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot};
 use crate::tools::{Stage, heading, remark, slider};
 use core::f64::consts::PI;
@@ -63,6 +64,19 @@ impl Wave {
     }
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "profiles",
+    title: "Profiles",
+    name: "Profiles",
+    short: "Profiles",
+    about: "strength along a bone",
+    sentences: "A profile multiplies the field of a bone by a function along it, here drawn below \
+                each picture. Where the function is large the flesh swells, where it is small the \
+                flesh thins out or is gone. It is the field that is multiplied, not the radius, \
+                so the outline does not copy the curve.",
+};
+
 /// The lesson's state.
 pub struct Profiles {
     bumps: f64,
@@ -83,42 +97,8 @@ impl Default for Profiles {
     }
 }
 
-/// Half the length of the bone, and of what the picture shows of it.
-const BONE: f64 = 1.5;
-const VIEW: f64 = 2.05;
-
-impl Profiles {
-    fn strength(&self, wave: Wave, u: f64) -> f64 {
-        self.low + (self.high - self.low) * wave.value(wave.scale(self.bumps) * u)
-    }
-
-    fn text(&self, wave: Wave) -> String {
-        // From far away, so that the picture and the curve below it stand in line.
-        let eye = 30.0;
-        let angle = 2.0 * libm::atan(VIEW / eye).to_degrees();
-        format!(
-            "# A bar whose strength goes along it as {name}: times low + (high - low) * wave(scale * u),\n\
-             # with u from 0 to 1 along the bar. From the lab, lesson 5.\n\n\
-             eyep 0 0 {eye}\nvrp 0 0 0\nvup 0 1 0\nfov {angle:.3}\nframesize 640 320\nsample 3\n\
-             light White point, position 8 16 20, intensity 0.9\n\
-             light SlateBlue point, position -16 -4 10, intensity 0.5, noshadow\n\n\
-             var low  = {low:.3} hot    # the strength where the wave is 0\n\
-             var high = {high:.3} hot    # and where it is 1\n\n\
-             texture along strength {word} one, bounds low low low high high high, scale {scale:.4} 1 1\n\
-             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness -3, texture along\n\n\
-             cylinder flesh 0.36, <{a} 0 0> <{b} 0 0>\n",
-            name = wave.word(),
-            low = self.low,
-            high = self.high,
-            word = wave.word(),
-            scale = wave.scale(self.bumps),
-            a = -BONE,
-            b = BONE,
-        )
-    }
-
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+impl Figure for Profiles {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let tall = if bench.narrow { 1.0 } else { 0.5 };
         let mut stage = Stage::new(ui, bench.narrow, bench.height, tall);
         let all = if bench.narrow {
@@ -166,6 +146,45 @@ impl Profiles {
         );
         bench.readings.insert("bumps", self.bumps);
         stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Profiles", self.all())
+    }
+}
+
+/// Half the length of the bone, and of what the picture shows of it.
+const BONE: f64 = 1.5;
+const VIEW: f64 = 2.05;
+
+impl Profiles {
+    fn strength(&self, wave: Wave, u: f64) -> f64 {
+        self.low + (self.high - self.low) * wave.value(wave.scale(self.bumps) * u)
+    }
+
+    fn text(&self, wave: Wave) -> String {
+        // From far away, so that the picture and the curve below it stand in line.
+        let eye = 30.0;
+        let angle = 2.0 * libm::atan(VIEW / eye).to_degrees();
+        format!(
+            "# A bar whose strength goes along it as {name}: times low + (high - low) * wave(scale * u),\n\
+             # with u from 0 to 1 along the bar. From the lab, lesson 5.\n\n\
+             eyep 0 0 {eye}\nvrp 0 0 0\nvup 0 1 0\nfov {angle:.3}\nframesize 640 320\nsample 3\n\
+             light White point, position 8 16 20, intensity 0.9\n\
+             light SlateBlue point, position -16 -4 10, intensity 0.5, noshadow\n\n\
+             var low  = {low:.3} hot    # the strength where the wave is 0\n\
+             var high = {high:.3} hot    # and where it is 1\n\n\
+             texture along strength {word} one, bounds low low low high high high, scale {scale:.4} 1 1\n\
+             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness -3, texture along\n\n\
+             cylinder flesh 0.36, <{a} 0 0> <{b} 0 0>\n",
+            name = wave.word(),
+            low = self.low,
+            high = self.high,
+            word = wave.word(),
+            scale = wave.scale(self.bumps),
+            a = -BONE,
+            b = BONE,
+        )
     }
 
     fn card(&mut self, ui: &Ui, place: Rect, wave: Wave, bench: &mut Bench<'_>) {
@@ -232,8 +251,7 @@ impl Profiles {
     }
 
     /// The bar with the profile chosen last.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn all(&self) -> String {
         self.text(self.chosen)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
+use crate::lesson::{Figure, Words};
 use crate::pictures::Shown;
 use crate::plot::number;
 use crate::tools::{self, Stage, heading, remark, slider};
@@ -11,6 +12,19 @@ use widgets::{places, theme};
 
 /// Pictures in a row and in a column.
 const SIDE: usize = 4;
+
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "grid",
+    title: "Radius and blobbiness",
+    name: "Radius and blobbiness",
+    short: "Grid",
+    about: "the numbers behind a joint",
+    sentences: "Two bars make a T, and only two numbers change from picture to picture. The \
+                radius says how thick a bar is by itself; the blobbiness says how freely its \
+                flesh runs together with its neighbour's. Choose a picture to go on with it in \
+                the editor.",
+};
 
 /// The lesson's state.
 pub struct Grid {
@@ -29,38 +43,8 @@ impl Default for Grid {
     }
 }
 
-/// The T shape, in words that can be changed.
-pub fn tee(kernel: Kernel, radius: f64, blobbiness: f64) -> String {
-    format!(
-        "# Two cylinders make a T. Drag the sliders: blobbiness and radius shape the joint.\n\
-         # From the lab, lesson 4.\n\n\
-         fragile all                  # the radius comes from the material\n\
-         var blobbiness = {blob:.3} hot    # near 0: the joint swells; far from 0: crisp\n\
-         var radius     = {radius:.3} hot    # of each cylinder on its own\n\n\
-         eyep 0.9 0.3 4.6\nvrp  0 -0.62 0\nvup  0 1 0\nfov  37\nframesize 480 480\nsample 3\n\n\
-         light White point, position 2 4 4, intensity 0.9\n\
-         light SlateBlue point, position -5 -1 2, intensity 0.6, noshadow\n\n\
-         surface Clay {{ diffuse Coral, specular 0.5 0.5 0.5, shine 40\n\
-         \x20              blob blobbiness, radius radius, kernel {kernel} }}\n\n\
-         cylinder Clay 0.25 <-1 0 0> < 1  0   0>   # the beam\n\
-         cylinder Clay 0.25 < 0 0 0> < 0 -1.5 0>   # the post\n",
-        blob = -blobbiness,
-        kernel = kernel.name(),
-    )
-}
-
-/// A value between two, by equal ratios.
-fn between([low, high]: [f64; 2], index: usize) -> f64 {
-    let share = index as f64 / (SIDE - 1) as f64;
-    let value = low * libm::pow(high / low, share);
-    // Enough digits to read.
-    let digits = libm::pow(10.0, 1.0 - libm::floor(libm::log10(value)));
-    libm::round(value * digits) / digits
-}
-
-impl Grid {
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+impl Figure for Grid {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let mut stage = Stage::new(ui, bench.narrow, bench.height.max(560.0), 1.08);
         self.table(ui, &stage, bench);
         let controls = &mut stage.controls;
@@ -94,6 +78,41 @@ impl Grid {
         stage.finish(ui);
     }
 
+    fn dataset(&self) -> Command {
+        Command::open("Grid", self.text())
+    }
+}
+
+/// The T shape, in words that can be changed.
+pub fn tee(kernel: Kernel, radius: f64, blobbiness: f64) -> String {
+    format!(
+        "# Two cylinders make a T. Drag the sliders: blobbiness and radius shape the joint.\n\
+         # From the lab, lesson 4.\n\n\
+         fragile all                  # the radius comes from the material\n\
+         var blobbiness = {blob:.3} hot    # near 0: the joint swells; far from 0: crisp\n\
+         var radius     = {radius:.3} hot    # of each cylinder on its own\n\n\
+         eyep 0.9 0.3 4.6\nvrp  0 -0.62 0\nvup  0 1 0\nfov  37\nframesize 480 480\nsample 3\n\n\
+         light White point, position 2 4 4, intensity 0.9\n\
+         light SlateBlue point, position -5 -1 2, intensity 0.6, noshadow\n\n\
+         surface Clay {{ diffuse Coral, specular 0.5 0.5 0.5, shine 40\n\
+         \x20              blob blobbiness, radius radius, kernel {kernel} }}\n\n\
+         cylinder Clay 0.25 <-1 0 0> < 1  0   0>   # the beam\n\
+         cylinder Clay 0.25 < 0 0 0> < 0 -1.5 0>   # the post\n",
+        blob = -blobbiness,
+        kernel = kernel.name(),
+    )
+}
+
+/// A value between two, by equal ratios.
+fn between([low, high]: [f64; 2], index: usize) -> f64 {
+    let share = index as f64 / (SIDE - 1) as f64;
+    let value = low * libm::pow(high / low, share);
+    // Enough digits to read.
+    let digits = libm::pow(10.0, 1.0 - libm::floor(libm::log10(value)));
+    libm::round(value * digits) / digits
+}
+
+impl Grid {
     fn table(&self, ui: &Ui, stage: &Stage, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let all = stage.figure;
@@ -146,8 +165,7 @@ impl Grid {
     }
 
     /// The T in the middle of the table.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         tee(
             self.kernel,
             between(self.radii, SIDE / 2),

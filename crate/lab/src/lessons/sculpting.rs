@@ -2,6 +2,8 @@
 //! (figures 4, 1 and 2 of Bill and Lodha 1995).
 
 use crate::bench::Bench;
+use crate::command::Command;
+use crate::lesson::{Figure, Words};
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Sense, TextureHandle, TextureOptions, Ui,
@@ -14,19 +16,32 @@ use viewport::{Frame, Look, Surface, View};
 use widgets::{places, theme};
 
 /// The strokes of the dog.
-const DOG: &str = include_str!("../../../www/examples/dog.strokes");
+const DOG: &str = include_str!("../../../../www/examples/dog.strokes");
 
 /// A figure of the lesson.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Figure {
+enum Subject {
     Stages,
     Decays,
     Subdivision,
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "sculpting",
+    title: "Sculpting by strokes",
+    name: "Sculpting by strokes",
+    short: "Sculpting",
+    about: "a dog of a box, stroke by stroke",
+    sentences: "A virtual tool touches a mesh and pushes or pulls the vertices that it meets, and \
+                their neighbours follow by a decay function. Where detail is wanted, a region is \
+                chosen and divided, and smoothed again. Each stroke is a line of a text, so the \
+                whole animal can be made again, step by step.",
+};
+
 /// The lesson's state.
 pub struct Sculpting {
-    figure: Figure,
+    figure: Subject,
     /// The dog, once it was asked for.
     dog: Option<Document>,
     lines: Vec<String>,
@@ -43,7 +58,7 @@ impl Default for Sculpting {
         let mut view = View::around([DVec3::new(-1.5, -0.7, -1.3), DVec3::new(1.9, 0.7, 1.2)]);
         view.look_from(DVec3::new(0.55, -0.8, 0.3), DVec3::Z);
         Self {
-            figure: Figure::Stages,
+            figure: Subject::Stages,
             dog: None,
             lines: Vec::new(),
             step: 0.0,
@@ -53,6 +68,33 @@ impl Default for Sculpting {
             view,
             panes: Vec::new(),
         }
+    }
+}
+
+impl Figure for Sculpting {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        let mut stage = Stage::new(ui, bench.narrow, bench.height.clamp(360.0, 640.0), 0.9);
+        let controls = &mut stage.controls;
+        choice(
+            controls,
+            &mut self.figure,
+            &[
+                (Subject::Stages, "A dog in six stages"),
+                (Subject::Decays, "Decays"),
+                (Subject::Subdivision, "Subdivision"),
+            ],
+        );
+        match self.figure {
+            Subject::Stages => self.stages(ui, &mut stage, bench),
+            Subject::Decays => self.decays(ui, &mut stage, bench),
+            Subject::Subdivision => self.subdivision(ui, &mut stage, bench),
+        }
+        stage.finish(ui);
+    }
+
+    /// The dog is an example of the gallery.
+    fn dataset(&self) -> Command {
+        Command::OpenExample { file: "dog.rat" }
     }
 }
 
@@ -143,27 +185,6 @@ fn divided(how: &str, levels: usize) -> String {
 }
 
 impl Sculpting {
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        let mut stage = Stage::new(ui, bench.narrow, bench.height.clamp(360.0, 640.0), 0.9);
-        let controls = &mut stage.controls;
-        choice(
-            controls,
-            &mut self.figure,
-            &[
-                (Figure::Stages, "A dog in six stages"),
-                (Figure::Decays, "Decays"),
-                (Figure::Subdivision, "Subdivision"),
-            ],
-        );
-        match self.figure {
-            Figure::Stages => self.stages(ui, &mut stage, bench),
-            Figure::Decays => self.decays(ui, &mut stage, bench),
-            Figure::Subdivision => self.subdivision(ui, &mut stage, bench),
-        }
-        stage.finish(ui);
-    }
-
     fn pane(&mut self, index: usize) -> &mut Pane {
         if self.panes.len() <= index {
             self.panes.resize_with(index + 1, Pane::default);
@@ -363,14 +384,6 @@ fn cell(all: Rect, index: usize, columns: usize, rows: usize) -> Rect {
     let (column, row) = ((index % columns) as f32, (index / columns) as f32);
     let at = all.min + vec2(column * (size.x + gap), row * (size.y + gap));
     Rect::from_min_size(at, size)
-}
-
-impl Sculpting {
-    /// The stage on show as a text that shows it in the editor: the dog's own example is in the gallery.
-    #[must_use]
-    pub fn example() -> &'static str {
-        "dog.rat"
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 //! over its parts; a field made of distances bulges at the cut.
 
 use crate::bench::Bench;
+use crate::command::Command;
 use crate::contour::Grid;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, number};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
@@ -40,6 +42,20 @@ struct Key {
     cut: f64,
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "superposition",
+    title: "Superposition",
+    name: "Superposition",
+    short: "Superposition",
+    about: "why a cut bone shows no seam",
+    sentences: "Cut the bone wherever you like: an integral over the whole is the sum of the \
+                integrals over its parts, so a convolution surface does not notice. Next to it \
+                the same parts give flesh by their distance instead, and near the cut both parts \
+                count in full, so the surface bulges. That is why bones may be put together from \
+                many pieces here.",
+};
+
 /// The lesson's state.
 pub struct Superposition {
     key: Key,
@@ -58,6 +74,100 @@ impl Default for Superposition {
             },
             computed: None,
         }
+    }
+}
+
+impl Figure for Superposition {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        let key = self.key;
+        if self
+            .computed
+            .as_ref()
+            .is_none_or(|(known, _)| *known != key)
+        {
+            self.computed = Some((key, key.compute()));
+        }
+        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
+        let palette = theme::palette(ui.visuals());
+        let all = stage.figure;
+        let gap = 10.0;
+        let half = (all.height() - gap) / 2.0;
+        let upper = Rect::from_min_size(all.min, vec2(all.width(), half));
+        let lower = Rect::from_min_size(all.min + vec2(0.0, half + gap), upper.size());
+        if let Some((_, fields)) = &self.computed {
+            let titles = [
+                "Convolution: ∫ h over each part",
+                "Distance: h(nearest point) of each part",
+            ];
+            for (index, place) in [upper, lower].into_iter().enumerate() {
+                let lines = if index == 0 {
+                    &fields.convolution
+                } else {
+                    &fields.distance
+                };
+                let inside = &fields.insides[index];
+                let colour = if index == 0 {
+                    palette.note
+                } else {
+                    palette.accent
+                };
+                outline(ui, place, titles[index], lines, inside, colour, &key);
+            }
+        }
+        // The cut is one, so it can be taken hold of in both.
+        for (name, place) in [("cut", upper), ("cut below", lower)] {
+            let map = Map::new(place);
+            let at = map.at(key.place(key.cut));
+            let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
+            if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
+                self.key.cut = key.share(map.world(pointer)).clamp(0.02, 0.98);
+            }
+        }
+        let controls = &mut stage.controls;
+        choice(
+            controls,
+            &mut self.key.bone,
+            &[(Bone::Segment, "Segment"), (Bone::Arc, "Arc")],
+        );
+        slider(controls, "Cut at", &mut self.key.cut, 0.02..=0.98, "");
+        slider(controls, "Radius R", &mut self.key.radius, 0.15..=0.9, "");
+        slider(
+            controls,
+            "Blobbiness |B|",
+            &mut self.key.blobbiness,
+            0.3..=6.0,
+            "",
+        );
+        heading(controls, "Kernel");
+        if let Some(kernel) = tools::kernels(controls, |kernel| kernel == key.kernel) {
+            self.key.kernel = kernel;
+        }
+        if let Some((_, fields)) = &self.computed {
+            let [convolved, distant] = fields.differences;
+            let [steady, swollen] = fields.swelling;
+            heading(controls, "What the cut changes in the field, at most");
+            let times = |value: f64| format!("{} T", number(value));
+            reading(controls, "Convolution", &times(convolved), palette.note);
+            reading(controls, "Distance", &times(distant), palette.accent);
+            heading(controls, "How much thicker the cut place gets");
+            let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
+            reading(controls, "Convolution", &percent(steady), palette.note);
+            reading(controls, "Distance", &percent(swollen), palette.accent);
+            remark(
+                controls,
+                "What is left of a difference in the first line is the rounding of single precision.",
+            );
+            let readings = &mut bench.readings;
+            readings.insert("cut", key.cut);
+            readings.insert("convolution", convolved);
+            readings.insert("distance", distant);
+            readings.insert("swelling", swollen);
+        }
+        stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Superposition", self.text())
     }
 }
 
@@ -222,98 +332,8 @@ impl Key {
 }
 
 impl Superposition {
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
-        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
-        let palette = theme::palette(ui.visuals());
-        let all = stage.figure;
-        let gap = 10.0;
-        let half = (all.height() - gap) / 2.0;
-        let upper = Rect::from_min_size(all.min, vec2(all.width(), half));
-        let lower = Rect::from_min_size(all.min + vec2(0.0, half + gap), upper.size());
-        if let Some((_, fields)) = &self.computed {
-            let titles = [
-                "Convolution: ∫ h over each part",
-                "Distance: h(nearest point) of each part",
-            ];
-            for (index, place) in [upper, lower].into_iter().enumerate() {
-                let lines = if index == 0 {
-                    &fields.convolution
-                } else {
-                    &fields.distance
-                };
-                let inside = &fields.insides[index];
-                let colour = if index == 0 {
-                    palette.note
-                } else {
-                    palette.accent
-                };
-                outline(ui, place, titles[index], lines, inside, colour, &key);
-            }
-        }
-        // The cut is one, so it can be taken hold of in both.
-        for (name, place) in [("cut", upper), ("cut below", lower)] {
-            let map = Map::new(place);
-            let at = map.at(key.place(key.cut));
-            let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
-            if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
-                self.key.cut = key.share(map.world(pointer)).clamp(0.02, 0.98);
-            }
-        }
-        let controls = &mut stage.controls;
-        choice(
-            controls,
-            &mut self.key.bone,
-            &[(Bone::Segment, "Segment"), (Bone::Arc, "Arc")],
-        );
-        slider(controls, "Cut at", &mut self.key.cut, 0.02..=0.98, "");
-        slider(controls, "Radius R", &mut self.key.radius, 0.15..=0.9, "");
-        slider(
-            controls,
-            "Blobbiness |B|",
-            &mut self.key.blobbiness,
-            0.3..=6.0,
-            "",
-        );
-        heading(controls, "Kernel");
-        if let Some(kernel) = tools::kernels(controls, |kernel| kernel == key.kernel) {
-            self.key.kernel = kernel;
-        }
-        if let Some((_, fields)) = &self.computed {
-            let [convolved, distant] = fields.differences;
-            let [steady, swollen] = fields.swelling;
-            heading(controls, "What the cut changes in the field, at most");
-            let times = |value: f64| format!("{} T", number(value));
-            reading(controls, "Convolution", &times(convolved), palette.note);
-            reading(controls, "Distance", &times(distant), palette.accent);
-            heading(controls, "How much thicker the cut place gets");
-            let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
-            reading(controls, "Convolution", &percent(steady), palette.note);
-            reading(controls, "Distance", &percent(swollen), palette.accent);
-            remark(
-                controls,
-                "What is left of a difference in the first line is the rounding of single precision.",
-            );
-            let readings = &mut bench.readings;
-            readings.insert("cut", key.cut);
-            readings.insert("convolution", convolved);
-            readings.insert("distance", distant);
-            readings.insert("swelling", swollen);
-        }
-        stage.finish(ui);
-    }
-
     /// The bone whole and cut, one above the other.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         let key = self.key;
         let name = key.kernel.name();
         let at = |share: f64| {
@@ -482,7 +502,7 @@ mod tests {
                 (lesson.key.bone, lesson.key.kernel) = (bone, kernel);
                 let file = rats::File {
                     name: String::from("main.rat"),
-                    text: lesson.dataset(),
+                    text: lesson.text(),
                 };
                 let compiled = rats::compile(&rats::Project { files: vec![file] });
                 assert_eq!(compiled.diagnostics, [], "{bone:?} {kernel:?}");

@@ -2,7 +2,9 @@
 //! function of the other's field, keeps the surface smooth and gives back volume.
 
 use crate::bench::Bench;
+use crate::command::Command;
 use crate::contour::Grid;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
@@ -45,6 +47,20 @@ struct Key {
     n: f64,
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "contact",
+    title: "Drops that do not melt",
+    name: "Drops that do not melt",
+    short: "Contact",
+    about: "pressed flat, with a bulge",
+    sentences: "Where two drops would overlap, what the other's field is above T is taken from \
+                each drop's own, so that both end on the sheet where their fields are equal. Just \
+                outside a small bulge is added instead, which leaves the surface smooth and gives \
+                back some of the volume. Take hold of the drops, of where the bulge begins and of \
+                its crest.",
+};
+
 /// The lesson's state.
 pub struct Contact {
     key: Key,
@@ -65,6 +81,52 @@ impl Default for Contact {
             },
             computed: None,
         }
+    }
+}
+
+impl Figure for Contact {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        let key = self.key;
+        if self
+            .computed
+            .as_ref()
+            .is_none_or(|(known, _)| *known != key)
+        {
+            self.computed = Some((key, key.compute()));
+        }
+        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
+        let palette = theme::palette(ui.visuals());
+        let all = stage.figure;
+        let gap = 10.0;
+        let split = all.top() + 0.6 * (all.height() - gap);
+        let upper = all.with_max_y(split);
+        let lower = all.with_min_y(split + gap);
+        if let Some((_, drops)) = &self.computed {
+            draw(ui, upper, drops);
+        }
+        let map = Map::new(upper);
+        for (name, sign) in [("left drop", -1.0), ("right drop", 1.0)] {
+            let at = map.at(sign * key.apart, 0.0);
+            let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
+            if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
+                self.key.apart = (sign * map.x(pointer)).clamp(APART[0], APART[1]);
+            }
+        }
+        self.chart(ui, lower);
+        self.controls(&mut stage.controls);
+        if let Some((_, drops)) = &self.computed {
+            let readings = &mut bench.readings;
+            readings.insert("apart", key.apart);
+            readings.insert("c", key.c);
+            readings.insert("volume", drops.volumes[0]);
+            readings.insert("cut", drops.volumes[1]);
+            readings.insert("gap", drops.gap);
+        }
+        stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Drops", self.text())
     }
 }
 
@@ -180,47 +242,6 @@ fn volume(grid: &Grid) -> f64 {
 }
 
 impl Contact {
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
-        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
-        let palette = theme::palette(ui.visuals());
-        let all = stage.figure;
-        let gap = 10.0;
-        let split = all.top() + 0.6 * (all.height() - gap);
-        let upper = all.with_max_y(split);
-        let lower = all.with_min_y(split + gap);
-        if let Some((_, drops)) = &self.computed {
-            draw(ui, upper, drops);
-        }
-        let map = Map::new(upper);
-        for (name, sign) in [("left drop", -1.0), ("right drop", 1.0)] {
-            let at = map.at(sign * key.apart, 0.0);
-            let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
-            if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
-                self.key.apart = (sign * map.x(pointer)).clamp(APART[0], APART[1]);
-            }
-        }
-        self.chart(ui, lower);
-        self.controls(&mut stage.controls);
-        if let Some((_, drops)) = &self.computed {
-            let readings = &mut bench.readings;
-            readings.insert("apart", key.apart);
-            readings.insert("c", key.c);
-            readings.insert("volume", drops.volumes[0]);
-            readings.insert("cut", drops.volumes[1]);
-            readings.insert("gap", drops.gap);
-        }
-        stage.finish(ui);
-    }
-
     /// The bulge as a function of the other drop's field, with grips.
     fn chart(&mut self, ui: &Ui, place: Rect) {
         let palette = theme::palette(ui.visuals());
@@ -301,8 +322,7 @@ impl Contact {
     }
 
     /// The two drops.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         let key = self.key;
         format!(
             "# Two drops that touch and do not melt.\n\
@@ -447,7 +467,7 @@ mod tests {
             lesson.key.shaped = shaped;
             let file = rats::File {
                 name: String::from("main.rat"),
-                text: lesson.dataset(),
+                text: lesson.text(),
             };
             let compiled = rats::compile(&rats::Project { files: vec![file] });
             assert_eq!(compiled.diagnostics, [], "{shaped:?}");

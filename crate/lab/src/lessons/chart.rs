@@ -1,9 +1,10 @@
 //! Lesson 6: every kernel on every primitive, traced and timed.
 
+use super::grid::refused;
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::formulas::{self, BONES, Bone};
-use crate::grid::refused;
+use crate::lesson::{Figure, Words};
 use crate::plot::number;
 use crate::sample;
 use crate::tools::{self, heading, remark};
@@ -35,6 +36,19 @@ const COSTS: &str = "2× means: a value and its gradient take twice the time of 
 /// A cell of the chart.
 type Cell = (Kernel, Bone);
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "chart",
+    title: "The chart",
+    name: "The chart",
+    short: "Chart",
+    about: "nine kernels × seven primitives",
+    sentences: "Every kernel can be convolved with every primitive; this is the whole table, \
+                traced just now. Some cells have a closed formula, some need an elliptic \
+                integral, some a small numerical one, and that shows in the time they take. \
+                Choose a cell to see how its field is computed.",
+};
+
 /// The lesson's state.
 pub struct Chart {
     chosen: Cell,
@@ -51,6 +65,29 @@ impl Default for Chart {
             costs: HashMap::new(),
             timings: 0,
         }
+    }
+}
+
+impl Figure for Chart {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        let top = ui.cursor().min;
+        if bench.narrow {
+            self.narrow(ui, bench);
+        } else {
+            self.wide(ui, bench);
+        }
+        let size = vec2(ui.available_width(), ui.cursor().top() - top.y);
+        places::note(ui.ctx(), "lab figure", Rect::from_min_size(top, size));
+        self.measure(ui, bench);
+        let timed = (self.timings / ROUNDS) as f64;
+        bench.readings.insert("timed", timed);
+        if let Some(cost) = self.relative((Kernel::Cauchy, Bone::Line)) {
+            bench.readings.insert("cauchyLine", cost);
+        }
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Chart", self.text())
     }
 }
 
@@ -219,24 +256,6 @@ impl Chart {
             self.timings += 1;
         }
         ui.ctx().request_repaint();
-    }
-
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        let top = ui.cursor().min;
-        if bench.narrow {
-            self.narrow(ui, bench);
-        } else {
-            self.wide(ui, bench);
-        }
-        let size = vec2(ui.available_width(), ui.cursor().top() - top.y);
-        places::note(ui.ctx(), "lab figure", Rect::from_min_size(top, size));
-        self.measure(ui, bench);
-        let timed = (self.timings / ROUNDS) as f64;
-        bench.readings.insert("timed", timed);
-        if let Some(cost) = self.relative((Kernel::Cauchy, Bone::Line)) {
-            bench.readings.insert("cauchyLine", cost);
-        }
     }
 
     fn narrow(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
@@ -418,8 +437,7 @@ impl Chart {
     }
 
     /// The chosen cell.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         text(self.chosen)
     }
 }

@@ -4,10 +4,12 @@
 //! Pictures and maps come from the workers: for a map each pixel's hit is held against the exact
 //! crossing, found on the field itself in double precision.
 
+use super::grid::refused;
+use super::slice::shade;
 use crate::bench::Bench;
-use crate::grid::refused;
+use crate::command::Command;
+use crate::lesson::{Figure, Words};
 use crate::pictures::Shown;
-use crate::slice::shade;
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use digger::errors::Pixel;
 use egui::{
@@ -125,6 +127,19 @@ fn share(radii: f64) -> f32 {
     (1.0 + libm::log10(radii.max(1e-12)) / decades).clamp(0.0, 1.0) as f32
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "spans",
+    title: "How many spans?",
+    name: "How many spans?",
+    short: "Spans",
+    about: "cubics along a ray, and errors",
+    sentences: "Along each ray a few cubics stand in for a bone's field, and what a picture shows \
+                is their surface, not the field's. Two spans a bone, as first published, give way \
+                where a ray runs along a bar, and four are better. The tracer here places spans \
+                by a proven bound on their error, so there is no number to choose.",
+};
+
 /// The lesson's state.
 pub struct Spans {
     key: Key,
@@ -147,9 +162,8 @@ impl Default for Spans {
     }
 }
 
-impl Spans {
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+impl Figure for Spans {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         self.measure(ui, bench);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.74);
         self.table(ui, &stage, bench);
@@ -205,6 +219,12 @@ impl Spans {
         stage.finish(ui);
     }
 
+    fn dataset(&self) -> Command {
+        Command::open("Cross", self.text())
+    }
+}
+
+impl Spans {
     /// Takes in the maps that are there, and asks for those that are not.
     fn measure(&mut self, ui: &Ui, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
@@ -270,8 +290,7 @@ impl Spans {
     }
 
     /// The cross with two spans.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         self.key.text(COLUMNS[0].1)
     }
 }

@@ -1,8 +1,9 @@
 //! Lesson 9: two balls, each with a map of u and v of its own, and how their textures mix where their flesh does.
 
+use super::grid::refused;
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::grid::refused;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot};
 use crate::sample;
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
@@ -27,6 +28,20 @@ enum Cloth {
     Colours,
 }
 
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "textures",
+    title: "Textures over blends",
+    name: "Textures over blends",
+    short: "Textures",
+    about: "patterns that cross-dissolve",
+    sentences: "Each element has its own map of u and v, so two balls that blend have two \
+                patterns. At a point of the surface each is looked up for itself, and the results \
+                are mixed by the shares of the field that the elements have there. A solid \
+                texture fills space and needs no map, so it runs through both as through one \
+                block.",
+};
+
 /// The lesson's state.
 pub struct Textures {
     kernel: Kernel,
@@ -49,81 +64,8 @@ impl Default for Textures {
     }
 }
 
-impl Textures {
-    /// The text of the picture.
-    #[must_use]
-    pub fn dataset(&self) -> String {
-        // From far away, so that the picture and the curve below it stand in line.
-        let eye = 30.0;
-        let angle = 2.0 * libm::atan(VIEW / eye).to_degrees();
-        let cloth = match self.cloth {
-            Cloth::Maps => format!(
-                "# u runs around a ball and v up\n\
-                 texture Left  pigment step one, scale {waves:.1} 1 1, bounds OrangeRed Wheat, replace\n\
-                 texture Right pigment one step, scale 1 {rings:.1} 1, bounds Navy PaleTurquoise, replace\n",
-                waves = self.waves,
-                rings = 0.5 * self.waves,
-            ),
-            Cloth::Solid => format!(
-                "# one block of stone, out of which both are cut\n\
-                 texture Left  pigment marble, scale {scale:.2} 1 1, bounds SteelBlue White, replace\n\
-                 texture Right = Left\n",
-                scale = 0.2 * self.waves,
-            ),
-            Cloth::Colours => String::from(
-                "# a colour each\ntexture Left  pigment OrangeRed, replace\ntexture Right pigment Navy, replace\n",
-            ),
-        };
-        format!(
-            "# Two balls with a texture each: where their flesh mixes, the textures do, by the same shares.\n\
-             # From the lab, lesson 9.\n\n\
-             var apart      = {apart:.3} hot 0.3 1.4    # half the distance of the balls\n\
-             var blobbiness = {blob:.3} hot -8 -0.3\n\n\
-             eyep 0 0 {eye}\nvrp 0 0 0\nvup 0 1 0\nfov {angle:.3}\nframesize 640 320\nsample 3\n\
-             light White point, position -8 14 20, intensity 0.9, noshadow\n\
-             light SlateBlue point, position 16 -4 10, intensity 0.4, noshadow\n\n\
-             {cloth}\n\
-             surface one   {{ diffuse White, specular 40%, shine 40, blob blobbiness, kernel {kernel}, texture Left }}\n\
-             surface other {{ diffuse White, specular 40%, shine 40, blob blobbiness, kernel {kernel}, texture Right }}\n\n\
-             sphere one   {RADIUS}, -apart 0 0\n\
-             sphere other {RADIUS},  apart 0 0\n",
-            apart = self.apart,
-            blob = -self.blobbiness,
-            kernel = self.kernel.name(),
-        )
-    }
-
-    /// The fields of the two balls.
-    fn fields(&self) -> [Sum; 2] {
-        let shaping = sample::shaping(self.kernel, RADIUS, self.blobbiness);
-        [-1.0, 1.0].map(|side| {
-            let center = DVec3::new(side * self.apart, 0.0, 0.0);
-            Primitive::new(Skeleton::Point { center }, &shaping, None)
-                .into_iter()
-                .collect()
-        })
-    }
-
-    /// The share of the first ball at a place of the line through both; `None` where neither is felt.
-    fn share(fields: &[Sum; 2], x: f64) -> Option<f64> {
-        let [one, other] =
-            [0, 1].map(|i| sample::one(&[&fields[i]], DVec3::new(x, 0.0, 0.0)).min(1e30));
-        let whole = one + other;
-        (whole > 1e-12).then(|| one / whole)
-    }
-
-    /// The width of the zone in which both have more than a tenth.
-    fn zone(fields: &[Sum; 2]) -> f64 {
-        let steps = 800;
-        let at = |i: i32| VIEW * (2.0 * f64::from(i) / f64::from(steps) - 1.0);
-        let mixed = (0..=steps).filter(|&i| {
-            Self::share(fields, at(i)).is_some_and(|share| (0.1..=0.9).contains(&share))
-        });
-        mixed.count() as f64 * 2.0 * VIEW / f64::from(steps)
-    }
-
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+impl Figure for Textures {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.9);
         let all = stage.figure;
         plot::panel(ui, all);
@@ -135,7 +77,7 @@ impl Textures {
             inner.center_top() + vec2(0.0, 0.5 * height),
             vec2(inner.width(), height),
         );
-        let text = self.dataset();
+        let text = self.text();
         let response = ui.interact(picture, ui.scope_id().with("textures"), Sense::click());
         let name = "Two balls with a texture each";
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
@@ -212,6 +154,83 @@ impl Textures {
         bench.readings.insert("zone", zone);
         stage.finish(ui);
     }
+
+    fn dataset(&self) -> Command {
+        Command::open("Textures", self.text())
+    }
+}
+
+impl Textures {
+    /// The text of the picture.
+    fn text(&self) -> String {
+        // From far away, so that the picture and the curve below it stand in line.
+        let eye = 30.0;
+        let angle = 2.0 * libm::atan(VIEW / eye).to_degrees();
+        let cloth = match self.cloth {
+            Cloth::Maps => format!(
+                "# u runs around a ball and v up\n\
+                 texture Left  pigment step one, scale {waves:.1} 1 1, bounds OrangeRed Wheat, replace\n\
+                 texture Right pigment one step, scale 1 {rings:.1} 1, bounds Navy PaleTurquoise, replace\n",
+                waves = self.waves,
+                rings = 0.5 * self.waves,
+            ),
+            Cloth::Solid => format!(
+                "# one block of stone, out of which both are cut\n\
+                 texture Left  pigment marble, scale {scale:.2} 1 1, bounds SteelBlue White, replace\n\
+                 texture Right = Left\n",
+                scale = 0.2 * self.waves,
+            ),
+            Cloth::Colours => String::from(
+                "# a colour each\ntexture Left  pigment OrangeRed, replace\ntexture Right pigment Navy, replace\n",
+            ),
+        };
+        format!(
+            "# Two balls with a texture each: where their flesh mixes, the textures do, by the same shares.\n\
+             # From the lab, lesson 9.\n\n\
+             var apart      = {apart:.3} hot 0.3 1.4    # half the distance of the balls\n\
+             var blobbiness = {blob:.3} hot -8 -0.3\n\n\
+             eyep 0 0 {eye}\nvrp 0 0 0\nvup 0 1 0\nfov {angle:.3}\nframesize 640 320\nsample 3\n\
+             light White point, position -8 14 20, intensity 0.9, noshadow\n\
+             light SlateBlue point, position 16 -4 10, intensity 0.4, noshadow\n\n\
+             {cloth}\n\
+             surface one   {{ diffuse White, specular 40%, shine 40, blob blobbiness, kernel {kernel}, texture Left }}\n\
+             surface other {{ diffuse White, specular 40%, shine 40, blob blobbiness, kernel {kernel}, texture Right }}\n\n\
+             sphere one   {RADIUS}, -apart 0 0\n\
+             sphere other {RADIUS},  apart 0 0\n",
+            apart = self.apart,
+            blob = -self.blobbiness,
+            kernel = self.kernel.name(),
+        )
+    }
+
+    /// The fields of the two balls.
+    fn fields(&self) -> [Sum; 2] {
+        let shaping = sample::shaping(self.kernel, RADIUS, self.blobbiness);
+        [-1.0, 1.0].map(|side| {
+            let center = DVec3::new(side * self.apart, 0.0, 0.0);
+            Primitive::new(Skeleton::Point { center }, &shaping, None)
+                .into_iter()
+                .collect()
+        })
+    }
+
+    /// The share of the first ball at a place of the line through both; `None` where neither is felt.
+    fn share(fields: &[Sum; 2], x: f64) -> Option<f64> {
+        let [one, other] =
+            [0, 1].map(|i| sample::one(&[&fields[i]], DVec3::new(x, 0.0, 0.0)).min(1e30));
+        let whole = one + other;
+        (whole > 1e-12).then(|| one / whole)
+    }
+
+    /// The width of the zone in which both have more than a tenth.
+    fn zone(fields: &[Sum; 2]) -> f64 {
+        let steps = 800;
+        let at = |i: i32| VIEW * (2.0 * f64::from(i) / f64::from(steps) - 1.0);
+        let mixed = (0..=steps).filter(|&i| {
+            Self::share(fields, at(i)).is_some_and(|share| (0.1..=0.9).contains(&share))
+        });
+        mixed.count() as f64 * 2.0 * VIEW / f64::from(steps)
+    }
 }
 
 #[cfg(test)]
@@ -242,7 +261,7 @@ mod tests {
                 cloth,
                 ..Textures::default()
             };
-            let compiled = rats::compile(&rats::Project::single(lesson.dataset()));
+            let compiled = rats::compile(&rats::Project::single(lesson.text()));
             let worst = compiled.diagnostics.iter().map(|d| d.severity).max();
             assert!(
                 worst <= Some(rats::Severity::Note),

@@ -5,6 +5,8 @@
 //! kernel's integral from 0, a bar [a, b] gives `w·(H((b−x)/w) − H((a−x)/w))`.
 
 use crate::bench::Bench;
+use crate::command::Command;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot, number};
 use crate::tools::{self, Stage, heading, reading, remark, slider};
 use egui::{Align2, Button, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
@@ -19,6 +21,20 @@ const MOST: usize = 5;
 const BESIDE: f64 = 0.25;
 /// Half length, in widths, of the bar that stands for an infinite one: 1/u has no finite integral.
 const ENDLESS: f64 = 10.0;
+
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "convolution",
+    title: "Convolution in one dimension",
+    name: "Convolution",
+    short: "Convolution",
+    about: "geometry × kernel = field",
+    sentences: "Slide the kernel along the line: the field at a place is the area that kernel and \
+                geometry have in common there. The surface lies where this field crosses the \
+                iso-value, so bars that come near each other grow together. A kernel that ends is \
+                a window: what lies outside it does not count, so a long bar looks the same in \
+                its middle however much longer it grows.",
+};
 
 /// The lesson's state.
 pub struct Convolution {
@@ -39,6 +55,75 @@ impl Default for Convolution {
             iso: 0.5,
             probe: -0.2,
         }
+    }
+}
+
+impl Figure for Convolution {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.2);
+        plot::panel(ui, stage.figure);
+        let split = stage.figure.top() + stage.figure.height() * 0.55;
+        let upper = stage.figure.with_max_y(split);
+        let lower = stage.figure.with_min_y(split);
+        let palette = theme::palette(ui.visuals());
+        ui.painter().hline(
+            stage.figure.x_range(),
+            split,
+            Stroke::new(1.0, palette.line),
+        );
+        self.field_plot(ui, upper, bench);
+        self.geometry_plot(ui, lower);
+
+        let controls = &mut stage.controls;
+        slider(controls, "Kernel width", &mut self.width, 0.2..=3.0, "");
+        heading(controls, "Kernel");
+        if let Some(kernel) = tools::kernels(controls, |kernel| kernel == self.kernel) {
+            self.kernel = kernel;
+        }
+        heading(controls, "Bars: drag them, or their ends");
+        controls.horizontal(|ui| {
+            let add = ui.add_enabled(self.bars.len() < MOST, Button::new("Add a bar"));
+            places::note(ui.ctx(), "lab add", add.rect);
+            if add.clicked() {
+                let x = [-4.2, 2.4, 3.8, -0.2, 0.0][self.bars.len().min(MOST - 1)];
+                self.bars.push([x - 0.4, x + 0.4]);
+            }
+            if ui
+                .add_enabled(self.bars.len() > 1, Button::new("Remove one"))
+                .clicked()
+            {
+                self.bars.pop();
+            }
+        });
+        controls.add_space(6.0);
+        let here = self.field(self.probe);
+        let colour = tools::hue(controls, self.kernel);
+        reading(controls, "Field at the probe", &number(here), colour);
+        if let Some(seen) = self.seen() {
+            let text = format!("{:.0} % of the bars", 100.0 * seen);
+            reading(controls, "The window sees", &text, colour);
+            remark(
+                controls,
+                "This kernel ends, so it is a window: what stands in the shade does not count at all. Make a bar longer outside the window and nothing changes here.",
+            );
+        } else {
+            let text = if self.kernel.has_pole() {
+                "This kernel has a pole on the line itself; it is shown a quarter of a width beside the line. It never ends, so every bar counts everywhere."
+            } else {
+                "This kernel never ends: every bar counts everywhere, if ever so little far away."
+            };
+            remark(controls, text);
+        }
+        let readings = &mut bench.readings;
+        readings.insert("probe", self.probe);
+        readings.insert("field", here);
+        readings.insert("iso", self.iso);
+        readings.insert("bars", self.bars.len() as f64);
+        stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Convolution", self.text())
     }
 }
 
@@ -125,70 +210,6 @@ impl Convolution {
         }
         spans.extend(begun.map(|from| [from, LINE[1]]));
         spans
-    }
-
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
-        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.2);
-        plot::panel(ui, stage.figure);
-        let split = stage.figure.top() + stage.figure.height() * 0.55;
-        let upper = stage.figure.with_max_y(split);
-        let lower = stage.figure.with_min_y(split);
-        let palette = theme::palette(ui.visuals());
-        ui.painter().hline(
-            stage.figure.x_range(),
-            split,
-            Stroke::new(1.0, palette.line),
-        );
-        self.field_plot(ui, upper, bench);
-        self.geometry_plot(ui, lower);
-
-        let controls = &mut stage.controls;
-        slider(controls, "Kernel width", &mut self.width, 0.2..=3.0, "");
-        heading(controls, "Kernel");
-        if let Some(kernel) = tools::kernels(controls, |kernel| kernel == self.kernel) {
-            self.kernel = kernel;
-        }
-        heading(controls, "Bars: drag them, or their ends");
-        controls.horizontal(|ui| {
-            let add = ui.add_enabled(self.bars.len() < MOST, Button::new("Add a bar"));
-            places::note(ui.ctx(), "lab add", add.rect);
-            if add.clicked() {
-                let x = [-4.2, 2.4, 3.8, -0.2, 0.0][self.bars.len().min(MOST - 1)];
-                self.bars.push([x - 0.4, x + 0.4]);
-            }
-            if ui
-                .add_enabled(self.bars.len() > 1, Button::new("Remove one"))
-                .clicked()
-            {
-                self.bars.pop();
-            }
-        });
-        controls.add_space(6.0);
-        let here = self.field(self.probe);
-        let colour = tools::hue(controls, self.kernel);
-        reading(controls, "Field at the probe", &number(here), colour);
-        if let Some(seen) = self.seen() {
-            let text = format!("{:.0} % of the bars", 100.0 * seen);
-            reading(controls, "The window sees", &text, colour);
-            remark(
-                controls,
-                "This kernel ends, so it is a window: what stands in the shade does not count at all. Make a bar longer outside the window and nothing changes here.",
-            );
-        } else {
-            let text = if self.kernel.has_pole() {
-                "This kernel has a pole on the line itself; it is shown a quarter of a width beside the line. It never ends, so every bar counts everywhere."
-            } else {
-                "This kernel never ends: every bar counts everywhere, if ever so little far away."
-            };
-            remark(controls, text);
-        }
-        let readings = &mut bench.readings;
-        readings.insert("probe", self.probe);
-        readings.insert("field", here);
-        readings.insert("iso", self.iso);
-        readings.insert("bars", self.bars.len() as f64);
-        stage.finish(ui);
     }
 
     /// The field, the iso-value, and where the one is above the other.
@@ -359,8 +380,7 @@ impl Convolution {
     }
 
     /// The bars as cylinders.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         let name = self.kernel.name();
         let mut text = format!(
             "# Bars on a line, and the flesh that the kernel {name} grows on them.\n\

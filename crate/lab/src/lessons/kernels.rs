@@ -1,6 +1,8 @@
 //! Lesson 1: the nine kernels, bare and as the field of a point.
 
 use crate::bench::Bench;
+use crate::command::Command;
+use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot, number};
 use crate::sample;
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
@@ -20,6 +22,20 @@ enum View {
     /// The kernel alone, against distance in units of its width.
     Bare,
 }
+
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "kernels",
+    title: "Kernels",
+    name: "Kernels",
+    short: "Kernels",
+    about: "how flesh thins with distance",
+    sentences: "A kernel says how much flesh a point of the skeleton gives at a distance r. \
+                Whatever the kernel, it is scaled so that a lone point has its surface exactly at \
+                the radius R, where its field equals the threshold T = 1. What differs is the way \
+                down: some kernels fade for ever, others end at a certain depth and see nothing \
+                beyond it.",
+};
 
 /// The lesson's state.
 pub struct Kernels {
@@ -43,59 +59,8 @@ impl Default for Kernels {
     }
 }
 
-/// How wide and how high a kernel becomes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Shape {
-    width: f64,
-    height: f64,
-}
-
-impl Kernels {
-    fn shaping(&self, kernel: Kernel) -> Shaping {
-        Shaping {
-            strength: self.strength,
-            influence: INFLUENCE,
-            ..sample::shaping(kernel, self.radius, self.blobbiness)
-        }
-    }
-
-    fn shape(&self, kernel: Kernel) -> Option<Shape> {
-        let shaping = self.shaping(kernel);
-        let center = DVec3::ZERO;
-        Some(Shape {
-            width: shaping.width()?,
-            height: shaping.height(&Skeleton::Point { center })?,
-        })
-    }
-
-    /// The distance beyond which a point's field is over: the support, or where it has fallen to
-    /// the share ε of the threshold.
-    fn depth(&self, kernel: Kernel) -> Option<f64> {
-        let Shape { width, height } = self.shape(kernel)?;
-        if kernel.is_compact() {
-            return Some(1.0 / width);
-        }
-        let field = |r: f64| height * kernel.value(width * r);
-        let (mut low, mut high) = (0.0, 1.0);
-        while field(high) > INFLUENCE * THRESHOLD {
-            high *= 2.0;
-            if high > 1e9 {
-                return None;
-            }
-        }
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if field(middle) > INFLUENCE * THRESHOLD {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(high)
-    }
-
-    /// Shows the lesson.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+impl Figure for Kernels {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.86);
         self.figure(ui, &stage, bench);
         let controls = &mut stage.controls;
@@ -150,6 +115,62 @@ impl Kernels {
         bench.readings.insert("blobbiness", self.blobbiness);
         bench.readings.insert("chosen", self.chosen.len() as f64);
         stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Kernels", self.text())
+    }
+}
+
+/// How wide and how high a kernel becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shape {
+    width: f64,
+    height: f64,
+}
+
+impl Kernels {
+    fn shaping(&self, kernel: Kernel) -> Shaping {
+        Shaping {
+            strength: self.strength,
+            influence: INFLUENCE,
+            ..sample::shaping(kernel, self.radius, self.blobbiness)
+        }
+    }
+
+    fn shape(&self, kernel: Kernel) -> Option<Shape> {
+        let shaping = self.shaping(kernel);
+        let center = DVec3::ZERO;
+        Some(Shape {
+            width: shaping.width()?,
+            height: shaping.height(&Skeleton::Point { center })?,
+        })
+    }
+
+    /// The distance beyond which a point's field is over: the support, or where it has fallen to
+    /// the share ε of the threshold.
+    fn depth(&self, kernel: Kernel) -> Option<f64> {
+        let Shape { width, height } = self.shape(kernel)?;
+        if kernel.is_compact() {
+            return Some(1.0 / width);
+        }
+        let field = |r: f64| height * kernel.value(width * r);
+        let (mut low, mut high) = (0.0, 1.0);
+        while field(high) > INFLUENCE * THRESHOLD {
+            high *= 2.0;
+            if high > 1e9 {
+                return None;
+            }
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if field(middle) > INFLUENCE * THRESHOLD {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Some(high)
     }
 
     fn toggle(&mut self, kernel: Kernel) {
@@ -327,8 +348,7 @@ impl Kernels {
     }
 
     /// Balls in pairs, one pair for each of the chosen kernels.
-    #[must_use]
-    pub fn dataset(&self) -> String {
+    fn text(&self) -> String {
         let kernels = if self.chosen.is_empty() {
             vec![Kernel::Cauchy, Kernel::Quartic]
         } else {
