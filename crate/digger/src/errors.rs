@@ -1,4 +1,4 @@
-//! How far off the scene's digger is: for each pixel, along the ray through its middle, the
+//! Errors of the scene's digger: for each pixel, along the ray through its middle, the
 //! distance between the first hit that the digger finds and the first crossing of the field itself,
 //! found in double precision.
 //!
@@ -48,11 +48,11 @@ pub fn unpack(bytes: &[u8]) -> Vec<Pixel> {
     pixels.iter().copied().map(Pixel::unpack).collect()
 }
 
-/// A scene made ready for comparing.
+/// Scene made ready for comparing.
 pub struct Errors {
-    /// What the digger finds.
+    /// Picture by the digger.
     found: Picture,
-    /// The surface itself.
+    /// Picture by the tracer's own way.
     exact: Picture,
     projection: Projection,
     size: [u32; 2],

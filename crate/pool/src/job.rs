@@ -34,7 +34,7 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Whether it needs the root finders for comparison.
+    /// Tells whether it needs the root finders for comparison.
     #[must_use]
     pub fn compares(&self) -> bool {
         self.kind == Kind::Errors || self.scene.settings.digger != Digger::Hermite

@@ -107,7 +107,7 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     for (generation, digger) in [(1, Digger::Hermite), (2, Digger::Spans(2))] {
         scene.settings.digger = digger;
         let shared = Arc::new(scene.clone());
-        let mut trace = |kind| {
+        let tiles = [Kind::Colours, Kind::Errors].map(|kind| {
             let job = Job {
                 scene: &shared,
                 camera: None,
@@ -119,12 +119,12 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
             assert_eq!(job.compares(), (generation, kind) != (1, Kind::Colours));
             pool.start(job);
             finish(&mut pool).pop().expect("a tile")
-        };
-        let TileDone { tile, pixels, .. } = trace(Kind::Colours);
+        });
+        let [TileDone { tile, pixels, .. }, errors] = tiles;
         let stats = &mut tracer::Stats::default();
         let picture = digger::picture(&scene, [40, 32]);
         assert!(picture.trace(tile, Pass::Smooth, &|| false, stats) == Some(pixels));
-        let pixels = digger::errors::unpack(&trace(Kind::Errors).pixels);
+        let pixels = digger::errors::unpack(&errors.pixels);
         let distances = pixels.into_iter().filter_map(|pixel| match pixel {
             digger::errors::Pixel::Off(distance) => Some(f64::from(distance)),
             _ => None,

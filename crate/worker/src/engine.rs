@@ -100,7 +100,7 @@ impl Prepared {
 }
 
 /// Prepares a scene of which convolution surfaces are found in the tracer's own way.
-fn certified(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, String> {
+fn prepare(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, String> {
     if scene.settings.digger != Digger::Hermite || kind != Kind::Colours {
         return Err(String::from("this worker has no other root finders"));
     }
@@ -108,9 +108,10 @@ fn certified(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, Stri
 }
 
 impl Default for Engine {
-    /// An engine that finds convolution surfaces in the tracer's own way, and refuses other scenes.
+    /// Returns an engine that finds convolution surfaces in the tracer's own way, and refuses other
+    /// scenes.
     fn default() -> Self {
-        Self::new(certified)
+        Self::new(prepare)
     }
 }
 
