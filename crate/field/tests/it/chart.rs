@@ -11,26 +11,26 @@ use wide::f32x8;
 
 const EPSILON32: f64 = f32::EPSILON as f64 / 2.0;
 
-/// How exact cells are: errors are at most `relative·|f| + floor·(the largest field it can have)`.
+/// Accuracy of a cell: errors are at most `relative·|f| + floor·(the largest field it can have)`.
 #[derive(Clone, Copy)]
 struct Accuracy {
     relative: f64,
     floor: f64,
 }
 
-/// Of double precision against quadrature, in every cell.
+/// Accuracy of double precision against quadrature, in every cell.
 const DOUBLE: Accuracy = Accuracy {
     relative: 1e-9,
     floor: 1e-13,
 };
 
-/// Of single precision against double, in every cell.
+/// Accuracy of single precision against double, in every cell.
 const SINGLE: Accuracy = Accuracy {
     relative: 1e-5,
     floor: 2e-6,
 };
 
-fn shaped(random: &mut Random, kernel: Kernel) -> Shaping {
+fn random_shaping(random: &mut Random, kernel: Kernel) -> Shaping {
     Shaping {
         kernel,
         ..random.shaping(1.0)
@@ -43,7 +43,7 @@ fn peak(primitive: &Primitive) -> f64 {
         kernel if kernel.has_pole() => 1.0 / primitive.width,
         _ => 0.0,
     };
-    primitive.bound_at(from)
+    primitive.most_beyond(from)
 }
 
 /// A random skeleton for a kernel, of these decades of its radius (1).
@@ -61,7 +61,7 @@ fn matches_quadrature(kernel: Kernel, kind: Kind) {
     };
     for _ in 0..count(cases) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.2);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = random_shaping(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
         let far = random.pick(&[0.3, 0.3, 2.0]);
         let point = random.near(&skeleton, -4.0, far);
@@ -73,7 +73,8 @@ fn matches_quadrature(kernel: Kernel, kind: Kind) {
             + 64.0 * f64::EPSILON * sensitivity(&primitive, point);
         assert!(
             (value - want).abs() <= tolerance,
-            "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {primitive:?} at {point:?}",
+            "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {primitive:?} at \
+             {point:?}",
             (value - want).abs()
         );
         assert!(gradient.is_finite(), "{primitive:?} at {point:?}");
@@ -84,7 +85,7 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(102);
     for _ in 0..count(2_000) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = random_shaping(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
         let point = single(random.near(&skeleton, -3.0, 1.0));
         let (want, want_gradient) = jet::<f64>(&primitive, point);
@@ -100,14 +101,16 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
             floor,
         } = SINGLE;
         if kernel == Kernel::Cubed && kind == Kind::Curve && skeleton.distance(point) < 1e-3 {
-            // A curve's spans are rounded where they meet (tests/it/taper.rs): next to the pole such gaps count.
+            // A curve's spans are rounded where they meet (tests/it/taper.rs): next to the pole
+            // such gaps count.
             relative = 1e-3;
         }
         let slack = 64.0 * EPSILON32 * sensitivity(&primitive, point);
         let tolerance = relative * want.abs() + floor * peak(&primitive) + slack;
         assert!(
             (value - want).abs() <= tolerance,
-            "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {primitive:?} at {point:?}",
+            "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {primitive:?} at \
+             {point:?}",
             (value - want).abs()
         );
         // Near poles slopes are steep, and as exact as their size allows.
@@ -128,7 +131,8 @@ fn single_matches_double(kernel: Kernel, kind: Kind) {
         let error = (gradient - want_gradient).length();
         assert!(
             error <= tolerance,
-            "{gradient} instead of {want_gradient} (off by {error:e}, at most {tolerance:e}): {primitive:?} at {point:?}"
+            "{gradient} instead of {want_gradient} (off by {error:e}, at most {tolerance:e}): \
+             {primitive:?} at {point:?}"
         );
     }
 }
@@ -137,7 +141,7 @@ fn gradient_is_the_derivative(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(103);
     for _ in 0..count(600) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = random_shaping(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
         let point = random.near(&skeleton, -2.0, 0.5);
         let u = primitive.width * skeleton.distance(point);
@@ -158,7 +162,8 @@ fn gradient_is_the_derivative(kernel: Kernel, kind: Kind) {
                 2e-4 * primitive.width * peak(&primitive).max(gradient.length() / primitive.width);
             assert!(
                 (gradient[axis] - difference).abs() <= tolerance,
-                "axis {axis}: {} instead of {difference}, at most {tolerance:e} off: {primitive:?} at {point:?}",
+                "axis {axis}: {} instead of {difference}, at most {tolerance:e} off: \
+                 {primitive:?} at {point:?}",
                 gradient[axis]
             );
         }
@@ -174,7 +179,7 @@ fn superposition(kernel: Kernel, kind: Kind) {
         let Some(parts) = halves(&skeleton, at) else {
             continue;
         };
-        let shaping = shaped(&mut random, kernel);
+        let shaping = random_shaping(&mut random, kernel);
         let whole = primitive(skeleton.clone(), &shaping, None);
         let parts = parts.map(|part| primitive(part, &shaping, None));
         let point = random.near(&skeleton, -2.0, 0.5);
@@ -205,7 +210,7 @@ fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(105);
     for _ in 0..count(200) {
         let skeleton = skeleton(&mut random, kind, -1.0, 0.7);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = random_shaping(&mut random, kernel);
         let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, TAU));
         let shift = random.vector(3.0);
         let scale = random.decades(-1.0, 1.0);
@@ -216,7 +221,7 @@ fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
             radius: shaping.radius * scale,
             ..shaping
         };
-        let there = primitive(moved(&skeleton, turn, scale, shift), &there, None);
+        let there = primitive(transform(&skeleton, turn, scale, shift), &there, None);
         let (value, gradient) = jet::<f64>(&here, point);
         let (after, slopes) = jet::<f64>(&there, to(point));
         let Accuracy { relative, floor } = DOUBLE;
@@ -237,8 +242,8 @@ fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
     }
 }
 
-/// Straight away from the skeleton the field falls, stays within its bound, and is exactly 0 beyond a
-/// compact kernel's support.
+/// Straight away from the skeleton the field falls, stays within its bound, and is exactly 0 beyond
+/// a compact kernel's support.
 fn falls_to_nothing(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(106);
     for _ in 0..count(100) {
@@ -269,7 +274,7 @@ fn falls_to_nothing(kernel: Kernel, kind: Kind) {
                     value >= -slack,
                     "{value} at {distance}: {primitive:?} at {point:?}"
                 );
-                let bound = primitive.bound_at(distance);
+                let bound = primitive.most_beyond(distance);
                 assert!(
                     value <= bound * (1.0 + 1e-6) + slack,
                     "{value} > {bound} at {distance}: {primitive:?} at {point:?}"
@@ -298,8 +303,8 @@ fn falls_to_nothing(kernel: Kernel, kind: Kind) {
     }
 }
 
-/// Degenerate bones and places, and their neighbours a few units in the last place away: finite, and
-/// continuous.
+/// Degenerate bones and places, and their neighbours a few units in the last place away: finite,
+/// and continuous.
 fn degenerate_geometry(kernel: Kernel, kind: Kind) {
     let shaping = Shaping {
         kernel,
@@ -542,7 +547,7 @@ fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     })
 }
 
-fn moved(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
+fn transform(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
     let to = |p: DVec3| turn * p * scale + shift;
     match *skeleton {
         Skeleton::Point { center } => Skeleton::Point { center: to(center) },
@@ -582,8 +587,8 @@ fn moved(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton
     }
 }
 
-/// A point, a plane and a line that is as good as infinite have F = T at a radius from them, and for
-/// compact kernels nothing at the depth of influence.
+/// A point, a plane and a line that is as good as infinite have F = T at a radius from them, and
+/// for compact kernels nothing at the depth of influence.
 fn radius_in_isolation(kernel: Kernel, kind: Kind) {
     let mut random = Random::new(107);
     for _ in 0..count(40) {
@@ -638,8 +643,9 @@ macro_rules! chart {
     ($($module:ident: $kernel:expr;)*) => {$(
         mod $module {
             use super::*;
-            chart!(@checks $kernel, matches_quadrature, single_matches_double, gradient_is_the_derivative,
-                superposition, rigid_motion_and_scale, falls_to_nothing, degenerate_geometry, radius_in_isolation);
+            chart!(@checks $kernel, matches_quadrature, single_matches_double,
+                gradient_is_the_derivative, superposition, rigid_motion_and_scale,
+                falls_to_nothing, degenerate_geometry, radius_in_isolation);
         }
     )*};
     (@checks $kernel:expr, $($check:ident),*) => {

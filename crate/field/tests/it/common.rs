@@ -23,8 +23,8 @@ pub fn single(point: DVec3) -> DVec3 {
     DVec3::from_array(point.to_array().map(|x| f64::from(x as f32)))
 }
 
-/// Sensitivity of the value to its input: its change when the point and the skeleton's corners move by one part
-/// in 1 of their size.
+/// Sensitivity of the value to its input: its change when the point and the skeleton's corners move
+/// by one part in 1 of their size.
 ///
 /// Errors are measured against it: `error ≤ n·ε·(|f| + sensitivity)` says that a result is exact
 /// for inputs that differ by n units in the last place from those given.

@@ -1,4 +1,5 @@
-//! Bounds on the logarithm of a sum of Gaussians against differences of values and gradients in balls.
+//! Bounds on the logarithm of a sum of Gaussians against differences of values and gradients in
+//! balls.
 
 use field::{
     Ball, BlobScale, Implicit, Jet, Kernel, Logarithm, Primitive, Shaping, Skeleton, Slack, Sum,
@@ -38,8 +39,8 @@ fn jet(sum: &Sum, point: DVec3) -> Jet<f64> {
     Logarithm::of(&sum.jet(point))
 }
 
-/// Holds bounds in a ball against values and gradients at random points of it. Returns how near the second and the third derivative came to
-/// their bounds.
+/// Holds bounds in a ball against values and gradients at random points of it. Returns how near the
+/// second and the third derivative came to their bounds.
 fn check(sum: &Sum, ball: Ball, variation: &Variation, random: &mut Random) -> [f64; 2] {
     let Ball { center, radius } = ball;
     let mut nearest = [0.0_f64; 2];

@@ -13,7 +13,7 @@ use wide::f32x8;
 const KINDS: [Kind; 3] = [Kind::Segment, Kind::Arc, Kind::Curve];
 
 /// A shaping of radius 1 at the start and anything from a tip to three times that at the end.
-fn tapered(random: &mut Random, kernel: Kernel) -> Shaping {
+fn random_taper(random: &mut Random, kernel: Kernel) -> Shaping {
     let (any, slim) = (random.decades(-1.0, 0.5), random.decades(-3.0, 0.0));
     let radius = random.pick(&[any, any, slim, 0.0]);
     let shaping = random.shaping(1.0);
@@ -29,12 +29,12 @@ fn tapered(random: &mut Random, kernel: Kernel) -> Shaping {
 fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, low: f64) -> Primitive {
     let size = random.decades(low, 1.0);
     let skeleton = random.skeleton(kind, size);
-    primitive(skeleton, &tapered(random, kernel), None)
+    primitive(skeleton, &random_taper(random, kernel), None)
 }
 
 /// The largest field (at a radius of the thin end from poles).
 fn peak(primitive: &Primitive) -> f64 {
-    primitive.bound_at(if primitive.kernel.has_pole() {
+    primitive.most_beyond(if primitive.kernel.has_pole() {
         1.0 / primitive.width
     } else {
         0.0
@@ -50,8 +50,8 @@ fn matches_quadrature(kernel: Kernel) {
             let point = random.near(&primitive.skeleton, -4.0, far);
             let want = quadrature::value(&primitive, point);
             let (value, gradient) = jet::<f64>(&primitive, point);
-            // The width of metaballs has a kink where |B| passes ½ (Shaping::width), which the spans
-            // only close in on.
+            // The width of metaballs has a kink where |B| passes ½ (Shaping::width), which the
+            // spans only close in on.
             let relative = if kernel == Kernel::Metaballs {
                 1e-8
             } else {
@@ -66,7 +66,8 @@ fn matches_quadrature(kernel: Kernel) {
             }
             assert!(
                 (value - want).abs() <= tolerance,
-                "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {:?} {:?} at {point:?}",
+                "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {:?} {:?} at \
+                 {point:?}",
                 (value - want).abs(),
                 primitive.skeleton,
                 primitive.tapered
@@ -95,8 +96,8 @@ fn single_matches_double(kernel: Kernel) {
                 let slack = 32.0 * f64::from(f32::EPSILON) * sensitivity(&primitive, point);
                 let distance = primitive.skeleton.distance(point);
                 // Next to a pole it counts that the ends of spans are rounded: a gap or an overlap
-                // of 10⁻⁸ widths, where the squared kernel is 10¹⁰ high and its field 10⁵, and the cubed
-                // one 10¹⁵ and 10¹⁰.
+                // of 10⁻⁸ widths, where the squared kernel is 10¹⁰ high and its field 10⁵, and the
+                // cubed one 10¹⁵ and 10¹⁰.
                 let relative = match kernel {
                     Kernel::Cubed if distance < 1e-3 => 1e-3,
                     _ if kernel.has_pole() && distance < 1e-3 => 3e-4,
@@ -105,7 +106,8 @@ fn single_matches_double(kernel: Kernel) {
                 let tolerance = relative * want.abs() + 2e-6 * peak(&primitive) + slack;
                 assert!(
                     (value - want).abs() <= tolerance,
-                    "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {:?} {:?} at {point:?}",
+                    "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {:?} \
+                     {:?} at {point:?}",
                     (value - want).abs(),
                     primitive.skeleton,
                     primitive.tapered
@@ -120,7 +122,8 @@ fn single_matches_double(kernel: Kernel) {
                 let error = (gradient - want_gradient).length();
                 assert!(
                     error <= tolerance,
-                    "{gradient} instead of {want_gradient} (off by {error:e}, at most {tolerance:e}): {:?} {:?} at {point:?}",
+                    "{gradient} instead of {want_gradient} (off by {error:e}, at most \
+                     {tolerance:e}): {:?} {:?} at {point:?}",
                     primitive.skeleton,
                     primitive.tapered
                 );
@@ -148,7 +151,7 @@ fn gradient_is_the_derivative(kernel: Kernel) {
                     primitive.value(p.to_array())
                 };
                 let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
-                let scale = primitive.bound_at(primitive.skeleton.distance(point));
+                let scale = primitive.most_beyond(primitive.skeleton.distance(point));
                 // Rounding over h; where a clip passes a kink of the kernel, h² times a jump.
                 let tolerance = 1e-6 * gradient.length()
                     + 1e-7 * scale * primitive.width
@@ -165,7 +168,7 @@ fn gradient_is_the_derivative(kernel: Kernel) {
     }
 }
 
-/// The two parts of a bone before and after a fraction of its length.
+/// Parts of a bone before and after a fraction of its length.
 fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
     match *skeleton {
         Skeleton::Segment { base, apex } => {
@@ -229,7 +232,7 @@ fn superposition(kernel: Kernel) {
         for _ in 0..count(60) {
             let size = random.decades(-1.0, 1.0);
             let skeleton = random.skeleton(kind, size);
-            let mut shaping = tapered(&mut random, kernel);
+            let mut shaping = random_taper(&mut random, kernel);
             if let Some(end) = &mut shaping.taper {
                 end.radius = end.radius.max(0.01);
             }
@@ -284,7 +287,7 @@ fn scale_invariance(kernel: Kernel) {
         for _ in 0..count(40) {
             let size = random.decades(-1.0, 1.0);
             let skeleton = random.skeleton(kind, size);
-            let shaping = tapered(&mut random, kernel);
+            let shaping = random_taper(&mut random, kernel);
             let scale = random.decades(-2.0, 2.0);
             let larger = Shaping {
                 radius: shaping.radius * scale,
@@ -386,8 +389,8 @@ fn cones_have_their_radius(kernel: Kernel) {
     }
 }
 
-/// No field exceeds its bounds, at its distance or in a ball; none is above ε·T outside its depth of
-/// influence, its sphere or its interval of a ray; none is outside a compact kernel's support.
+/// Fields exceed no bound, at their distance or in a ball; none is above ε·T outside its depth
+/// of influence, its sphere or its interval of a ray; none is outside a compact kernel's support.
 fn bounds_hold(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(406);
@@ -404,7 +407,7 @@ fn bounds_hold(kernel: Kernel) {
                 let point = random.place(&primitive.skeleton) + spread;
                 let distance = primitive.skeleton.distance(point);
                 let value = jet::<f64>(&primitive, point).0.abs();
-                let most = primitive.bound_at(distance);
+                let most = primitive.most_beyond(distance);
                 assert!(
                     value <= most * (1.0 + 1e-9),
                     "{value} > {most}: {primitive:?} at {point:?}"
