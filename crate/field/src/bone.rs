@@ -15,7 +15,7 @@ pub use polygon::{Edge, Polygon};
 pub use segment::Segment;
 pub use triangle::Triangle;
 
-/// A skeletal element in its local frame. The common small kinds (points, segments, arcs) are
+/// Bone in its local frame. The common small kinds (points, segments, arcs) are
 /// stored inline; the larger ones are boxed, so that a scene of a million points stays small.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bone<S> {

@@ -37,8 +37,9 @@ pub struct Bound {
     extent: f64,
     middle: DVec3,
     dimension: u8,
-    /// Whether the term can be positive and negative.
+    /// Whether the term can be positive.
     positive: bool,
+    /// Whether the term can be negative.
     negative: bool,
     /// Depth of influence.
     pub influence: f64,

@@ -185,39 +185,9 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
     // The step from 0 on may hold a peak of its own near a pole.
     rough[0] = largest.max(SLACK * along_any_line(kernel, order, 0.0));
     let last = places.len() - 1;
-    let entry = |start: usize| {
-        let near = places[start] * places[start];
-        let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
-        let mut before = 0.0;
-        for i in start..last {
-            // Beyond the kernel's support, or where it underflows.
-            if rough[i] == 0.0 {
-                break;
-            }
-            let far = places[i + 1] * places[i + 1];
-            let t = (far - near).max(0.0).sqrt();
-            line += 2.0 * rough[i] * (t - before);
-            plane += TAU / 2.0 * rough[i] * (far - places[i] * places[i]);
-            outward += rough[i] * (places[i + 1] - places[i]);
-            before = t;
-        }
-        // Beyond the last place derivatives fall as r⁻⁴ or faster (slopes of the inverse kernel as
-        // r⁻², whose integral over a plane diverges).
-        line += 2.0 * rough[last] * places[last];
-        plane += TAU * rough[last] * places[last] * places[last];
-        if order == 1 && kernel == Kernel::Inverse {
-            plane = f64::INFINITY;
-        }
-        outward += rough[last] * places[last];
-        Roughness {
-            point: rough[start],
-            line,
-            plane,
-            outward,
-        }
-    };
+    let plane_diverges = order == 1 && kernel == Kernel::Inverse;
     // Entry 0 stands for all below the first place.
-    let mut table = vec![entry(0)];
+    let mut table = vec![integrate(&places, &rough, 0, plane_diverges)];
     let mut octave = 0;
     for step in 0..=OCTAVES * STEPS {
         let start = (1 + step * FINE).min(last);
@@ -228,9 +198,45 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
         // saves a sum.
         let same = start > octave && places[start] < FLAT && rough[octave] <= 1.0001 * rough[start];
         let here = if same { table.last().copied() } else { None };
-        table.push(here.unwrap_or_else(|| entry(start)));
+        table.push(here.unwrap_or_else(|| integrate(&places, &rough, start, plane_diverges)));
     }
     table
+}
+
+/// Returns the bound at a place of the table, and its integrals from there on. `rough[i]` bounds
+/// the derivative from `places[i]` on; where `plane_diverges` the integral over a plane is
+/// infinite.
+fn integrate(places: &[f64], rough: &[f64], start: usize, plane_diverges: bool) -> Roughness {
+    let last = places.len() - 1;
+    let near = places[start] * places[start];
+    let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
+    let mut before = 0.0;
+    for i in start..last {
+        // Beyond the kernel's support, or where it underflows.
+        if rough[i] == 0.0 {
+            break;
+        }
+        let far = places[i + 1] * places[i + 1];
+        let t = (far - near).max(0.0).sqrt();
+        line += 2.0 * rough[i] * (t - before);
+        plane += TAU / 2.0 * rough[i] * (far - places[i] * places[i]);
+        outward += rough[i] * (places[i + 1] - places[i]);
+        before = t;
+    }
+    // Beyond the last place derivatives fall as r⁻⁴ or faster (slopes of the inverse kernel as
+    // r⁻², whose integral over a plane diverges).
+    line += 2.0 * rough[last] * places[last];
+    plane += TAU * rough[last] * places[last] * places[last];
+    if plane_diverges {
+        plane = f64::INFINITY;
+    }
+    outward += rough[last] * places[last];
+    Roughness {
+        point: rough[start],
+        line,
+        plane,
+        outward,
+    }
 }
 
 /// The largest derivative of this order over all directions at a distance u. With y the square of

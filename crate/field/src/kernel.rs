@@ -82,14 +82,14 @@ impl Kernel {
         )
     }
 
-    /// Whether it has a pole, rounded off, at u = 0. Such kernels have no width: their unit of
-    /// length is the radius.
+    /// Whether the kernel has a pole, rounded off, at u = 0. Such kernels have no width: their unit
+    /// of length is the radius.
     #[must_use]
     pub fn has_pole(self) -> bool {
         matches!(self, Self::Inverse | Self::Squared | Self::Cubed)
     }
 
-    /// Whether its integral over an infinite plane is finite.
+    /// Whether the kernel's integral over an infinite plane is finite.
     #[must_use]
     pub fn falls_fast(self) -> bool {
         !matches!(self, Self::Inverse | Self::Squared)

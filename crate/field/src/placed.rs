@@ -59,7 +59,7 @@ impl Placed {
     }
 }
 
-/// An upper bound on how much a map stretches lengths, which is exact for a similarity: by
+/// Returns an upper bound on how much a map stretches lengths, which is exact for a similarity: by
 /// Gershgorin's theorem, the root of the greatest sum of a row of |MᵀM|.
 fn stretch(map: &DMat3) -> f64 {
     let square = map.transpose() * *map;

@@ -2,7 +2,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A skeletal element.
+/// Bone: a piece of skeleton.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Skeleton {
     /// A point.

@@ -112,7 +112,7 @@ impl Swept {
         let breaks = &mut breaks[..count];
         breaks.sort_unstable_by(f64::total_cmp);
         let mut open: Option<f64> = None;
-        let mut tell = |from: f64, to: f64| {
+        let mut report = |from: f64, to: f64| {
             let parts = [(from - ROUNDING).max(0.0), (to + ROUNDING).min(1.0)];
             let rates = parts.map(|u| b + 2.0 * a * u);
             let slowest = rates[0].abs().min(rates[1].abs()) - self.turn.length() * ball.radius;
@@ -130,14 +130,14 @@ impl Swept {
             match (inside, open) {
                 (true, None) => open = Some(pair[0]),
                 (false, Some(from)) => {
-                    tell(from, pair[0]);
+                    report(from, pair[0]);
                     open = None;
                 }
                 _ => {}
             }
         }
         if let Some(from) = open {
-            tell(from, 1.0);
+            report(from, 1.0);
         }
     }
 }

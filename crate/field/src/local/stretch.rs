@@ -129,7 +129,7 @@ impl Local {
                 None => (term, None),
             };
             let segment = &self.segments[number as usize];
-            let mut tell = |part: f64, sweeps: bool| {
+            let mut add = |part: f64, sweeps: bool| {
                 found.push(Site {
                     place: Place {
                         segment: number,
@@ -141,8 +141,8 @@ impl Local {
                 });
             };
             match end {
-                Some(end) => tell(end as f64, false),
-                None => segment.swept.each(point, |part| tell(part, true)),
+                Some(end) => add(end as f64, false),
+                None => segment.swept.each(point, |part| add(part, true)),
             }
         }
         // Stable: of two that are as near the first one stays first.

@@ -64,7 +64,7 @@ fn bits_are_the_same_on_every_platform() {
     trials::bits::compare(&found.0.into_inner(), include_str!("../bits.txt"), path);
 }
 
-/// A shaping of width about 1.
+/// Returns a shaping of width about 1.
 fn shaping(random: &mut Random, kernel: Kernel) -> Shaping {
     Shaping {
         kernel,

@@ -46,7 +46,7 @@ fn peak(primitive: &Primitive) -> f64 {
     primitive.most_beyond(from)
 }
 
-/// A random skeleton for a kernel, of these decades of its radius (1).
+/// Returns a random skeleton for a kernel, of these decades of its radius (1).
 fn skeleton(random: &mut Random, kind: Kind, low: f64, high: f64) -> Skeleton {
     let size = random.decades(low, high);
     random.skeleton(kind, size)
@@ -464,7 +464,7 @@ fn degenerate(kind: Kind) -> Vec<Skeleton> {
     }
 }
 
-/// A skeleton cut in two.
+/// Returns a skeleton cut in two.
 fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     Some(match *skeleton {
         Skeleton::Segment { base, apex } => {

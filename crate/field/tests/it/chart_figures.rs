@@ -112,7 +112,7 @@ fn speed() {
     }
 }
 
-/// A skeleton of each kind, about one unit long.
+/// Returns a skeleton of each kind, about one unit long.
 fn typical(kind: Kind) -> Skeleton {
     let flat = [DVec3::X, DVec3::Y, DVec3::new(-0.3, -0.2, 0.0)];
     match kind {

@@ -42,7 +42,7 @@ fn primitive(kernel: Kernel, kind: usize, size: f64, n: &mut Random) -> Primitiv
     Primitive::new(skeleton, &shaping, None).expect("flesh")
 }
 
-/// A cell at a depth around a place.
+/// Returns a cell at a depth around a place.
 fn descend<'c>(
     field: &'c FarField,
     primitives: &[Primitive],

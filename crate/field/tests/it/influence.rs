@@ -29,7 +29,7 @@ fn random_primitive(random: &mut Random, kind: Kind) -> Primitive {
     primitive(skeleton.clone(), &shaping, profile)
 }
 
-/// A point at exactly this distance from a place on the skeleton, so at most that from it.
+/// Returns a point at exactly this distance from a place on the skeleton, so at most that from it.
 fn at_distance(random: &mut Random, skeleton: &Skeleton, distance: f64) -> DVec3 {
     random.place(skeleton) + random.direction() * distance
 }

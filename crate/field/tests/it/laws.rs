@@ -11,7 +11,7 @@ use trials::skeletons::{KINDS, Kind, shaping};
 use trials::{Random, count};
 use wide::f32x8;
 
-/// A skeleton cut in two.
+/// Returns a skeleton cut in two.
 fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     Some(match *skeleton {
         Skeleton::Segment { base, apex } => {

@@ -472,8 +472,8 @@ fn jumps_are_small() {
     }
 }
 
-/// A wave of flesh of a radius of 0.3, whose bends have a radius of 0.5: inside of them ∇s is
-/// large. And the planes of its joints: a point and the normal.
+/// Returns a wave of flesh of a radius of 0.3, whose bends have a radius of 0.5: inside of them ∇s
+/// is large. And the planes of its joints: a point and the normal.
 fn wave(segments: u32, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
     let places: Vec<(DVec3, f64)> = (0..=segments)
         .map(|i| {

@@ -8,7 +8,7 @@ use field::{
 use glam::DVec3;
 use trials::{Random, count};
 
-/// A few points and segments, some much thinner than others and some in one place.
+/// Returns a few points and segments, some much thinner than others and some in one place.
 fn sum(random: &mut Random) -> Sum {
     let terms = 1 + random.below(7);
     (0..terms)

@@ -28,7 +28,7 @@ impl Dress {
     }
 }
 
-/// A random primitive of this kernel and kind.
+/// Returns a random primitive of this kernel and kind.
 fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, dress: Dress) -> Primitive {
     let size = random.decades(-1.5, 1.0);
     let skeleton = random.skeleton(kind, size);
@@ -46,7 +46,7 @@ fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, dress: Dres
     primitive(skeleton, &shaping, profile)
 }
 
-/// A profile of smooth waves.
+/// Returns a profile of smooth waves.
 fn smooth_profile(random: &mut Random) -> Profile {
     let waves = [Wave::Sin, Wave::Cos, Wave::Sin2, Wave::Cos2, Wave::One];
     Profile {

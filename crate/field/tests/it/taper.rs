@@ -12,7 +12,8 @@ use wide::f32x8;
 
 const KINDS: [Kind; 3] = [Kind::Segment, Kind::Arc, Kind::Curve];
 
-/// A shaping of radius 1 at the start and anything from a tip to three times that at the end.
+/// Returns a shaping of radius 1 at the start and anything from a tip to three times that at the
+/// end.
 fn random_taper(random: &mut Random, kernel: Kernel) -> Shaping {
     let (any, slim) = (random.decades(-1.0, 0.5), random.decades(-3.0, 0.0));
     let radius = random.pick(&[any, any, slim, 0.0]);
