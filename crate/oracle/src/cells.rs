@@ -267,7 +267,7 @@ pub fn falls_to_nothing(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>, ep
                 value >= -slack,
                 "{value} at {distance}: {primitive:?} at {point:?}"
             );
-            let bound = primitive.bound_at(distance);
+            let bound = primitive.most_beyond(distance);
             assert!(
                 value <= bound * (1.0 + 1e-6) + slack,
                 "{value} > {bound} at {distance}: {primitive:?} at {point:?}"

@@ -115,5 +115,5 @@ pub fn peak(primitive: &Primitive) -> f64 {
     } else {
         0.0
     };
-    primitive.bound_at(from)
+    primitive.most_beyond(from)
 }

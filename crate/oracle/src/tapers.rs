@@ -150,7 +150,7 @@ pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
                     evaluate(&primitive, p).0
                 };
                 let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
-                let scale = primitive.bound_at(primitive.skeleton.distance(point));
+                let scale = primitive.most_beyond(primitive.skeleton.distance(point));
                 // Rounding over h; where a clip passes a kink of the kernel, h² times a jump.
                 let tolerance = 1e-6 * gradient.length()
                     + 1e-7 * scale * primitive.width
@@ -408,7 +408,7 @@ pub fn bounds_hold(kernel: Kernel) {
                 let point = random.place(&primitive.skeleton) + spread;
                 let distance = primitive.skeleton.distance(point);
                 let value = jet::<f64>(&primitive, point).0.abs();
-                let most = primitive.bound_at(distance);
+                let most = primitive.most_beyond(distance);
                 assert!(
                     value <= most * (1.0 + 1e-9),
                     "{value} > {most}: {primitive:?} at {point:?}"
