@@ -18,7 +18,7 @@
 //! let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
 //! // One that stays, and three nodes.
 //! assert_eq!(rig.joints.len(), 4);
-//! let moved = |i: usize, frame: usize| rig.skinned(mesh.positions[i], &rig.shares[0][i], &rig.frames[frame]);
+//! let moved = |i: usize, frame: usize| rig.skin(mesh.positions[i], &rig.shares[0][i], &rig.frames[frame]);
 //! assert!(moved(0, 2).distance(mesh.positions[0]) < 0.2);
 //! assert!(moved(1, 2).y > 1.5);
 //! ```

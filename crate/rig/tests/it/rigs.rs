@@ -81,7 +81,7 @@ fn skinned_vertices_stay_near_the_surface_that_moved() {
         for (point, shares) in points.iter().zip(&rig.shares[0]) {
             let weights: f32 = shares.iter().map(|share| share.1).sum();
             assert!((weights - 1.0).abs() < 1e-5);
-            let moved = rig.skinned(*point, shares, &rig.frames[frame]);
+            let moved = rig.skin(*point, shares, &rig.frames[frame]);
             if frame == 0 {
                 assert!(moved.distance(*point) < 1e-6);
             }
@@ -103,7 +103,7 @@ fn what_no_skeleton_holds_stays() {
         vec![],
     );
     let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
-    let moved = |i: usize| rig.skinned(mesh.positions[i], &rig.shares[0][i], &rig.frames[9]);
+    let moved = |i: usize| rig.skin(mesh.positions[i], &rig.shares[0][i], &rig.frames[9]);
     // The ball and the snake are one body, whose far ends have next to nothing of each other.
     assert_eq!(rig.shares[0][0][0], (0, 1.0));
     assert_eq!(moved(0), mesh.positions[0]);
