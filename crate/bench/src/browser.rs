@@ -46,7 +46,8 @@ pub fn measure() -> Result<Report> {
     tables(&figures, &natively, two)
 }
 
-/// Milliseconds that each pass of a model's picture takes the program, on one thread: the quickest of some runs.
+/// Milliseconds that each pass of a model's picture takes the program, on one thread: the quickest
+/// of some runs.
 fn natively(sinew: &Sinew, model: &str) -> Result<[f64; 3]> {
     let dataset = format!("www/examples/{model}.rat");
     let passes = in_turn(ROUNDS, |i| {
@@ -56,8 +57,9 @@ fn natively(sinew: &Sinew, model: &str) -> Result<[f64; 3]> {
     Ok(passes.map(|runs| runs.best()))
 }
 
-/// How many times as much two programs do that run at the same time and have nothing to do with each other: processors
-/// share more than they admit, and no page can be quicker than that. The quickest of runs in turn.
+/// How many times as much two programs do that run at the same time and have nothing to do with
+/// each other: processors share more than they admit, and no page can be quicker than that. The
+/// quickest of runs in turn.
 fn two_at_a_time(sinew: &Sinew) -> Result<f64> {
     let trace = || {
         let begun = Instant::now();

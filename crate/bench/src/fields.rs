@@ -66,7 +66,8 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// The lines `speed KERNEL KIND FIGURES…` and `error KERNEL KIND FIGURE` of the measurement, as words.
+/// The lines `speed KERNEL KIND FIGURES…` and `error KERNEL KIND FIGURE` of the measurement, as
+/// words.
 pub struct Chart(Vec<Vec<String>>);
 
 impl Chart {

@@ -1,5 +1,5 @@
-//! Meshes fitted to points and outlines: the recovery of a known shape, the time against scipy's solver, and how the cost of
-//! tracing an implicit mesh grows with its facets.
+//! Meshes fitted to points and outlines: the recovery of a known shape, the time against scipy's
+//! solver, and how the cost of tracing an implicit mesh grows with its facets.
 
 use crate::programs::{Figures, example};
 use crate::report::{Report, Short, or_dash};

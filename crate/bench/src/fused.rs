@@ -1,5 +1,6 @@
-//! The program with fused multiply-adds, an option that no picture of ours is drawn with: how much sooner it is done, by how
-//! much its pictures differ, and whether they are as near to the true surface.
+//! The program with fused multiply-adds, an option that no picture of ours is drawn with: how much
+//! sooner it is done, by how much its pictures differ, and whether they are as near to the true
+//! surface.
 
 use crate::certify::certify;
 use crate::report::Report;

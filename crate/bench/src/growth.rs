@@ -7,7 +7,8 @@ use crate::sinew::Sinew;
 use anyhow::Result;
 use std::fs;
 
-/// Scenes: name, title, and how many times the cost of the same with the Gaussian kernel the Cauchy one may be.
+/// Scenes: name, title, and how many times the cost of the same with the Gaussian kernel the Cauchy
+/// one may be.
 const CASES: [(&str, &str, f64); 3] = [
     ("flake-820", "sphereflake 820", 5.0),
     ("flake-7381", "sphereflake 7381", 6.0),

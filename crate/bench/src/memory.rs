@@ -4,8 +4,9 @@ use crate::report::{Report, Short, or_dash};
 use crate::sinew::Sinew;
 use anyhow::{Context, Result};
 
-/// Scenes of balls: how many, of which kernel, how many radii apart, the picture's sides. Cauchy's have fields without
-/// end, so that a ray meets many more of them: they are further apart, and the pictures smaller.
+/// Scenes of balls: how many, of which kernel, how many radii apart, the picture's sides. Cauchy's
+/// have fields without end, so that a ray meets many more of them: they are further apart, and the
+/// pictures smaller.
 const SCENES: [(&str, &str, &str, &str); 4] = [
     ("10000", "gauss", "3", "512"),
     ("100000", "gauss", "3", "512"),

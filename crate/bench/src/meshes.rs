@@ -5,14 +5,16 @@ use crate::report::{Report, Short};
 use crate::series::in_turn;
 use anyhow::Result;
 
-/// Scenes that `LevelSet` meshes, how many times as fast as it ours is to be, and at most which share of the triangles.
+/// Scenes that `LevelSet` meshes, how many times as fast as it ours is to be, and at most which
+/// share of the triangles.
 const SCENES: [&str; 3] = ["tests/bench/seahorse.rat", "tests/bench/coral.rat", FIDGET];
 const FASTER: f64 = 5.0;
 const FEWER: f64 = 1.0 / 3.0;
 /// Scene that fidget meshes, with the quartic kernel, and how many times as fast ours is to be.
 const FIDGET: &str = "tests/bench/flake-820.rat";
 const FASTER_THAN_FIDGET: f64 = 3.0;
-/// Scene that is meshed as wasm, the largest ratio of its time to the native one, and the number of runs of each.
+/// Scene that is meshed as wasm, the largest ratio of its time to the native one, and the number of
+/// runs of each.
 const WASM: &str = "seahorse";
 const SLOWER: f64 = 1.8;
 const ROUNDS: usize = 3;

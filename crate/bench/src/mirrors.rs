@@ -1,5 +1,5 @@
-//! Mirrors and glass: soft scenes against POV-Ray's blobs with the same depth; and what a lens and a light with a size cost before the
-//! first complete picture.
+//! Mirrors and glass: soft scenes against POV-Ray's blobs with the same depth; and what a lens and
+//! a light with a size cost before the first complete picture.
 
 use crate::povray;
 use crate::report::{Report, or_dash};
@@ -11,7 +11,8 @@ use xtask::shell::find;
 /// Most reflections and refractions of a ray.
 const DEPTH: u32 = 5;
 
-/// A look, in both languages. `material` stands behind the options of `Flesh`, `finish` in the place of POV-Ray's finish.
+/// A look, in both languages. `material` stands behind the options of `Flesh`, `finish` in the
+/// place of POV-Ray's finish.
 struct Case {
     scene: &'static str,
     title: &'static str,

@@ -1,5 +1,6 @@
 //! The cost of softness: the thesis's eight models (table 3.3) as convolution surfaces and as the
-//! offset surfaces of their skeletons. And the cost of bodies: many small ones against one large one.
+//! offset surfaces of their skeletons. And the cost of bodies: many small ones against one large
+//! one.
 
 use crate::report::{Report, Short};
 use crate::series::in_turn;

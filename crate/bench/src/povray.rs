@@ -79,8 +79,8 @@ pub fn blob(scene: &Value, pieces: u32) -> Result<String> {
             ),
             "Arc" => {
                 let (sweep, angle): (f64, f64) = (soft.read("sweep")?, soft.read("angle")?);
-                // The pieces' round ends overlap: an endless row of them has the radius R beside the
-                // middle of a piece.
+                // The pieces' round ends overlap: an endless row of them has the radius R beside
+                // the middle of a piece.
                 let length = sweep * angle / f64::from(pieces);
                 let beside = (1..).map(|i| share((f64::from(i) - 0.5) * length).powi(2));
                 let beside: f64 = beside.take_while(|field| *field > 0.0).sum();

@@ -1,4 +1,5 @@
-//! The program `sinew`, timed on one thread with nothing written, and the scenes of the comparisons, `tests/bench/*.rat`.
+//! The program `sinew`, timed on one thread with nothing written, and the scenes of the
+//! comparisons, `tests/bench/*.rat`.
 
 use crate::series::{Runs, in_turn};
 use anyhow::{Context, Result, bail};

@@ -98,8 +98,8 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// Traces a scene with our programs, of which the second may be missing, and with POV-Ray, and gives the best times of the
-/// first and of POV-Ray.
+/// Traces a scene with our programs, of which the second may be missing, and with POV-Ray, and
+/// gives the best times of the first and of POV-Ray.
 fn against_povray(
     sinew: &Sinew,
     programs: &[Option<PathBuf>; 2],

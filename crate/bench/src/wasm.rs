@@ -1,4 +1,5 @@
-//! The worker's engine as wasm in node against the same natively on one thread: `crate/worker/tests/it/speed.rs`.
+//! The worker's engine as wasm in node against the same natively on one thread:
+//! `crate/worker/tests/it/speed.rs`.
 
 use crate::report::{Report, Short};
 use crate::series::Runs;

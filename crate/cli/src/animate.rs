@@ -8,7 +8,8 @@ use picture::animation::{Timing, Writer};
 use picture::limits::MAX_FRAMES;
 use std::path::PathBuf;
 
-/// `sinew animate FILE -o OUT.png|OUT.gif --frames N [--fps F] [--once] [-r W H] [-s N] [--threads N]`.
+/// `sinew animate FILE -o OUT.png|OUT.gif --frames N [--fps F] [--once] [-r W H] [-s N] [--threads
+/// N]`.
 #[derive(Args)]
 pub struct Animate {
     /// The dataset; its variables change by `+=` and `*=`
@@ -40,8 +41,8 @@ pub struct Animate {
 }
 
 impl Animate {
-    /// Traces frame by frame and writes the animation. With errors in the dataset the frames are made of
-    /// what could be understood, and the result is false.
+    /// Traces frame by frame and writes the animation. With errors in the dataset the frames are
+    /// made of what could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
         let say = |problem: picture::Problem| problem.to_string();
         let format = Format::of(&self.output);

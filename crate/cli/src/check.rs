@@ -53,7 +53,8 @@ fn with_paths(loaded: &Loaded, path: &Path) -> Vec<Diagnostic> {
     diagnostics
 }
 
-/// Prints one line on a dataset: its name and the counts of its elements, materials, lights and diagnostics.
+/// Prints one line on a dataset: its name and the counts of its elements, materials, lights and
+/// diagnostics.
 fn summarize(loaded: &Loaded, path: &Path) {
     let scene = &loaded.compiled.scene;
     let is_soft = |element: &&scene::Element| scene.is_soft(element);

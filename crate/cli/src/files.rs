@@ -26,8 +26,8 @@ pub struct Loaded {
     pub compile_seconds: f64,
 }
 
-/// Runs an action on each of several files, also where it fails on one of them. Returns the worst outcome: all
-/// sentences of failure, each in a line, else false if there was one.
+/// Runs an action on each of several files, also where it fails on one of them. Returns the worst
+/// outcome: all sentences of failure, each in a line, else false if there was one.
 pub fn each(files: &[PathBuf], mut run: impl FnMut(&Path) -> Outcome) -> Outcome {
     let mut clean = true;
     let mut failures: Vec<String> = Vec::new();

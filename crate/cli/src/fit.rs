@@ -58,8 +58,8 @@ pub struct Fit {
     /// Most iterations
     #[arg(long, default_value_t = 60, value_name = "N")]
     iterations: usize,
-    /// The file to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj, .stl, .glb, .3mf); may be
-    /// given for each
+    /// The file to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj,
+    /// .stl, .glb, .3mf); may be given for each
     #[arg(short, long, required = true, value_name = "OUT")]
     output: Vec<PathBuf>,
     /// Print numbers of the fit as JSON on the standard output
@@ -228,8 +228,8 @@ fn read_mesh(path: &Path) -> Result<TriangleMesh, String> {
     mesh::read(&name, &bytes).map_err(|error| format!("{name}: {error}"))
 }
 
-/// The name of the mesh for a dataset, which takes files from its own folder only and names of letters, digits and `._-+`:
-/// a mesh of elsewhere or of another name is copied there.
+/// The name of the mesh for a dataset, which takes files from its own folder only and names of
+/// letters, digits and `._-+`: a mesh of elsewhere or of another name is copied there.
 fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
     let folder = match dataset.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -267,8 +267,8 @@ fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
     Ok(name)
 }
 
-/// Camera and lights that show what was fitted: the camera of the first outline, or one that sees all of it, with its
-/// longest side upright or, if that is the x axis, across.
+/// Camera and lights that show what was fitted: the camera of the first outline, or one that sees
+/// all of it, with its longest side upright or, if that is the x axis, across.
 fn view(positions: &[DVec3], views: &[fit::Outline]) -> String {
     let bounds = Aabb::of_points(positions.iter().copied());
     let (middle, size) = (bounds.center(), bounds.size());

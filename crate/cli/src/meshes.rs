@@ -43,14 +43,17 @@ pub struct Mesh {
     /// Only the body of this name
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
-    /// Write so many coarser levels of detail beside, as NAME-1, NAME-2 …: each has a quarter of the triangles
+    /// Write so many coarser levels of detail beside, as NAME-1, NAME-2 …: each has a quarter of
+    /// the triangles
     #[arg(long, value_name = "N", default_value_t = 0)]
     lod: usize,
-    /// Instead of a mesh within a tolerance a quick coating of the soft elements' skeletons: closed shells that overlap, whose
-    /// edges are split where the field in their middle is off its threshold by more than B
+    /// Instead of a mesh within a tolerance a quick coating of the soft elements' skeletons: closed
+    /// shells that overlap, whose edges are split where the field in their middle is off its
+    /// threshold by more than B
     #[arg(long, value_name = "B", conflicts_with_all = ["tolerance", "relative", "union", "outer", "body", "lod"])]
     coat: Option<f64>,
-    /// With the skeletons as joints, each vertex's shares in them as weights, and what moves as an animation: for .glb
+    /// With the skeletons as joints, each vertex's shares in them as weights, and what moves as an
+    /// animation: for .glb
     #[arg(long, conflicts_with_all = ["union", "lod", "coat"])]
     rig: bool,
     /// Frames of the rig's animation; default: four seconds of a dataset that moves
@@ -65,8 +68,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Meshes the scene and writes the files. With errors in the dataset the mesh is made of what could be understood, and the
-    /// result is false.
+    /// Meshes the scene and writes the files. With errors in the dataset the mesh is made of what
+    /// could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
         let name = self.output.to_string_lossy();
         let format = Format::of_name(&name).ok_or_else(|| {

@@ -136,8 +136,8 @@ impl Scan {
         Ok(())
     }
 
-    /// The cameras: the dataset's, turned about the direction that is up by equal parts of half a turn, as a shape has the
-    /// same outline from the other side.
+    /// The cameras: the dataset's, turned about the direction that is up by equal parts of half a
+    /// turn, as a shape has the same outline from the other side.
     fn views(&self, scene: &Scene, middle: DVec3) -> Result<Vec<Outline>, String> {
         let camera = scene.camera;
         let axis = camera
@@ -192,8 +192,8 @@ fn place(scene: &Scene) -> Option<(DVec3, f64)> {
         .then(|| (0.5 * (low + high), 0.5 * size.length()))
 }
 
-/// Points where lines enter the scene: lines of all directions alike and all places alike meet each part of a surface in
-/// proportion to its area, as far as it is seen from outside.
+/// Points where lines enter the scene: lines of all directions alike and all places alike meet each
+/// part of a surface in proportion to its area, as far as it is seen from outside.
 fn sample(
     picker: &Picker,
     middle: DVec3,
@@ -225,8 +225,8 @@ fn sample(
     ))
 }
 
-/// Disturbs an outline: a gap on one side, noise as large as that of points in the middle of the scene, places anywhere in
-/// the picture.
+/// Disturbs an outline: a gap on one side, noise as large as that of points in the middle of the
+/// scene, places anywhere in the picture.
 fn disturb(view: &mut Outline, disturbance: &Disturbance, numbers: &mut Numbers) {
     let [width, height] = view.size;
     let away = DVec3::from_array(view.eye).distance(DVec3::from_array(view.target));

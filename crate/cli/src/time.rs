@@ -50,8 +50,8 @@ enum Bodies {
     Many,
 }
 
-/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--bodies B] [--pass P] [--size W H] [--soft on|off] [--hierarchy on|off]
-/// [--rays N]`.
+/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--bodies B] [--pass P] [--size W H]
+/// [--soft on|off] [--hierarchy on|off] [--rays N]`.
 #[derive(Args)]
 pub struct Time {
     /// The dataset
@@ -78,8 +78,8 @@ pub struct Time {
     /// Draw the convolution surface, or the offset surfaces of its elements
     #[arg(long)]
     soft: Option<Switch>,
-    /// Whether far primitives are judged in groups and interpolated for many rays at once, or (for comparison) each
-    /// is followed by itself
+    /// Whether far primitives are judged in groups and interpolated for many rays at once, or (for
+    /// comparison) each is followed by itself
     #[arg(long, default_value = "on")]
     hierarchy: Switch,
     /// Instead of the dataset's `contrast`, the one with which about so many rays are sent from the
@@ -154,7 +154,8 @@ impl Time {
     }
 }
 
-/// Sets the contrast with which `rays_of` the scene come nearest to `rays`: fewer with a higher one.
+/// Sets the contrast with which `rays_of` the scene come nearest to `rays`: fewer with a higher
+/// one.
 fn choose_contrast(scene: &mut Scene, rays: u64, rays_of: impl Fn(&Scene) -> u64) {
     let mut best = (u64::MAX, 0.0);
     // Exponents of two.

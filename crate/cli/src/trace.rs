@@ -55,7 +55,8 @@ impl Wishes {
         Ok(())
     }
 
-    /// Traces a scene as asked for. `progress` is called from any thread with the share done, 0 … 1.
+    /// Traces a scene as asked for. `progress` is called from any thread with the share done, 0 …
+    /// 1.
     ///
     /// # Errors
     /// As [`Self::apply`], or if the number of threads is 0.

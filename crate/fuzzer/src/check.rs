@@ -5,7 +5,8 @@ use rats::link::{self, Shared};
 use rats::{Compiled, File, Project, Severity, compile};
 use scene::{Element, Origin};
 
-/// Elements of the largest scene that is looked through for numbers that are none, which takes long.
+/// Elements of the largest scene that is looked through for numbers that are none, which takes
+/// long.
 const LOOKED_THROUGH: usize = 5000;
 
 /// A project of two files; the second is there to be read.

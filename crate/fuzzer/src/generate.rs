@@ -1,11 +1,13 @@
-//! Random datasets that are nearly right: commands of the table with operands of the kinds that it names,
-//! now and then one too many, one too few or of another kind. They reach much deeper than random bytes.
+//! Random datasets that are nearly right: commands of the table with operands of the kinds that it
+//! names, now and then one too many, one too few or of another kind. They reach much deeper than
+//! random bytes.
 
 use rats::commands::{self, Arity, CommandSpec, Kind, Names, Parameter};
 use rats::library;
 use trials::arbitrary::{Result, Unstructured};
 
-/// Deepest blocks and expressions. Deeper ones are a matter of counting, which the tests of limits do.
+/// Deepest blocks and expressions. Deeper ones are a matter of counting, which the tests of limits
+/// do.
 const DEPTH: usize = 5;
 /// Longest text, bytes.
 const LENGTH: usize = 20_000;

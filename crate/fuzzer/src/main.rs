@@ -2,14 +2,15 @@
 //!
 //! `cargo run --profile fuzz -p fuzzer -- [SECONDS [SEED] | FILE.rat]`
 //!
-//! SECONDS are of processor time; a FILE is a finding to be run again. What is checked stands in [`check`];
-//! besides, no compile may take more than [`SLOW`] three times in a row or need more than [`MEMORY`], and none
-//! may panic or overflow the stack of a browser's worker. A finding is made smaller and written to a file. The
-//! text that is being run always stands in `sinew-fuzz-case.rat` in the folder for temporary files, for the case
-//! that the program is killed.
+//! SECONDS are of processor time; a FILE is a finding to be run again. What is checked stands in
+//! [`check`]; besides, no compile may take more than [`SLOW`] three times in a row or need more
+//! than [`MEMORY`], and none may panic or overflow the stack of a browser's worker. A finding is
+//! made smaller and written to a file. The text that is being run always stands in
+//! `sinew-fuzz-case.rat` in the folder for temporary files, for the case that the program is
+//! killed.
 //!
-//! The folder `fuzz/` at the top holds the same checks for cargo-fuzz, which is guided by what the code
-//! does but needs a nightly compiler.
+//! The folder `fuzz/` at the top holds the same checks for cargo-fuzz, which is guided by what the
+//! code does but needs a nightly compiler.
 
 use fuzzer::{check, generate};
 use rats::{Project, compile};
@@ -133,7 +134,8 @@ impl Fuzzer {
                 _ => {
                     let length = 20 << self.random.below(9);
                     let bytes = bytes(&mut self.random, length);
-                    // A generator that runs out of bytes leaves its text unfinished, which is fine too.
+                    // A generator that runs out of bytes leaves its text unfinished, which is fine
+                    // too.
                     if let Ok(text) = generate::dataset(&mut Unstructured::new(&bytes)) {
                         self.text(&text);
                     }

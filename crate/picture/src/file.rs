@@ -74,8 +74,8 @@ pub fn decode(bytes: &[u8], format: Format) -> Result<Picture, Problem> {
     decode_at_most(bytes, format, MAX_PIXELS)
 }
 
-/// [`decode`] for whoever has less memory: a picture of more than `max_pixels` is refused before any memory
-/// is set aside for it.
+/// [`decode`] for whoever has less memory: a picture of more than `max_pixels` is refused before
+/// any memory is set aside for it.
 ///
 /// # Errors
 /// As [`decode`].
@@ -90,7 +90,8 @@ pub fn decode_at_most(bytes: &[u8], format: Format, max_pixels: u64) -> Result<P
     }
 }
 
-/// Width and height that the head of a file tells. The rest of the file may be damaged all the same.
+/// Width and height that the head of a file tells. The rest of the file may be damaged all the
+/// same.
 ///
 /// # Errors
 /// If the bytes are not of this format, or tell of a picture that is too large.

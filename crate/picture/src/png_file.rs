@@ -10,7 +10,7 @@ const NAME: &str = "PNG";
 /// Bytes the decoder may use besides the picture: tables and texts of the file.
 const MAX_BESIDES: usize = 16 << 20;
 
-fn damaged(why: &dyn std::fmt::Display) -> Problem {
+fn damage(why: &dyn std::fmt::Display) -> Problem {
     Problem::Damaged(NAME, why.to_string())
 }
 
@@ -19,7 +19,7 @@ pub fn size(bytes: &[u8]) -> Result<[u32; 2], Problem> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     let header = decoder
         .read_header_info()
-        .map_err(|error| damaged(&error))?;
+        .map_err(|error| damage(&error))?;
     check_size(header.width, header.height)?;
     Ok([header.width, header.height])
 }
@@ -32,17 +32,17 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
     decoder.set_ignore_text_chunk(true);
     let header = decoder
         .read_header_info()
-        .map_err(|error| damaged(&error))?;
+        .map_err(|error| damage(&error))?;
     let (width, height) = (header.width, header.height);
     check_room(width, height, max_pixels)?;
-    let mut reader = decoder.read_info().map_err(|error| damaged(&error))?;
+    let mut reader = decoder.read_info().map_err(|error| damage(&error))?;
     let size = reader
         .output_buffer_size()
         .ok_or(Problem::Size(width.into(), height.into()))?;
     let mut raw = vec![0; size];
     let frame = reader
         .next_frame(&mut raw)
-        .map_err(|error| damaged(&error))?;
+        .map_err(|error| damage(&error))?;
     raw.truncate(frame.buffer_size());
     let pixels = match frame.color_type {
         png::ColorType::Rgba => raw,
@@ -50,7 +50,7 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
         png::ColorType::GrayscaleAlpha => spread(&raw, |p: [u8; 2]| [p[0], p[0], p[0], p[1]]),
         png::ColorType::Grayscale => spread(&raw, |p: [u8; 1]| [p[0], p[0], p[0], 255]),
         // The transformation above has replaced indices by colours.
-        png::ColorType::Indexed => return Err(damaged(&"its colours cannot be read")),
+        png::ColorType::Indexed => return Err(damage(&"its colours cannot be read")),
     };
     Picture::new(frame.width, frame.height, pixels)
 }

@@ -43,8 +43,8 @@ impl Bounds {
             })
     }
 
-    /// The least height of a scene's elements along a direction; of a scene without any that have an end, that of the middle
-    /// of what its camera looks at.
+    /// The least height of a scene's elements along a direction; of a scene without any that have
+    /// an end, that of the middle of what its camera looks at.
     pub(crate) fn lowest(scene: &Scene, up: DVec3) -> f64 {
         let lows = scene
             .elements

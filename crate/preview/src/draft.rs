@@ -73,7 +73,8 @@ impl Draft {
     }
 
     /// Replaces the scene: its elements at the radius that counts ([`Scene::radius`]), materials,
-    /// lights, background and gamma. The scene's own camera is not used. Tells what is drawn. A mesh stays.
+    /// lights, background and gamma. The scene's own camera is not used. Tells what is drawn. A
+    /// mesh stays.
     pub fn set_scene(
         &mut self,
         device: &wgpu::Device,
@@ -137,8 +138,9 @@ impl Draft {
         drawn
     }
 
-    /// Draws a mesh in place of the scene's soft elements from now on, or with `None` their offset surfaces again. One that has no
-    /// triangles, or is too large for the device, counts as none. Returns whether there is one.
+    /// Draws a mesh in place of the scene's soft elements from now on, or with `None` their offset
+    /// surfaces again. One that has no triangles, or is too large for the device, counts as none.
+    /// Returns whether there is one.
     pub fn set_mesh(
         &mut self,
         device: &wgpu::Device,

@@ -50,8 +50,8 @@ pub(crate) fn cuboid(center: DVec3, axes: [DVec3; 3]) -> Vec<Shape> {
     patches
 }
 
-/// A cell's corners on the way from its lowest to its highest corner, one axis after the other: each
-/// order of the axes is a tetrahedron, and those of neighbouring cells share their faces.
+/// A cell's corners on the way from its lowest to its highest corner, one axis after the other:
+/// each order of the axes is a tetrahedron, and those of neighbouring cells share their faces.
 const ORDERS: [[IVec3; 4]; 6] = {
     const fn path(a: IVec3, b: IVec3) -> [IVec3; 4] {
         let ab = IVec3::new(a.x + b.x, a.y + b.y, a.z + b.z);

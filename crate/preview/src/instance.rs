@@ -50,8 +50,8 @@ impl Instance {
     }
 }
 
-/// A unit vector as a point of the square onto which the octahedron |x| + |y| + |z| = 1 unfolds; the
-/// lower half is folded outwards.
+/// A unit vector as a point of the square onto which the octahedron |x| + |y| + |z| = 1 unfolds;
+/// the lower half is folded outwards.
 fn fold(v: DVec3) -> [f32; 2] {
     let flat = v.truncate() / v.abs().element_sum();
     let folded = (1.0 - flat.abs().yx()) * flat.map(|x| if x < 0.0 { -1.0 } else { 1.0 });

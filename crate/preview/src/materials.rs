@@ -59,9 +59,10 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
 /// The share of the background's mean colour that mirrors and glass show.
 const AROUND: f32 = 0.6;
 
-/// The ambient and diffuse colours of a material under its textures: each pattern counts as if it were half its lowest and half
-/// its highest value everywhere, which is what the draft shows of it. What is all mirror or glass would be black: it gets that
-/// share as a grey, and of what is around it, which it would mirror or let through.
+/// The ambient and diffuse colours of a material under its textures: each pattern counts as if it
+/// were half its lowest and half its highest value everywhere, which is what the draft shows of it.
+/// What is all mirror or glass would be black: it gets that share as a grey, and of what is around
+/// it, which it would mirror or let through.
 pub(crate) fn worn(material: &Finish, around: Rgb) -> [Rgb; 2] {
     let mut colours = [material.ambient, material.diffuse];
     for layer in &material.layers {

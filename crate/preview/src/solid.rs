@@ -75,8 +75,8 @@ impl Solid {
         parts.iter().filter_map(solid).collect()
     }
 
-    /// The offset surface of a shape at the given radius.
-    /// `paint` gives colours to the corners of a patch, and of a triangle without thickness, which then becomes a patch.
+    /// The offset surface of a shape at the given radius. `paint` gives colours to the corners of a
+    /// patch, and of a triangle without thickness, which then becomes a patch.
     fn new(shape: &Shape, radius: f64, paint: Option<[Rgb; 3]>) -> Option<Self> {
         if !radius.is_finite() {
             return None;
@@ -193,7 +193,8 @@ impl Solid {
         Some(pipe)
     }
 
-    /// A flat triangle with colours at its corners, whose normals there may have any length; 0 stands for the face's.
+    /// A flat triangle with colours at its corners, whose normals there may have any length; 0
+    /// stands for the face's.
     fn patch(corners: [DVec3; 3], normals: [DVec3; 3], colors: [Rgb; 3]) -> Option<Self> {
         let flat = Self::triangle(corners, 0.0)?;
         let [p, q, r] = [
@@ -201,7 +202,8 @@ impl Solid {
             [flat.a[2], flat.a[3]],
             [flat.b[0], flat.b[1]],
         ];
-        // The corners may have been renumbered; a normal and a colour belong to the one nearest to their place.
+        // The corners may have been renumbered; a normal and a colour belong to the one nearest to
+        // their place.
         let back = flat.rotation.inverse();
         let order = [p, q, r].map(|corner| {
             let world = flat.origin + flat.rotation * DVec2::from(corner).extend(0.0) * flat.unit;
@@ -321,7 +323,8 @@ fn with_z(direction: DVec3) -> Option<DQuat> {
     Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
 }
 
-/// Three colours as two whole numbers below 2^24, for `patch.wgsl`: 16 bits each, of which red has 5, green 6, blue 5.
+/// Three colours as two whole numbers below 2^24, for `patch.wgsl`: 16 bits each, of which red has
+/// 5, green 6, blue 5.
 fn packed(colors: [Rgb; 3]) -> [f64; 2] {
     let bits = |[red, green, blue]: Rgb| {
         let level = |channel: f32, most: f32| (channel.clamp(0.0, 1.0) * most).round() as u64;

@@ -1,8 +1,10 @@
-//! Rigs of scenes: the nodes of skeletons become joints, each vertex follows the nodes of the stretches that its place in the
-//! field comes from, and the scenes of further frames give an animation.
+//! Rigs of scenes: the nodes of skeletons become joints, each vertex follows the nodes of the
+//! stretches that its place in the field comes from, and the scenes of further frames give an
+//! animation.
 //!
-//! A vertex's weights are the shares of the primitives in the field there, each handed on to the nodes whose mean the
-//! primitive's stretch of the curve is. Joints turn as the edges at their node turn, along the shortest way from frame to frame.
+//! A vertex's weights are the shares of the primitives in the field there, each handed on to the
+//! nodes whose mean the primitive's stretch of the curve is. Joints turn as the edges at their node
+//! turn, along the shortest way from frame to frame.
 //!
 //! ```
 //! use glam::DVec3;
@@ -82,8 +84,8 @@ pub fn skeletons_of(scene: &Scene) -> Scene {
     }
 }
 
-/// The body, by its number in [`Scene::bodies`], whose soft surface is the mesh of this name: the mesher names a soft surface
-/// as its body, and that of a body without a name `model`.
+/// The body, by its number in [`Scene::bodies`], whose soft surface is the mesh of this name: the
+/// mesher names a soft surface as its body, and that of a body without a name `model`.
 #[must_use]
 pub fn body_of(scene: &Scene, name: &str) -> Option<u32> {
     let is_it = |body: &scene::Body| body.name == name || (body.name.is_empty() && name == "model");
@@ -94,9 +96,10 @@ pub fn body_of(scene: &Scene, name: &str) -> Option<u32> {
         .map(|number| number as u32)
 }
 
-/// The rig of meshes of a scene. The first of `scenes` is the one that was meshed; all of them, in order, are the frames of the
-/// animation, up to the first one whose skeletons are not the same curves. `rate` is in frames per second. With each mesh comes the
-/// number of the body whose soft surface it is, in [`Scene::bodies`]; none for hard shapes, which stay.
+/// The rig of meshes of a scene. The first of `scenes` is the one that was meshed; all of them, in
+/// order, are the frames of the animation, up to the first one whose skeletons are not the same
+/// curves. `rate` is in frames per second. With each mesh comes the number of the body whose soft
+/// surface it is, in [`Scene::bodies`]; none for hard shapes, which stay.
 ///
 /// The first joint stays where it is: vertices that no skeleton has a share in hang on it.
 ///
@@ -171,7 +174,8 @@ pub fn rig(
     })
 }
 
-/// Adds the joints of a skeleton, each hanging on a neighbour along a curve. Returns the joint of each node.
+/// Adds the joints of a skeleton, each hanging on a neighbour along a curve. Returns the joint of
+/// each node.
 fn hang(number: usize, own: &Skeleton<'_>, joints: &mut Vec<Joint>) -> Vec<usize> {
     let nodes = own.places.len();
     let mut around = vec![Vec::new(); nodes];
@@ -218,7 +222,8 @@ impl Weights {
         for (own, joint_of) in rest.iter().zip(joint_of) {
             stretches.push((own.element, of_stretches(scene, own, joint_of)?));
         }
-        // Of curves that are convolved locally all stretches share: near a fold that touches at rest too.
+        // Of curves that are convolved locally all stretches share: near a fold that touches at
+        // rest too.
         let mut whole = scene.clone();
         for element in &mut whole.elements {
             if let Shape::Function(function) = &mut element.shape

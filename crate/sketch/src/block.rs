@@ -35,7 +35,8 @@ pub struct Block {
 }
 
 impl Block {
-    /// Reads the block of the command at `span` of a file. `None` if there is none, or it is no `skeleton`.
+    /// Reads the block of the command at `span` of a file. `None` if there is none, or it is no
+    /// `skeleton`.
     #[must_use]
     pub fn read(text: &str, span: Range<usize>) -> Option<Self> {
         let command = text.get(span.clone())?;

@@ -1,5 +1,5 @@
-//! Changes of a skeleton's text. Each gives the whole new text of the file; what it does not name stays as it is
-//! written.
+//! Changes of a skeleton's text. Each gives the whole new text of the file; what it does not name
+//! stays as it is written.
 
 use crate::block::Block;
 use skeleton::{Node, Skeleton};
@@ -42,8 +42,8 @@ pub struct Limb {
 /// A replacement of a piece of the text, and its order among those at the same place.
 type Edit = (Range<usize>, f64, String);
 
-/// Adds curves to the skeleton whose command is at `span`. `grain` is a length that counts for little, to which
-/// coordinates are rounded. `None` if there is no such skeleton, node or curve.
+/// Adds curves to the skeleton whose command is at `span`. `grain` is a length that counts for
+/// little, to which coordinates are rounded. `None` if there is no such skeleton, node or curve.
 #[must_use]
 pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Option<String> {
     let block = Block::read(text, span)?;
@@ -133,8 +133,8 @@ pub fn create(
     (!block.curves.is_empty()).then_some(text)
 }
 
-/// Takes a node away, from its curves as well; a curve of a single node goes with it. Without a curve the whole command
-/// goes. `None` if there is no such node.
+/// Takes a node away, from its curves as well; a curve of a single node goes with it. Without a
+/// curve the whole command goes. `None` if there is no such node.
 #[must_use]
 pub fn remove(text: &str, span: Range<usize>, node: usize) -> Option<String> {
     let block = Block::read(text, span.clone())?;
@@ -197,7 +197,8 @@ pub fn widen(
     Some(applied(text, vec![(range, 0.0, with)]))
 }
 
-/// Gives a curve a new node behind its node of number `behind`. It becomes the block's last one. `None` if there is no such place.
+/// Gives a curve a new node behind its node of number `behind`. It becomes the block's last one.
+/// `None` if there is no such place.
 #[must_use]
 pub fn insert(
     text: &str,
@@ -234,8 +235,8 @@ pub fn insert(
     ))
 }
 
-/// Takes a curve away, and nodes that no other curve goes along. Without a curve the whole command goes. `None` if there is no
-/// such curve.
+/// Takes a curve away, and nodes that no other curve goes along. Without a curve the whole command
+/// goes. `None` if there is no such curve.
 #[must_use]
 pub fn remove_curve(text: &str, span: Range<usize>, curve: usize) -> Option<String> {
     let block = Block::read(text, span.clone())?;
@@ -243,12 +244,14 @@ pub fn remove_curve(text: &str, span: Range<usize>, curve: usize) -> Option<Stri
     Some(without_curves(text, span, &block, &[curve], &[]))
 }
 
-/// Cuts a curve between its node of number `between` and the next one: what hangs on the shorter side falls off, with all
-/// curves that lead nowhere else. The other side ends at `end`; where its last node is nearer to the cut than the radius there, it
-/// ends at that node. If both sides still hang together another way, the curve only gets a gap there. Without a curve the whole
-/// command goes.
+/// Cuts a curve between its node of number `between` and the next one: what hangs on the shorter
+/// side falls off, with all curves that lead nowhere else. The other side ends at `end`; where its
+/// last node is nearer to the cut than the radius there, it ends at that node. If both sides still
+/// hang together another way, the curve only gets a gap there. Without a curve the whole command
+/// goes.
 ///
-/// `skeleton` is what the text makes. `None` if it does not belong to the text, or there is no such curve.
+/// `skeleton` is what the text makes. `None` if it does not belong to the text, or there is no such
+/// curve.
 #[must_use]
 pub fn cut(
     text: &str,
@@ -340,7 +343,8 @@ pub fn cut(
     Some(without_curves(&changed, span, &block, &gone, &along))
 }
 
-/// The nodes that hang together with a node when the piece of a curve behind its node `between` is not there.
+/// The nodes that hang together with a node when the piece of a curve behind its node `between` is
+/// not there.
 fn side(skeleton: &Skeleton, curve: usize, between: usize, from: usize) -> Vec<bool> {
     let mut next: Vec<Vec<usize>> = vec![Vec::new(); skeleton.nodes.len()];
     for (number, along) in skeleton.curves.iter().enumerate() {
@@ -374,8 +378,8 @@ fn length(skeleton: &Skeleton, nodes: &[bool]) -> f64 {
         .sum()
 }
 
-/// A text without some curves of a block, and without their nodes and others that no curve is left for. Nodes that no curve went along
-/// before stay.
+/// A text without some curves of a block, and without their nodes and others that no curve is left
+/// for. Nodes that no curve went along before stay.
 fn without_curves(
     text: &str,
     span: Range<usize>,

@@ -11,7 +11,8 @@ const MOST_POINTS: usize = 160;
 const LEVELS: u32 = 3;
 /// How often the points' places along the curve are found anew.
 const ROUNDS: usize = 4;
-/// Weight of the nodes' second differences against the points: what points leave open stays straight.
+/// Weight of the nodes' second differences against the points: what points leave open stays
+/// straight.
 const STIFFNESS: f64 = 1e-4;
 
 /// A point of a stroke with the radius that is wanted there.
@@ -23,12 +24,13 @@ pub struct Sample {
     pub radius: f64,
 }
 
-/// The nodes of a curve of the cubic scheme that passes all samples within `tolerance`, as few as possible but
-/// at most [`MOST_NODES`]. It begins at the first sample and ends at the last. `None` if the samples do not reach farther
-/// than the tolerance, or a number is not finite.
+/// The nodes of a curve of the cubic scheme that passes all samples within `tolerance`, as few as
+/// possible but at most [`MOST_NODES`]. It begins at the first sample and ends at the last. `None`
+/// if the samples do not reach farther than the tolerance, or a number is not finite.
 ///
-/// For each number of nodes the sum of squared distances is made least: samples get places along the curve, the nodes
-/// follow by linear equations, the places are found anew. So the curve is smoother than the hand was.
+/// For each number of nodes the sum of squared distances is made least: samples get places along
+/// the curve, the nodes follow by linear equations, the places are found anew. So the curve is
+/// smoother than the hand was.
 #[must_use]
 pub fn fit(samples: &[Sample], tolerance: f64) -> Option<Vec<Node>> {
     let finite = |s: &Sample| s.position.is_finite() && s.radius.is_finite() && s.radius >= 0.0;
@@ -135,7 +137,8 @@ fn radius(samples: &[Sample], share: f64, around: f64) -> f64 {
     }
 }
 
-/// The place along a polyline, 0 … 1 by its vertices' numbers, that is nearest to a point, and how far that is.
+/// The place along a polyline, 0 … 1 by its vertices' numbers, that is nearest to a point, and how
+/// far that is.
 fn nearest(curve: &[DVec3], point: DVec3) -> (f64, f64) {
     let pieces = (curve.len() - 1) as f64;
     let mut best = (0.0, f64::INFINITY);
@@ -201,7 +204,8 @@ impl Basis {
         self.rows.iter().map(point).collect()
     }
 
-    /// The nodes whose curve comes nearest to the samples at their places. The ends are the samples'.
+    /// The nodes whose curve comes nearest to the samples at their places. The ends are the
+    /// samples'.
     fn nodes(&self, samples: &[Sample], places: &[f64]) -> Vec<DVec3> {
         let (first, last) = (samples[0].position, samples[samples.len() - 1].position);
         let free = self.count - 2;

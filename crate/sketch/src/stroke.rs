@@ -12,8 +12,8 @@ pub struct Mark {
     pub pressure: Option<f32>,
 }
 
-/// A stroke that is being drawn. However long it becomes, it keeps at most 8192 points: of a longer one every second point is left
-/// out.
+/// A stroke that is being drawn. However long it becomes, it keeps at most 8192 points: of a longer
+/// one every second point is left out.
 ///
 /// ```
 /// use sketch::{Mark, Stroke};

@@ -24,7 +24,7 @@ pub fn note(ctx: &Context, name: impl Into<String>, rect: Rect) {
     });
 }
 
-/// All places of the last frame.
+/// Returns the places of the last frame.
 #[must_use]
 pub fn all(ctx: &Context) -> Places {
     ctx.data(|data| data.get_temp::<Places>(id()))

@@ -6,13 +6,14 @@ use scene::Scene;
 use std::collections::VecDeque;
 use tracer::{Known, Pass, Picture, SampleCache, Stats, Tile};
 
-/// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two steps the
-/// worker sees what has come in.
+/// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two
+/// steps the worker sees what has come in.
 const ROWS: u32 = 32;
 
-/// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture that fits a screen
-/// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice. In pictures of more squares
-/// workers do not hear of each other's, as the page would have to keep them all.
+/// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture
+/// that fits a screen (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some
+/// samples twice. In pictures of more squares workers do not hear of each other's, as the page
+/// would have to keep them all.
 pub const KEPT: usize = 320;
 /// Side of those squares, pixels.
 const SQUARE: u32 = 64;
@@ -147,8 +148,8 @@ impl Engine {
         next.is_some_and(|order| order.pass == pass)
     }
 
-    /// Takes note of a new picture, prepares it if that was not done yet, or traces the next tile or
-    /// some rows of it.
+    /// Takes note of a new picture, prepares it if that was not done yet, or traces the next tile
+    /// or some rows of it.
     ///
     /// `stop` is asked while tracing; when it says true the tile is given up. `clock` tells seconds
     /// since some fixed moment.

@@ -52,7 +52,8 @@ pub fn serve() -> Result<(), JsValue> {
         desk.ticking = false;
         match desk.engine.step(&|| false, &clock) {
             Step::Answer(answer) => desk.answer(answer),
-            // Of a tile that takes long the page would hold what it has not heard of the ones before against it.
+            // Of a tile that takes long the page would hold what it has not heard of the ones
+            // before against it.
             Step::Part | Step::Dropped => desk.send_old(),
             Step::Idle => {}
         }
@@ -83,7 +84,8 @@ pub fn serve() -> Result<(), JsValue> {
 }
 
 impl Desk {
-    /// Sends an answer, a tile together with those of its pass that follow soon: the last of a pass may complete a picture.
+    /// Sends an answer, a tile together with those of its pass that follow soon: the last of a pass
+    /// may complete a picture.
     fn answer(&mut self, answer: Answer) {
         let can_wait =
             matches!(&answer, Answer::Traced { order, .. } if self.engine.goes_on_with(order.pass));

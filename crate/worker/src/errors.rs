@@ -1,8 +1,9 @@
-//! How far off the scene's digger is: for each pixel, along the ray through its middle, the distance between the
-//! first hit that the digger finds and the first crossing of the field itself, found in double precision.
+//! How far off the scene's digger is: for each pixel, along the ray through its middle, the
+//! distance between the first hit that the digger finds and the first crossing of the field itself,
+//! found in double precision.
 //!
-//! Four bytes stand for a pixel, as in a picture, so that such tiles travel as others do: a single-precision number,
-//! the smallest byte first.
+//! Four bytes stand for a pixel, as in a picture, so that such tiles travel as others do: a
+//! single-precision number, the smallest byte first.
 
 use scene::{Projection, Scene};
 use tracer::{Picture, Tile};
@@ -65,7 +66,8 @@ impl Errors {
         }
     }
 
-    /// Compares one tile, rows from the top. `stop` is asked now and then; when it says true the tile is given up.
+    /// Compares one tile, rows from the top. `stop` is asked now and then; when it says true the
+    /// tile is given up.
     #[must_use]
     pub fn trace(&self, tile: Tile, stop: &dyn Fn() -> bool) -> Option<Vec<u8>> {
         let middle = |at: u32, of: u32| (f64::from(at) + 0.5) / f64::from(of);
@@ -78,7 +80,8 @@ impl Errors {
         let mut bytes = Vec::new();
         for y in tile.y..tile.y + tile.height {
             let end = tile.x + tile.width;
-            // Which rays are followed together does not depend on the tiles, whose sides are multiples of that.
+            // Which rays are followed together does not depend on the tiles, whose sides are
+            // multiples of that.
             for left in (tile.x..end).step_by(TOGETHER as usize) {
                 let rays: Vec<_> = (left..end.min(left + TOGETHER))
                     .map(|x| ray(x, y))

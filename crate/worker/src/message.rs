@@ -63,8 +63,8 @@ pub enum Request {
 pub enum Answer {
     /// The worker runs and takes requests. Sent once.
     Started,
-    /// A [`Request::Begin`] or [`Request::Stop`] was taken note of: whatever the worker was at before
-    /// is over. Left out if another one has come in meanwhile.
+    /// A [`Request::Begin`] or [`Request::Stop`] was taken note of: whatever the worker was at
+    /// before is over. Left out if another one has come in meanwhile.
     Noted {
         /// Its number.
         generation: u64,

@@ -124,7 +124,8 @@ fn what_cannot_be_meshed_is_told() {
     assert!(!std::fs::exists(&out).unwrap(), "nothing is written");
 }
 
-/// Models that would take hours end with a mesh or a sentence, by bounds on the counts of cells and evaluations.
+/// Models that would take hours end with a mesh or a sentence, by bounds on the counts of cells and
+/// evaluations.
 #[test]
 fn degenerate_models_end_with_a_mesh_or_words() {
     let folder = Folder::new("mesh-ends");

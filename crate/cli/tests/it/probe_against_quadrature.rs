@@ -175,8 +175,8 @@ fn shape_of(kind: &str, random: &mut Random) -> String {
     }
 }
 
-/// Every kernel on every kind of skeleton: double precision to 10⁻⁹, single to 10⁻⁴ (of the field, or of
-/// what matters of it).
+/// Every kernel on every kind of skeleton: double precision to 10⁻⁹, single to 10⁻⁴ (of the field,
+/// or of what matters of it).
 #[test]
 fn probe_agrees_with_quadrature_in_every_cell() {
     let folder = Folder::new("chart");

@@ -81,9 +81,9 @@ fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u3
         }
     }
     let name = &gpu.name;
-    // The cells of a quadric are flat, so its outlines are off by a small part of a pixel; where two
-    // of them nearly touch, a pixel that is uniform in the reference may see between them, and at the
-    // rim of its box the normals of a sliver's corners lie far apart.
+    // The cells of a quadric are flat, so its outlines are off by a small part of a pixel; where
+    // two of them nearly touch, a pixel that is uniform in the reference may see between them, and
+    // at the rim of its box the normals of a sliver's corners lie far apart.
     let has_cells = shapes.iter().any(|s| matches!(s, Shape::Quadric(_)));
     let (few, share) = if has_cells { (2, 0.04) } else { (0, 0.02) };
     assert!(

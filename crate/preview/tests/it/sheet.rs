@@ -1,5 +1,6 @@
-//! The draft of every example of the gallery beside its traced picture, with the offset surfaces and with a mesh of the true surface: a
-//! contact sheet to look at, `target/tmp/drafts-N.png`, and what can be said of it in numbers.
+//! The draft of every example of the gallery beside its traced picture, with the offset surfaces
+//! and with a mesh of the true surface: a contact sheet to look at, `target/tmp/drafts-N.png`, and
+//! what can be said of it in numbers.
 
 use crate::common::gpu::{Gpu, Picture, gpus};
 use preview::{Draft, Mesh, Sampling, looks};
@@ -62,7 +63,8 @@ fn traced(name: &str) -> Picture {
 /// Most elements of a scene that is meshed here: unoptimised code takes long for more.
 const MOST: usize = 150;
 
-/// Draws a scene as offset surfaces, and, if it has a finite soft surface of a moderate size, as a mesh.
+/// Draws a scene as offset surfaces, and, if it has a finite soft surface of a moderate size, as a
+/// mesh.
 fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>) {
     let mut draft = Draft::new(&gpu.device, &gpu.queue);
     draft.set_sampling(Sampling::Four);
@@ -95,8 +97,8 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
     (plain, Some(gpu.render(&mut draft, &scene.camera, size)))
 }
 
-/// Mean difference of two pictures of one size, of 255, after both were made coarser: where things are and what colours they have counts,
-/// not their edges.
+/// Mean difference of two pictures of one size, of 255, after both were made coarser: where things
+/// are and what colours they have counts, not their edges.
 fn difference(a: &Picture, b: &Picture) -> f64 {
     const BLOCK: u32 = 16;
     assert_eq!(a.size, b.size);
@@ -193,8 +195,8 @@ fn drafts_of_all_examples_look_like_their_pictures() {
     assert!(bad.is_empty(), "{bad:#?}");
 }
 
-/// The largest differences of draft and mesh from the traced picture. Neither has shadows, and textures are their mean colours; what is
-/// seen in glass and mirrors is not drawn at all.
+/// The largest differences of draft and mesh from the traced picture. Neither has shadows, and
+/// textures are their mean colours; what is seen in glass and mirrors is not drawn at all.
 fn bounds(name: &str) -> (f64, f64) {
     match name {
         "glass-drops" | "diamond" | "pebbles" | "still-life" => (31.0, 25.0),

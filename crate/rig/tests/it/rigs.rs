@@ -1,4 +1,5 @@
-//! Skins against the fields they come from: what is skinned stays on the surface of the scene that moved.
+//! Skins against the fields they come from: what is skinned stays on the surface of the scene that
+//! moved.
 
 use glam::DVec3;
 use mesh::{Export, Part, TriangleMesh};
@@ -89,7 +90,8 @@ fn skinned_vertices_stay_near_the_surface_that_moved() {
             let slope = DVec3::from(jet.gradient).length().max(0.5);
             worst = worst.max((jet.value - field::THRESHOLD).abs() / slope);
         }
-        // A linear skin of few joints is off where the body bends most: by less than half its thickness.
+        // A linear skin of few joints is off where the body bends most: by less than half its
+        // thickness.
         assert!(worst < 0.16, "frame {frame}: {worst}");
     }
 }

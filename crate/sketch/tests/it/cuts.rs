@@ -40,7 +40,8 @@ fn node(x: f64, y: f64, z: f64, radius: f64) -> Node {
     }
 }
 
-/// Texts with a body of three nodes and two limbs, written in many ways; the skeleton of the given number is the animal.
+/// Texts with a body of three nodes and two limbs, written in many ways; the skeleton of the given
+/// number is the animal.
 const WAYS: [(&str, usize); 7] = [
     (
         "surface a, radius 1\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\n",
@@ -129,7 +130,8 @@ fn each_way_of_writing_is_read_as_the_compiler_reads_it() {
 fn what_is_beyond_a_cut_falls_off() {
     for (text, which) in ways() {
         let (span, skeleton) = skeletons(&text)[which].clone();
-        // Through the body between B and C: C, E and the limb between them are the shorter side? B, A, D are 4 long, C, E are 2.
+        // Through the body between B and C: C, E and the limb between them are the shorter side? B,
+        // A, D are 4 long, C, E are 2.
         let end = node(3.0, 0.0, 0.0, 0.25);
         let cut_text = cut(&text, span.clone(), &skeleton, 0, 1, &end, 0.01).unwrap();
         let left = changed(&text, which, &cut_text);

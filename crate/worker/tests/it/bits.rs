@@ -1,5 +1,5 @@
-//! Packed scenes, and tiles with the counts of the work for them, are the same to the last bit natively and as wasm. Whole
-//! pictures are compared in `pins.rs`.
+//! Packed scenes, and tiles with the counts of the work for them, are the same to the last bit
+//! natively and as wasm. Whole pictures are compared in `pins.rs`.
 
 use crate::common::{FEW, TILE, compile, traced};
 use tracer::{Pass, tiles};

@@ -1,9 +1,9 @@
-//! Whole pictures are the ones that `tests/pins.txt` keeps the hashes of: natively as the program traces them,
-//! as wasm as a worker does. A change of the pictures that is meant is written there by `cargo xtask pins`, which shows
-//! the old and the new ones.
+//! Whole pictures are the ones that `tests/pins.txt` keeps the hashes of: natively as the program
+//! traces them, as wasm as a worker does. A change of the pictures that is meant is written there
+//! by `cargo xtask pins`, which shows the old and the new ones.
 //!
-//! With `SINEW_PICTURES` set to a folder, the native tests compare nothing: they write each picture there as
-//! `NAME-PASS.ppm` and print its pin. The command runs them so.
+//! With `SINEW_PICTURES` set to a folder, the native tests compare nothing: they write each picture
+//! there as `NAME-PASS.ppm` and print its pin. The command runs them so.
 
 use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, compile_text, hash};
 use scene::Scene;
@@ -15,7 +15,8 @@ use tracer::{Pass, Tile};
 const PINS: &str = include_str!("../../../../tests/pins.txt");
 /// Width and height of the pictures, pixels.
 const SIZE: u32 = 256;
-/// Scenes that take too long, and the sides of the squares in the middle of their pictures that are traced instead, pixels.
+/// Scenes that take too long, and the sides of the squares in the middle of their pictures that are
+/// traced instead, pixels.
 const PARTS: [(&str, u32); 14] = [
     ("coils", 12),
     ("coral-crab", 128),
@@ -89,7 +90,8 @@ fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
     })
 }
 
-/// The pins of a text, `NAME PASS SIDE HASH` a line, by `NAME PASS`. Lines that begin with `#` are comments.
+/// The pins of a text, `NAME PASS SIDE HASH` a line, by `NAME PASS`. Lines that begin with `#` are
+/// comments.
 fn pins(text: &str) -> BTreeMap<String, String> {
     text.lines()
         .filter(|line| !line.starts_with('#'))

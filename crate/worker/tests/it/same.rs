@@ -1,5 +1,6 @@
-//! Pictures are equal bit for bit, traced by one worker or by two on threads. That they are the same as wasm, too, is seen in
-//! `pins.rs`; those of the page against those of the program are compared in `tests/agree.test.mjs`.
+//! Pictures are equal bit for bit, traced by one worker or by two on threads. That they are the
+//! same as wasm, too, is seen in `pins.rs`; those of the page against those of the program are
+//! compared in `tests/agree.test.mjs`.
 
 use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, FEW, TILE, compile, traced};
 use scene::Scene;

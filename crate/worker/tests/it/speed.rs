@@ -1,5 +1,5 @@
-//! Time of the worker's engine for the scenes of `tests/bench/`, natively and as wasm. A measurement:
-//! `cargo xtask bench wasm` runs it.
+//! Time of the worker's engine for the scenes of `tests/bench/`, natively and as wasm. A
+//! measurement: `cargo xtask bench wasm` runs it.
 
 use crate::common::{BENCH, compile_text};
 use scene::Scene;
@@ -11,7 +11,8 @@ use worker::{Engine, Kind, Order, Request, Step};
 const TILE: u32 = 64;
 /// Pictures of each scene, of which the quickest counts: so many at least …
 const PICTURES: usize = 3;
-/// … and as many as are begun in so many seconds, as quick ones are easily disturbed, and wasm is first compiled in haste.
+/// … and as many as are begun in so many seconds, as quick ones are easily disturbed, and wasm is
+/// first compiled in haste.
 const SECONDS: f64 = 0.6;
 /// Enough, also where clocks are coarse.
 const MOST: usize = 1000;

@@ -171,7 +171,8 @@ fn in_quadric(quadric: &Quadric, p: DVec3) -> DVec3 {
     along(quadric.axes, p - quadric.center)
 }
 
-/// Share of the way from one end to the other of the foot of p on an axis, and its distance from it.
+/// Share of the way from one end to the other of the foot of p on an axis, and its distance from
+/// it.
 fn about_axis(base: DVec3, apex: DVec3, p: DVec3) -> (f64, f64) {
     let way = apex - base;
     let share = (p - base).dot(way) / way.length_squared();

@@ -69,7 +69,8 @@ pub const BENCH: [(&str, &str); 10] = [
     bench!("tee"),
 ];
 
-/// Scenes for what is not tried on all: a plain sum, far fields, contact and local convolution, textures and glass.
+/// Scenes for what is not tried on all: a plain sum, far fields, contact and local convolution,
+/// textures and glass.
 pub const FEW: [&str; 4] = ["tshape", "flake-820-cauchy", "squeeze", "glass-drops"];
 
 /// Compiles the scene of a name.
