@@ -60,7 +60,7 @@ impl Doing {
     }
 }
 
-/// A virtual tool with all that can be set about it.
+/// A virtual tool with its settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brush {
     /// The effect.

@@ -27,8 +27,8 @@ impl Document {
     pub fn open(text: &str, load: Loader<'_>) -> Result<Self, String> {
         let script: Script = text
             .parse()
-            .map_err(|diagnostic: sculpt::Diagnostic| diagnostic.to_string())?;
-        let sculpture = Sculpture::open(&script, load).map_err(|diagnostic| diagnostic.to_string())?;
+            .map_err(|error: sculpt::Diagnostic| error.to_string())?;
+        let sculpture = Sculpture::open(&script, load).map_err(|error| error.to_string())?;
         let mut rest: Vec<&str> = text.split_inclusive('\n').collect();
         let mut take = |upto: usize, done: usize| -> String {
             let count = upto.saturating_sub(done).min(rest.len());

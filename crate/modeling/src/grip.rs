@@ -66,11 +66,6 @@ pub enum Setting {
 }
 
 impl Hand {
-    /// The place of the tool, if it is shown.
-    pub fn shown(&self) -> Option<DVec3> {
-        self.shown
-    }
-
     /// Whether the view turns now.
     pub fn turns(&self) -> bool {
         matches!(self.doing, State::Turn(_) | State::Fingers)

@@ -251,7 +251,13 @@ fn center(place: &Sculpting, doing: Doing, reverses: bool, point: DVec3, normal:
     point + normal * (reach * side)
 }
 
-fn follow_pointer(place: &mut Sculpting, rect: Rect, to: Pos2, modifiers: Modifiers, pressure: f64) {
+fn follow_pointer(
+    place: &mut Sculpting,
+    rect: Rect,
+    to: Pos2,
+    modifiers: Modifiers,
+    pressure: f64,
+) {
     let mut doing = core::mem::take(&mut place.hand.doing);
     match &mut doing {
         State::Stroke(on) => follow_stroke(place, rect, to, on, pressure),
@@ -344,11 +350,10 @@ fn finish(place: &mut Sculpting, keeps: bool, commands: &mut Vec<Command>) {
 /// Turns view, mesh, tool or light by the trackball.
 fn turn(place: &mut Sculpting, rect: Rect, from: Pos2, to: Pos2) {
     let half = 0.5 * rect.size().min_elem().max(1.0);
-    let own = |at: Pos2| {
+    let [from, to] = [from, to].map(|at| {
         let p = (at - rect.center()) / half;
         [f64::from(p.x), -f64::from(p.y)]
-    };
-    let (from, to) = (own(from), own(to));
+    });
     match place.turning {
         Turning::View => place.view.turn(from, to),
         Turning::Mesh => {

@@ -327,7 +327,7 @@ impl Sculpting {
             light: self.light,
             made: self.made.unwrap_or_default(),
             size: if rests { fine } else { coarse },
-            tool: self.hand.shown().map(|at| (self.brush.clone(), at)),
+            tool: self.hand.shown.map(|at| (self.brush.clone(), at)),
             wireframe: self.wireframe,
             planes: self.planes,
             dark,
