@@ -48,7 +48,7 @@ fn not_written(format: Format, error: &ImageError) -> Problem {
     Problem::NotWritten(format.name(), error.to_string())
 }
 
-/// Width and height that the head of a file tells.
+/// Reads width and height from the head of a file.
 pub fn size(bytes: &[u8], format: Format) -> Result<[u32; 2], Problem> {
     let (width, height) = ImageReader::with_format(Cursor::new(bytes), library_format(format))
         .into_dimensions()

@@ -11,7 +11,7 @@ fn damage(why: String) -> Problem {
     Problem::Damaged("MTV", why)
 }
 
-/// Width and height that the first line tells.
+/// Reads width and height from the first line.
 pub fn size(bytes: &[u8]) -> Result<[u32; 2], Problem> {
     let ([width, height], _) = head(bytes)?;
     check_size(width, height)?;
@@ -32,9 +32,7 @@ fn head(bytes: &[u8]) -> Result<([u32; 2], &[u8]), Problem> {
         .map(|word| word.parse().ok())
         .collect();
     let [Some(width), Some(height)] = numbers[..] else {
-        return Err(damage(String::from(
-            "its first line is not `width height`",
-        )));
+        return Err(damage(String::from("its first line is not `width height`")));
     };
     Ok(([width, height], rest))
 }

@@ -14,12 +14,10 @@ fn damage(why: &dyn std::fmt::Display) -> Problem {
     Problem::Damaged(NAME, why.to_string())
 }
 
-/// Width and height that the head of a file tells.
+/// Reads width and height from the head of a file.
 pub fn size(bytes: &[u8]) -> Result<[u32; 2], Problem> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
-    let header = decoder
-        .read_header_info()
-        .map_err(|error| damage(&error))?;
+    let header = decoder.read_header_info().map_err(|error| damage(&error))?;
     check_size(header.width, header.height)?;
     Ok([header.width, header.height])
 }
@@ -30,9 +28,7 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     decoder.set_ignore_text_chunk(true);
-    let header = decoder
-        .read_header_info()
-        .map_err(|error| damage(&error))?;
+    let header = decoder.read_header_info().map_err(|error| damage(&error))?;
     let (width, height) = (header.width, header.height);
     check_room(width, height, max_pixels)?;
     let mut reader = decoder.read_info().map_err(|error| damage(&error))?;
@@ -63,7 +59,7 @@ fn spread<const N: usize>(raw: &[u8], pixel: fn([u8; N]) -> [u8; 4]) -> Vec<u8> 
         .collect()
 }
 
-/// Writes a file; without opacity if nothing shows through, which is a quarter less.
+/// Writes a file; one of an opaque picture has no channel for opacity, which saves a quarter.
 pub fn encode(picture: &Picture) -> Result<Vec<u8>, Problem> {
     let opaque = picture.is_opaque();
     let mut bytes = Vec::new();
