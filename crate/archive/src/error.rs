@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// Why an archive cannot be read or written. Shown, it is the end of a sentence such as "the file
-/// …".
+/// The reason why an archive cannot be read or written. It is displayed as the end of a sentence
+/// such as "the file …".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
     /// The directory is missing, or a member leads out of the archive.
@@ -12,8 +12,7 @@ pub enum Error {
     Encrypted,
     /// A member is packed by a method that is not read.
     Method(u16),
-    /// A member cannot be unpacked, or its content does not have the checksum that the directory
-    /// tells.
+    /// A member cannot be unpacked, or its content does not have the directory's checksum.
     Damaged,
     /// The archive has more members than this.
     Members(usize),

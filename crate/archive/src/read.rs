@@ -5,7 +5,7 @@ use crate::checksum::checksum;
 use miniz_oxide::inflate::TINFLStatus;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 
-/// A member as the directory tells of it.
+/// A member, by its entry in the directory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// The name, with folders. Letters outside of UTF-8 are replaced.
