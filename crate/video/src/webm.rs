@@ -15,7 +15,7 @@ const SIMPLE_BLOCK: u32 = 0xa3;
 /// Nanoseconds of the file's unit of time.
 const UNIT: u64 = 1_000_000;
 
-/// Most units from a cluster's start to its frames, which tell theirs in 16 bits.
+/// Most units from a cluster's start to its frames, whose offsets have 16 bits.
 const LONGEST: u64 = 30_000;
 
 /// A WebM file of a video in VP8 or VP9.
