@@ -6,36 +6,36 @@ use skeleton::{Node, Skeleton};
 use std::fmt::Write;
 use std::ops::Range;
 
-/// Where a new curve begins.
+/// The beginning of a new curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
-    /// At a node of its own.
+    /// A node of its own.
     Free,
-    /// At a node that is there.
+    /// A node that is there.
     Node(usize),
-    /// At a node that is there. If that is the end of a single curve then this one is made longer.
+    /// A node that is there. If that is the end of a single curve then this one is made longer.
     End(usize),
-    /// On a curve between two of its nodes, where it gets a new one.
+    /// A new node on a curve, between two of its nodes.
     Between {
         /// The curve's index.
         curve: usize,
         /// The new node comes behind the curve's node of this number.
         span: usize,
-        /// How far from that node to the next one, 0 … 1: the order of several new nodes there.
+        /// The place from that node to the next one, 0 … 1, which orders several new nodes there.
         share: f64,
         /// The new node.
         node: Node,
     },
-    /// Where the new curve before this one begins.
+    /// The beginning of the new curve before this one.
     Same,
 }
 
 /// A new curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limb {
-    /// Its beginning.
+    /// The beginning.
     pub start: Start,
-    /// Its nodes; unless it begins at a node of its own, without the first one.
+    /// The nodes; without the first one, unless that is a node of its own.
     pub nodes: Vec<Node>,
 }
 
@@ -102,7 +102,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
         before = Some(first);
     }
     edits.push(at_end(text, &block, added.replace('\n', end_of_line)));
-    Some(applied(text, edits))
+    Some(apply(text, edits))
 }
 
 /// A text with a new skeleton at its end. `None` if no limb has two nodes of its own to begin with.
@@ -188,13 +188,13 @@ pub fn widen(
 ) -> Option<String> {
     let block = Block::read(text, span)?;
     let node = block.nodes.get(node)?;
-    let number = rounded(radius.max(0.0), grain);
+    let number = decimal(radius.max(0.0), grain);
     let edit = match &node.radius {
         Some(range) => (range.clone(), number),
         None => (node.span.end..node.span.end, format!(" radius {number}")),
     };
     let (range, with) = edit;
-    Some(applied(text, vec![(range, 0.0, with)]))
+    Some(apply(text, vec![(range, 0.0, with)]))
 }
 
 /// Gives a curve a new node behind its node of number `behind`. It becomes the block's last one.
@@ -226,7 +226,7 @@ pub fn insert(
     } else {
         last
     };
-    Some(applied(
+    Some(apply(
         text,
         vec![
             (place..place, 0.0, format!(" {name}")),
@@ -311,13 +311,11 @@ pub fn cut(
             &names[between + 1..]
         };
         let last = if first_stays { before } else { behind };
-        let falls_off = |along: &Vec<usize>| along.iter().all(|node| sides[falls][*node]);
-        let others = skeleton.curves.iter().enumerate();
-        gone.extend(
-            others
-                .filter(|(i, along)| *i != curve && falls_off(along))
-                .map(|(i, _)| i),
-        );
+        for (other, along) in skeleton.curves.iter().enumerate() {
+            if other != curve && along.iter().all(|node| sides[falls][*node]) {
+                gone.push(other);
+            }
+        }
         debug_assert!(!sides[stays][if first_stays { behind } else { before }]);
         let ends_there = near(last) <= end.radius.max(grain);
         if ends_there && kept.len() < 2 {
@@ -335,7 +333,7 @@ pub fn cut(
     }
     // The curves that fall off keep their numbers while lines are added behind them.
     edits.push(at_end(text, &block, added.replace('\n', end_of_line(text))));
-    let changed = applied(text, edits);
+    let changed = apply(text, edits);
     let end = (span.end + changed.len()).checked_sub(text.len())?;
     let span = span.start..end;
     let block = Block::read(&changed, span.clone())?;
@@ -370,11 +368,13 @@ fn side(skeleton: &Skeleton, curve: usize, between: usize, from: usize) -> Vec<b
 
 /// The length of the control polygons between some nodes.
 fn length(skeleton: &Skeleton, nodes: &[bool]) -> f64 {
-    let place = |node: usize| skeleton.nodes[node].position;
     let pieces = skeleton.curves.iter().flat_map(|along| along.windows(2));
     pieces
         .filter(|ends| nodes[ends[0]] && nodes[ends[1]])
-        .map(|ends| place(ends[0]).distance(place(ends[1])))
+        .map(|ends| {
+            let [from, to] = [ends[0], ends[1]].map(|node| skeleton.nodes[node].position);
+            from.distance(to)
+        })
         .sum()
 }
 
@@ -405,11 +405,12 @@ fn without_curves(
     without(text, &removed)
 }
 
-/// A text without some commands: each at its byte range.
+/// Returns a text without some commands, each at its byte range. `None` if a range is not in the
+/// text.
 #[must_use]
 pub fn without_commands(text: &str, spans: &[Range<usize>]) -> Option<String> {
-    let inside = |span: &Range<usize>| text.get(span.clone()).is_some();
-    spans.iter().all(inside).then(|| without(text, spans))
+    let are_inside = spans.iter().all(|span| text.get(span.clone()).is_some());
+    are_inside.then(|| without(text, spans))
 }
 
 /// A word that does not stand in any of the texts: `stem`, or `stem` with a number.
@@ -484,13 +485,13 @@ impl<'a> Names<'a> {
 }
 
 fn line(text: &mut String, indent: &str, name: &str, node: &Node, grain: f64) {
-    let [x, y, z] = node.position.to_array().map(|x| rounded(x, grain));
-    let radius = rounded(node.radius, grain);
+    let [x, y, z] = node.position.to_array().map(|x| decimal(x, grain));
+    let radius = decimal(node.radius, grain);
     let _ = writeln!(text, "{indent}node {name} <{x} {y} {z}> radius {radius}");
 }
 
-/// A number without the digits that are below a tenth of the grain.
-fn rounded(number: f64, grain: f64) -> String {
+/// Writes a number without the digits that are below a tenth of the grain.
+fn decimal(number: f64, grain: f64) -> String {
     let digits = -libm::floor(libm::log10(grain.max(1e-9)));
     let decimals = digits.clamp(0.0, 9.0) as usize;
     let text = format!("{number:.decimals$}");
@@ -505,7 +506,7 @@ fn rounded(number: f64, grain: f64) -> String {
     }
 }
 
-/// What stands before the block's lines.
+/// Returns the spaces before the block's lines.
 fn indent(text: &str, block: &Block) -> String {
     let items = block.nodes.iter().map(|node| node.span.start);
     let mut items = items.chain(block.curves.iter().map(|curve| curve.span.start));
@@ -537,7 +538,6 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
     for line in text.split_inclusive('\n') {
         let place = start..start + line.len();
         start = place.end;
-        let inside = |at: &usize| ranges.iter().any(|range| range.contains(at));
         let is_touched = ranges
             .iter()
             .any(|range| range.start < place.end && place.start < range.end);
@@ -547,9 +547,10 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
         }
         let content = line.trim_end_matches(['\n', '\r']);
         let end = &line[content.len()..];
-        let rest = content
-            .char_indices()
-            .filter(|(at, _)| !inside(&(place.start + at)));
+        let rest = content.char_indices().filter(|(at, _)| {
+            let at = place.start + at;
+            !ranges.iter().any(|range| range.contains(&at))
+        });
         let rest: String = rest.map(|(_, c)| c).collect();
         let left = rest.trim_start();
         if !left.is_empty() && !left.starts_with('#') {
@@ -560,7 +561,7 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
     kept
 }
 
-fn applied(text: &str, edits: Vec<Edit>) -> String {
+fn apply(text: &str, edits: Vec<Edit>) -> String {
     let mut order: Vec<usize> = (0..edits.len()).collect();
     // The last first, so that no place moves under another.
     field::heap_sort(&mut order, |a, b| {
