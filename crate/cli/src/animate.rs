@@ -32,7 +32,7 @@ pub struct Animate {
     /// Width and height in pixels, instead of the dataset's `framesize`
     #[arg(short, long, num_args = 2, value_names = ["W", "H"])]
     resolution: Option<Vec<u32>>,
-    /// At most N×N rays a pixel, instead of the dataset's `sample`
+    /// The most rays a pixel, N×N, instead of the dataset's `sample`
     #[arg(short, long, value_name = "N")]
     samples: Option<u32>,
     /// Threads; default: as many as the machine has cores
@@ -68,7 +68,8 @@ impl Animate {
         if !loaded.compiled.animated {
             report::to_stderr(&loaded);
             return Err(format!(
-                "nothing of {} changes with the frames; let a variable grow, e.g. `var angle = 0 += 5`, or move a skeleton by `motion`",
+                "nothing of {} changes with the frames; let a variable grow, \
+                 e.g. `var angle = 0 += 5`, or move a skeleton by `motion`",
                 self.file.display()
             ));
         }

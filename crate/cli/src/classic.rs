@@ -240,7 +240,7 @@ fn echo(text: &str) -> String {
     echoed
 }
 
-/// Where all that is said to a person goes.
+/// The destination of everything said to a person.
 struct Said {
     log: Option<(PathBuf, File)>,
 }

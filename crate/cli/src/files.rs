@@ -1,4 +1,4 @@
-//! From files on disk to a project.
+//! Makes a project of files on disk.
 //!
 //! A dataset may `read` others. The compiler only ever sees the texts of a project, so the ones it
 //! asks for are fetched here, from the folder of the first file, until it asks for no more.
@@ -128,7 +128,7 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
 ///
 /// # Errors
 /// If it cannot be read or is too large.
-pub fn bounded(path: &Path, most: u64) -> Result<Vec<u8>, String> {
+pub fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     let size = std::fs::metadata(path)
         .map_err(|error| format!("cannot open {}: {error}", path.display()))?
         .len();

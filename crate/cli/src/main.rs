@@ -31,7 +31,8 @@ use std::process::ExitCode;
     name = "sinew",
     version,
     about = "Convolution surfaces: smooth shapes grown on a skeleton",
-    after_help = "sinew [-/+options] FILE.rat … runs datasets as RATS did; sinew -? lists its options."
+    after_help = "sinew [-/+options] FILE.rat … runs datasets as RATS did; sinew -? lists its \
+        options."
 )]
 struct Arguments {
     #[command(subcommand)]

@@ -61,8 +61,8 @@ impl Probe {
         Ok(good)
     }
 
-    /// The field of every body at a point; the keys beside `bodies` tell of the body with the
-    /// largest.
+    /// The field of every body at a point; the keys beside `bodies` are those of the body with the
+    /// largest field.
     fn point(&self, loaded: &Loaded, surfaces: &[Surface], point: DVec3) -> Value {
         let scene = &loaded.compiled.scene;
         let jets: Vec<Jet<f64>> = surfaces

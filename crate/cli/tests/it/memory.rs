@@ -1,4 +1,4 @@
-//! How much memory very many elements take, of which Linux tells.
+//! The memory of very many elements, as Linux tells it.
 #![cfg(target_os = "linux")]
 use std::process::Command;
 
