@@ -2,7 +2,7 @@
 //! offset surfaces.
 
 use crate::instance::Units;
-use crate::materials::{finite, worn};
+use crate::materials::{draft_colours, finite};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use scene::{Finish, Rgb, Scene};
@@ -12,7 +12,7 @@ use scene::{Finish, Rgb, Scene};
 /// of [`shine`], diffuse and specular.
 pub const VERTEX: usize = 32;
 
-/// The exponents of highlights fill so many powers of two; as in `shaders/mesh.wgsl`.
+/// Powers of two that the exponents of highlights span; as in `shaders/mesh.wgsl`.
 const SHINE_OCTAVES: f32 = 12.0;
 
 /// Triangles to be drawn: plain bytes, as the GPU takes them.
@@ -20,7 +20,7 @@ const SHINE_OCTAVES: f32 = 12.0;
 pub struct Mesh<'a> {
     /// Vertices of [`VERTEX`] bytes each.
     pub vertices: &'a [u8],
-    /// Three numbers of vertices a triangle, 32 bits each.
+    /// The numbers of each triangle's three vertices, 32 bits each.
     pub triangles: &'a [u8],
     /// World position of the vertices' origin.
     pub origin: DVec3,
@@ -38,7 +38,7 @@ pub fn looks(scene: &Scene) -> Vec<[f32; 10]> {
 }
 
 fn look(finish: &Finish, around: Rgb) -> [f32; 10] {
-    let [ambient, diffuse] = worn(finish, around);
+    let [ambient, diffuse] = draft_colours(finish, around);
     let colours = [ambient, diffuse, finish.specular].concat();
     core::array::from_fn(|i| match colours.get(i) {
         Some(channel) => finite(*channel).clamp(0.0, 1.0),
@@ -105,9 +105,8 @@ impl Uploaded {
             && mesh.origin.is_finite()
             && mesh.unit.is_finite()
             && mesh.unit > 0.0;
-        let room = device.limits().max_buffer_size;
-        let fits = |bytes: &[u8]| bytes.len() as u64 <= room;
-        if !(is_sound && fits(mesh.vertices) && fits(mesh.triangles)) {
+        let bytes = mesh.vertices.len().max(mesh.triangles.len());
+        if !is_sound || bytes as u64 > device.limits().max_buffer_size {
             return None;
         }
         let buffer = |size: usize, usage: wgpu::BufferUsages| {

@@ -44,7 +44,7 @@ fn scene(name: &str) -> Scene {
 }
 
 /// The traced picture of an example, as the gallery shows it.
-fn traced(name: &str) -> Picture {
+fn gallery_picture(name: &str) -> Picture {
     let file = std::fs::File::open(examples().join(format!("{name}.png"))).unwrap();
     let mut decoder = png::Decoder::new(std::io::BufReader::new(file));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
@@ -107,7 +107,7 @@ fn difference(a: &Picture, b: &Picture) -> f64 {
     for y in 0..height {
         for x in 0..width {
             for channel in 0..3 {
-                let mean = |picture: &Picture| {
+                let [mean_a, mean_b] = [a, b].map(|picture| {
                     let mut sum = 0.0;
                     for dy in 0..BLOCK {
                         for dx in 0..BLOCK {
@@ -116,8 +116,8 @@ fn difference(a: &Picture, b: &Picture) -> f64 {
                         }
                     }
                     sum / f64::from(BLOCK * BLOCK)
-                };
-                sum += (mean(a) - mean(b)).abs();
+                });
+                sum += (mean_a - mean_b).abs();
             }
         }
     }
@@ -171,7 +171,7 @@ fn drafts_of_all_examples_look_like_their_pictures() {
         let mut rows = Vec::new();
         for name in names {
             let scene = scene(name);
-            let traced = traced(name);
+            let traced = gallery_picture(name);
             let begun = std::time::Instant::now();
             let (plain, mesh) = drafts(gpu, &scene, traced.size);
             let off = difference(&plain, &traced);
