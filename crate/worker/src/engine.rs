@@ -77,7 +77,7 @@ impl Begun {
 
 /// A scene made ready for what is wanted of it.
 enum Prepared {
-    /// With the first samples of its pixels, for the tiles that are made smooth.
+    /// The picture with the first samples of its pixels, for the tiles that are made smooth.
     Colours(Box<Picture>, SampleCache),
     Errors(Box<Errors>),
 }
@@ -85,7 +85,7 @@ enum Prepared {
 /// Outcome of a step.
 #[derive(Debug, PartialEq)]
 pub enum Step {
-    /// There was nothing to do.
+    /// Nothing was to be done.
     Idle,
     /// A part of a tile was traced.
     Part,

@@ -1,6 +1,6 @@
-//! How far off the scene's digger is: for each pixel, along the ray through its middle, the
-//! distance between the first hit that the digger finds and the first crossing of the field itself,
-//! found in double precision.
+//! The errors of the scene's digger: for each pixel, along the ray through its middle, the distance
+//! between the first hit that the digger finds and the first crossing of the field itself, found in
+//! double precision.
 //!
 //! Four bytes stand for a pixel, as in a picture, so that such tiles travel as others do: a
 //! single-precision number, the smallest byte first.
@@ -16,9 +16,9 @@ const TOGETHER: u32 = 8;
 pub enum Pixel {
     /// Neither hits.
     Empty,
-    /// Both hit, so far apart along the ray.
+    /// The digger and the field hit, at this distance along the ray from each other.
     Off(f32),
-    /// Only one of them hits.
+    /// Either the digger or the field hits.
     Alone,
 }
 

@@ -4,14 +4,14 @@ use scene::Scene;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use tracer::{Known, Pass, Stats, Tile};
 
-/// One tile to trace.
+/// A tile to trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Order {
     /// The picture it belongs to.
     pub generation: u64,
-    /// Which pixels.
+    /// The pixels.
     pub tile: Tile,
-    /// How finely.
+    /// The pass: coarse, full or smooth.
     pub pass: Pass,
 }
 
@@ -21,7 +21,7 @@ pub enum Kind {
     /// Colours, as RGBA.
     #[default]
     Colours,
-    /// How far off the scene's digger is, as said in [`crate::errors`].
+    /// Errors of the scene's digger, as said in [`crate::errors`].
     Errors,
 }
 
@@ -30,7 +30,7 @@ pub enum Kind {
 pub enum Request {
     /// A new picture begins: whatever is queued is forgotten.
     Begin {
-        /// Its number, larger than those before.
+        /// The picture's number, larger than those before.
         generation: u64,
         /// Scene to draw.
         scene: Box<Scene>,
@@ -41,7 +41,7 @@ pub enum Request {
         /// Whether others trace it, too, and want to hear of the first samples that were taken.
         shared: bool,
     },
-    /// Others took these first samples, which are not to be taken again.
+    /// First samples that others took, which are not to be taken again.
     Learn {
         /// The picture.
         generation: u64,
@@ -66,7 +66,7 @@ pub enum Answer {
     /// A [`Request::Begin`] or [`Request::Stop`] was taken note of: whatever the worker was at
     /// before is over. Left out if another one has come in meanwhile.
     Noted {
-        /// Its number.
+        /// The number of the request.
         generation: u64,
     },
     /// The picture is ready for tracing. Sent once for each [`Request::Begin`] that was not

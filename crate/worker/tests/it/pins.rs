@@ -33,7 +33,7 @@ const PARTS: [(&str, u32); 14] = [
     ("still-life", 128),
     ("touching", 128),
 ];
-/// At most n×n rays a pixel, so that the smooth pass has something to do in every scene.
+/// The most rays a pixel is n×n, so that the smooth pass has something to do in every scene.
 const SAMPLES: u32 = 2;
 const PASSES: [Pass; 2] = [Pass::Full, Pass::Smooth];
 
@@ -75,7 +75,7 @@ fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
     let orders = PASSES
         .iter()
         .flat_map(|&pass| tiles.iter().map(move |&tile| (pass, tile)));
-    let done = crate::common::traced(scene, [SIZE; 2], orders);
+    let done = crate::common::trace(scene, [SIZE; 2], orders);
     assert_eq!(done.len(), 2 * tiles.len());
     [0, 1].map(|pass| {
         let mut picture = vec![0; 4 * (part.width * part.height) as usize];
@@ -164,7 +164,8 @@ fn compare(place: &str, scenes: &[(&str, &str)]) {
     let said = changes(&pins(PINS), &drawn);
     assert!(
         said.is_empty(),
-        "\n{said}If that is meant, look at the old and new pictures and renew tests/pins.txt: cargo xtask pins\n"
+        "\n{said}If that is meant, look at the old and new pictures and renew tests/pins.txt: \
+         cargo xtask pins\n"
     );
 }
 
