@@ -4,7 +4,7 @@ use crate::report::Report;
 use anyhow::Result;
 use xtask::shell::{Build, cargo, run_and_read, words};
 
-/// How many rays are held against the reference.
+/// The number of rays that are held to the reference.
 const RAYS: &str = "1000000";
 
 /// Runs it. It writes its own tables.

@@ -9,7 +9,7 @@ use xtask::shell::{command, read, run_and_read};
 
 /// Facets of the traced implicit meshes.
 const FACETS: [u32; 4] = [2000, 8000, 30_000, 100_000];
-/// Most that the last of them may take, in times of the first.
+/// The goal: the greatest ratio of the last mesh's time to the first's.
 const GROWTH: f64 = 3.0;
 
 /// The scene of a traced mesh, but for the mesh.

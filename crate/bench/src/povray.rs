@@ -21,7 +21,7 @@ pub struct Cost {
     pub rays: f64,
 }
 
-/// Its name and version, if it is installed.
+/// Returns POV-Ray's name and version, if it is installed.
 pub fn version() -> Option<String> {
     // It says it on the standard error.
     let output = Command::new(find("povray")?).arg("--version").output();
@@ -87,12 +87,12 @@ pub fn blob(scene: &Value, pieces: u32) -> Result<String> {
                 let strength = 1.0 / (share(0.0).powi(2) + 2.0 * beside);
                 let center: DVec3 = soft.read("center")?;
                 let (u, v): (DVec3, DVec3) = (soft.read("u")?, soft.read("v")?);
-                let place = |i: u32| {
-                    let (s, c) = libm::sincos(angle * f64::from(i) / f64::from(pieces));
-                    center + sweep * (c * u + s * v)
-                };
                 for i in 0..pieces {
-                    add("cylinder", &[place(i), place(i + 1)], strength);
+                    let ends = [i, i + 1].map(|i| {
+                        let (s, c) = libm::sincos(angle * f64::from(i) / f64::from(pieces));
+                        center + sweep * (c * u + s * v)
+                    });
+                    add("cylinder", &ends, strength);
                 }
             }
             kind => bail!("a shape that no blob has: {kind}"),

@@ -14,8 +14,8 @@ const ROUNDS: usize = 5;
 /// Measures all scenes.
 pub fn measure() -> Result<Report> {
     tools::target(tools::WASI)?;
-    let native = built("--profile release")?;
-    let slow = built(&format!("--profile worker --target {}", tools::WASI))?;
+    let native = build("--profile release")?;
+    let slow = build(&format!("--profile worker --target {}", tools::WASI))?;
     // Optimised like the worker of the page.
     let wasm = slow.with_file_name("speed.wasm");
     page::optimise(
@@ -51,9 +51,10 @@ pub fn measure() -> Result<Report> {
 }
 
 /// Compiles the measurement.
-fn built(options: &str) -> Result<PathBuf> {
+fn build(options: &str) -> Result<PathBuf> {
     let line = format!(
-        "test --no-run --package worker --test it --message-format json-render-diagnostics {options}"
+        "test --no-run --package worker --test it --message-format json-render-diagnostics \
+         {options}"
     );
     executable(&artifacts(&mut cargo(&words(&line)))?, "it")
 }
