@@ -43,8 +43,8 @@ pub use shape::Area;
 
 /// The side of a tile in pixels.
 const TILE: i32 = 64;
-/// Shapes that touch at most so many tiles, as nearly all do, count as changed in all of them or in
-/// none.
+/// The most tiles that a small shape touches; nearly all are small, and count as changed in all
+/// their tiles or in none.
 const SMALL: usize = 4;
 
 /// Draws frames of egui on a sheet of pixels.
@@ -60,7 +60,7 @@ pub struct Painter {
     pieces: Vec<Piece>,
 }
 
-/// Something to fill.
+/// A shape to fill.
 #[derive(Debug)]
 struct Piece {
     shape: Shape,

@@ -117,7 +117,7 @@ impl Texture {
             .unwrap_or(0)
     }
 
-    /// Whether neighbouring texels are blended where so many of them fall on a pixel.
+    /// Whether neighbouring texels are blended, at a number of texels per pixel.
     pub fn is_smooth(&self, texels_per_pixel: f32) -> bool {
         let filter = if texels_per_pixel > 1.0 {
             self.options.minification
@@ -172,11 +172,10 @@ impl Texture {
         }
         let far = row.far * self.size[0];
         let [own, its] = [256 - row.weight, row.weight].map(|weight| weight as u16);
-        let down = |x: usize| -> [u16; 4] {
+        let [left, right]: [[u16; 4]; 2] = [column.near, column.far].map(|x| {
             let [near, far] = [near, far].map(|row| self.texels[row + x].map(u16::from));
             std::array::from_fn(|c| near[c] * own + far[c] * its)
-        };
-        let (left, right) = (down(column.near), down(column.far));
+        });
         std::array::from_fn(|c| interpolate(left[c], right[c], column.weight as u16))
     }
 
