@@ -210,7 +210,7 @@ pub fn help(project: &Project, first: &Compiled, byte: usize) -> Result<(), Stri
     let Ok(edits) = assist::rename(project, 0, byte, "another_name") else {
         return Ok(());
     };
-    let again = compile(&assist::apply(project, &edits));
+    let again = compile(&project.apply(&edits));
     if has_errors(&again) {
         return Err(String::from("renamed, the text has mistakes"));
     }

@@ -25,7 +25,7 @@ fn serve(
     clock: Instant,
     send: &dyn Fn(Answer) -> bool,
 ) {
-    let mut engine = Engine::default();
+    let mut engine = Engine::new(digger::prepare);
     let mut listened = send(Answer::Started);
     let mut generation = 0;
     while listened {

@@ -1,4 +1,5 @@
-//! The pool of the page: one web worker per core, each with an instance of `tracer_bg.wasm`.
+//! The pool of the page: one web worker per core, each with an instance of `tracer_bg.wasm`, or of
+//! `digger_bg.wasm` from the first scene on that asks for what only that build has.
 //!
 //! Answers are handled as they arrive, not when the app draws, so that workers have work even while
 //! the page is hidden or slow.
@@ -15,13 +16,34 @@ use wasm_bindgen_futures::spawn_local;
 use worker::Answer;
 use worker::message::unpack;
 
-/// The script of a worker, and its wasm, relative to the page.
-const SCRIPT: &str = "./worker.js";
-const WASM: &str = "./tracer_bg.wasm";
+/// A build of the tracing worker.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Build {
+    /// The script of a worker, relative to the page.
+    script: &'static str,
+    /// Its wasm, relative to the page.
+    wasm: &'static str,
+    /// Its name in messages.
+    name: &'static str,
+}
+
+const CERTIFIED: Build = Build {
+    script: "./worker.js",
+    wasm: "./tracer_bg.wasm",
+    name: "The tracer",
+};
+
+/// The same with the root finders for comparison.
+const COMPARING: Build = Build {
+    script: "./digger_worker.js",
+    wasm: "./digger_bg.wasm",
+    name: "The root finders for comparison (`digger`)",
+};
 
 struct Inner {
+    build: Build,
     core: Core<WebWorkers>,
-    repaint: Box<dyn Fn()>,
+    repaint: Rc<dyn Fn()>,
     timer: Option<Timer>,
     loading: bool,
 }
@@ -37,6 +59,33 @@ fn answers(message: Message) -> Vec<Answer> {
 }
 
 impl Inner {
+    /// Starts the workers of a build.
+    fn start(build: Build, repaint: Rc<dyn Fn()>) -> Rc<RefCell<Self>> {
+        let cores = window().map_or(1.0, |window| window.navigator().hardware_concurrency());
+        let count = worker_count(cores as usize);
+        let inner = Rc::new_cyclic(|pool: &Weak<RefCell<Self>>| {
+            let pool = pool.clone();
+            let workers = WebWorkers::new(build.script, count, move |index, message| {
+                Self::receive(&pool, index, message);
+            });
+            RefCell::new(Self {
+                build,
+                core: Core::new(count, workers),
+                repaint,
+                timer: None,
+                loading: false,
+            })
+        });
+        Self::load(&inner);
+        inner
+    }
+
+    /// Whether the workers can trace what needs this build: the larger build, once it is there,
+    /// does all that the other one does.
+    fn serves(&self, build: Build) -> bool {
+        self.build == build || self.build == COMPARING && self.core.workers.has_module()
+    }
+
     fn receive(pool: &Weak<RefCell<Self>>, index: usize, message: Message) {
         let Some(pool) = pool.upgrade() else { return };
         let inner = &mut *pool.borrow_mut();
@@ -47,16 +96,17 @@ impl Inner {
 
     /// Fetches the workers' wasm, unless that was done.
     fn load(pool: &Rc<RefCell<Self>>) {
-        {
+        let build = {
             let inner = &mut *pool.borrow_mut();
             if inner.loading || inner.core.workers.has_module() {
                 return;
             }
             inner.loading = true;
-        }
+            inner.build
+        };
         let pool = Rc::downgrade(pool);
         spawn_local(async move {
-            let module = load(WASM).await;
+            let module = load(build.wasm).await;
             let Some(pool) = pool.upgrade() else { return };
             {
                 let inner = &mut *pool.borrow_mut();
@@ -68,7 +118,8 @@ impl Inner {
                     }
                     Err(error) => inner.core.scheduler.unavailable(
                         &format!(
-                            "The tracer could not be loaded: {}. Check the connection and render again.",
+                            "{} could not be loaded: {}. Check the connection and render again.",
+                            build.name,
                             describe(error)
                         ),
                         now(),
@@ -101,6 +152,7 @@ impl Inner {
 /// Traces pictures with all cores; see the [crate](crate).
 pub struct Pool {
     inner: Rc<RefCell<Inner>>,
+    repaint: Rc<dyn Fn()>,
 }
 
 impl Pool {
@@ -108,26 +160,19 @@ impl Pool {
     /// when it is known whether there can be a picture at all.
     #[must_use]
     pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
-        let cores = window().map_or(1.0, |window| window.navigator().hardware_concurrency());
-        let count = worker_count(cores as usize);
-        let inner = Rc::new_cyclic(|pool: &Weak<RefCell<Inner>>| {
-            let pool = pool.clone();
-            let workers = WebWorkers::new(SCRIPT, count, move |index, message| {
-                Inner::receive(&pool, index, message);
-            });
-            RefCell::new(Inner {
-                core: Core::new(count, workers),
-                repaint: Box::new(repaint),
-                timer: None,
-                loading: false,
-            })
-        });
-        Inner::load(&inner);
-        Self { inner }
+        let repaint: Rc<dyn Fn()> = Rc::new(repaint);
+        Self {
+            inner: Inner::start(CERTIFIED, repaint.clone()),
+            repaint,
+        }
     }
 
     /// Begins a picture and forgets the one before.
     pub fn start(&mut self, job: Job<'_>) {
+        let build = if job.compares() { COMPARING } else { CERTIFIED };
+        if !self.inner.borrow().serves(build) {
+            self.inner = Inner::start(build, self.repaint.clone());
+        }
         Inner::load(&self.inner);
         self.inner.borrow_mut().core.start(job, now());
         Inner::watch(&self.inner);

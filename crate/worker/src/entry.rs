@@ -30,8 +30,17 @@ struct Desk {
 ///
 /// # Errors
 /// Outside a dedicated worker.
-#[wasm_bindgen]
-pub fn serve() -> Result<(), JsValue> {
+#[cfg(feature = "entry")]
+#[wasm_bindgen(js_name = serve)]
+pub fn serve_certified() -> Result<(), JsValue> {
+    serve(Engine::default())
+}
+
+/// Takes over the messages of a worker with this engine.
+///
+/// # Errors
+/// Outside a dedicated worker.
+pub fn serve(engine: Engine) -> Result<(), JsValue> {
     std::panic::set_hook(Box::new(|panic| {
         let message = panic.to_string();
         web_sys::console::error_1(&JsValue::from_str(&message));
@@ -39,7 +48,7 @@ pub fn serve() -> Result<(), JsValue> {
     }));
     let scope = scope()?;
     let desk = Rc::new(RefCell::new(Desk {
-        engine: Engine::default(),
+        engine,
         answers: Vec::new(),
         sent: 0.0,
         ticking: false,

@@ -21,7 +21,7 @@ pub enum Kind {
     /// Colours, as RGBA.
     #[default]
     Colours,
-    /// Errors of the scene's digger, as said in [`crate::errors`].
+    /// Errors of the scene's digger, as the crate `digger` says.
     Errors,
 }
 

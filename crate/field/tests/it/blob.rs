@@ -1,8 +1,8 @@
 //! Blobs along rays: values are the field's, and bounds hold.
 
-use crate::common::primitive;
 use field::{Blob, Evaluate, Kernel, Limits, Primitive, Profile, Real, Skeleton, Wave};
 use glam::DVec3;
+use oracle::evaluation::primitive;
 use trials::{Random, count};
 use wide::f32x8;
 
