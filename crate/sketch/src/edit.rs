@@ -559,7 +559,7 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
     kept
 }
 
-/// Returns the edit that inserts a text at a place. There is one text, so its number does not matter.
+/// Returns the edit that inserts a text at a place of the only file, which has the number 0.
 fn put(place: usize, text: String) -> TextEdit {
     TextEdit::new(0, place..place, text)
 }
