@@ -16,9 +16,9 @@ const TOGETHER: u32 = 8;
 pub enum Pixel {
     /// Neither hits.
     Empty,
-    /// Both hit, so far apart along the ray.
+    /// The digger and the field hit, at this distance along the ray from each other.
     Off(f32),
-    /// Only one of them hits.
+    /// Either the digger or the field hits.
     Alone,
 }
 

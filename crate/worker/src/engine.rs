@@ -84,7 +84,7 @@ pub type Tracer = dyn Fn(Tile, &dyn Fn() -> bool) -> Option<Vec<u8>>;
 
 /// A scene made ready for what is wanted of it.
 pub enum Prepared {
-    /// With the first samples of its pixels, for the tiles that are made smooth.
+    /// The picture with the first samples of its pixels, for the tiles that are made smooth.
     Colours(Box<Picture>, SampleCache),
     /// Something else than colours.
     Other(Box<Tracer>),
@@ -118,7 +118,7 @@ impl Default for Engine {
 /// Outcome of a step.
 #[derive(Debug, PartialEq)]
 pub enum Step {
-    /// There was nothing to do.
+    /// Nothing was to be done.
     Idle,
     /// A part of a tile was traced.
     Part,
