@@ -15,7 +15,6 @@ fn id() -> Id {
 /// that one that comes or goes (a spinner, a strip) would give those after it another identity, and
 /// a click that has begun on one of them would be lost. Widgets in a part of its own are counted
 /// apart.
-#[must_use]
 pub fn part(name: &str, place: Rect) -> UiBuilder {
     UiBuilder::new()
         .scope_id(Id::unique(("part", name)))
