@@ -184,9 +184,9 @@ impl<W: Workers> Core<W> {
     }
 
     fn send(&mut self, index: usize, request: &Request) {
-        // Packing fails only when memory runs out; the worker then misses a message, hangs as far as
-        // the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes samples
-        // again.
+        // Packing fails only when memory runs out; the worker then misses a message, hangs as far
+        // as the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes
+        // samples again.
         if let Ok(bytes) = pack(request) {
             self.workers.send(index, &bytes);
         }

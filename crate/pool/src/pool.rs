@@ -69,7 +69,12 @@ impl Pool {
 /// Starts a crew with a worker for each core.
 fn start(program: Program, repaint: Repaint) -> Crew<Core<PlatformWorkers>> {
     let count = worker_count(cores());
-    let crew = Crew::new(program, count, move || repaint(), |workers| Core::new(count, workers));
+    let crew = Crew::new(
+        program,
+        count,
+        move || repaint(),
+        |workers| Core::new(count, workers),
+    );
     crew.load();
     crew
 }

@@ -168,8 +168,9 @@ impl Workers for Asked {
     }
 }
 
-/// Traces a picture with so many workers that take turns, each of which may tell others what it sampled. The first one fails
-/// in the middle if that is wanted. Gives the picture's last pixels, tile by tile, and the rays.
+/// Traces a picture with so many workers that take turns, each of which may tell others what it
+/// sampled. The first one fails in the middle if that is wanted. Gives the picture's last pixels,
+/// tile by tile, and the rays.
 fn taking_turns(
     scene: &Arc<Scene>,
     workers: usize,
@@ -263,8 +264,8 @@ fn balls(at: [&str; 2]) -> Arc<Scene> {
     scene
 }
 
-/// Pictures of two scenes follow each other while answers of the one before are on their way: each shows its own, and of none
-/// anything is known when it is over, however it ends.
+/// Pictures of two scenes follow each other while answers of the one before are on their way: each
+/// shows its own, and of none anything is known when it is over, however it ends.
 #[test]
 fn picture_shows_nothing_of_an_older_one() {
     let size = [260, 200];
@@ -291,7 +292,8 @@ fn picture_shows_nothing_of_an_older_one() {
         let all: HashMap<_, _> = tiles.map(|tile| (tile, smooth(tile).unwrap())).collect();
         all
     });
-    // Answers that were lost, pictures of which something was known when they were broken off, tiles that were waited for.
+    // Answers that were lost, pictures of which something was known when they were broken off,
+    // tiles that were waited for.
     let (mut lost, mut told, mut waiting) = (0, 0, 0);
     for workers in [2, 3, 5] {
         let engines = (0..workers).map(|_| Engine::default()).collect();
@@ -300,7 +302,8 @@ fn picture_shows_nothing_of_an_older_one() {
         let mut late: Vec<Vec<Answer>> = vec![Vec::new(); workers];
         let mut now = 0.0;
         for picture in 0..60 {
-            // Every other one is broken off, each later than the one before, and the first one cancelled.
+            // Every other one is broken off, each later than the one before, and the first one
+            // cancelled.
             let breaks = (picture % 2 == 0).then_some(2 * picture);
             let which = picture % 2;
             let job = Job {

@@ -143,7 +143,8 @@ pub fn serve(request: Vec<u8>, send: &mut Outlet<'_>) {
 }
 
 fn run<J: Job>(job: J, id: u64, send: &mut Outlet<'_>) {
-    // A part or a result for which there is no memory never comes, and the page replaces the worker.
+    // A part or a result for which there is no memory never comes, and the page replaces the
+    // worker.
     let mut tell = |news: News<J::Output>| match news {
         News::Fraction(fraction) => send(Answer::Progress { id, fraction }.packed()),
         News::Part(part) => {

@@ -141,7 +141,8 @@ fn radius(spoke: &Spoke) -> f64 {
     2.0 * spoke.step
 }
 
-/// Returns where rays first leave the inside of a function, as far as they begin inside and leave it.
+/// Returns where rays first leave the inside of a function, as far as they begin inside and leave
+/// it.
 fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
     /// Rays of a cage that are looked at: the surface is followed from each.
     const RAYS: usize = 8;

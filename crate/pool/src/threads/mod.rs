@@ -17,9 +17,9 @@ pub use workers::Threads as PlatformWorkers;
 /// The program that threads run.
 #[derive(Clone, Copy)]
 pub struct Program {
-    /// Serves requests until its inbox is closed, or what it sends is not taken any more. The number
-    /// is that of the work wanted from it, as the last request said; it changes when the present
-    /// work is given up.
+    /// Serves requests until its inbox is closed, or what it sends is not taken any more. The
+    /// number is that of the work wanted from it, as the last request said; it changes when the
+    /// present work is given up.
     pub serve: fn(&Receiver<Vec<u8>>, &AtomicU64, &dyn Fn(Vec<u8>) -> bool),
     /// Reads the number of the work that a packed request wants.
     pub number: fn(&[u8]) -> Option<u64>,
@@ -128,8 +128,8 @@ impl<M> Clone for Crew<M> {
 }
 
 impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
-    /// Creates a crew of `count` workers, none of which is started yet. `repaint` is called when the
-    /// app should draw, from any thread.
+    /// Creates a crew of `count` workers, none of which is started yet. `repaint` is called when
+    /// the app should draw, from any thread.
     pub fn new(
         program: Program,
         count: usize,
