@@ -645,7 +645,8 @@ mod tests {
             let mut engine = Engine::default();
             engine.accept(Request::Begin {
                 generation: 1,
-                scene: Box::new(scene),
+                scene: Arc::new(scene),
+                camera: None,
                 size: [8, 8],
                 kind,
                 shared: false,

@@ -1,14 +1,14 @@
 //! Jobs of threads, and of workers that cannot be started.
 
 use super::*;
-use crate::platform::run_job;
+use crate::platform::{Outlet, run_job};
 use std::sync::atomic::AtomicU64;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 use tools::{CoatScene, ReadMesh, Work};
 
 /// Carries out jobs, but panics or sleeps if the name of a mesh to be read says so.
-fn serve(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &dyn Fn(Vec<u8>) -> bool) {
+fn serve(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
     send(Answer::Started.packed());
     for request in inbox {
         if let Ok(Request { work, .. }) = unpack(&request)
