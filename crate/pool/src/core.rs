@@ -200,7 +200,7 @@ impl<W: Workers + 'static> Manager for Core<W> {
         &mut self.workers
     }
 
-    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
+    fn note_program(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.scheduler.launch(now),
             Err(reason) => {

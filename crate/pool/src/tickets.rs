@@ -246,7 +246,7 @@ impl<W: Workers + 'static> Manager for Jobs<W> {
         &mut self.workers
     }
 
-    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
+    fn note_program(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.all(now, |queue| queue.launch(now)),
             Err(reason) => {

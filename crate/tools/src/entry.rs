@@ -18,7 +18,7 @@ pub fn serve() -> Result<(), JsValue> {
     std::panic::set_hook(Box::new(|panic| {
         let message = panic.to_string();
         web_sys::console::error_1(&JsValue::from_str(&message));
-        send(&Answer::Failed(message).packed());
+        send(&Answer::Failed(message).to_bytes());
     }));
     let on_message = Closure::<dyn FnMut(MessageEvent)>::new(|event: MessageEvent| {
         let bytes = Uint8Array::new(&event.data()).to_vec();
@@ -29,7 +29,7 @@ pub fn serve() -> Result<(), JsValue> {
     });
     scope()?.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
     on_message.forget(); // lives as long as the worker
-    send(&Answer::Started.packed());
+    send(&Answer::Started.to_bytes());
     Ok(())
 }
 

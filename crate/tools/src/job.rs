@@ -137,7 +137,7 @@ pub fn serve(request: Vec<u8>, send: &mut Outlet<'_>) {
     match unpacked {
         Ok(Request { id, work }) => work.run(id, send),
         Err(_) => {
-            let _ = send(Answer::Failed(DIFFERENT_VERSIONS.to_owned()).packed());
+            let _ = send(Answer::Failed(DIFFERENT_VERSIONS.to_owned()).to_bytes());
         }
     }
 }
@@ -146,7 +146,7 @@ fn run<J: Job>(job: J, id: u64, send: &mut Outlet<'_>) {
     // A part or a result for which there is no memory never comes, and the page replaces the
     // worker.
     let mut tell = |news: News<J::Output>| match news {
-        News::Fraction(fraction) => send(Answer::Progress { id, fraction }.packed()),
+        News::Fraction(fraction) => send(Answer::Progress { id, fraction }.to_bytes()),
         News::Part(part) => {
             let packed = pack(&Answer::Part { id }, &part);
             packed.map_or(ControlFlow::Continue(()), &mut *send)
@@ -158,7 +158,7 @@ fn run<J: Job>(job: J, id: u64, send: &mut Outlet<'_>) {
     }
     let answer = match job.run(&mut Progress::new(&mut tell)) {
         Ok(output) => pack(&Answer::Done { id }, &output).ok(),
-        Err(trouble) => Some(Answer::Refused { id, trouble }.packed()),
+        Err(trouble) => Some(Answer::Refused { id, trouble }.to_bytes()),
     };
     if let Some(answer) = answer {
         let _ = send(answer);

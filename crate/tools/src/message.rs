@@ -52,7 +52,7 @@ pub enum Answer {
 impl Answer {
     /// Packs an answer that nothing follows.
     #[must_use]
-    pub fn packed(&self) -> Vec<u8> {
+    pub fn to_bytes(&self) -> Vec<u8> {
         // Of no bytes, as there are if memory runs out, the page says that it does not know them.
         pack(self, &()).unwrap_or_default()
     }

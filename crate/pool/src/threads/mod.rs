@@ -90,7 +90,7 @@ fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
 
 /// Carries out the jobs of a tools worker.
 fn run_jobs(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
-    send(tools::Answer::Started.packed());
+    send(tools::Answer::Started.to_bytes());
     for request in inbox {
         run_job(request, wanted, send);
     }
@@ -140,7 +140,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         manager: impl FnOnce(PlatformWorkers) -> M,
     ) -> Self {
         let mut manager = manager(PlatformWorkers::new(program, count, repaint));
-        manager.loaded(Ok(()), 0.0);
+        manager.note_program(Ok(()), 0.0);
         let inner = Inner {
             manager: RefCell::new(manager),
             clock: Instant::now(),

@@ -9,7 +9,7 @@ use tools::{CoatScene, ReadMesh, Work};
 
 /// Carries out jobs, but panics or sleeps if the name of a mesh to be read says so.
 fn serve(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
-    send(Answer::Started.packed());
+    send(Answer::Started.to_bytes());
     for request in inbox {
         if let Ok(Request { work, .. }) = unpack(&request)
             && let Work::ReadMesh(job) = work
@@ -118,7 +118,7 @@ impl Workers for Refused {
 #[test]
 fn jobs_fail_if_no_worker_can_be_started() {
     let mut jobs = Jobs::new(Refused(0));
-    jobs.loaded(Ok(()), 0.0);
+    jobs.note_program(Ok(()), 0.0);
     // The second job has one more attempt.
     for attempts in [crate::life::ATTEMPTS, crate::life::ATTEMPTS + 1] {
         let (_, news) = jobs.submit(read("a.obj"), 0.0);
@@ -137,7 +137,7 @@ fn jobs_fail_if_the_tools_cannot_be_loaded() {
     let mut jobs = Jobs::new(Refused(0));
     let (_, news) = jobs.submit(read("a.obj"), 0.0);
     assert!(news.borrow().result.is_none() && !jobs.is_busy());
-    jobs.loaded(Err(String::from("offline")), 0.0);
+    jobs.note_program(Err(String::from("offline")), 0.0);
     let result = news.borrow_mut().result.take();
     assert!(
         matches!(&result, Some(Err(reason)) if reason.contains("offline")),

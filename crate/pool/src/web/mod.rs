@@ -121,8 +121,9 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
             let crew = Self { inner };
             crew.ask(|manager, now| {
                 let outcome = module.map(|module| manager.workers().set_module(module));
-                let trouble = |error| format!("{name} could not be loaded: {}", describe(error));
-                manager.loaded(outcome.map_err(trouble), now);
+                let outcome = outcome
+                    .map_err(|error| format!("{name} could not be loaded: {}", describe(error)));
+                manager.note_program(outcome, now);
             });
             {
                 let inner = &mut *crew.inner.borrow_mut();
