@@ -125,3 +125,30 @@ test('hostile texts do not stop the page', async () => {
   await sinew.finished();
   assert.deepEqual(sinew.troubles, []);
 });
+
+test('whatever the pages and their scripts name is there', async () => {
+  const base = new URL('.', sinew.page.url());
+  const get = async (name) => {
+    const response = await sinew.page.request.get(new URL(name, base).href);
+    assert.equal(response.status(), 200, name);
+    return response.text();
+  };
+  const names = new Set(['index.html', 'reference.html', 'figures.html', 'worker.js', 'tools_worker.js']);
+  // The set grows while it is gone through.
+  for (const name of names) {
+    const text = await get(name);
+    if (!/\.(html|js)$/.test(name)) continue;
+    const named = text.matchAll(/(?:href|src)="([^"]+)"|from '([^']+)'|new URL\('([^']+)', import\.meta\.url\)/g);
+    for (const [, link, script, file] of named) {
+      const { href } = new URL(link ?? script ?? file, new URL(name, base));
+      if (!href.startsWith(base.href)) continue;
+      const [path, fragment] = href.slice(base.href.length).split('#');
+      names.add(path || 'index.html');
+      const example = /^example=([a-z0-9-]+)$/.exec(fragment ?? '')?.[1];
+      if (example) names.add(`examples/${example}.rat`);
+    }
+  }
+  for (const name of ['studio_bg.wasm', 'tracer_bg.wasm', 'tools_bg.wasm', 'figures/coral-tree.png']) {
+    assert.ok(names.has(name), `${name} is among ${[...names].length} names`);
+  }
+});

@@ -46,6 +46,32 @@ for (const [file, words] of [
   });
 }
 
+test('without digger_bg.wasm the page says so, and draws all that does not ask for it', async () => {
+  const file = 'digger_bg.wasm';
+  const fetched = [];
+  const before = (page) => {
+    page.on('request', (request) => fetched.push(request.url()));
+    return page.route(`**/${file}`, (route) => route.abort());
+  };
+  const sinew = await own.open({ before });
+  const text = 'surface s diffuse Gold, blobbiness -2\nsphere s 1 0 0 0\n';
+  await sinew.load(text);
+  assert.equal((await sinew.finished()).failure, null);
+  const asked = () => fetched.some((url) => url.endsWith(file));
+  assert.ok(!asked());
+  await sinew.load(`digger brent\n${text}`);
+  const { failure } = await sinew.until((status) => status.failure);
+  assert.match(failure, /root finders for comparison .* could not be loaded/i);
+  assert.ok(asked());
+  await sinew.load(text);
+  assert.equal((await sinew.finished()).failure, null);
+  // Once it comes, all is well.
+  await sinew.page.unroute(`**/${file}`);
+  await sinew.load(`digger brent\n${text}`);
+  assert.equal((await sinew.finished()).failure, null);
+  await sinew.close();
+});
+
 test('a graphics card that is only pretended does not draw the window, and all comes from the page’s own folder', async () => {
   const strangers = [];
   const watch = (page) => page.on('request', (request) => {

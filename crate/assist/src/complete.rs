@@ -157,7 +157,7 @@ impl Offers {
             commands::GROUPS
                 .iter()
                 .filter(move |(group, _)| *group == wanted)
-                .flat_map(|(_, list)| list.iter())
+                .flat_map(|(_, list)| list.iter().copied())
         };
         for idle in [false, true] {
             for spec in order.into_iter().flat_map(group) {

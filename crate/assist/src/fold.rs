@@ -1,6 +1,7 @@
 //! Folding: the ranges of a text that an editor can hide.
 
 use crate::walk;
+use rats::commands::Bracket;
 use rats::lexer::{TokenKind, lex};
 use rats::parser::parse;
 use rats::symbol::Symbols;
@@ -109,15 +110,18 @@ fn objects(text: &str, lines: &Lines) -> Vec<Range<usize>> {
     let syntax = parse(text, &mut symbols);
     let mut open = Vec::new();
     let mut folds = Vec::new();
-    walk::commands(&syntax.block, &mut |command| match walk::name(command) {
-        Some("object" | "body" | "chain") => open.push(command.span.start),
-        Some("close") => {
-            let fold = open
-                .pop()
-                .map(|start| lines.range(start, command.span.start));
-            folds.extend(fold);
-        }
-        _ => {}
-    });
+    walk::commands(
+        &syntax.block,
+        &mut |command| match command.spec.and_then(|spec| spec.bracket) {
+            Some(Bracket::Object | Bracket::Chain) => open.push(command.span.start),
+            Some(Bracket::Close) => {
+                let fold = open
+                    .pop()
+                    .map(|start| lines.range(start, command.span.start));
+                folds.extend(fold);
+            }
+            _ => {}
+        },
+    );
     folds
 }

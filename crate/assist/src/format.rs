@@ -7,6 +7,7 @@
 //! comparisons.
 
 use crate::walk;
+use rats::commands::Bracket;
 use rats::lexer::{Token, TokenKind, lex};
 use rats::limits::MAX_TEXT;
 use rats::parser::parse;
@@ -97,18 +98,22 @@ impl Marks {
     }
 
     fn command(&mut self, tokens: &[Token], command: &Command, items: &[Item]) {
-        match walk::name(command) {
-            Some("object" | "body" | "chain") => {
-                self.at(tokens, command.word_span.start).opens = true
+        let Some(spec) = command.spec else { return };
+        match spec.bracket {
+            Some(Bracket::Object | Bracket::Chain) => {
+                self.at(tokens, command.word_span.start).opens = true;
             }
-            Some("close") => self.at(tokens, command.word_span.start).closes = true,
-            Some("var" | "define") => self.assignments(tokens, items),
-            Some("for") => {
+            Some(Bracket::Close) => self.at(tokens, command.word_span.start).closes = true,
+            None => {}
+        }
+        match spec.name {
+            "var" | "define" => self.assignments(tokens, items),
+            "for" => {
                 if let Some(sign) = items.iter().position(|item| item.datum == EQUAL) {
                     self.assignment(tokens, items, sign);
                 }
             }
-            Some("surface" | "material" | "texture") => {
+            _ if spec.copies() => {
                 // Right after the name only: elsewhere `=` may stand in a file's name.
                 let name = items
                     .iter()
@@ -119,8 +124,8 @@ impl Marks {
                     self.assignment(tokens, items, name);
                 }
             }
-            Some("if") => self.comparisons(tokens, items),
-            Some("pause") => self.verbatim(tokens, command.word_span.end..command.span.end),
+            "if" => self.comparisons(tokens, items),
+            "pause" => self.verbatim(tokens, command.word_span.end..command.span.end),
             _ => {}
         }
     }

@@ -1,6 +1,6 @@
 //! The parameters of a command, from the table, the library or the text itself.
 
-use rats::commands::{Arity, CommandSpec, Kind, Names, OptionSpec, Parameter, Unit};
+use rats::commands::{Arity, CommandSpec, Kind, Names, OptionSpec, Parameter, Role, Unit};
 use rats::library;
 use rats::limits::MAX_MAGNITUDE;
 use rats::symbol::Symbols;
@@ -22,6 +22,8 @@ pub struct Param<'p> {
     pub default: &'p str,
     /// How often it is given.
     pub arity: Arity,
+    /// Whether it is the material of a shape, which a chain gives.
+    pub in_chain: bool,
 }
 
 impl From<&Parameter> for Param<'static> {
@@ -33,6 +35,7 @@ impl From<&Parameter> for Param<'static> {
             unit: parameter.unit,
             default: parameter.default,
             arity: parameter.arity,
+            in_chain: parameter.in_chain,
         }
     }
 }
@@ -47,6 +50,8 @@ impl Param<'_> {
             unit: self.unit,
             default: "",
             arity: self.arity,
+            in_chain: self.in_chain,
+            role: Role::None,
         }
     }
 
@@ -107,6 +112,7 @@ fn defined<'p>(name: &'p str, takes: Takes, default: &'p str, meaning: &'p str) 
         } else {
             Arity::Optional
         },
+        in_chain: matches!(takes, Takes::Surface),
     }
 }
 
@@ -179,9 +185,7 @@ impl<'p> Grammar<'p> {
 
     /// Whether the first operand is the material of what is made.
     pub fn takes_material(&self) -> bool {
-        self.parameters.first().is_some_and(|first| {
-            matches!(first.kind, Kind::Known(Names::Material)) && (self.named || first.name == "sn")
-        })
+        self.parameters.first().is_some_and(|first| first.in_chain)
     }
 }
 

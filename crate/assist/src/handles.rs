@@ -16,7 +16,7 @@
 //! let centre = handles.iter().find(|handle| handle.label == "the centre").unwrap();
 //! // To the right by 2.5, exact to a tenth.
 //! let edits = drag(centre, DVec3::new(2.5, 0.0, 0.0), 0.1);
-//! let moved = assist::apply(&project, &edits);
+//! let moved = project.apply(&edits);
 //! assert!(moved.files[0].text.ends_with("sphere Clay 1, 2.5 0 0\n"));
 //! ```
 
@@ -36,6 +36,7 @@ use glam::DMat3;
 use maker::Maker;
 use rats::provenance::{Operand, Provenance};
 use rats::{Asset, Compiled, Project, provenance};
+use scene::{Element, Shape};
 
 /// The handles of an element of `compiled.scene`, which came from `project` with these assets, at this
 /// frame. `view` is [`scene::Projection::world_from_view`]: knobs for radii lie across the view.
@@ -83,7 +84,7 @@ pub fn handles(
         handles.extend(maker.shared_radius());
         return handles;
     }
-    if !placement.repeated && siblings > parts(&seen) {
+    if !placement.repeated && siblings > parts(&seen, shape) {
         return plain(&shape.shape, "is in a file that is read more than once");
     }
     let handles = maker.handles();
@@ -93,14 +94,13 @@ pub fn handles(
     handles
 }
 
-/// How many elements a command makes.
-fn parts(seen: &Provenance) -> usize {
-    match seen.spec.name {
-        "curve" => {
-            let is_point = |operand: &&Operand| operand.numbers.len() == 3;
-            let points = seen.operands.iter().filter(is_point).count();
-            points.saturating_sub(1) / 3
-        }
-        _ => 1,
+/// The number of elements that the command of an element makes: a curve has one for each three
+/// points after the first.
+fn parts(seen: &Provenance, element: &Element) -> usize {
+    if !matches!(element.shape, Shape::Curve { .. }) {
+        return 1;
     }
+    let is_point = |operand: &&Operand| operand.numbers.len() == 3;
+    let points = seen.operands.iter().filter(is_point).count();
+    points.saturating_sub(1) / 3
 }

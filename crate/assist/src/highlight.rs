@@ -1,7 +1,7 @@
 //! Colours for the editor.
 
 use rats::colours;
-use rats::commands::{self, OptionSpec, options};
+use rats::commands::{self, Kind, OptionSpec, options};
 use rats::functions;
 use rats::lexer::{Token, TokenKind as Lexeme, lex};
 use std::ops::Range;
@@ -118,10 +118,11 @@ impl State {
                 self.options = &[];
                 return TokenKind::Name;
             };
-            self.is_block = ["for", "if", "else", "define"].contains(&spec.name);
+            self.is_block = spec.is_structure();
             self.options = spec.options;
             // `else if` is a command after a command.
-            self.word_seen = spec.name != "else";
+            let first = spec.parameters.first();
+            self.word_seen = first.is_none_or(|first| !matches!(first.kind, Kind::Block));
             return TokenKind::Command;
         }
         let fits = |option: &&OptionSpec| {
@@ -138,7 +139,7 @@ impl State {
         if word.len() > 2 && in_list(self.options) {
             return TokenKind::Option;
         }
-        let is_texture = std::ptr::eq(self.options, options::TEXTURE);
+        let is_texture = std::ptr::eq(self.options, options::TEXTURE_OPTIONS);
         let methods = [options::TARGETS, options::SOLIDS, options::MAPPINGS];
         if is_texture && methods.into_iter().any(in_list) {
             return TokenKind::Option;

@@ -16,13 +16,12 @@
 //! let made = assist::definition(&project, 0, used).unwrap();
 //! assert_eq!(&text[made.span], "Clay");
 //! let edits = assist::rename(&project, 0, used, "Mud").unwrap();
-//! let renamed = assist::apply(&project, &edits);
+//! let renamed = project.apply(&edits);
 //! assert_eq!(renamed.files[0].text, text.replace("Clay", "Mud"));
 //! ```
 
 pub mod complete;
 pub mod definition;
-pub mod edit;
 pub mod fold;
 pub mod format;
 mod grammar;
@@ -43,7 +42,6 @@ mod walk;
 
 pub use complete::{Completion, CompletionKind, Completions, complete};
 pub use definition::{definition, references};
-pub use edit::{Edit, apply};
 pub use fold::folds;
 pub use format::format;
 pub use hover::{Card, hover};

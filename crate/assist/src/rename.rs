@@ -1,10 +1,9 @@
 //! Gives a thing another name, wherever it is named.
 
-use crate::edit::{Edit, apply};
 use crate::grammar::is_triple;
 use crate::index::{Index, Occurrence, SymbolKind};
 use rats::lexer::{TokenKind, lex};
-use rats::{Project, colours, commands, functions};
+use rats::{Project, TextEdit, colours, commands, functions};
 
 /// The changes that rename what the name at a byte stands for, through all files, in the order of files
 /// and places. Files are renamed with [`rename_file`].
@@ -18,7 +17,7 @@ use rats::{Project, colours, commands, functions};
 /// let project = rats::Project::single("var r = 1\nvar s = 2\nsurface Clay, diffuse SandyBrown\nsphere Clay r, s 0 0\n");
 /// let edits = assist::rename(&project, 0, 4, "radius").unwrap();
 /// assert_eq!(edits.len(), 2);
-/// let renamed = assist::apply(&project, &edits);
+/// let renamed = project.apply(&edits);
 /// assert!(renamed.files[0].text.ends_with("sphere Clay radius, s 0 0\n"));
 /// assert!(assist::rename(&project, 0, 4, "s").is_err());
 /// ```
@@ -27,7 +26,7 @@ pub fn rename(
     file: usize,
     byte: usize,
     new_name: &str,
-) -> Result<Vec<Edit>, String> {
+) -> Result<Vec<TextEdit>, String> {
     let index = Index::of(project);
     let occurrence = index
         .occurrence(file, byte)
@@ -62,7 +61,7 @@ pub fn rename(
     }
     let edits = edits(&index, occurrence, new_name);
     // A word's meaning depends on its neighbours, so the renamed texts are checked.
-    let after = apply(project, &edits);
+    let after = project.apply(&edits);
     if Index::of(&after).shape() != index.shape() {
         return Err(format!(
             "`{new_name}` would be taken for something else in one of the places"
@@ -83,9 +82,13 @@ pub fn rename(
 /// let mut project = Project::single("read leg.rat\n");
 /// project.files.push(File { name: "leg.rat".into(), text: String::new() });
 /// let edits = assist::rename_file(&project, 1, "arm.rat").unwrap();
-/// assert_eq!(assist::apply(&project, &edits).files[0].text, "read arm.rat\n");
+/// assert_eq!(project.apply(&edits).files[0].text, "read arm.rat\n");
 /// ```
-pub fn rename_file(project: &Project, file: usize, new_name: &str) -> Result<Vec<Edit>, String> {
+pub fn rename_file(
+    project: &Project,
+    file: usize,
+    new_name: &str,
+) -> Result<Vec<TextEdit>, String> {
     let renamed = project.files.get(file).ok_or("there is no such file")?;
     if new_name.is_empty() || new_name.starts_with("./") {
         return Err(String::from("a file needs a name of letters"));
@@ -107,7 +110,7 @@ pub fn rename_file(project: &Project, file: usize, new_name: &str) -> Result<Vec
     let index = Index::of(project);
     Ok(index
         .uses_of_file(&renamed.name)
-        .map(|place| Edit {
+        .map(|place| TextEdit {
             file: place.file,
             span: place.span.clone(),
             text: new_name.to_owned(),
@@ -166,10 +169,10 @@ fn check_name(kind: SymbolKind, name: &str, new_name: &str) -> Result<(), String
     Ok(())
 }
 
-fn edits(index: &Index<'_>, occurrence: &Occurrence, new_name: &str) -> Vec<Edit> {
+fn edits(index: &Index<'_>, occurrence: &Occurrence, new_name: &str) -> Vec<TextEdit> {
     index
         .all_of(occurrence)
-        .map(|o| Edit {
+        .map(|o| TextEdit {
             file: o.place.file,
             span: o.place.span.clone(),
             text: new_name.to_owned(),

@@ -201,7 +201,7 @@ fn calls_others(block: &Block) -> bool {
     block.iter().any(|node| match node {
         Node::Command(command) => command
             .spec
-            .is_none_or(|spec| spec.name == "read" || spec.yields()),
+            .is_none_or(|spec| spec.includes || spec.yields()),
         Node::For(node) => calls_others(&node.body),
         Node::If(node) => calls_others(&node.then) || calls_others(&node.otherwise),
         Node::Define(node) => calls_others(&node.body),

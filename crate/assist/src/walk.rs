@@ -71,8 +71,3 @@ pub fn commands<'s>(block: &'s Block, visit: &mut impl FnMut(&'s Command)) {
         event.command().into_iter().for_each(&mut *visit);
     }
 }
-
-/// The name of a command that the language knows, as the table spells it.
-pub fn name(command: &Command) -> Option<&'static str> {
-    command.spec.map(|spec| spec.name)
-}

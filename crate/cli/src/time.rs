@@ -13,7 +13,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
-use tracer::{Pass, Picture};
+use tracer::Pass;
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Switch {
@@ -124,11 +124,11 @@ impl Time {
             Fineness::Smooth => Pass::Smooth,
         };
         let trace = |scene: &Scene| {
-            let mut picture = Picture::new(scene, size);
+            let mut picture = digger::picture(scene, size);
             if matches!(self.hierarchy, Switch::Off) {
                 picture.forgo_hierarchy();
             }
-            tracer::render_picture(&picture, 1, pass, &|_| ()).1
+            tracer::render(&picture, 1, pass, &|_| ()).1
         };
         if let Some(rays) = self.rays {
             choose_contrast(&mut scene, rays, |scene| trace(scene).primary_rays);
@@ -139,7 +139,7 @@ impl Time {
         let busy = machine::thread_seconds() - busy;
         let seconds = start.elapsed().as_secs_f64();
         let before = machine::thread_seconds();
-        drop(Picture::new(&scene, size));
+        drop(digger::picture(&scene, size));
         let prepare = machine::thread_seconds() - before;
         println!(
             "{}",

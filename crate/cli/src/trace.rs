@@ -72,7 +72,8 @@ impl Wishes {
         };
         let start = Instant::now();
         let size = scene.settings.frame;
-        let (pixels, stats) = tracer::render(scene, size, threads, tracer::Pass::Smooth, progress);
+        let picture = digger::picture(scene, size);
+        let (pixels, stats) = tracer::render(&picture, threads, tracer::Pass::Smooth, progress);
         let seconds = start.elapsed().as_secs_f64();
         let picture =
             Picture::new(size[0], size[1], pixels).map_err(|problem| problem.to_string())?;

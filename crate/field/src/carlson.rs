@@ -181,7 +181,7 @@ pub fn elliptic<R: Real>(mut x: R, mut y: R, mut z: R) -> Elliptic<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::integral;
+    use crate::integral::integral;
     use wide::f32x8;
 
     /// Arguments over many decades, one of them sometimes 0.

@@ -59,12 +59,7 @@ pub(crate) fn integral_within(
 }
 
 /// The integral from `low` to `high`, which as a rule one panel tells.
-pub(crate) fn of_one_panel(
-    f: &mut impl FnMut(f64) -> f64,
-    low: f64,
-    high: f64,
-    tolerance: f64,
-) -> f64 {
+pub fn of_one_panel(f: &mut impl FnMut(f64) -> f64, low: f64, high: f64, tolerance: f64) -> f64 {
     let whole = panel(f, low, high);
     let tolerance = tolerance * whole.size;
     refine(f, low, high, whole, tolerance, DEPTH)

@@ -364,7 +364,7 @@ impl Kernel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::integral;
+    use crate::integral::integral;
 
     #[test]
     fn values_as_defined() {

@@ -28,7 +28,7 @@
 //!
 //! Where to find what:
 //! - the formula of a Cauchy arc is in `cauchy/arc.rs`, and so on; `form.rs` is the chart that says which
-//!   formula serves which kernel on which bone; they are tested against [`quadrature`];
+//!   formula serves which kernel on which bone; the crate `oracle` holds them to quadrature;
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Implicit`] is any function with a surface, with value, gradient and proven bounds; [`Sum`] is the convolution
 //!   surface's, [`Exponentials`] that of metaballs that fall with distance; [`Blend`] adds functions, [`Placed`] moves and
@@ -70,7 +70,7 @@ mod form;
 mod gauss;
 mod implicit;
 mod influence;
-mod integral;
+pub mod integral;
 mod inverse;
 pub mod kernel;
 pub mod kinks;
@@ -84,7 +84,6 @@ mod point;
 mod polynomial;
 pub mod primitive;
 pub mod profile;
-pub mod quadrature;
 mod ramp;
 mod ray;
 mod reach;

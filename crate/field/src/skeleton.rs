@@ -245,7 +245,8 @@ fn edges(rings: &[Vec<DVec3>]) -> impl Iterator<Item = (DVec3, DVec3)> {
 
 /// Normal of a polygon, twice as long as its area is large: of the outer ring less the holes, which
 /// may run either way round.
-pub(crate) fn area_vector(rings: &[Vec<DVec3>]) -> DVec3 {
+#[must_use]
+pub fn area_vector(rings: &[Vec<DVec3>]) -> DVec3 {
     let of = |ring: &[DVec3]| -> DVec3 {
         let o = ring.first().copied().unwrap_or_default();
         ring.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum()
@@ -291,7 +292,8 @@ fn ball_around<'a>(points: impl Iterator<Item = &'a DVec3> + Clone) -> (DVec3, f
 }
 
 /// A Bézier curve's coefficients in powers of t.
-pub(crate) fn cubic([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
+#[must_use]
+pub fn cubic([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     [
         a,
         (b - a) * 3.0,

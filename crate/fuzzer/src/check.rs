@@ -212,7 +212,7 @@ pub fn helped(project: &Project, first: &Compiled, byte: usize) -> Result<(), St
     let Ok(edits) = assist::rename(project, 0, byte, "another_name") else {
         return Ok(());
     };
-    let again = compile(&assist::apply(project, &edits));
+    let again = compile(&project.apply(&edits));
     let shapes = |compiled: &Compiled| -> Vec<_> {
         let elements = compiled.scene.elements.iter();
         elements

@@ -27,3 +27,11 @@ pub enum Command {
         file: &'static str,
     },
 }
+
+impl Command {
+    /// Opens a text in the editor under this name.
+    pub(crate) fn open(name: &str, text: String) -> Self {
+        let name = name.to_owned();
+        Self::OpenText { name, text }
+    }
+}

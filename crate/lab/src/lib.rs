@@ -1,4 +1,4 @@
-//! The lab: twelve small lessons, each one figure to take hold of, that show how a convolution
+//! The lab: small lessons, each one figure to take hold of, that show how a convolution
 //! surface comes about. Each has its own link (`#lab=kernels`), and opening one leaves the open
 //! work alone.
 //!
@@ -30,33 +30,21 @@
 //! ```
 
 mod bench;
-pub mod chart;
 mod command;
-pub mod contact;
 pub mod contour;
-pub mod convolution;
 mod dataset;
-pub mod fitting;
 pub mod formulas;
-pub mod grid;
-pub mod kernels;
 mod lesson;
+mod lessons;
 mod page;
 pub mod pictures;
 pub mod plot;
-pub mod profiles;
 pub mod sample;
-pub mod sculpting;
-pub mod slice;
-pub mod spans;
 mod state;
-pub mod superposition;
-mod text;
-pub mod textures;
 mod tools;
 
 pub use command::Command;
 pub use dataset::Dataset;
-pub use lesson::Lesson;
+pub use lesson::{Lesson, Words};
 pub use page::{Frame, show};
 pub use state::{Lab, Report};

@@ -5,7 +5,6 @@ use crate::command::Command;
 use crate::dataset::Dataset;
 use crate::lesson::Lesson;
 use crate::state::Lab;
-use crate::text;
 use egui::{
     Align, Align2, Button, CentralPanel, Color32, FontId, Layout, Margin, Panel, Pos2, Rect,
     RichText, ScrollArea, Sense, Stroke, Ui, vec2,
@@ -134,10 +133,10 @@ fn strip(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
         .show(ui, |ui| {
             ui.horizontal_centered(|ui| {
                 ui.add_space(10.0);
-                for (index, lesson) in Lesson::ALL.into_iter().enumerate() {
+                for (index, lesson) in Lesson::all().enumerate() {
                     let chosen = lesson == open;
                     let colour = if chosen { palette.strong } else { palette.weak };
-                    let label = format!("{}  {}", index + 1, short(lesson));
+                    let label = format!("{}  {}", index + 1, lesson.words().short);
                     let button = Button::new(RichText::new(label).color(colour)).fill(if chosen {
                         palette.button
                     } else {
@@ -157,23 +156,12 @@ fn strip(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
         });
 }
 
-fn short(lesson: Lesson) -> &'static str {
-    match lesson {
-        Lesson::Convolution => "Convolution",
-        Lesson::Slice => "Slice",
-        Lesson::Grid => "Grid",
-        Lesson::Chart => "Chart",
-        Lesson::Spans => "Spans",
-        Lesson::Contact => "Contact",
-        Lesson::Sculpting => "Sculpting",
-        Lesson::Fitting => "Fitting",
-        Lesson::Textures => "Textures",
-        _ => lesson.title(),
-    }
-}
-
 fn note(ui: &Ui, lesson: Lesson, rect: Rect) {
-    places::note(ui.ctx(), format!("lab lesson {}", lesson.word()), rect);
+    places::note(
+        ui.ctx(),
+        format!("lab lesson {}", lesson.words().link),
+        rect,
+    );
 }
 
 /// The lessons below each other, for a wide page.
@@ -181,13 +169,13 @@ fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     ui.spacing_mut().item_spacing.y = 4.0;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for (index, lesson) in Lesson::ALL.into_iter().enumerate() {
-            let words = text::of(lesson);
+        for (index, lesson) in Lesson::all().enumerate() {
+            let words = lesson.words();
             let chosen = lesson == open;
             let size = vec2(ui.available_width(), 52.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::click());
             response.widget_info(|| {
-                egui::WidgetInfo::selected(egui::Role::Button, true, chosen, lesson.title())
+                egui::WidgetInfo::selected(egui::Role::Button, true, chosen, words.title)
             });
             note(ui, lesson, rect);
             let painter = ui.painter();
@@ -214,7 +202,7 @@ fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
             painter.text(
                 at(38.0, 18.0),
                 Align2::LEFT_CENTER,
-                lesson_name(lesson),
+                words.name,
                 FontId::proportional(14.5),
                 if chosen { palette.strong } else { palette.text },
             );
@@ -235,14 +223,6 @@ fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
     });
 }
 
-fn lesson_name(lesson: Lesson) -> &'static str {
-    match lesson {
-        Lesson::Convolution => "Convolution",
-        Lesson::Slice => "A slice of the field",
-        _ => lesson.title(),
-    }
-}
-
 /// Title, sentences, button, and the figure.
 fn lesson(
     lab: &mut Lab,
@@ -253,12 +233,11 @@ fn lesson(
     commands: &mut Vec<Command>,
 ) {
     let palette = theme::palette(ui.visuals());
-    let open = lab.lesson;
-    let words = text::of(open);
+    let words = lab.lesson.words();
     let width = ui.available_width();
     let top = ui.cursor().top();
-    let mut wanted = false;
-    let title = RichText::new(open.title()).size(if narrow { 22.0 } else { 26.0 });
+    let mut is_dataset_wanted = false;
+    let title = RichText::new(words.title).size(if narrow { 22.0 } else { 26.0 });
     let title = title.color(palette.strong);
     if narrow {
         ui.label(title);
@@ -267,12 +246,12 @@ fn lesson(
                 .size(14.5)
                 .color(palette.text),
         );
-        wanted |= dataset_button(ui);
+        is_dataset_wanted |= dataset_button(ui);
     } else {
         ui.horizontal(|ui| {
             ui.label(title);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                wanted |= dataset_button(ui);
+                is_dataset_wanted |= dataset_button(ui);
             });
         });
         ui.scope(|ui| {
@@ -295,43 +274,11 @@ fn lesson(
         narrow: narrow || width < 640.0,
         height: (all.height() - used - 52.0).clamp(320.0, 900.0),
     };
-    match open {
-        Lesson::Kernels => lab.kernels.show(ui, &mut bench),
-        Lesson::Convolution => lab.convolution.show(ui, &mut bench),
-        Lesson::Slice => lab.slice.show(ui, &mut bench),
-        Lesson::Grid => lab.grid.show(ui, &mut bench),
-        Lesson::Profiles => lab.profiles.show(ui, &mut bench),
-        Lesson::Chart => lab.chart.show(ui, &mut bench),
-        Lesson::Superposition => lab.superposition.show(ui, &mut bench),
-        Lesson::Spans => lab.spans.show(ui, &mut bench),
-        Lesson::Contact => lab.contact.show(ui, &mut bench),
-        Lesson::Sculpting => lab.sculpting.show(ui, &mut bench),
-        Lesson::Fitting => lab.fitting.show(ui, &mut bench),
-        Lesson::Textures => lab.textures.show(ui, &mut bench),
-    }
+    let figure = &mut lab.figures[lab.lesson.index()];
+    figure.show(ui, &mut bench);
     ui.add_space(if narrow { 24.0 } else { 8.0 });
-    if wanted && open == Lesson::Sculpting {
-        let file = crate::sculpting::Sculpting::example();
-        commands.push(Command::OpenExample { file });
-    } else if wanted {
-        let (name, text) = match open {
-            Lesson::Kernels => ("Kernels", lab.kernels.dataset()),
-            Lesson::Convolution => ("Convolution", lab.convolution.dataset()),
-            Lesson::Slice => ("Slice", lab.slice.dataset()),
-            Lesson::Grid => ("Grid", lab.grid.dataset()),
-            Lesson::Profiles => ("Profiles", lab.profiles.dataset()),
-            Lesson::Chart => ("Chart", lab.chart.dataset()),
-            Lesson::Superposition => ("Superposition", lab.superposition.dataset()),
-            Lesson::Spans => ("Cross", lab.spans.dataset()),
-            Lesson::Contact => ("Drops", lab.contact.dataset()),
-            Lesson::Sculpting => return,
-            Lesson::Fitting => ("Balls and shells", lab.fitting.dataset()),
-            Lesson::Textures => ("Textures", lab.textures.dataset()),
-        };
-        commands.push(Command::OpenText {
-            name: name.to_owned(),
-            text,
-        });
+    if is_dataset_wanted {
+        commands.push(figure.dataset());
     }
 }
 

@@ -6,6 +6,7 @@
 //! its last picture; the one being traced is finished even if the slider has gone on, as otherwise
 //! nothing would ever be seen while it moves.
 
+use digger::errors::{Pixel, unpack};
 use egui::{
     Color32, ColorImage, Context, FontId, Pos2, Rect, TextureHandle, TextureOptions, Ui, vec2,
 };
@@ -19,7 +20,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use widgets::theme;
 use worker::Kind;
-use worker::errors::{Pixel, unpack};
 
 /// Pictures have numbers from here on, the main picture those below.
 pub const FIRST: u64 = 1 << 40;

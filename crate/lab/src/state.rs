@@ -1,11 +1,7 @@
 //! State of the lab: the open lesson and the numbers of all lessons.
 
-use crate::lesson::Lesson;
+use crate::lesson::{Figure, Lesson, Words};
 use crate::pictures::Pictures;
-use crate::{
-    chart, contact, convolution, fitting, grid, kernels, profiles, sculpting, slice, spans,
-    superposition, textures,
-};
 use pool::Pool;
 use serde::Serialize;
 use std::cell::RefCell;
@@ -18,8 +14,10 @@ use std::rc::Rc;
 pub struct Report {
     /// The word of the open lesson.
     pub lesson: &'static str,
-    /// Its title.
+    /// The title of the open lesson.
     pub title: &'static str,
+    /// The words of all lessons, in the order of the list.
+    pub lessons: Vec<&'static str>,
     /// Small pictures still to be traced.
     pub waiting: usize,
     /// Small pictures that are there.
@@ -41,18 +39,8 @@ pub struct Lab {
     /// Small traced pictures.
     pub pictures: Pictures,
     pub(crate) readings: BTreeMap<&'static str, f64>,
-    pub(crate) kernels: kernels::Kernels,
-    pub(crate) convolution: convolution::Convolution,
-    pub(crate) slice: slice::Slice,
-    pub(crate) grid: grid::Grid,
-    pub(crate) profiles: profiles::Profiles,
-    pub(crate) chart: chart::Chart,
-    pub(crate) superposition: superposition::Superposition,
-    pub(crate) spans: spans::Spans,
-    pub(crate) contact: contact::Contact,
-    pub(crate) sculpting: sculpting::Sculpting,
-    pub(crate) fitting: fitting::Fitting,
-    pub(crate) textures: textures::Textures,
+    /// The figures of all lessons, in the order of the list.
+    pub(crate) figures: Vec<Box<dyn Figure>>,
 }
 
 impl Lab {
@@ -66,18 +54,7 @@ impl Lab {
             said: None,
             pictures: Pictures::new(pool),
             readings: BTreeMap::new(),
-            kernels: kernels::Kernels::default(),
-            convolution: convolution::Convolution::default(),
-            slice: slice::Slice::default(),
-            grid: grid::Grid::default(),
-            profiles: profiles::Profiles::default(),
-            chart: chart::Chart::default(),
-            superposition: superposition::Superposition::default(),
-            spans: spans::Spans::default(),
-            contact: contact::Contact::default(),
-            sculpting: sculpting::Sculpting::default(),
-            fitting: fitting::Fitting::default(),
-            textures: textures::Textures::default(),
+            figures: Lesson::all().map(Lesson::figure).collect(),
         }
     }
 
@@ -96,7 +73,7 @@ impl Lab {
     /// The title for the browser's tab, while the lab is open.
     #[must_use]
     pub fn title(&self) -> Option<&'static str> {
-        self.open.then(|| self.lesson.title())
+        self.open.then(|| self.lesson.words().title)
     }
 
     /// Goes to a lesson. `address` is the fragment before, to which leaving the lab leads back.
@@ -130,9 +107,11 @@ impl Lab {
     /// The state for scripts, while the lab is open.
     #[must_use]
     pub fn report(&self) -> Option<Report> {
+        let Words { link, title, .. } = self.lesson.words();
         self.open.then(|| Report {
-            lesson: self.lesson.word(),
-            title: self.lesson.title(),
+            lesson: link,
+            title,
+            lessons: Lesson::all().map(|lesson| lesson.words().link).collect(),
             waiting: self.pictures.waiting(),
             drawn: self.pictures.drawn(),
             refused: self.pictures.refused(),

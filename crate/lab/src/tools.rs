@@ -3,8 +3,7 @@
 
 use crate::plot;
 use egui::{
-    Button, Color32, Rect, Response, RichText, Sense, Slider, Stroke, StrokeKind, Ui, UiBuilder,
-    vec2,
+    Button, Color32, Rect, Response, RichText, Sense, Slider, Stroke, StrokeKind, Ui, vec2,
 };
 use field::Kernel;
 use widgets::{places, slider, theme};
@@ -35,7 +34,7 @@ impl Stage {
             (figure, all.with_min_x(split).with_max_y(all.top() + height))
         };
         ui.expand_to_include_rect(figure);
-        let mut controls = ui.new_child(UiBuilder::new().max_rect(controls).id_salt("controls"));
+        let mut controls = ui.new_child(places::part("lab controls", controls));
         controls.spacing_mut().item_spacing.y = 5.0;
         places::note(ui.ctx(), "lab figure", figure);
         Self { figure, controls }

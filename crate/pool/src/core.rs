@@ -203,12 +203,10 @@ impl<W: Workers + 'static> Manager for Core<W> {
     fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.scheduler.launch(now),
-            Err(reason) => self.scheduler.unavailable(
-                &format!(
-                    "The tracer could not be loaded: {reason}. Check the connection and render again."
-                ),
-                now,
-            ),
+            Err(trouble) => {
+                let trouble = format!("{trouble} and render again.");
+                self.scheduler.unavailable(&trouble, now);
+            }
         }
         self.carry_out(now);
     }

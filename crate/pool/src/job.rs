@@ -1,13 +1,13 @@
 //! Pictures to trace and their finished tiles.
 
-use scene::{Camera, Scene};
+use scene::{Camera, Digger, Scene};
 use std::sync::Arc;
 use tracer::{Pass, Tile};
 use worker::Kind;
 
-/// Longest side of a tile in pixels: that of the squares for which the tracer collects nearby primitives once
-/// for all pixels. Small enough that a tile takes milliseconds, large enough that sending it takes a small
-/// share of that.
+/// Longest side of a tile in pixels: that of the squares for which the tracer collects nearby
+/// primitives once for all pixels. Small enough that a tile takes milliseconds, large enough that
+/// sending it takes a small share of that.
 pub const TILE: u32 = 64;
 /// The same for small pictures, of which there are many: fewer messages matter more.
 pub const SMALL_TILE: u32 = 56;
@@ -28,9 +28,17 @@ pub struct Job<'a> {
     pub generation: u64,
     /// Meaning of its pixels.
     pub kind: Kind,
-    /// Whether it is shown only once it is finished, as the small pictures of the lab are: then only
-    /// the last pass is traced, and the app is not woken before the end.
+    /// Whether it is shown only once it is finished, as the small pictures of the lab are: then
+    /// only the last pass is traced, and the app is not woken before the end.
     pub small: bool,
+}
+
+impl Job<'_> {
+    /// Whether it needs the root finders for comparison.
+    #[must_use]
+    pub fn compares(&self) -> bool {
+        self.kind == Kind::Errors || self.scene.settings.digger != Digger::Hermite
+    }
 }
 
 /// A finished tile.

@@ -2,12 +2,28 @@
 
 use crate::core::Core;
 use crate::job::{Job, TileDone, worker_count};
-use crate::platform::{Crew, PlatformWorkers, TRACER, cores};
+use crate::platform::{COMPARING, Crew, PlatformWorkers, Program, TRACER, cores};
 use crate::progress::Progress;
+use std::sync::Arc;
 
 /// Traces pictures with all cores; see the [crate](crate).
 pub struct Pool {
     crew: Crew<Core<PlatformWorkers>>,
+    repaint: Arc<dyn Fn() + Send + Sync>,
+}
+
+/// Starts the workers of a program.
+fn crew(program: Program, repaint: &Arc<dyn Fn() + Send + Sync>) -> Crew<Core<PlatformWorkers>> {
+    let count = worker_count(cores());
+    let repaint = repaint.clone();
+    let crew = Crew::new(
+        program,
+        count,
+        move || repaint(),
+        |workers| Core::new(count, workers),
+    );
+    crew.load();
+    crew
 }
 
 impl Pool {
@@ -16,14 +32,20 @@ impl Pool {
     /// thread, with every answer.
     #[must_use]
     pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
-        let count = worker_count(cores());
-        let crew = Crew::new(TRACER, count, repaint, |workers| Core::new(count, workers));
-        crew.load();
-        Self { crew }
+        let repaint: Arc<dyn Fn() + Send + Sync> = Arc::new(repaint);
+        Self {
+            crew: crew(TRACER, &repaint),
+            repaint,
+        }
     }
 
-    /// Begins a picture and forgets the one before.
+    /// Begins a picture and forgets the one before. For the first one that needs the root finders
+    /// for comparison, workers that have them take the place of the others.
     pub fn start(&mut self, job: Job<'_>) {
+        let program = if job.compares() { COMPARING } else { TRACER };
+        if !self.crew.serves(program) {
+            self.crew = crew(program, &self.repaint);
+        }
         self.crew.order(|core, now| core.start(job, now));
     }
 

@@ -4,7 +4,7 @@ use crate::Pool;
 use crate::core::Core;
 use crate::job::{Job, MAX_WORKERS, TILE, TileDone};
 use crate::workers::{Manager, Workers};
-use scene::{Scene, Settings};
+use scene::{Digger, Scene, Settings};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -83,6 +83,56 @@ fn picture_completes_without_a_killed_worker() {
     pool.poll();
     pool.start(job);
     finish(&mut pool);
+}
+
+#[test]
+fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
+    let mut pool = Pool::new(|| {});
+    let mut scene = scene();
+    let made = Arc::make_mut(&mut scene);
+    made.flesh.push(scene::Flesh {
+        blobbiness: -1.0,
+        ..Default::default()
+    });
+    for x in [-0.6, 0.6] {
+        let center = [x, 0.0, 0.0].into();
+        made.elements.push(scene::Element {
+            flesh: Some(0),
+            ..scene::Element::new(scene::Shape::Sphere {
+                center,
+                radius: 0.5,
+            })
+        });
+    }
+    let mut means = Vec::new();
+    for (generation, digger) in [(1, Digger::Hermite), (2, Digger::Spans(2))] {
+        Arc::make_mut(&mut scene).settings.digger = digger;
+        let mut trace = |kind| {
+            let job = Job {
+                scene: &scene,
+                camera: None,
+                size: [40, 32],
+                generation,
+                kind,
+                small: true,
+            };
+            assert_eq!(job.compares(), (generation, kind) != (1, Kind::Colours));
+            pool.start(job);
+            finish(&mut pool).pop().expect("a tile")
+        };
+        let TileDone { tile, pixels, .. } = trace(Kind::Colours);
+        let stats = &mut tracer::Stats::default();
+        let picture = digger::picture(&scene, [40, 32]);
+        assert!(picture.trace(tile, Pass::Smooth, &|| false, stats) == Some(pixels));
+        let pixels = digger::errors::unpack(&trace(Kind::Errors).pixels);
+        let distances = pixels.into_iter().filter_map(|pixel| match pixel {
+            digger::errors::Pixel::Off(distance) => Some(f64::from(distance)),
+            _ => None,
+        });
+        let distances: Vec<f64> = distances.collect();
+        means.push(distances.iter().sum::<f64>() / distances.len() as f64);
+    }
+    assert!(means[0] < 1e-4 && means[1] > 1e-3, "{means:?}");
 }
 
 /// Workers that run single steps on request.

@@ -249,11 +249,9 @@ impl<W: Workers + 'static> Manager for Jobs<W> {
     fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.all(now, |queue| queue.launch(now)),
-            Err(reason) => {
-                let reason = format!(
-                    "they could not be loaded: {reason}. Check the connection and try again."
-                );
-                self.all(now, |queue| queue.unavailable(&reason));
+            Err(trouble) => {
+                let trouble = format!("{trouble} and try again.");
+                self.all(now, |queue| queue.unavailable(&trouble));
             }
         }
     }

@@ -31,7 +31,8 @@ pub trait Manager: 'static {
 
     /// Returns the workers.
     fn workers(&mut self) -> &mut Self::Workers;
-    /// Notes that workers can be started from now on, or why their program could not be loaded.
+    /// Notes that workers can be started from now on, or why their program could not be loaded: a
+    /// sentence to which its end, what to do, is to be added.
     fn loaded(&mut self, outcome: Result<(), String>, now: f64);
     /// Takes a worker's message. Returns whether the app should draw.
     fn receive(&mut self, index: usize, message: Message, now: f64) -> bool;

@@ -70,7 +70,7 @@ pub fn compile_at(project: &Project, assets: &[Asset], moment: f64) -> Compiled 
 /// let project = Project::single(text);
 /// let origin = compile(&project).scene.elements[0].origin;
 /// let found = provenance(&project, &[], 0.0, origin).unwrap();
-/// assert_eq!((found.spec.name, found.operands[0].name), ("sphere", "r"));
+/// assert_eq!((found.spec.name, found.operands[0].parameter.name), ("sphere", "r"));
 /// // The radius is the literal of the variable, in the first line.
 /// let Source::Literal { span, .. } = &found.operands[0].numbers[0].source else { panic!() };
 /// assert_eq!(&text[span.clone()], "0.5");

@@ -1,16 +1,15 @@
 //! Runs the commands of the parsed files, top to bottom, and builds the scene.
 //!
 //! From the bottom up: [`state`] holds the state of a run; `messages` adds what is said of the text, `lookup`
-//! and `call` read operands and arguments; the commands stand in a module for each group of the table in
-//! [`crate::commands`]; `dispatch` maps the table's routines to them; `interpreter` runs files, blocks, loops
-//! and calls; this file begins and ends a run.
+//! and `call` read operands and arguments; the commands stand in modules by subject, each a row of
+//! the table in [`crate::commands`] and the function that runs it, and `table` lists the rows;
+//! `interpreter` runs files, blocks, loops and calls; this file begins and ends a run.
 
 mod air;
 mod call;
 mod camera;
 mod contact;
 mod deform;
-mod dispatch;
 mod frozen;
 mod image_list;
 mod images;
@@ -33,12 +32,14 @@ mod primitives;
 mod run;
 mod scene_commands;
 mod skeleton;
-mod state;
+pub(crate) mod state;
+mod structure;
 mod surroundings;
-mod textures;
+pub(crate) mod table;
+pub(crate) mod textures;
 mod tints;
 mod tools;
-mod variables;
+pub(crate) mod variables;
 mod view_plane;
 mod watch;
 mod watched;

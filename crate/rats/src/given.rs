@@ -1,9 +1,11 @@
 //! Reads a command's operands as the table says, and keeps where each one stands.
 //!
 //! [`Reader::given`] goes through the parameters of a command, then through its options; so the table
-//! is the one place that knows what a command takes. The few commands with a form of their own (`var`,
-//! the method of a `texture`) read their own part with the functions of [`crate::reader`].
+//! is the one place that knows what a command takes. From the operands it takes the values of the
+//! types in its [`Slot`]s. The few commands with a form of their own (`var`, the method of a
+//! `texture`) read their own part with the functions of [`crate::reader`].
 
+use crate::commands::slot::{Backdrop, Choice, Named, Placed, Slot, Text, Word};
 use crate::commands::{Arity, Kind, Names, OptionSpec, Parameter};
 use crate::operands::Share;
 use crate::problem::{Outcome, Problem};
@@ -11,6 +13,7 @@ use crate::reader::{Name, Reader};
 use crate::suggest;
 use crate::syntax::Datum;
 use glam::DVec3;
+use scene::Rgb;
 use std::ops::Range;
 
 /// One operand as it was read.
@@ -21,7 +24,7 @@ pub enum Operand<'a> {
     /// Three numbers.
     Triple(DVec3),
     /// A colour.
-    Colour([f32; 3]),
+    Colour(Rgb),
     /// A colour or a share of one.
     Share(Share),
     /// `on` or `off`.
@@ -38,7 +41,9 @@ pub enum Operand<'a> {
 #[derive(Clone, Debug)]
 pub struct Filled<'a> {
     /// The parameter.
-    pub parameter: &'static str,
+    pub parameter: &'static Parameter,
+    /// The parameter's index among those of the command or option.
+    pub index: usize,
     /// Its value.
     pub operand: Operand<'a>,
     /// Where.
@@ -48,151 +53,250 @@ pub struct Filled<'a> {
 /// An option with its operands.
 #[derive(Clone, Debug)]
 pub struct Chosen<'a> {
-    /// The option's whole name.
-    pub name: &'static str,
+    /// The option.
+    pub option: &'static OptionSpec,
     /// Where its word stands.
     pub span: Range<usize>,
-    /// Its operands.
-    pub given: Given<'a>,
+    /// The operands in the order of the text.
+    pub operands: Vec<Filled<'a>>,
 }
 
-/// All operands of a command or option.
+impl<'a> Chosen<'a> {
+    /// The values of its operands.
+    pub fn values(&self) -> Operands<'_, 'a> {
+        Operands::new(&self.operands)
+    }
+}
+
+/// The options of a command in the order of the text.
+#[derive(Clone, Debug, Default)]
+pub struct Options<'a>(pub Vec<Chosen<'a>>);
+
+impl<'a> Options<'a> {
+    /// The options in the order of the text.
+    pub fn iter(&self) -> std::slice::Iter<'_, Chosen<'a>> {
+        self.0.iter()
+    }
+
+    /// The last option of this kind.
+    pub fn find<K: Values>(&self, choice: &Choice<K>) -> Option<&Chosen<'a>> {
+        self.0.iter().rev().find(|chosen| choice.is(chosen))
+    }
+
+    /// Whether an option of this kind was given.
+    pub fn has<K: Values>(&self, choice: &Choice<K>) -> bool {
+        self.find(choice).is_some()
+    }
+
+    /// The operands of the last option of this kind.
+    pub fn last<K: Values>(&self, choice: &Choice<K>) -> Option<K::Of<'a>> {
+        choice.of(self.find(choice)?)
+    }
+
+    /// The operands of all options of this kind.
+    pub fn all<K: Values>(&self, choice: &Choice<K>) -> impl Iterator<Item = K::Of<'a>> {
+        self.0.iter().filter_map(|chosen| choice.of(chosen))
+    }
+}
+
+/// Operands and options of a command.
 #[derive(Clone, Debug, Default)]
 pub struct Given<'a> {
     /// The operands in the order of the text.
-    pub operands: Vec<Filled<'a>>,
-    /// The options in the order of the text.
-    pub options: Vec<Chosen<'a>>,
+    pub filled: Vec<Filled<'a>>,
+    /// The options.
+    pub options: Options<'a>,
+    /// The place of the command.
+    pub span: Range<usize>,
 }
 
 impl<'a> Given<'a> {
-    /// The operands of a parameter.
-    fn all(&self, parameter: &'static str) -> impl Iterator<Item = &Filled<'a>> {
-        self.operands
-            .iter()
-            .filter(move |filled| filled.parameter == parameter)
+    /// The values of the operands.
+    pub fn operands(&self) -> Operands<'_, 'a> {
+        Operands::new(&self.filled)
     }
 
-    fn one(&self, parameter: &'static str) -> Option<&Operand<'a>> {
-        self.all(parameter).next().map(|filled| &filled.operand)
+    /// The values of the operands for a row of the table.
+    pub fn values(&self) -> Taken<'_, 'a> {
+        Taken {
+            operands: self.operands(),
+            span: &self.span,
+        }
+    }
+}
+
+/// The operands of a command, of which a row of the table takes one value after the other.
+pub struct Taken<'g, 'a> {
+    operands: Operands<'g, 'a>,
+    span: &'g Range<usize>,
+}
+
+impl<'a> Taken<'_, 'a> {
+    /// The value of the next slot.
+    ///
+    /// # Errors
+    /// If it was not read: a slot that is not in the row.
+    pub fn take<K: Values>(&mut self, _slot: fn() -> Slot<K>) -> Outcome<K::Of<'a>> {
+        let missing = || Problem::new(self.span.clone(), "expected another operand");
+        self.operands.next::<K>().ok_or_else(missing)
+    }
+}
+
+/// Operands of a command or option whose values are still to be taken.
+#[derive(Clone, Debug)]
+pub struct Operands<'g, 'a> {
+    rest: &'g [Filled<'a>],
+    /// The index of the next parameter.
+    index: usize,
+}
+
+impl<'g, 'a> Operands<'g, 'a> {
+    fn new(filled: &'g [Filled<'a>]) -> Self {
+        Self {
+            rest: filled,
+            index: 0,
+        }
     }
 
-    /// Where a parameter's first operand stands.
-    pub fn span(&self, parameter: &'static str) -> Option<Range<usize>> {
-        self.all(parameter).next().map(|filled| filled.span.clone())
+    /// The value of the next parameter, or of the next ones; `None` if it is none of this type.
+    pub fn next<K: Values>(&mut self) -> Option<K::Of<'a>> {
+        K::take(self)
     }
 
-    /// A number that may have been left out.
-    pub fn maybe_number(&self, parameter: &'static str) -> Option<f64> {
-        match self.one(parameter) {
-            Some(Operand::Number(number)) => Some(*number),
+    /// The next operand if it belongs to the present parameter.
+    fn operand(&mut self) -> Option<&'g Filled<'a>> {
+        let (first, rest) = self.rest.split_first()?;
+        (first.index == self.index).then(|| {
+            self.rest = rest;
+            first
+        })
+    }
+}
+
+/// Type of a single operand.
+pub trait One {
+    /// The values.
+    type Of<'a>;
+    /// The value of an operand; `None` if it has another type.
+    fn of<'a>(filled: &Filled<'a>) -> Option<Self::Of<'a>>;
+}
+
+macro_rules! one {
+    ($kind:ty, $of:ty, $pattern:pat => $value:expr) => {
+        impl One for $kind {
+            type Of<'a> = $of;
+            fn of<'a>(filled: &Filled<'a>) -> Option<$of> {
+                match &filled.operand {
+                    $pattern => Some($value),
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+one!(f64, f64, Operand::Number(number) => *number);
+one!(u32, u32, Operand::Number(number) => *number as u32);
+one!(DVec3, DVec3, Operand::Triple(triple) => *triple);
+one!(Rgb, Rgb, Operand::Colour(colour) => *colour);
+one!(Share, Share, Operand::Share(share) => *share);
+one!(bool, bool, Operand::Switch(is_on) => *is_on);
+one!(Word, &'static str, Operand::Word(word) => word.name);
+one!(Named, Name<'a>, Operand::Name(name) => name.clone());
+
+impl One for Text {
+    type Of<'a> = Range<usize>;
+    fn of<'a>(filled: &Filled<'a>) -> Option<Range<usize>> {
+        matches!(filled.operand, Operand::Text).then(|| filled.span.clone())
+    }
+}
+
+/// The background that a text names.
+#[derive(Clone, Debug)]
+pub enum Behind<'a> {
+    /// A colour.
+    Colour(Rgb),
+    /// An image of the project.
+    Image(Name<'a>),
+}
+
+impl One for Backdrop {
+    type Of<'a> = Behind<'a>;
+    fn of<'a>(filled: &Filled<'a>) -> Option<Behind<'a>> {
+        match &filled.operand {
+            Operand::Colour(colour) => Some(Behind::Colour(*colour)),
+            Operand::Name(name) => Some(Behind::Image(name.clone())),
             _ => None,
         }
     }
+}
 
-    /// A number, which the table demands.
-    pub fn number(&self, parameter: &'static str) -> f64 {
-        self.maybe_number(parameter)
-            .expect("the table demands this number")
+impl<K: One> One for Placed<K> {
+    type Of<'a> = (K::Of<'a>, Range<usize>);
+    fn of<'a>(filled: &Filled<'a>) -> Option<Self::Of<'a>> {
+        Some((K::of(filled)?, filled.span.clone()))
     }
+}
 
-    /// All numbers of a parameter.
-    pub fn numbers(&self, parameter: &'static str) -> Vec<f64> {
-        self.all(parameter)
-            .filter_map(|filled| match filled.operand {
-                Operand::Number(number) => Some(number),
-                _ => None,
-            })
-            .collect()
+/// Type of one parameter or of several.
+pub trait Values {
+    /// The values.
+    type Of<'a>;
+    /// Takes the value of the next parameter or the next ones; `None` if an operand has another
+    /// type.
+    fn take<'a>(from: &mut Operands<'_, 'a>) -> Option<Self::Of<'a>>;
+}
+
+impl<K: One> Values for K {
+    type Of<'a> = K::Of<'a>;
+    fn take<'a>(from: &mut Operands<'_, 'a>) -> Option<K::Of<'a>> {
+        let filled = from.operand();
+        from.index += 1;
+        K::of(filled?)
     }
+}
 
-    /// All triples of a parameter.
-    pub fn vectors(&self, parameter: &'static str) -> Vec<DVec3> {
-        self.all(parameter)
-            .filter_map(|filled| match filled.operand {
-                Operand::Triple(vector) => Some(vector),
-                _ => None,
-            })
-            .collect()
-    }
-
-    /// A triple, which the table demands.
-    pub fn vector(&self, parameter: &'static str) -> DVec3 {
-        match self.one(parameter) {
-            Some(Operand::Triple(vector)) => *vector,
-            _ => unreachable!("the table demands the triple {parameter}"),
+impl<K: One> Values for Option<K> {
+    type Of<'a> = Option<K::Of<'a>>;
+    fn take<'a>(from: &mut Operands<'_, 'a>) -> Option<Self::Of<'a>> {
+        let filled = from.operand();
+        from.index += 1;
+        match filled {
+            Some(filled) => K::of(filled).map(Some),
+            None => Some(None),
         }
     }
+}
 
-    /// A colour, which the table demands.
-    pub fn colour(&self, parameter: &'static str) -> [f32; 3] {
-        match self.one(parameter) {
-            Some(Operand::Colour(colour)) => *colour,
-            _ => unreachable!("the table demands the colour {parameter}"),
+impl<K: One> Values for Vec<K> {
+    type Of<'a> = Vec<K::Of<'a>>;
+    fn take<'a>(from: &mut Operands<'_, 'a>) -> Option<Self::Of<'a>> {
+        let mut values = Vec::new();
+        while let Some(filled) = from.operand() {
+            values.push(K::of(filled)?);
         }
+        from.index += 1;
+        Some(values)
     }
+}
 
-    /// A colour or share, which the table demands.
-    pub fn share(&self) -> Share {
-        match self.operands.first().map(|filled| &filled.operand) {
-            Some(Operand::Share(share)) => *share,
-            _ => unreachable!("the table demands a share"),
-        }
+impl Values for () {
+    type Of<'a> = ();
+    fn take<'a>(_: &mut Operands<'_, 'a>) -> Option<()> {
+        Some(())
     }
+}
 
-    /// `on` or `off`, which the table demands.
-    pub fn switch(&self) -> bool {
-        match self.operands.first().map(|filled| &filled.operand) {
-            Some(Operand::Switch(on)) => *on,
-            _ => unreachable!("the table demands `on` or `off`"),
-        }
+impl<A: Values, B: Values> Values for (A, B) {
+    type Of<'a> = (A::Of<'a>, B::Of<'a>);
+    fn take<'a>(from: &mut Operands<'_, 'a>) -> Option<Self::Of<'a>> {
+        Some((A::take(from)?, B::take(from)?))
     }
+}
 
-    /// A word of the table that may have been left out.
-    pub fn word(&self, parameter: &'static str) -> Option<&'static str> {
-        match self.one(parameter) {
-            Some(Operand::Word(word)) => Some(word.name),
-            _ => None,
-        }
-    }
-
-    /// All words of a parameter.
-    pub fn words(&self, parameter: &'static str) -> Vec<(&'static str, Range<usize>)> {
-        self.all(parameter)
-            .filter_map(|filled| match filled.operand {
-                Operand::Word(word) => Some((word.name, filled.span.clone())),
-                _ => None,
-            })
-            .collect()
-    }
-
-    /// A name that may have been left out.
-    pub fn maybe_name(&self, parameter: &'static str) -> Option<&Name<'a>> {
-        match self.one(parameter) {
-            Some(Operand::Name(name)) => Some(name),
-            _ => None,
-        }
-    }
-
-    /// A name, which the table demands.
-    pub fn name(&self, parameter: &'static str) -> &Name<'a> {
-        self.maybe_name(parameter)
-            .expect("the table demands this name")
-    }
-
-    /// All names of a parameter.
-    pub fn names(&self, parameter: &'static str) -> Vec<Name<'a>> {
-        self.all(parameter)
-            .filter_map(|filled| match &filled.operand {
-                Operand::Name(name) => Some(name.clone()),
-                _ => None,
-            })
-            .collect()
-    }
-
-    /// An option that was given, the last one if it was given twice.
-    pub fn option(&self, name: &'static str) -> Option<&Chosen<'a>> {
-        self.options.iter().rev().find(|chosen| chosen.name == name)
+impl<A: Values, B: Values, C: Values> Values for (A, B, C) {
+    type Of<'a> = (A::Of<'a>, B::Of<'a>, C::Of<'a>);
+    fn take<'a>(from: &mut Operands<'_, 'a>) -> Option<Self::Of<'a>> {
+        Some((A::take(from)?, B::take(from)?, C::take(from)?))
     }
 }
 
@@ -208,7 +312,8 @@ fn refuse_option(name: &Name<'_>, options: &'static [OptionSpec]) -> Outcome<()>
 }
 
 impl<'a> Reader<'_, 'a> {
-    /// All operands and options of a command, to its end.
+    /// Reads the operands and options of a command, to its end. In a chain, `chain` fills the first
+    /// parameter.
     ///
     /// # Errors
     /// If one is missing, of the wrong kind or out of its range, or if something is left.
@@ -216,7 +321,9 @@ impl<'a> Reader<'_, 'a> {
         &mut self,
         parameters: &'static [Parameter],
         options: &'static [OptionSpec],
+        chain: Option<Name<'a>>,
     ) -> Outcome<Given<'a>> {
+        let span = self.command_span();
         // `collage columns 2 fn1 fn2`: options of a list of files may come first.
         let mut first = Vec::new();
         if let Some(Kind::File) = parameters.first().map(|parameter| parameter.kind) {
@@ -225,17 +332,33 @@ impl<'a> Reader<'_, 'a> {
                 && let Some((option, span)) = self.option(options)?
             {
                 first.push(Chosen {
-                    name: option.name,
+                    option,
                     span,
-                    given: self.operands(option.parameters, options)?,
+                    operands: self.operands(option.parameters, options)?,
                 });
             }
         }
-        let mut given = self.operands(parameters, options)?;
-        given.options = first;
-        given.options.extend(self.chosen(options)?);
+        let filled = match (chain, parameters) {
+            (Some(name), [first, ..]) => {
+                let span = name.span.clone();
+                let mut filled = vec![Filled {
+                    parameter: first,
+                    index: 0,
+                    operand: Operand::Name(name),
+                    span,
+                }];
+                self.fill(&mut filled, parameters, options)?;
+                filled
+            }
+            _ => self.operands(parameters, options)?,
+        };
+        first.extend(self.chosen(options)?);
         self.end()?;
-        Ok(given)
+        Ok(Given {
+            filled,
+            options: Options(first),
+            span,
+        })
     }
 
     /// The operands of these parameters; `options` are the words that may follow.
@@ -246,12 +369,20 @@ impl<'a> Reader<'_, 'a> {
         &mut self,
         parameters: &'static [Parameter],
         options: &'static [OptionSpec],
-    ) -> Outcome<Given<'a>> {
-        let mut given = Given {
-            operands: Vec::with_capacity(parameters.len()),
-            options: Vec::new(),
-        };
-        for parameter in parameters {
+    ) -> Outcome<Vec<Filled<'a>>> {
+        let mut filled = Vec::with_capacity(parameters.len());
+        self.fill(&mut filled, parameters, options)?;
+        Ok(filled)
+    }
+
+    /// Reads the operands of the parameters behind those that are filled.
+    fn fill(
+        &mut self,
+        filled: &mut Vec<Filled<'a>>,
+        parameters: &'static [Parameter],
+        options: &'static [OptionSpec],
+    ) -> Outcome<()> {
+        for (index, parameter) in parameters.iter().enumerate().skip(filled.len()) {
             if matches!(parameter.kind, Kind::Block) {
                 continue;
             }
@@ -269,8 +400,9 @@ impl<'a> Reader<'_, 'a> {
                 if let (Kind::New(Names::Node), Operand::Name(name)) = (parameter.kind, &operand) {
                     refuse_option(name, options)?;
                 }
-                given.operands.push(Filled {
-                    parameter: parameter.name,
+                filled.push(Filled {
+                    parameter,
+                    index,
                     operand,
                     span: self.since(start),
                 });
@@ -280,7 +412,7 @@ impl<'a> Reader<'_, 'a> {
                 }
             }
         }
-        Ok(given)
+        Ok(())
     }
 
     /// The options to the end of the command. Without any in the table nothing is read.
@@ -294,9 +426,9 @@ impl<'a> Reader<'_, 'a> {
         }
         while let Some((option, span)) = self.option(options)? {
             chosen.push(Chosen {
-                name: option.name,
+                option,
                 span,
-                given: self.operands(option.parameters, options)?,
+                operands: self.operands(option.parameters, options)?,
             });
         }
         Ok(chosen)

@@ -20,8 +20,9 @@
 //! A text goes through these stages: [`lexer`] cuts it into tokens, [`parser`] makes a tree of commands
 //! ([`syntax`]), `evaluator` runs the tree. Each command's operands are read while it runs
 //! (`reader`, `expression`, `operands`, `given`), because the meaning of a word depends on the variables at that
-//! time. All commands stand in one table of plain data ([`commands`]), which also serves help and the
-//! editor (the crate `assist`); the evaluator's `dispatch` maps it to functions. All bounds are in [`limits`].
+//! time. All commands stand in one table ([`commands`]), whose rows stand beside the functions that
+//! run them; as plain data it also serves help and the editor (the crate `assist`). All bounds are
+//! in [`limits`].
 
 mod assets;
 pub mod colours;
@@ -56,6 +57,7 @@ mod strokes;
 pub mod suggest;
 pub mod symbol;
 pub mod syntax;
+mod text_edit;
 pub mod tool;
 mod value;
 
@@ -66,4 +68,5 @@ pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
 pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};
 pub use strokes::{is_strokes, keep_sculpted, start_file};
+pub use text_edit::TextEdit;
 pub use tool::Tool;

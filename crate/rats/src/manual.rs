@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// All opcodes, group by group.
 #[must_use]
 pub fn list() -> String {
-    let line = |(group, list): &(crate::commands::Group, &[CommandSpec])| {
+    let line = |(group, list): &(crate::commands::Group, &[&CommandSpec])| {
         let names: Vec<_> = list.iter().map(|spec| spec.name).collect();
         format!("{group:?}: {}", names.join(" "))
     };

@@ -1,7 +1,7 @@
 //! Tokens to a tree of commands. Whatever is wrong, the rest of the text is still read: a mistake costs
 //! one command or one block, with a message.
 
-use crate::commands::{self, CommandSpec};
+use crate::commands;
 use crate::lexer::{Token, TokenKind, lex};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
@@ -449,7 +449,7 @@ impl<'a> Parser<'a, '_, '_> {
         let end = self.operands(ends).unwrap_or(token.end);
         let items = first..self.items.len();
         let spec = commands::find(word);
-        let most = spec.map_or(limits::MAX_OPERANDS, CommandSpec::most_operands);
+        let most = spec.map_or(limits::MAX_OPERANDS, |spec| spec.most_operands);
         if items.len() > most {
             self.items.truncate(first);
             return Err(Problem::new(

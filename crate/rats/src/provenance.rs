@@ -1,6 +1,6 @@
 //! Types that tell from where in the texts the numbers of a shape's command come.
 
-use crate::commands::{CommandSpec, Kind};
+use crate::commands::{CommandSpec, Parameter};
 use std::ops::Range;
 
 /// From where a number comes.
@@ -33,12 +33,8 @@ pub struct Number {
 /// An operand: one number or three.
 #[derive(Clone, Debug)]
 pub struct Operand {
-    /// The parameter's name in the table.
-    pub name: &'static str,
-    /// Its meaning, from the table.
-    pub meaning: &'static str,
-    /// The kind of value it takes.
-    pub kind: Kind,
+    /// The parameter of the table that it fills.
+    pub parameter: &'static Parameter,
     /// Its numbers.
     pub numbers: Vec<Number>,
 }

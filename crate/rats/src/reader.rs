@@ -119,6 +119,11 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.here().start
     }
 
+    /// Returns the place of the command.
+    pub(crate) fn command_span(&self) -> Range<usize> {
+        self.end.clone()
+    }
+
     /// How the command is written.
     pub(crate) fn usage(&self) -> Option<String> {
         self.spec.map(CommandSpec::usage)

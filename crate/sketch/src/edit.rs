@@ -2,6 +2,7 @@
 //! written.
 
 use crate::block::Block;
+use rats::TextEdit;
 use skeleton::{Node, Skeleton};
 use std::fmt::Write;
 use std::ops::Range;
@@ -39,9 +40,6 @@ pub struct Limb {
     pub nodes: Vec<Node>,
 }
 
-/// A replacement of a piece of the text, and its order among those at the same place.
-type Edit = (Range<usize>, f64, String);
-
 /// Adds curves to the skeleton whose command is at `span`. `grain` is a length that counts for little, to which
 /// coordinates are rounded. `None` if there is no such skeleton, node or curve.
 #[must_use]
@@ -51,7 +49,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
     let indent = indent(text, &block);
     let end_of_line = end_of_line(text);
     let mut added = String::new();
-    let mut edits: Vec<Edit> = Vec::new();
+    let mut edits: Vec<(f64, TextEdit)> = Vec::new();
     let mut before: Option<String> = None;
     for limb in limbs {
         let start = match &limb.start {
@@ -67,7 +65,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
                 let name = names.next();
                 line(&mut added, &indent, &name, node, grain);
                 let (_, behind) = block.curves.get(*curve)?.names.get(*span)?;
-                edits.push((behind.end..behind.end, *share, format!(" {name}")));
+                edits.push((*share, put(behind.end, format!(" {name}"))));
                 Some(name)
             }
         };
@@ -81,7 +79,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
             _ => None,
         };
         // Two new curves that begin at one end branch there.
-        let goes_on = end.filter(|(place, _)| edits.iter().all(|(range, ..)| range != place));
+        let goes_on = end.filter(|(place, _)| edits.iter().all(|(_, edit)| edit.span != *place));
         if let Some((place, is_last)) = goes_on {
             let along = if is_last {
                 own.iter().fold(String::new(), |all, name| all + " " + name)
@@ -91,7 +89,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
                     .fold(String::new(), |all, name| all + name + " ")
             };
             // Behind new nodes of the same place.
-            edits.push((place, 2.0, along));
+            edits.push((2.0, TextEdit::new(0, place, along)));
         } else {
             let along = start.iter().chain(&own).cloned().collect::<Vec<_>>();
             if along.len() < 2 {
@@ -101,7 +99,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
         }
         before = Some(first);
     }
-    edits.push(at_end(text, &block, added.replace('\n', end_of_line)));
+    edits.push((0.0, at_end(text, &block, added.replace('\n', end_of_line))));
     Some(applied(text, edits))
 }
 
@@ -190,11 +188,10 @@ pub fn widen(
     let node = block.nodes.get(node)?;
     let number = rounded(radius.max(0.0), grain);
     let edit = match &node.radius {
-        Some(range) => (range.clone(), number),
-        None => (node.span.end..node.span.end, format!(" radius {number}")),
+        Some(range) => TextEdit::new(0, range.clone(), number),
+        None => put(node.span.end, format!(" radius {number}")),
     };
-    let (range, with) = edit;
-    Some(applied(text, vec![(range, 0.0, with)]))
+    Some(TextEdit::apply(text, [&edit]))
 }
 
 /// Gives a curve a new node behind its node of number `behind`. It becomes the block's last one. `None` if there is no such place.
@@ -228,8 +225,8 @@ pub fn insert(
     Some(applied(
         text,
         vec![
-            (place..place, 0.0, format!(" {name}")),
-            (last..last, 1.0, added),
+            (0.0, put(place, format!(" {name}"))),
+            (1.0, put(last, added)),
         ],
     ))
 }
@@ -278,7 +275,7 @@ pub fn cut(
     let near = |node: usize| skeleton.nodes[node].position.distance(end.position);
     let first_stays = lengths[0] + near(before) >= lengths[1] + near(behind);
     let mut added = String::new();
-    let mut edits: Vec<Edit> = Vec::new();
+    let mut edits: Vec<(f64, TextEdit)> = Vec::new();
     let mut gone: Vec<usize> = Vec::new();
     if joined {
         // Pieces of a single node are nothing.
@@ -294,7 +291,7 @@ pub fn cut(
             [] => gone.push(curve),
             [first, others @ ..] => {
                 let all = names[0].1.start..names[names.len() - 1].1.end;
-                edits.push((all, 0.0, first.clone()));
+                edits.push((0.0, TextEdit::new(0, all, first.clone())));
                 for other in others {
                     let _ = writeln!(added, "{}curve {other}", indent(text, &block));
                 }
@@ -327,11 +324,12 @@ pub fn cut(
                 kept.insert(if first_stays { kept.len() } else { 0 }, name);
             }
             let all = names[0].1.start..names[names.len() - 1].1.end;
-            edits.push((all, 0.0, kept.join(" ")));
+            edits.push((0.0, TextEdit::new(0, all, kept.join(" "))));
         }
     }
     // The curves that fall off keep their numbers while lines are added behind them.
-    edits.push(at_end(text, &block, added.replace('\n', end_of_line(text))));
+    let added = added.replace('\n', end_of_line(text));
+    edits.push((0.0, at_end(text, &block, added)));
     let changed = applied(text, edits);
     let end = (span.end + changed.len()).checked_sub(text.len())?;
     let span = span.start..end;
@@ -514,15 +512,15 @@ fn indent(text: &str, block: &Block) -> String {
 }
 
 /// Puts lines before the end of a block.
-fn at_end(text: &str, block: &Block, lines: String) -> Edit {
+fn at_end(text: &str, block: &Block, lines: String) -> TextEdit {
     let start = text[..block.close].rfind('\n').map_or(0, |end| end + 1);
     if text[start..block.close].trim().is_empty() {
-        (start..start, 0.0, lines)
+        put(start, lines)
     } else if lines.is_empty() {
-        (block.close..block.close, 0.0, lines)
+        put(block.close, lines)
     } else {
         let line = end_of_line(text);
-        (block.close..block.close, 0.0, format!("{line}{lines}"))
+        put(block.close, format!("{line}{lines}"))
     }
 }
 
@@ -556,20 +554,16 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
     kept
 }
 
-fn applied(text: &str, edits: Vec<Edit>) -> String {
-    let mut order: Vec<usize> = (0..edits.len()).collect();
-    // The last first, so that no place moves under another.
-    field::heap_sort(&mut order, |a, b| {
-        let ((a_range, a_rank, _), (b_range, b_rank, _)) = (&edits[*a], &edits[*b]);
-        let by_place = b_range.start.cmp(&a_range.start);
-        by_place
-            .then(b_rank.total_cmp(a_rank))
-            .then(b.cmp(a))
-            .is_lt()
+/// Puts something in at a place. (There is one text here, so that the file does not matter.)
+fn put(place: usize, text: String) -> TextEdit {
+    TextEdit::new(0, place..place, text)
+}
+
+/// The text with changes made, each with its order among those at the same place.
+fn applied(text: &str, mut edits: Vec<(f64, TextEdit)>) -> String {
+    edits.sort_by(|(a, first), (b, second)| {
+        let by_place = first.span.start.cmp(&second.span.start);
+        by_place.then(a.total_cmp(b))
     });
-    let mut text = text.to_owned();
-    for (range, _, with) in order.into_iter().map(|i| &edits[i]) {
-        text.replace_range(range.clone(), with);
-    }
-    text
+    TextEdit::apply(text, edits.iter().map(|(_, edit)| edit))
 }

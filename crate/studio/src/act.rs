@@ -10,6 +10,7 @@ use crate::tray::item::Item;
 use crate::{asset, examples, picture, platform, share, work};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use lab::Lesson;
+use rats::TextEdit;
 use std::ops::Range;
 
 impl App {
@@ -56,23 +57,9 @@ impl App {
     pub(crate) fn carry_out(&mut self, ctx: &Context, command: Command, now: f64) {
         let session = &mut self.work.session;
         match command {
-            Command::SetText { file, text } => self.set_text(ctx, file, text, now),
-            Command::Step { file, text } => {
-                session.end_step();
-                self.set_text(ctx, file, text, now);
-                self.work.session.end_step();
-            }
-            Command::Edit(edits) => {
-                let project = assist::apply(session.project(), &edits);
-                let result = session.put_files(project.files, now);
-                self.warn_if_refused(result);
-            }
+            Command::Edit { edits, step } => self.edit(ctx, &edits, step, now),
             Command::Tell(text) => self.notice = Some(Notice::done(text, now)),
             Command::SetHints(hints) => self.settings.hints = hints,
-            Command::Replace { file, range, with } => {
-                let result = session.replace(file, range, &with, now);
-                self.warn_if_refused(result);
-            }
             Command::AddFile => {
                 let result = session.add_file(now);
                 let result = result.map(|file| self.editor.jump(file, 0..0));
@@ -331,7 +318,7 @@ impl App {
         if is_one && page::is_empty(session.text(0)) {
             session.set_camera(None);
             let text = page::fresh(self.ratio(ctx));
-            self.carry_out(ctx, Command::Step { file: 0, text }, now);
+            self.carry_out(ctx, Command::step(TextEdit::whole(0, text)), now);
         } else if matches!(self.work.origin, work::Origin::Example | work::Origin::Link)
             && !Pencil::has_skeleton(session)
         {
@@ -360,8 +347,15 @@ impl App {
         }
     }
 
-    fn set_text(&mut self, ctx: &Context, file: usize, text: String, now: f64) {
-        let result = self.work.session.set_text(file, text, now);
+    fn edit(&mut self, ctx: &Context, edits: &[TextEdit], step: bool, now: f64) {
+        let session = &mut self.work.session;
+        if step {
+            session.end_step();
+        }
+        let result = session.edit(edits, now);
+        if step {
+            session.end_step();
+        }
         if result.is_err() {
             self.editor.resync(ctx);
         }

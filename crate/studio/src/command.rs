@@ -8,41 +8,24 @@ use crate::recording::Kind;
 use crate::settings::Show;
 use crate::{examples, size, theme};
 use lab::Lesson;
+use rats::TextEdit;
 use scene::Camera;
 use std::ops::Range;
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Replace the text of a file.
-    SetText {
-        /// Index of the file.
-        file: usize,
-        /// Its new text.
-        text: String,
+    /// Change the texts: in a file in its order, and apart from each other.
+    Edit {
+        /// The changes.
+        edits: Vec<TextEdit>,
+        /// Whether they are an undo step of their own.
+        step: bool,
     },
-    /// Replace the text of a file, as an undo step of its own.
-    Step {
-        /// Index of the file.
-        file: usize,
-        /// Its new text.
-        text: String,
-    },
-    /// Change several places at once, as one undo step.
-    Edit(Vec<assist::Edit>),
     /// Say something about the text.
     Tell(String),
     /// Whether a line at the caret says how its command is written.
     SetHints(bool),
-    /// Replace a piece of a file.
-    Replace {
-        /// Index of the file.
-        file: usize,
-        /// Byte range.
-        range: Range<usize>,
-        /// Replacement.
-        with: String,
-    },
     /// Add an empty file.
     AddFile,
     /// Give a file another name.
@@ -212,6 +195,20 @@ pub enum Command {
 }
 
 impl Command {
+    /// Changes a text.
+    #[must_use]
+    pub fn edit(edit: TextEdit) -> Self {
+        let edits = vec![edit];
+        Self::Edit { edits, step: false }
+    }
+
+    /// Changes a text, as an undo step of its own.
+    #[must_use]
+    pub fn step(edit: TextEdit) -> Self {
+        let edits = vec![edit];
+        Self::Edit { edits, step: true }
+    }
+
     /// The command that carries out a wish of the lab; `None` if it is to open an example that there is not.
     #[must_use]
     pub fn of_lab(wish: lab::Command) -> Option<Self> {

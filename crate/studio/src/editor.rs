@@ -162,11 +162,9 @@ impl Editor {
         }
         let (file, text) = (self.file, &self.buffer);
         if stepped {
-            let text = text.clone();
-            commands.push(Command::Step { file, text });
+            commands.push(Command::step(rats::TextEdit::whole(file, text)));
         } else if keyed || text != session.text(file) {
-            let text = text.clone();
-            commands.push(Command::SetText { file, text });
+            commands.push(Command::edit(rats::TextEdit::whole(file, text)));
         }
     }
 

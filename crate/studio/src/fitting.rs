@@ -8,7 +8,7 @@ use crate::session::Session;
 use fit::{Kind, Observations, Options};
 use glam::DVec3;
 use pool::{Ticket, Tools};
-use rats::Deform;
+use rats::{Deform, TextEdit};
 use scene::{Form, Origin, Shape};
 use std::ops::Range;
 use tools::{Controls, FitMesh, FitStep, ReadMeasured};
@@ -470,7 +470,7 @@ impl Fitting {
         }
         run.start = range.start;
         let done = run.done;
-        let replaced = session.replace(run.file, range, &text, now);
+        let replaced = session.edit(&[TextEdit::new(run.file, range, text.clone())], now);
         run.text = text;
         run.written = now;
         if let Err(refused) = replaced {
@@ -778,7 +778,9 @@ mod tests {
         fitting.start(&session, 0.0);
         until(&mut fitting, &mut session, |fitting| fitting.last.is_some());
         if fitting.is_running() {
-            session.set_text(0, TEXT.to_owned(), 0.0).expect("taken");
+            session
+                .edit(&[TextEdit::whole(0, TEXT)], 0.0)
+                .expect("taken");
             until(&mut fitting, &mut session, |fitting| !fitting.is_running());
             let said = fitting
                 .said

@@ -5,7 +5,7 @@ use crate::session::Session;
 use crate::{places, theme};
 use egui::{CornerRadius, FontId, Rect, Sense, Ui, vec2};
 use glam::DVec3;
-use rats::Project;
+use rats::{Project, TextEdit};
 use scene::{Camera, Finish, Scene};
 
 /// Most ambient light at which a material counts as dark, in shares of its diffuse colour: what it has where the text says nothing.
@@ -95,7 +95,7 @@ pub fn show(ui: &mut Ui, picture: Rect, session: &Session, commands: &mut Vec<Co
         .clicked();
     if clicked {
         commands.push(match lit(session) {
-            Some(text) => Command::Step { file: 0, text },
+            Some(text) => Command::step(TextEdit::whole(0, text)),
             None => Command::Tell(String::from(
                 "A light at the end of this text would not shine: write one before its pictures are made.",
             )),

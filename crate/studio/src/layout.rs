@@ -15,7 +15,7 @@ use crate::{
 };
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
-    RichText, ScrollArea, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
+    RichText, ScrollArea, Stroke, Ui, Vec2, pos2, vec2,
 };
 
 /// Draws everything.
@@ -211,10 +211,8 @@ fn slider_list(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
 fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     ui.painter().rect_filled(place, 0.0, palette.panel);
-    let builder = UiBuilder::new()
-        .max_rect(place)
-        .layout(Layout::left_to_right(Align::Center));
-    let mut ui = ui.new_child(builder);
+    let part = places::part("picture head", place);
+    let mut ui = ui.new_child(part.layout(Layout::left_to_right(Align::Center)));
     ui.add_space(10.0);
     if app.draft.is_some() {
         show_choice(app, &mut ui, commands);
@@ -332,8 +330,8 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
         place.max.y = strip.top();
         ui.painter().rect_filled(strip, 0.0, palette.panel);
-        let builder = UiBuilder::new().max_rect(strip).id_salt("timeline");
-        timeline::show(app, &mut ui.new_child(builder), commands);
+        let mut strip = ui.new_child(places::part("timeline", strip));
+        timeline::show(app, &mut strip, commands);
     }
     let draws = app.pencil.tool().is_some();
     if draws {
@@ -345,8 +343,8 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         ui.painter().rect_filled(strip, 0.0, palette.panel);
         let line = Stroke::new(1.0, palette.line);
         ui.painter().hline(strip.x_range(), strip.top(), line);
-        let builder = UiBuilder::new().max_rect(strip).id_salt("pencil");
-        pencil::bar::show(app, &mut ui.new_child(builder), commands);
+        let mut strip = ui.new_child(places::part("pencil", strip));
+        pencil::bar::show(app, &mut strip, commands);
     } else if app.tray.is_used() && has_tray(place, narrow) {
         let height = tray::strip::height(narrow, app.tray.folded);
         let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
@@ -354,8 +352,8 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
         ui.painter().rect_filled(strip, 0.0, palette.panel);
         let line = Stroke::new(1.0, palette.line);
         ui.painter().hline(strip.x_range(), strip.top(), line);
-        let builder = UiBuilder::new().max_rect(strip).id_salt("tray");
-        tray::strip::show(&mut ui.new_child(builder), &app.tray, narrow, commands);
+        let mut strip = ui.new_child(places::part("tray", strip));
+        tray::strip::show(&mut strip, &app.tray, narrow, commands);
     }
     let margin = if narrow { 0.0 } else { 18.0 };
     let scale = ui.ctx().pixels_per_point();
@@ -479,20 +477,17 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     );
     let tabs = Rect::from_min_size(pos2(all.left(), split), vec2(all.width(), 48.0));
     ui.painter().rect_filled(tabs, 0.0, palette.panel);
-    let builder = UiBuilder::new()
-        .max_rect(tabs)
-        .layout(Layout::left_to_right(Align::Center));
-    tab_row(app, &mut ui.new_child(builder), commands);
+    let part = places::part("tabs", tabs).layout(Layout::left_to_right(Align::Center));
+    tab_row(app, &mut ui.new_child(part), commands);
     let below = Rect::from_min_max(tabs.left_bottom(), all.max);
     ui.painter().rect_filled(below, 0.0, palette.panel);
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(below).id_salt("below"));
+    let mut ui = ui.new_child(places::part("below", below));
     match app.tab {
         Tab::Text => {
             let session = &app.work.session;
             if session.project().files.len() > 1 || !session.assets().is_empty() {
-                let builder = UiBuilder::new()
-                    .max_rect(Rect::from_min_size(below.min, vec2(below.width(), 46.0)));
-                let mut strip = ui.new_child(builder);
+                let strip = Rect::from_min_size(below.min, vec2(below.width(), 46.0));
+                let mut strip = ui.new_child(places::part("files", strip));
                 files::show(
                     &mut strip,
                     &app.work.session,

@@ -285,7 +285,9 @@ mod tests {
         live.want();
         settle(&mut live, &session, 1.0, false);
         let moved = BALLS.replace("1.5", "1.6");
-        session.set_text(0, moved, 1.0).unwrap();
+        session
+            .edit(&[rats::TextEdit::whole(0, moved)], 1.0)
+            .unwrap();
         session.compile();
         assert!(live.seconds <= QUICK && live.shown(&session, 1.1).is_some());
         assert!(live.shown(&session, 1.1 + LATE).is_none());

@@ -4,7 +4,7 @@
 use crate::command::Command;
 use crate::icon::{self, Icon};
 use crate::{places, theme};
-use egui::{Align, Button, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, vec2};
+use egui::{Align, Button, Frame, Label, Layout, Margin, Rect, RichText, Ui, vec2};
 
 /// A message.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,11 +55,9 @@ pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, commands: &mut Vec<Comman
     let palette = theme::palette(ui.visuals());
     let width = (place.width() - 24.0).min(620.0);
     let top = place.center_top() + vec2(-width / 2.0, 12.0);
-    let mut ui = ui.new_child(
-        UiBuilder::new()
-            .max_rect(Rect::from_min_size(top, vec2(width, 10.0)))
-            .layout(Layout::top_down(Align::Min)),
-    );
+    let place = Rect::from_min_size(top, vec2(width, 10.0));
+    let part = places::part("notice", place).layout(Layout::top_down(Align::Min));
+    let mut ui = ui.new_child(part);
     let edge = if notice.bad {
         palette.error
     } else {

@@ -147,7 +147,9 @@ mod tests {
             .unwrap();
         session.compile();
         assert!(session.is_compiled(), "the text does not name it");
-        session.set_text(0, TEXT.to_owned(), 0.0).unwrap();
+        session
+            .edit(&[rats::TextEdit::whole(0, TEXT)], 0.0)
+            .unwrap();
         session.compile();
         assert!(!session.is_compiled());
         assert_eq!((session.errors(), session.generation()), (0, generation));

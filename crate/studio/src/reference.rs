@@ -22,7 +22,7 @@ const ORDER: [(Group, &str); 9] = [
 ];
 
 /// The commands of a group.
-fn group_list(group: Group) -> &'static [CommandSpec] {
+fn group_list(group: Group) -> &'static [&'static CommandSpec] {
     GROUPS
         .iter()
         .find(|(name, _)| *name == group)
@@ -59,6 +59,7 @@ impl Reference {
         for (group, title) in ORDER {
             let hits: Vec<&CommandSpec> = group_list(group)
                 .iter()
+                .copied()
                 .filter(|spec| matches(spec, &self.search))
                 .collect();
             if hits.is_empty() {

@@ -11,7 +11,7 @@ use crate::session::Session;
 use crate::{examples, places, platform, theme};
 use egui::{Button, Context, RichText, Ui};
 use modeling::{Flesh, Outside, Sculpting};
-use rats::{Asset, File, is_strokes};
+use rats::{Asset, File, TextEdit, is_strokes};
 
 /// Shapes to begin with: name, and the line of the text.
 const SHAPES: [(&str, &str); 5] = [
@@ -341,7 +341,7 @@ impl App {
             let start = start_of(session, name, &text);
             rats::keep_sculpted(&text, start.as_ref(), mesh);
         }
-        if let Err(refused) = session.step_text(file, text, now) {
+        if let Err(refused) = session.step(TextEdit::whole(file, text), now) {
             // What is on the screen goes back to what is kept.
             self.notice = Some(Notice::trouble(refused.to_string()));
         }
@@ -360,7 +360,7 @@ impl App {
         };
         let session = &mut self.work.session;
         session.end_step();
-        let result = session.set_text(index, text, now);
+        let result = session.edit(&[TextEdit::whole(index, text)], now);
         session.end_step();
         self.notice = Some(match result {
             Ok(()) => Notice::done(

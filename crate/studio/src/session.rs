@@ -8,7 +8,7 @@
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
-use rats::{Compiled, Diagnostic, Project, Severity};
+use rats::{Compiled, Diagnostic, Project, Severity, TextEdit};
 use scene::{Camera, Scene};
 use serde::{Deserialize, Serialize};
 use std::cell::OnceCell;
@@ -209,49 +209,38 @@ impl Session {
             .map_or("", |file| file.text.as_str())
     }
 
-    /// Changes the text of one file.
+    /// Changes the texts. A range that does not lie on characters is left alone.
     ///
     /// # Errors
     /// If the project would become too long; then nothing changes.
-    pub fn set_text(&mut self, file: usize, text: String, now: f64) -> Result<(), Refused> {
-        let Some(present) = self.project.files.get(file) else {
-            return Ok(());
-        };
-        if present.text == text {
+    pub fn edit(&mut self, edits: &[TextEdit], now: f64) -> Result<(), Refused> {
+        let project = self.project.apply(edits);
+        if project == self.project {
             return Ok(());
         }
-        let others: usize = self.project.files.iter().map(|file| file.text.len()).sum();
-        let bytes = others - present.text.len() + text.len();
-        if bytes > MAX_TEXT {
-            return Err(Refused::TooLong { bytes });
-        }
+        check_size(&project)?;
         self.history.record(&self.project, now);
-        self.project.files[file].text = text;
+        self.project = project;
         self.changed();
         Ok(())
     }
 
-    /// Changes the text of one file as a step of its own. If the last step led here from just that state, or the next one leads there, it
-    /// is undone or redone: whoever goes back, there is one history.
+    /// Changes a text as a step of its own. If the last step led here from just that state, or the next
+    /// one leads there, it is undone or redone: whoever goes back, there is one history.
     ///
     /// # Errors
     /// If the project would become too long; then nothing changes.
-    pub fn step_text(&mut self, file: usize, text: String, now: f64) -> Result<(), Refused> {
+    pub fn step(&mut self, edit: TextEdit, now: f64) -> Result<(), Refused> {
         self.end_step();
-        let is_wanted = |state: &&Project| {
-            let mut pairs = state.files.iter().zip(&self.project.files).enumerate();
-            state.files.len() == self.project.files.len()
-                && pairs.all(|(i, (new, old))| {
-                    new.name == old.name && new.text == *if i == file { &text } else { &old.text }
-                })
-        };
-        let [before, after] = self.history.next().map(|s| s.filter(is_wanted).is_some());
+        let edits = [edit];
+        let wanted = self.project.apply(&edits);
+        let [before, after] = self.history.next().map(|state| state == Some(&wanted));
         if before {
             self.undo();
         } else if after {
             self.redo();
         } else {
-            self.set_text(file, text, now)?;
+            self.edit(&edits, now)?;
             self.end_step();
         }
         Ok(())
@@ -311,7 +300,7 @@ impl Session {
             ));
         }
         let edits = assist::rename_file(&self.project, file, name)?;
-        let mut project = assist::apply(&self.project, &edits);
+        let mut project = self.project.apply(&edits);
         name.clone_into(&mut project.files[file].name);
         check_size(&project).map_err(|refused| refused.to_string())?;
         self.whole_step(now);
@@ -410,25 +399,6 @@ impl Session {
         self.history.close();
         self.history.record(&self.project, now);
         self.history.close();
-    }
-
-    /// Replaces a byte range of one file. A range that does not lie on characters is left alone.
-    ///
-    /// # Errors
-    /// If the project would become too long; then nothing changes.
-    pub fn replace(
-        &mut self,
-        file: usize,
-        range: std::ops::Range<usize>,
-        with: &str,
-        now: f64,
-    ) -> Result<(), Refused> {
-        let text = self.text(file);
-        let (Some(before), Some(after)) = (text.get(..range.start), text.get(range.end..)) else {
-            return Ok(());
-        };
-        let text = format!("{before}{with}{after}");
-        self.set_text(file, text, now)
     }
 
     /// The next edit begins an undo step, however soon it comes.
@@ -726,7 +696,7 @@ mod tests {
         "surface a, diffuse Red, blobbiness -1\nvar r = 0.5 hot\nsphere a r, 0 0 0\n";
 
     fn edit(session: &mut Session, text: &str, now: f64) {
-        session.set_text(0, text.to_owned(), now).unwrap();
+        session.edit(&[TextEdit::whole(0, text)], now).unwrap();
         session.compile();
     }
 
@@ -826,7 +796,7 @@ mod tests {
             let literal = session.compiled().hot[0].literal.clone().unwrap();
             let value = format!("0.{step}");
             session
-                .replace(0, literal, &value, f64::from(step))
+                .edit(&[TextEdit::new(0, literal, value)], f64::from(step))
                 .unwrap();
             session.compile();
         }
@@ -849,7 +819,7 @@ mod tests {
         assert!(session.rename_file(added, "two words", 1.2).is_err());
         assert_eq!(session.project().files[added].name, "legs.rat");
         session
-            .set_text(added, String::from("sphere a 1, 3 0 0\n"), 1.3)
+            .edit(&[TextEdit::whole(added, "sphere a 1, 3 0 0\n")], 1.3)
             .unwrap();
         edit(&mut session, &format!("{TEXT}read legs.rat\n"), 1.4);
         assert_eq!(session.errors(), 0, "{:?}", session.diagnostics());
@@ -937,11 +907,11 @@ mod tests {
         let files = vec![file("# other\n"), strokes];
         session.set_files(files, 1.0).unwrap();
         for text in ["strokes 1\na\n", "strokes 1\na\nb\n"] {
-            session.step_text(1, text.to_owned(), 1.1).unwrap();
+            session.step(TextEdit::whole(1, text), 1.1).unwrap();
         }
         // Back to the first stroke, forth and back again: no steps of their own.
         for text in ["strokes 1\na\n", "strokes 1\na\nb\n", "strokes 1\na\n"] {
-            session.step_text(1, text.to_owned(), 1.2).unwrap();
+            session.step(TextEdit::whole(1, text), 1.2).unwrap();
             assert_eq!(session.text(1), text);
         }
         assert!(session.can_redo());
@@ -957,11 +927,11 @@ mod tests {
         // Another stroke than the one that was undone is a step.
         session.undo();
         session
-            .step_text(1, String::from("strokes 1\na\nc\n"), 2.0)
+            .step(TextEdit::whole(1, "strokes 1\na\nc\n"), 2.0)
             .unwrap();
         assert!(!session.can_redo());
         let long = "x".repeat(MAX_TEXT + 1);
-        assert!(session.step_text(1, long.clone(), 3.0).is_err());
+        assert!(session.step(TextEdit::whole(1, long.clone()), 3.0).is_err());
         assert!(session.set_files(vec![file(&long)], 3.0).is_err());
         assert_eq!(session.text(1), "strokes 1\na\nc\n");
     }
@@ -970,11 +940,11 @@ mod tests {
     fn too_much_text_is_refused_and_nothing_is_lost() {
         let mut session = Session::of_text(TEXT);
         let long = "x".repeat(MAX_TEXT + 1);
-        let refused = session.set_text(0, long, 1.0).unwrap_err();
+        let refused = session.edit(&[TextEdit::whole(0, long)], 1.0).unwrap_err();
         assert!(refused.to_string().contains("257 kB"), "{refused}");
         assert_eq!(session.text(0), TEXT);
         let bad = 3..9_999_999;
-        session.replace(0, bad, "y", 2.0).unwrap();
+        session.edit(&[TextEdit::new(0, bad, "y")], 2.0).unwrap();
         assert_eq!(session.text(0), TEXT);
     }
 

@@ -6,7 +6,7 @@ use crate::pad::{self, Bounds};
 use crate::slider::{colours, counts, decimals, fitting_range, stepped};
 use crate::{places, theme};
 use egui::{DragValue, RichText, Slider, SliderClamping, Ui};
-use rats::{HotValue, HotVariable, hot};
+use rats::{HotValue, HotVariable, TextEdit, hot};
 use std::collections::HashMap;
 
 /// The ranges of the sliders. They stay put while a slider is dragged.
@@ -57,11 +57,9 @@ impl Sliders {
                     };
                     dragging |= held;
                     if let Some(value) = value {
-                        commands.push(Command::Replace {
-                            file: variable.file,
-                            range: range.clone(),
-                            with: hot::write(&value),
-                        });
+                        let value = hot::write(&value);
+                        let edit = TextEdit::new(variable.file, range.clone(), value);
+                        commands.push(Command::edit(edit));
                     }
                 });
             });

@@ -1,4 +1,4 @@
-//! Which piece of work is open, where it came from, and where it is kept.
+//! The piece of work that is open, where it came from, and where it is kept.
 //!
 //! The user's own works live on the [`Shelf`]. An example or a shared link is only looked at until
 //! it is edited; then it becomes a work of its own. So nothing that is opened ever takes the place

@@ -1,17 +1,19 @@
 //! Holds pictures against the true surface on very many rays, and prints a table.
 //!
-//! `cargo run --release -p tracer --example certify -- [--exact] [--endless | --clouds] [RAYS [THREADS [FIRST | KERNEL KIND SEED]]]`
+//! `cargo run --release -p tracer --example certify -- [--exact] [--endless | --clouds] [RAYS
+//! [THREADS [FIRST | KERNEL KIND SEED]]]`
 //!
-//! Scenes have the seeds from FIRST (or 0) on. With a kernel, a kind and a seed only that scene is looked at. Faults go to standard error. With
-//! `--exact` before them the crossings that picking uses are judged instead of those of pictures. `--endless` takes kernels that never end
-//! alone, and `--clouds` of them scenes of very many points, which have a hierarchy of far fields.
+//! Scenes have the seeds from FIRST (or 0) on. With a kernel, a kind and a seed only that scene is
+//! looked at. Faults go to standard error. With `--exact` before them the crossings that picking
+//! uses are judged instead of those of pictures. `--endless` takes kernels that never end alone,
+//! and `--clouds` of them scenes of very many points, which have a hierarchy of far fields.
 
 use field::Kernel;
 use glam::DVec3;
+use oracle::rays::{Row, Trial, check, parameters};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use tracer::{Hit, Picture};
-use trials::rays::{Row, Trial, check};
+use tracer::Picture;
 use trials::scenes::{KINDS, Kind};
 
 /// Packets of eight rays in each scene; fewer where there are hundreds of primitives.
@@ -23,13 +25,14 @@ fn packets(kind: Kind) -> usize {
     }
 }
 
-fn as_pictures(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {
-    picture.cast(&trial.rays)
+fn as_pictures(trial: &Trial, picture: &Picture) -> Vec<Option<f64>> {
+    parameters(&picture.cast(&trial.rays))
 }
 
-fn as_picking(trial: &Trial, picture: &Picture) -> Vec<Option<Hit>> {
-    let first =
-        |&(origin, direction): &(DVec3, DVec3)| picture.hits(origin, direction).first().copied();
+fn as_picking(trial: &Trial, picture: &Picture) -> Vec<Option<f64>> {
+    let first = |&(origin, direction): &(DVec3, DVec3)| {
+        picture.hits(origin, direction).first().map(|hit| hit.t)
+    };
     trial.rays.iter().map(first).collect()
 }
 

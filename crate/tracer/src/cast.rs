@@ -1,12 +1,18 @@
-//! Single rays by the way that pictures are traced: for callers that ask what a picture would show, and for
-//! checking it.
-use crate::digger::{Hermite, Packet};
+//! Single rays by the way that pictures are traced: for callers that ask what a picture would show,
+//! and for checking it.
+//!
+//! In pictures the packets of a square share lists, or the slabs of one beam. Here each packet has
+//! its own, with the same result within the same tolerance.
+use crate::beam::Beam;
+use crate::beams::Beams;
 use crate::layout::PACKET;
 use crate::ray::Ray;
 use crate::scratch::Scratch;
-use crate::walk::Quest;
+use crate::soft::Soft;
+use crate::walk::{Bundle, Quest};
 use crate::world::{Owner, World};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Crossings this near to each other, in units of the scene's size, are at one place.
 const SAME: f64 = 1e-10;
@@ -15,16 +21,15 @@ const SAME: f64 = 1e-10;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cast {
     pub t: f64,
-    /// Outward; unit length, unless the gradient vanishes.
+    /// Outward, of any length.
     pub normal: DVec3,
     pub owner: Owner,
 }
 
 impl World {
-    /// The first crossing of each of some rays of the world at t > 0. Neighbouring rays of the list make packets: the nearer
-    /// together they are, the faster it goes.
+    /// The first crossing of each of some rays of the world at t > 0. Neighbouring rays of the list
+    /// make packets: the nearer together they are, the faster it goes.
     pub fn cast(&self, rays: &[(DVec3, DVec3)]) -> Vec<Option<Cast>> {
-        let digger = self.digger.as_deref().unwrap_or(&Hermite);
         let mut scratch = Scratch::default();
         let mut crossings = Vec::new();
         let mut found = vec![None; rays.len()];
@@ -51,36 +56,28 @@ impl World {
                 });
             }
             let lane = |i: usize| unit.get(i).copied().flatten();
+            let rays = core::array::from_fn(|i| lane(i).unwrap_or(*any));
+            let alive = (0..PACKET).fold(0, |m, i| m | u32::from(lane(i).is_some()) << i);
             for body in 0..self.soft.bodies.len() as u32 {
                 let limit = |i: usize| found.get(i).copied().flatten().map(|cast| cast.t);
-                let packet = Packet {
-                    rays: &core::array::from_fn(|i| lane(i).unwrap_or(*any)),
-                    limits: &core::array::from_fn(|i| limit(i).unwrap_or(f64::INFINITY)),
-                    alive: (0..PACKET).fold(0, |m, i| m | u32::from(lane(i).is_some()) << i),
-                };
-                let soft = digger.dig(&self.soft, body, &packet, Quest::First, &mut scratch);
-                for ((found, t), ray) in found.iter_mut().zip(soft).zip(packet.rays) {
+                let limits = core::array::from_fn(|i| limit(i).unwrap_or(f64::INFINITY));
+                let soft = self.soft.first(body, &rays, &limits, alive, &mut scratch);
+                for ((found, t), ray) in found.iter_mut().zip(soft).zip(&rays) {
                     if let Some(t) = t {
                         *found = Some(Cast {
                             t,
-                            normal: self.soft_normal(body, ray, t),
+                            normal: -self.soft.gradient(body, ray, t),
                             owner: Owner::Soft(body),
                         });
                     }
                 }
             }
-            for (number, body) in self.functions.iter().enumerate() {
+            for (number, body) in self.others.iter().enumerate() {
                 for (ray, found) in unit.iter().zip(&mut *found) {
                     let Some(ray) = ray else { continue };
                     let limit = found.map_or(f64::INFINITY, |cast: Cast| cast.t);
-                    let (nearer, _) = self.function_crossing(body, ray, limit, Quest::First);
-                    if let Some(t) = nearer {
-                        let normal = body.normal(ray.at(t));
-                        *found = Some(Cast {
-                            t,
-                            normal: normal.unwrap_or(-ray.direction),
-                            owner: Owner::Function(number),
-                        });
+                    if let (Some(t), _) = body.first(ray, limit, Quest::First) {
+                        *found = Some(cast(ray, t, body.gradient(ray, t), Owner::Other(number)));
                     }
                 }
             }
@@ -88,7 +85,8 @@ impl World {
         found
     }
 
-    /// All crossings of a ray at t > 0, in order, found exactly: with nothing cut off and nothing shared.
+    /// All crossings of a ray at t > 0, in order, found exactly: with nothing cut off and nothing
+    /// shared.
     pub fn crossings(&self, ray: &Ray) -> Vec<Cast> {
         let solid = |(number, crossing): (u32, crate::hard::Crossing)| Cast {
             t: crossing.t,
@@ -97,23 +95,14 @@ impl World {
         };
         let mut found: Vec<Cast> = self.solids.all(ray).into_iter().map(solid).collect();
         for body in 0..self.soft.bodies.len() as u32 {
-            let ahead = self.soft.crossings(body, ray).into_iter();
-            found.extend(ahead.filter(|(t, _)| *t > 0.0).map(|(t, gradient)| Cast {
-                t,
-                normal: (-gradient).try_normalize().unwrap_or(-ray.direction),
-                owner: Owner::Soft(body),
-            }));
+            let all = self.soft.crossings(body, ray).into_iter();
+            let ahead = all.filter(|(t, _)| *t > 0.0);
+            found.extend(ahead.map(|(t, gradient)| cast(ray, t, gradient, Owner::Soft(body))));
         }
-        for (number, body) in self.functions.iter().enumerate() {
-            self.function_crossings(body, ray, f64::INFINITY, |t, _| {
-                let normal = body.normal(ray.at(t));
-                found.push(Cast {
-                    t,
-                    normal: normal.unwrap_or(-ray.direction),
-                    owner: Owner::Function(number),
-                });
-                true
-            });
+        for (number, body) in self.others.iter().enumerate() {
+            let all = body.all(ray).into_iter();
+            let ahead = all.filter(|(t, _)| *t > 0.0);
+            found.extend(ahead.map(|(t, gradient)| cast(ray, t, gradient, Owner::Other(number))));
         }
         found.sort_by(|a, b| a.t.total_cmp(&b.t));
         // Where two bodies touch a ray leaves the one before it enters the other.
@@ -125,16 +114,6 @@ impl World {
             }
         }
         found
-    }
-
-    /// The outward normal of a convolution surface where a ray is at t.
-    fn soft_normal(&self, body: u32, ray: &Ray, t: f64) -> DVec3 {
-        let point = ray.at(t).to_array();
-        let mut gradient = DVec3::ZERO;
-        self.soft.along(body, ray, |primitive, _, _| {
-            gradient += DVec3::from_array(primitive.jet(point).gradient);
-        });
-        -gradient
     }
 
     /// How many of the first rays make a packet: as in pictures, a beam around them is narrow.
@@ -155,29 +134,111 @@ impl World {
         ray.origin.is_finite().then_some(ray)
     }
 
-    /// The number of the scene's body and the scene's element that a crossing belongs to. On a convolution surface it is the
-    /// element that adds most to the field there.
+    /// The number of the scene's body and the scene's element that a crossing belongs to. On a
+    /// convolution surface it is the element that adds most to the field there.
     pub fn owner(&self, cast: &Cast, ray: &Ray) -> (Option<u32>, Option<u32>) {
         match cast.owner {
             Owner::Solid(number) => (None, Some(self.solids.element(number))),
-            Owner::Function(number) => {
-                let body = &self.functions[number];
-                let point = body.unit.world(ray.at(cast.t));
-                let element = scene::surface::strongest(&*body.function, &body.element, point);
-                (Some(body.number), element)
+            Owner::Other(number) => {
+                let body = &self.others[number];
+                let mut shares = Vec::new();
+                body.shares(ray.at(cast.t), &mut shares);
+                let parts = shares
+                    .into_iter()
+                    .map(|(element, _, share)| (element, share));
+                let element = strongest(parts).filter(|element| *element != u32::MAX);
+                (Some(body.number()), element)
             }
             Owner::Soft(body) => {
                 let point = ray.at(cast.t).to_array();
-                // Pieces of a limb are one element.
-                let mut shares = std::collections::BTreeMap::new();
+                let mut parts = Vec::new();
                 self.soft.along(body, ray, |primitive, _, number| {
                     let element = self.soft.element[number as usize];
-                    *shares.entry(element).or_insert(0.0) += primitive.value::<f64>(point);
+                    parts.push((element, primitive.value::<f64>(point)));
                 });
-                let most = shares.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
                 let number = self.soft.bodies[body as usize].number;
-                (Some(number), most.map(|(element, _)| element))
+                (Some(number), strongest(parts.into_iter()))
             }
         }
     }
+}
+
+impl Soft {
+    /// Returns where the rays of some lanes, a bit each, first cross the surface of a body before
+    /// their limits: the quick way for blobs, else the far field's, else slabs of Hermite spans.
+    fn first(
+        &self,
+        body: u32,
+        rays: &[Ray; PACKET],
+        limits: &[f64; PACKET],
+        alive: u32,
+        scratch: &mut Scratch,
+    ) -> [Option<f64>; PACKET] {
+        let quick = &mut scratch.quick;
+        if let Some((looked, base)) =
+            self.quick_alone(body, rays, limits, alive, Quest::First, quick)
+        {
+            let t = scratch.quick.flesh.t;
+            return core::array::from_fn(|i| (looked.met >> i & 1 != 0).then_some(base + t[i]));
+        }
+        let far = &mut scratch.far;
+        if let Some(met) = self.far_first(body, rays, limits, alive, Quest::First, far) {
+            let t = scratch.far.flesh.t;
+            return core::array::from_fn(|i| (met >> i & 1 != 0).then_some(t[i]));
+        }
+        let lives = |lane: usize| alive >> lane & 1 != 0;
+        let lanes = (0..PACKET).filter(|&i| lives(i));
+        let furthest = lanes.clone().map(|i| limits[i]).fold(0.0, f64::max);
+        let present: Vec<Ray> = lanes.map(|i| rays[i]).collect();
+        let slabs = Beam::around(&present).and_then(|beam| {
+            let whole = |base: f64| Beams::one(beam.from(base));
+            self.slabs(body, beam, whole, furthest, &mut scratch.spaces)
+        });
+        let mut crossings = [None; PACKET];
+        let Some((mut slabs, base)) = slabs else {
+            return crossings;
+        };
+        // Lanes not in use repeat the first ray.
+        let based: [Ray; PACKET] = core::array::from_fn(|i| {
+            let ray = if lives(i) { &rays[i] } else { &present[0] };
+            Ray {
+                origin: ray.at(base),
+                direction: ray.direction,
+            }
+        });
+        let bundle = Bundle {
+            rays: &based,
+            limits: &limits.map(|limit| limit - base),
+            alive,
+            number: 0,
+        };
+        let found = self.walk(body, &mut slabs, bundle, Quest::First, scratch);
+        if !found.is_empty() {
+            // Refined on the surface, as in pictures.
+            self.flesh(&slabs, &based, base, &found, scratch);
+            for hit in &found {
+                crossings[hit.lane] = Some(base + scratch.flesh.t[hit.lane]);
+            }
+        }
+        crossings
+    }
+}
+
+/// Makes a crossing of a ray with the surface of a function whose gradient there is known.
+fn cast(ray: &Ray, t: f64, gradient: DVec3, owner: Owner) -> Cast {
+    Cast {
+        t,
+        normal: (-gradient).try_normalize().unwrap_or(-ray.direction),
+        owner,
+    }
+}
+
+/// Returns the element that adds most to a field; the pieces of a limb are one element.
+fn strongest(parts: impl Iterator<Item = (u32, f64)>) -> Option<u32> {
+    let mut sums = BTreeMap::new();
+    for (element, share) in parts {
+        *sums.entry(element).or_insert(0.0) += share;
+    }
+    let most = sums.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    most.map(|(element, _)| element)
 }

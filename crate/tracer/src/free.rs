@@ -49,13 +49,11 @@ impl World {
                 let free = &rays[lanes[lane]];
                 seen.hits[lane] = self.hard_point(&free.ray, free.front_only, &mut work.crossings);
             }
-            if let Some(digger) = &self.digger {
-                self.dug_points(&**digger, &mut seen, work);
-            } else if !self.soft.is_empty() {
+            if !self.soft.is_empty() {
                 self.meet_soft_free(alive, &mut seen, work);
             }
-            if !self.functions.is_empty() {
-                self.meet_functions(&mut seen, alive, &mut work.scratch);
+            if !self.others.is_empty() {
+                self.meet_others(&mut seen, alive, &mut work.scratch);
             }
             stats.field_evaluations += work.scratch.evaluations;
             for lane in 0..count {

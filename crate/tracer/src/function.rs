@@ -1,21 +1,32 @@
-//! Bodies whose surface is that of any implicit function: certified root isolation along single rays.
+//! Bodies whose surface is that of any implicit function: certified root isolation along single
+//! rays.
 //!
 //! On a piece of a ray with the middle m and the half-length h Taylor's theorem says
-//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2 + J·|x|`, where C bounds the curvature in the ball around the piece, and J the jumps of the
-//! gradient. So a piece has no crossing if the function's range in that ball leaves the threshold out, or if
-//! `|f(m) − T| > (|f′(m)| + J)·h + C·h²/2`; and at most one if `|f′(m)| > C·h + J`, which the signs at its ends then tell. Any other
-//! piece is halved, down to a resolution.
+//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2 + J·|x|`, where C bounds the curvature in the ball around the
+//! piece, and J the jumps of the gradient. So a piece has no crossing if the function's range in that
+//! ball leaves the threshold out, or if `|f(m) − T| > (|f′(m)| + J)·h + C·h²/2`; and at most one if
+//! `|f′(m)| > C·h + J`, which the signs at its ends then tell. Any other piece is halved, down to a
+//! resolution.
+use crate::body::Body;
 use crate::ray::Ray;
 use crate::roots::bracketed;
 use crate::unit::Unit;
+use crate::walk::Quest;
 use field::{Ball, Implicit, THRESHOLD};
 use glam::DVec3;
 use scene::{ComposedSurface, Scene};
 use std::sync::Arc;
 
+/// Length below which pieces of rays are not halved, in units of the scene's size.
+const RESOLUTION: f64 = 5e-7;
+/// Surfaces without a support are followed this far, in units of the scene's size.
+const FURTHEST: f64 = 1e4;
+/// Offset of rays to the lights above a hit, for each unit of distance more than 0.
+const LIFT: f64 = 1e-6;
 /// Most halvings of pieces of one ray; on the rest the signs at the ends decide.
 const MOST_HALVED: u32 = 1 << 16;
-/// Radius of a ball without crossings, in the function's scale, below which the surface is looked for.
+/// Radius of a ball without crossings, in the function's scale, below which the surface is looked
+/// for.
 const NEAR: f64 = 0.25;
 /// Rounding of a function's value in double precision, in T.
 const VALUE_ERROR: f64 = 1e-12;
@@ -29,7 +40,8 @@ pub(crate) struct FunctionBody {
     pub function: Arc<dyn Implicit>,
     /// Finish of each of the function's elements.
     pub finish: Vec<u32>,
-    /// The scene's element that each of the function's elements came from; empty for a function that was added.
+    /// The scene's element that each of the function's elements came from; empty for a function
+    /// that was added.
     pub element: Vec<u32>,
     /// Ball outside which there is no surface, in the function's coordinates.
     pub support: Option<Ball>,
@@ -48,7 +60,7 @@ pub(crate) struct RayQuery {
 }
 
 impl FunctionBody {
-    /// The function of a body of the unit scene.
+    /// Returns the function of a body of the unit scene.
     pub fn of(surface: ComposedSurface, scene: &Scene) -> Self {
         let finish = |&e: &u32| scene.elements[e as usize].finish;
         Self {
@@ -61,16 +73,74 @@ impl FunctionBody {
         }
     }
 
-    /// Returns the outward normal at a point of the surface in the unit scene; `None` where the gradient vanishes.
-    pub fn normal(&self, point: DVec3) -> Option<DVec3> {
-        let jet = self.function.jet(self.unit.world(point));
-        let gradient = DVec3::from_array(jet.gradient);
-        (-gradient).try_normalize()
+    /// Calls `tell` with each crossing of a ray of the unit scene, and whether it enters, until it
+    /// says `false`; gives the number of evaluations.
+    fn crossings(&self, ray: &Ray, limit: f64, mut tell: impl FnMut(f64, bool) -> bool) -> u64 {
+        let scale = self.unit.length(1.0);
+        let ray = Ray {
+            origin: self.unit.world(ray.origin),
+            direction: ray.direction,
+        };
+        let Some(range) = range(self.support, &ray, limit * scale, FURTHEST * scale) else {
+            return 0;
+        };
+        let along = RayQuery {
+            ray,
+            range,
+            resolution: RESOLUTION * scale,
+        };
+        crossings(&*self.function, &along, |t, enters| tell(t / scale, enters))
     }
 }
 
-/// Returns the range of a ray, up to a limit, within a surface's ball; `None` if the ray misses it. Without a ball the range ends at
-/// `furthest`.
+impl Body for FunctionBody {
+    fn number(&self) -> u32 {
+        self.number
+    }
+
+    fn first(&self, ray: &Ray, limit: f64, quest: Quest) -> (Option<f64>, u64) {
+        let mut found = None;
+        let evaluations = self.crossings(ray, limit, |t, enters| {
+            if enters || quest != Quest::Entry {
+                found = Some(t);
+            }
+            found.is_none()
+        });
+        (found, evaluations)
+    }
+
+    fn all(&self, ray: &Ray) -> Vec<(f64, DVec3)> {
+        let mut found = Vec::new();
+        self.crossings(ray, f64::INFINITY, |t, _| {
+            found.push((t, self.gradient(ray, t)));
+            true
+        });
+        found
+    }
+
+    fn gradient(&self, ray: &Ray, t: f64) -> DVec3 {
+        let jet = self.function.jet(self.unit.world(ray.at(t)));
+        DVec3::from_array(jet.gradient)
+    }
+
+    fn shares(&self, point: DVec3, shares: &mut Vec<(u32, u32, f64)>) {
+        let mut own = Vec::new();
+        self.function.shares(self.unit.world(point), &mut own);
+        let first = self.finish.first();
+        shares.extend(own.into_iter().filter_map(|(number, share)| {
+            let element = self.element.get(number as usize).unwrap_or(&u32::MAX);
+            let finish = self.finish.get(number as usize).or(first)?;
+            Some((*element, *finish, share))
+        }));
+    }
+
+    fn lift(&self, t: f64) -> f64 {
+        LIFT * (1.0 + t)
+    }
+}
+
+/// Returns the range of a ray, up to a limit, within a surface's ball; `None` if the ray misses it.
+/// Without a ball the range ends at `furthest`.
 pub(crate) fn range(
     support: Option<Ball>,
     ray: &Ray,
@@ -95,9 +165,10 @@ pub(crate) fn range(
     (near < far).then_some([near, far])
 }
 
-/// The next piece of a ray, up to `end`, in which there may be crossings, and the number of evaluations that finding it took. Where
-/// the function knows balls without crossings the ray goes from one to the next; the piece after them is as long as the function's
-/// scale. `None` if there is no crossing up to the end.
+/// The next piece of a ray, up to `end`, in which there may be crossings, and the number of
+/// evaluations that finding it took. Where the function knows balls without crossings the ray goes
+/// from one to the next; the piece after them is as long as the function's scale. `None` if there
+/// is no crossing up to the end.
 fn next_piece(function: &dyn Implicit, ray: &Ray, from: f64, end: f64) -> (Option<[f64; 2]>, u64) {
     let mut at = from;
     let mut evaluations = 0;
@@ -115,8 +186,8 @@ fn next_piece(function: &dyn Implicit, ray: &Ray, from: f64, end: f64) -> (Optio
     (None, evaluations)
 }
 
-/// Calls `tell` with each crossing of a ray with the surface of a function, and whether the ray enters there, in order,
-/// until `tell` returns false. Returns the number of evaluations.
+/// Calls `tell` with each crossing of a ray with the surface of a function, and whether the ray
+/// enters there, in order, until `tell` returns false. Returns the number of evaluations.
 pub(crate) fn crossings(
     function: &dyn Implicit,
     along: &RayQuery,

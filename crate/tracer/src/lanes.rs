@@ -1,6 +1,6 @@
 //! Several rays in step.
 //!
-//! The digger is written once, for any number of rays side by side: eight in single precision for
+//! The walk is written once, for any number of rays side by side: eight in single precision for
 //! pictures, one in double precision for exact answers.
 use field::Evaluate;
 use wide::bytemuck::cast;

@@ -52,10 +52,13 @@
 //!   surface at the hits. This way takes packets near anything but blobs, or with a ray that starts inside,
 //!   and all packets of a square whose beam meets more than 16 other primitives.
 //!
-//! Other root finders, for comparison, are in `digger`; `map` shows the cost of each pixel.
+//! Bodies that are met ray by ray ([`body`]) are those of other functions ([`function`]), and all if a
+//! picture is to be drawn by another root finder ([`root_finder`]); those of the literature are in the
+//! crate `digger`. `map` shows the cost of each pixel.
 //!
-//! Pictures are checked against [`mod@reference`], which finds the surface by bisection with bounds of its own
-//! (`tests/it/certified.rs`, `examples/certify.rs`); `cast` traces single rays as in pictures.
+//! Pictures are checked against the crate `oracle`, whose reference finds the surface by bisection with
+//! bounds of its own (`tests/it/certified.rs`, `examples/certify.rs`); `cast` traces single rays as in
+//! pictures.
 //!
 //! # Limits
 //!
@@ -94,11 +97,10 @@ mod beam;
 mod beams;
 mod blob_march;
 mod blob_set;
+mod body;
 mod cast;
 mod clusters;
 mod coloured;
-mod digger;
-mod dug;
 mod exposure;
 mod far_march;
 mod flesh;
@@ -125,11 +127,11 @@ pub mod picture;
 mod plain;
 mod quick;
 mod ray;
-pub mod reference;
 mod refine;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
 mod rich;
+mod root_finder;
 mod root_isolation;
 mod roots;
 mod sample;
@@ -159,9 +161,11 @@ pub use known::{Known, around};
 pub use pick::Picker;
 pub use picture::{Hit, Picture};
 pub use ray::Ray;
-pub use reference::Reference;
 #[cfg(not(target_arch = "wasm32"))]
-pub use render::{render, render_picture};
+pub use render::render;
+pub use root_finder::RootFinder;
+pub use roots::{Roots, roots};
 pub use sample_cache::SampleCache;
 pub use stats::Stats;
 pub use tile::{Pass, Tile, tiles};
+pub use walk::Quest;

@@ -36,21 +36,9 @@ impl World {
                 }
                 first
             }
-            Owner::Function(number) => {
-                let body = &self.functions[number];
-                let mut own = Vec::new();
-                body.function
-                    .shares(self.unit.world(hit.position), &mut own);
-                let first = body.finish.first().copied().unwrap_or(0);
-                shares.extend(own.into_iter().map(|(element, share)| {
-                    let of = body.element.get(element as usize);
-                    let finish = body.finish.get(element as usize);
-                    (
-                        of.copied().unwrap_or(u32::MAX),
-                        finish.copied().unwrap_or(first),
-                        share,
-                    )
-                }));
+            Owner::Other(number) => {
+                self.others[number].shares(hit.position, &mut shares);
+                let first = shares.first().map_or(0, |&(_, finish, _)| finish);
                 join_pieces(&mut shares);
                 first
             }

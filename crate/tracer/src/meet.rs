@@ -1,10 +1,9 @@
 //! From rays to the surface points that they meet first.
 //!
 //! The nearest crossing wins, whatever it belongs to: hard elements, the convolution surface of each body, and the surfaces of
-//! other functions are asked one after the other, each only as far as the rays still go.
+//! bodies that are met ray by ray are asked one after the other, each only as far as the rays still go.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::function::{FunctionBody, RayQuery, crossings, range};
 use crate::hard::Crossing;
 use crate::layout::PACKET;
 use crate::lens::{Fan, Lens};
@@ -71,13 +70,6 @@ pub(crate) struct PacketRays<'r> {
 /// All lanes of a packet.
 pub(crate) const ALL: u32 = (1 << PACKET) - 1;
 
-/// Stretches of rays shorter than this part of the scene's size are not looked into for other functions.
-const RESOLUTION: f64 = 5e-7;
-/// Surfaces of functions without a support are followed this far, in units of the scene's size.
-const FURTHEST: f64 = 1e4;
-/// How far rays to the lights start above the surfaces of other functions.
-const FUNCTION_LIFT: f64 = 1e-6;
-
 impl World {
     /// Finds what the rays of the packet in a column and row of a square meet first, and says so in `seen`, with the rays if they
     /// meet anything.
@@ -102,13 +94,9 @@ impl World {
                 *hit = self.hard_point(ray, self.one_sided, &mut work.crossings);
             }
         }
-        if let Some(digger) = &self.digger {
-            self.dug_points(&**digger, seen, work);
-        } else {
-            self.meet_soft(square, place, rays, seen, &mut exact, work);
-        }
-        if !self.functions.is_empty() {
-            self.meet_functions(seen, ALL, &mut work.scratch);
+        self.meet_soft(square, place, rays, seen, &mut exact, work);
+        if !self.others.is_empty() {
+            self.meet_others(seen, ALL, &mut work.scratch);
         }
         stats.field_evaluations += work.scratch.evaluations;
         seen.costs = work.costs(PACKET);
@@ -380,80 +368,33 @@ impl World {
         }
     }
 
-    /// Replaces what rays meet by points on the surfaces of other functions that are nearer.
-    pub fn meet_functions(&self, seen: &mut Seen, alive: u32, scratch: &mut Scratch) {
-        for body in &self.functions {
+    /// Replaces what rays meet by points on the surfaces of bodies that are met ray by ray and are nearer.
+    pub fn meet_others(&self, seen: &mut Seen, alive: u32, scratch: &mut Scratch) {
+        for body in &self.others {
             for (lane, (ray, hit)) in seen.rays.iter().zip(&mut seen.hits).enumerate() {
                 if alive >> lane & 1 == 0 {
                     continue;
                 }
                 let limit = hit.map_or(f64::INFINITY, |hit| hit.t);
-                let (found, cost) = self.function_crossing(body, ray, limit, Quest::First);
+                let (found, cost) = body.first(ray, limit, Quest::First);
                 scratch.evaluations += cost;
                 scratch.alone[lane] += cost;
                 let Some(t) = found else { continue };
-                let position = ray.at(t);
-                let Some(normal) = body.normal(position) else {
+                let Some(normal) = (-body.gradient(ray, t)).try_normalize() else {
                     continue;
                 };
+                let position = ray.at(t);
                 let mut shares = Vec::new();
-                body.function.shares(body.unit.world(position), &mut shares);
-                let finish = |&(element, share): &(u32, f64)| {
-                    let finish = body.finish.get(element as usize).or(body.finish.first());
-                    Some((*finish?, share))
-                };
+                body.shares(position, &mut shares);
                 *hit = Some(SurfacePoint {
                     t,
                     position,
                     normal,
-                    lift: FUNCTION_LIFT * (1.0 + t),
-                    finish: self.mixed(shares.iter().filter_map(finish)),
-                    surface: self.surface_of_body(body.number),
+                    lift: body.lift(t),
+                    finish: self.mixed(shares.iter().map(|&(_, finish, share)| (finish, share))),
+                    surface: self.surface_of_body(body.number()),
                 });
             }
         }
-    }
-
-    /// The first crossing of a ray with the surface of a function that the quest asks for, and its cost.
-    pub fn function_crossing(
-        &self,
-        body: &FunctionBody,
-        ray: &Ray,
-        limit: f64,
-        quest: Quest,
-    ) -> (Option<f64>, u64) {
-        let mut found = None;
-        let cost = self.function_crossings(body, ray, limit, |t, enters| {
-            if enters || quest != Quest::Entry {
-                found = Some(t);
-            }
-            found.is_none()
-        });
-        (found, cost)
-    }
-
-    /// Calls `tell` with each crossing of a ray with the surface of a function, and whether it enters, until it says `false`; gives
-    /// the cost.
-    pub fn function_crossings(
-        &self,
-        body: &FunctionBody,
-        ray: &Ray,
-        limit: f64,
-        mut tell: impl FnMut(f64, bool) -> bool,
-    ) -> u64 {
-        let scale = body.unit.length(1.0);
-        let ray = Ray {
-            origin: body.unit.world(ray.origin),
-            direction: ray.direction,
-        };
-        let Some(range) = range(body.support, &ray, limit * scale, FURTHEST * scale) else {
-            return 0;
-        };
-        let along = RayQuery {
-            ray,
-            range,
-            resolution: RESOLUTION * scale,
-        };
-        crossings(&*body.function, &along, |t, enters| tell(t / scale, enters))
     }
 }

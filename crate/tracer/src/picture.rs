@@ -5,6 +5,7 @@ use crate::exposure::Exposure;
 use crate::layout::{BLOCK, SQUARE};
 use crate::map::Map;
 use crate::ray::Ray;
+use crate::root_finder::RootFinder;
 use crate::sample_cache::SampleCache;
 use crate::sampler::Sampler;
 use crate::shade;
@@ -66,7 +67,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Prepares a scene. `size` is the picture's width and height in pixels, each > 0.
+    /// Prepares a scene, whose convolution surfaces are found in the certified way, whatever its
+    /// settings say ([`Picture::find_with`]). `size` is the picture's width and height in pixels, each > 0.
     #[must_use]
     pub fn new(scene: &Scene, size: [u32; 2]) -> Self {
         let size = size.map(|n| n.max(1));
@@ -107,6 +109,12 @@ impl Picture {
     /// scene's bodies. `finish` tells the finish, an index into [`Scene::finishes`], of each of the function's elements.
     pub fn add_function(&mut self, function: Arc<dyn Implicit>, finish: Vec<u32>) -> u32 {
         self.sampler.world.add(function, finish)
+    }
+
+    /// Has the convolution surfaces found by another root finder from now on, ray by ray and hit for
+    /// hit as it says, errors and all.
+    pub fn find_with(&mut self, finder: &Arc<dyn RootFinder>) {
+        self.sampler.world.find_with(finder);
     }
 
     /// From now on each soft primitive is followed by itself wherever it counts, without groups and without
@@ -230,8 +238,8 @@ impl Picture {
         crossings.iter().map(hit).collect()
     }
 
-    /// What each ray (origin, direction) hits first at t > 0, as the scene's digger finds it, with the
-    /// arithmetic and the tolerance of pictures. Neighbouring rays of the list make packets: the nearer together they
+    /// What each ray (origin, direction) hits first at t > 0, with the arithmetic and the tolerance of
+    /// pictures. Neighbouring rays of the list make packets: the nearer together they
     /// are, the faster it goes.
     #[must_use]
     pub fn cast(&self, rays: &[(DVec3, DVec3)]) -> Vec<Option<Hit>> {

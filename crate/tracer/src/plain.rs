@@ -174,7 +174,7 @@ impl World {
                 let MakeUp { is_even, first, .. } = rich.make_up[body as usize];
                 is_even && rich.materials.is_even(first)
             }
-            Owner::Function(_) => false,
+            Owner::Other(_) => false,
         };
         if is_even {
             return hit.finish;

@@ -6,30 +6,17 @@ use crate::sample_cache::SampleCache;
 use crate::stats::Stats;
 use crate::tile::{Pass, Tile, tiles};
 use crate::workspace::Workspace;
-use scene::Scene;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Side in pixels of the parts of a picture whose smooth passes run one after the other; the first samples of one take 100 MB.
 const SHEET: u32 = 2048;
 
-/// Renders a scene with several threads and returns RGBA bytes (rows from the top).
+/// Renders a picture with several threads and returns RGBA bytes (rows from the top).
 ///
 /// `progress` is called from any thread after each tile with the share done, 0 … 1.
 #[must_use]
 pub fn render(
-    scene: &Scene,
-    size: [u32; 2],
-    threads: usize,
-    pass: Pass,
-    progress: &(dyn Fn(f64) + Sync),
-) -> (Vec<u8>, Stats) {
-    render_picture(&Picture::new(scene, size), threads, pass, progress)
-}
-
-/// Renders a prepared picture, like [`render`].
-#[must_use]
-pub fn render_picture(
     picture: &Picture,
     threads: usize,
     pass: Pass,

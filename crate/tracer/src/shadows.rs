@@ -148,13 +148,13 @@ impl World {
         }
     }
 
-    /// Darkens the rays that meet a hard element or enter a function before their ends.
+    /// Darkens the rays that meet a hard element, or enter a body that is met ray by ray, before their ends.
     fn look_for_others(&self, shadows: &mut [Shadow], work: &mut Workspace, stats: &mut Stats) {
         for shadow in shadows {
             shadow.cost = 1.0;
             let (ray, limit) = (&shadow.ray, shadow.limit);
             let solid = self.solids.first(ray, limit, false, &mut work.crossings);
-            if solid.is_some() || self.function_darkens(shadow, stats) {
+            if solid.is_some() || self.other_darkens(shadow, stats) {
                 shadow.state = State::Dark;
             }
         }
@@ -187,11 +187,10 @@ impl World {
         }
     }
 
-    /// Whether a ray to a light enters the surface of a function before its end.
-    fn function_darkens(&self, shadow: &mut Shadow, stats: &mut Stats) -> bool {
-        self.functions.iter().any(|body| {
-            let (ray, limit) = (&shadow.ray, shadow.limit);
-            let (found, cost) = self.function_crossing(body, ray, limit, Quest::Entry);
+    /// Whether a ray to a light enters a body that is met ray by ray before its end.
+    fn other_darkens(&self, shadow: &mut Shadow, stats: &mut Stats) -> bool {
+        self.others.iter().any(|body| {
+            let (found, cost) = body.first(&shadow.ray, shadow.limit, Quest::Entry);
             stats.field_evaluations += cost;
             shadow.cost += cost as f32;
             found.is_some()
@@ -205,16 +204,6 @@ impl World {
         work: &mut Workspace,
         stats: &mut Stats,
     ) {
-        if let Some(digger) = &self.digger {
-            for packet in patch.chunks_mut(PACKET) {
-                let rays = core::array::from_fn(|i| packet.get(i).map(|shadow| shadow.ray));
-                let limits = core::array::from_fn(|i| packet.get(i).map_or(0.0, |s| s.limit));
-                work.begin();
-                let dark = self.dug_shadows(&**digger, &rays, &limits, work);
-                darken(packet, dark, work, stats);
-            }
-            return;
-        }
         let starts: &[Ray] = &patch.iter().map(|shadow| shadow.ray).collect::<Vec<_>>();
         let Some(beam) = Beam::around(starts) else {
             return;

@@ -289,6 +289,16 @@ impl Soft {
         });
     }
 
+    /// Returns the gradient of a body's field where a ray is at t.
+    pub fn gradient(&self, body: u32, ray: &Ray, t: f64) -> DVec3 {
+        let point = ray.at(t).to_array();
+        let mut gradient = DVec3::ZERO;
+        self.along(body, ray, |primitive, _, _| {
+            gradient += DVec3::from_array(primitive.jet(point).gradient);
+        });
+        gradient
+    }
+
     /// Returns the slabs of a body along a beam up to a parameter, and the parameter at which they start. `None` if no primitive
     /// reaches the beam, or their sum stays below T.
     ///

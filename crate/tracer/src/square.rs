@@ -53,7 +53,7 @@ impl<'a> Square<'a> {
             general: Vec::new(),
             slabs: Vec::new(),
         };
-        if soft.is_empty() || world.digger.is_some() {
+        if soft.is_empty() {
             return square;
         }
         let mut all = Nearby::default();

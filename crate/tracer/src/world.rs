@@ -1,7 +1,8 @@
 //! Everything that rays can meet, made ready.
-use crate::digger::{self, Digger};
+use crate::body::Body;
 use crate::function::FunctionBody;
 use crate::rich::Rich;
+use crate::root_finder::{FoundBody, RootFinder};
 use crate::shade::Finish;
 use crate::soft::Soft;
 use crate::solids::Solids;
@@ -16,15 +17,13 @@ pub(crate) struct World {
     pub unit: Unit,
     /// The convolution surfaces of the bodies.
     pub soft: Soft,
-    /// Bodies of other functions.
-    pub functions: Vec<FunctionBody>,
+    /// Bodies that are met ray by ray: those of other functions, and those of another root finder.
+    pub others: Vec<Box<dyn Body>>,
     /// The hard elements.
     pub solids: Solids,
     pub finishes: Vec<Finish>,
     pub lights: Vec<Light>,
     pub background: Vec3,
-    /// What finds the convolution surfaces, if it is not the certified way.
-    pub digger: Option<Box<dyn Digger>>,
     /// Whether faces seen from behind are hidden.
     pub one_sided: bool,
     /// How far rays start from hard surfaces, for each unit of distance more than 0.
@@ -45,8 +44,8 @@ const EPSILON: f64 = 1e-4;
 pub(crate) enum Owner {
     /// The convolution surface of a body, by its number among the soft ones.
     Soft(u32),
-    /// The surface of a function.
-    Function(usize),
+    /// The surface of a body that is met ray by ray.
+    Other(usize),
     /// A hard element's.
     Solid(u32),
 }
@@ -99,11 +98,14 @@ impl World {
             scene.bodies.len() as u32,
         );
         let epsilon = settings.epsilon.clamp(1e-9, 0.1);
-        let (mut sums, mut functions) = (Vec::new(), Vec::new());
+        let mut sums = Vec::new();
+        let mut others: Vec<Box<dyn Body>> = Vec::new();
         for surface in scene.surfaces() {
             match surface {
                 Surface::Sum(sum) => sums.push(sum),
-                Surface::Composed(composed) => functions.push(FunctionBody::of(composed, &scene)),
+                Surface::Composed(composed) => {
+                    others.push(Box::new(FunctionBody::of(composed, &scene)));
+                }
             }
         }
         let soft = Soft::new(scene, sums);
@@ -112,33 +114,45 @@ impl World {
             rich: rich.map(|rich| rich.with(&soft)),
             unit,
             soft,
-            functions,
+            others,
             solids,
             finishes,
             lights,
             background,
-            digger: match settings.digger {
-                scene::Digger::Hermite => None,
-                other => Some(digger::of(other)),
-            },
             one_sided: !settings.double_sided,
             bodies,
         }
     }
 
-    /// Adds a body of an implicit function, given with the finish of each of its elements, and gives the body's number.
+    /// Adds a body of an implicit function, given with the finish of each of its elements, and
+    /// gives the body's number.
     pub fn add(&mut self, function: Arc<dyn Implicit>, finish: Vec<u32>) -> u32 {
         let number = self.bodies;
         self.bodies += 1;
-        self.functions.push(FunctionBody {
+        self.others.push(Box::new(FunctionBody {
             number,
             support: function.support(),
             function,
             finish,
             element: Vec::new(),
             unit: self.unit,
-        });
+        }));
         number
+    }
+
+    /// Has the convolution surfaces found by another root finder, ray by ray.
+    pub fn find_with(&mut self, finder: &Arc<dyn RootFinder>) {
+        let nothing = Soft::new(Scene::default(), Vec::new());
+        let soft = Arc::new(core::mem::replace(&mut self.soft, nothing));
+        let bodies = 0..soft.bodies.len() as u32;
+        let found = bodies.map(|body| -> Box<dyn Body> {
+            Box::new(FoundBody {
+                soft: soft.clone(),
+                body,
+                finder: finder.clone(),
+            })
+        });
+        self.others.splice(0..0, found);
     }
 
     /// The number that tells the surface of a body, by its number in the scene, from others.
@@ -161,15 +175,15 @@ impl World {
         match bodies.binary_search_by_key(&number, |body| body.number) {
             Ok(body) => Owner::Soft(body as u32),
             Err(_) => {
-                let own = |body: &FunctionBody| body.number == number;
-                Owner::Function(self.functions.iter().position(own).unwrap_or(0))
+                let position = self.others.iter().position(|body| body.number() == number);
+                Owner::Other(position.unwrap_or(0))
             }
         }
     }
 
-    /// Whether there is nothing but convolution surfaces found in the certified way.
+    /// Whether there is nothing but convolution surfaces, found in the certified way.
     pub fn only_soft(&self) -> bool {
-        self.solids.is_empty() && self.functions.is_empty() && self.digger.is_none()
+        self.solids.is_empty() && self.others.is_empty()
     }
 
     /// The finish mixed of those of some elements by weights ≥ 0.

@@ -19,15 +19,13 @@
 //!
 //! Outputs whose bits must not change are hashed and compared with kept hashes: [`bits`].
 //!
-//! With the feature `field` there are random skeletons, with `scene` random scenes, with `tracer` rays
-//! through them and their judge.
+//! With the feature `field` there are random skeletons, with `scene` random scenes; the crate `oracle`
+//! has rays through them and their judge.
 //!
 //! [`WorkClock`] is for tests that something does not take long.
 
 pub mod bits;
 mod random;
-#[cfg(feature = "tracer")]
-pub mod rays;
 #[cfg(feature = "scene")]
 pub mod scenes;
 #[cfg(feature = "field")]

@@ -77,7 +77,7 @@ impl Random {
     }
 
     /// Returns 10 to a power; the scenes of earlier faults depend on each bit of it.
-    pub(crate) fn power(&mut self, low: f64, high: f64) -> f64 {
+    pub fn power(&mut self, low: f64, high: f64) -> f64 {
         libm::pow(10.0, self.range(low, high))
     }
 }

@@ -1,7 +1,7 @@
-//! Places of the widgets, for tests that drive the page from outside: a canvas has no elements that
-//! they could look for.
+//! Places of the widgets: parts of the page that keep their identity, and where widgets are, for tests
+//! that drive the page from outside: a canvas has no elements that they could look for.
 
-use egui::{Context, Id, Rect};
+use egui::{Context, Id, Rect, UiBuilder};
 use std::collections::BTreeMap;
 
 /// Names and rectangles, in points.
@@ -9,6 +9,16 @@ pub type Places = BTreeMap<String, Rect>;
 
 fn id() -> Id {
     Id::unique("places")
+}
+
+/// Returns a builder for a part of the page. egui tells widgets from each other by their order, so that
+/// one that comes or goes (a spinner, a strip) would give those after it another identity, and a click
+/// that has begun on one of them would be lost. Widgets in a part of its own are counted apart.
+#[must_use]
+pub fn part(name: &str, place: Rect) -> UiBuilder {
+    UiBuilder::new()
+        .scope_id(Id::unique(("part", name)))
+        .max_rect(place)
 }
 
 /// Forgets all places: a new frame begins.

@@ -1,26 +1,29 @@
 //! A worker's desk: takes requests at any time, does one step of work when asked.
 
-use crate::errors::Errors;
 use crate::{Answer, Kind, Order, Request};
-use scene::Scene;
+use scene::{Digger, Scene};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use tracer::{Known, Pass, Picture, SampleCache, Stats, Tile};
 
-/// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two steps the
-/// worker sees what has come in.
+/// Rows of a tile that are traced in one step, but for the coarse pass, which is quick: between two
+/// steps the worker sees what has come in.
 const ROWS: u32 = 32;
 
-/// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture that fits a screen
-/// (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some samples twice. In pictures of more squares
-/// workers do not hear of each other's, as the page would have to keep them all.
+/// Squares of pixels of which a worker keeps the first samples, 100 kB each: those of a picture
+/// that fits a screen (`studio::size::FIT_PIXELS`). Where a worker is given more, it takes some
+/// samples twice. In pictures of more squares workers do not hear of each other's, as the page
+/// would have to keep them all.
 pub const KEPT: usize = 320;
 /// Side of those squares, pixels.
 const SQUARE: u32 = 64;
 
+/// Makes a scene ready for what is wanted of it, or says why this worker cannot.
+pub type Prepare = fn(&Scene, [u32; 2], Kind) -> Result<Prepared, String>;
+
 /// The picture a worker is busy with, and the tiles it still has to trace.
-#[derive(Default)]
 pub struct Engine {
+    prepare: Prepare,
     generation: u64,
     /// Whether the generation is new and the page not yet told that we know.
     new: bool,
@@ -75,11 +78,40 @@ impl Begun {
     }
 }
 
+/// Traces a tile of four bytes a pixel; gives it up when the function, asked now and then, says
+/// true.
+pub type Tracer = dyn Fn(Tile, &dyn Fn() -> bool) -> Option<Vec<u8>>;
+
 /// A scene made ready for what is wanted of it.
-enum Prepared {
+pub enum Prepared {
     /// With the first samples of its pixels, for the tiles that are made smooth.
     Colours(Box<Picture>, SampleCache),
-    Errors(Box<Errors>),
+    /// Something else than colours.
+    Other(Box<Tracer>),
+}
+
+impl Prepared {
+    /// Returns a picture without samples.
+    #[must_use]
+    pub fn colours(picture: Picture) -> Self {
+        let cache = picture.cache(KEPT);
+        Self::Colours(Box::new(picture), cache)
+    }
+}
+
+/// Prepares a scene of which convolution surfaces are found in the tracer's own way.
+fn certified(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, String> {
+    if scene.settings.digger != Digger::Hermite || kind != Kind::Colours {
+        return Err(String::from("this worker has no other root finders"));
+    }
+    Ok(Prepared::colours(Picture::new(scene, size)))
+}
+
+impl Default for Engine {
+    /// An engine that finds convolution surfaces in the tracer's own way, and refuses other scenes.
+    fn default() -> Self {
+        Self::new(certified)
+    }
 }
 
 /// Outcome of a step.
@@ -96,6 +128,23 @@ pub enum Step {
 }
 
 impl Engine {
+    /// Returns an idle engine.
+    #[must_use]
+    pub fn new(prepare: Prepare) -> Self {
+        Self {
+            prepare,
+            generation: 0,
+            new: false,
+            wanted: None,
+            shared: false,
+            prepared: None,
+            before: None,
+            learnt: Vec::new(),
+            queue: VecDeque::new(),
+            begun: None,
+        }
+    }
+
     /// Takes a request. This is quick: the work is done by [`Engine::step`].
     pub fn accept(&mut self, request: Request) {
         match request {
@@ -152,8 +201,8 @@ impl Engine {
         next.is_some_and(|order| order.pass == pass)
     }
 
-    /// Takes note of a new picture, prepares it if that was not done yet, or traces the next tile or
-    /// some rows of it.
+    /// Takes note of a new picture, prepares it if that was not done yet, or traces the next tile
+    /// or some rows of it.
     ///
     /// `stop` is asked while tracing; when it says true the tile is given up. `clock` tells seconds
     /// since some fixed moment.
@@ -164,18 +213,17 @@ impl Engine {
             });
         }
         if let Some((scene, size, kind)) = self.wanted.take() {
-            self.prepared = Some(match kind {
-                Kind::Colours => {
-                    let mut picture = Picture::new(&scene, size);
-                    if let Some(mut before) = self.before.take() {
-                        picture.follow(&mut before);
-                    }
-                    let mut cache = picture.cache(KEPT);
-                    self.learnt.drain(..).for_each(|known| cache.learn(&known));
-                    Prepared::Colours(Box::new(picture), cache)
+            let mut prepared = match (self.prepare)(&scene, size, kind) {
+                Ok(prepared) => prepared,
+                Err(reason) => return Step::Answer(Answer::Failed(reason)),
+            };
+            if let Prepared::Colours(picture, cache) = &mut prepared {
+                if let Some(mut before) = self.before.take() {
+                    picture.follow(&mut before);
                 }
-                Kind::Errors => Prepared::Errors(Box::new(Errors::new(&scene, size))),
-            });
+                self.learnt.drain(..).for_each(|known| cache.learn(&known));
+            }
+            self.prepared = Some(prepared);
             return Step::Answer(Answer::Prepared {
                 generation: self.generation,
             });
@@ -192,7 +240,7 @@ impl Engine {
             Prepared::Colours(picture, cache) => {
                 picture.trace_with(part, pass, cache, stop, &mut tile.stats)
             }
-            Prepared::Errors(errors) => errors.trace(part, stop),
+            Prepared::Other(trace) => trace(part, stop),
         };
         let Some(pixels) = traced else {
             return Step::Dropped;
@@ -586,6 +634,29 @@ mod tests {
             Step::Answer(Answer::Noted { generation: 3 })
         );
         assert_eq!(step(&mut engine), Step::Idle);
+    }
+
+    #[test]
+    fn scenes_for_other_root_finders_are_refused() {
+        let mut scene = Scene::default();
+        scene.settings.digger = Digger::Lg;
+        for (scene, kind) in [(scene, Kind::Colours), (Scene::default(), Kind::Errors)] {
+            let mut engine = Engine::default();
+            engine.accept(Request::Begin {
+                generation: 1,
+                scene: Arc::new(scene),
+                camera: None,
+                size: [8, 8],
+                kind,
+                shared: false,
+            });
+            step(&mut engine);
+            let answer = step(&mut engine);
+            assert!(
+                matches!(answer, Step::Answer(Answer::Failed(_))),
+                "{answer:?}"
+            );
+        }
     }
 
     #[test]

@@ -30,8 +30,17 @@ struct Desk {
 ///
 /// # Errors
 /// Outside a dedicated worker.
-#[wasm_bindgen]
-pub fn serve() -> Result<(), JsValue> {
+#[cfg(feature = "entry")]
+#[wasm_bindgen(js_name = serve)]
+pub fn serve_certified() -> Result<(), JsValue> {
+    serve(Engine::default())
+}
+
+/// Takes over the messages of a worker with this engine.
+///
+/// # Errors
+/// Outside a dedicated worker.
+pub fn serve(engine: Engine) -> Result<(), JsValue> {
     std::panic::set_hook(Box::new(|panic| {
         let message = panic.to_string();
         web_sys::console::error_1(&JsValue::from_str(&message));
@@ -39,7 +48,7 @@ pub fn serve() -> Result<(), JsValue> {
     }));
     let scope = scope()?;
     let desk = Rc::new(RefCell::new(Desk {
-        engine: Engine::default(),
+        engine,
         answers: Vec::new(),
         sent: 0.0,
         ticking: false,
@@ -52,7 +61,8 @@ pub fn serve() -> Result<(), JsValue> {
         desk.ticking = false;
         match desk.engine.step(&|| false, &clock) {
             Step::Answer(answer) => desk.answer(answer),
-            // Of a tile that takes long the page would hold what it has not heard of the ones before against it.
+            // Of a tile that takes long the page would hold what it has not heard of the ones
+            // before against it.
             Step::Part | Step::Dropped => desk.send_old(),
             Step::Idle => {}
         }
@@ -83,7 +93,8 @@ pub fn serve() -> Result<(), JsValue> {
 }
 
 impl Desk {
-    /// Sends an answer, a tile together with those of its pass that follow soon: the last of a pass may complete a picture.
+    /// Sends an answer, a tile together with those of its pass that follow soon: the last of a pass
+    /// may complete a picture.
     fn answer(&mut self, answer: Answer) {
         let can_wait =
             matches!(&answer, Answer::Traced { order, .. } if self.engine.goes_on_with(order.pass));

@@ -27,13 +27,14 @@
 //! The page cuts a picture into tiles and sends [`Request`]s to its workers; a worker keeps them in
 //! an [`Engine`], does one step of work at a time and sends [`Answer`]s. Between two steps it looks
 //! at new requests, so queued tiles of an older picture are never begun. The same engine runs
-//! on a thread in native builds. The part for web workers is in `entry`, which is compiled
-//! only into the worker's own wasm (feature `entry`).
+//! on a thread in native builds. The part for web workers is in `entry`.
+//!
+//! This build of the worker finds surfaces in the tracer's own way. The crate `digger` is another
+//! one, with the root finders for comparison.
 
 pub mod engine;
-#[cfg(all(target_arch = "wasm32", feature = "entry"))]
-mod entry;
-pub mod errors;
+#[cfg(target_arch = "wasm32")]
+pub mod entry;
 pub mod message;
 
 pub use engine::{Engine, Step};

@@ -22,7 +22,7 @@ pub enum Kind {
     /// Colours, as RGBA.
     #[default]
     Colours,
-    /// How far off the scene's digger is, as said in [`crate::errors`].
+    /// How far off the scene's digger is, as the crate `digger` says.
     Errors,
 }
 
@@ -66,8 +66,8 @@ pub enum Request {
 pub enum Answer {
     /// The worker runs and takes requests. Sent once.
     Started,
-    /// A [`Request::Begin`] or [`Request::Stop`] was taken note of: whatever the worker was at before
-    /// is over. Left out if another one has come in meanwhile.
+    /// A [`Request::Begin`] or [`Request::Stop`] was taken note of: whatever the worker was at
+    /// before is over. Left out if another one has come in meanwhile.
     Noted {
         /// Its number.
         generation: u64,

@@ -1,4 +1,4 @@
-//! The folder for static hosts, and how large its first load is.
+//! The folder for static hosts, and how large its modules are.
 
 use crate::packages::MODULES;
 use crate::page::{self, Build};
@@ -36,7 +36,7 @@ fn weigh(folder: &Path) -> Result<()> {
         heavy.extend(Some(sizes).filter(|_| small > module.budget));
     }
     if !heavy.is_empty() {
-        bail!("The first load is too large: {}", heavy.join("; "));
+        bail!("Too large: {}", heavy.join("; "));
     }
     Ok(())
 }

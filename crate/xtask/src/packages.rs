@@ -16,7 +16,7 @@ pub struct Module {
 }
 
 /// All wasm files of the page. Each is compiled apart from the others, as features of one must not reach another.
-pub const MODULES: [Module; 3] = [
+pub const MODULES: [Module; 4] = [
     Module {
         package: "studio",
         features: "",
@@ -33,6 +33,14 @@ pub const MODULES: [Module; 3] = [
         // and implicit meshes took it to 449, a quarter of which, before compression, are the formulas of the chart in two
         // precisions.
         budget: 450_000,
+    },
+    // The same worker with the root finders for comparison, fetched when a text first says `digger`.
+    Module {
+        package: "digger",
+        features: "entry",
+        profile: "worker",
+        name: "digger",
+        budget: 1_500_000,
     },
     Module {
         package: "tools",

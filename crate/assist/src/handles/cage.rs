@@ -2,11 +2,10 @@
 
 use super::decimal::{power, write};
 use super::handle::{Editable, Handle, Kind, Moves};
-use crate::edit::Edit;
 use glam::{DAffine3, DVec3};
 use rats::limits::MAX_MAGNITUDE;
 use rats::provenance::{Number, Source};
-use rats::{Deform, Project};
+use rats::{Deform, Project, TextEdit};
 
 /// The handles of the control points of a deformation, in their order: each stands where its point is moved to.
 #[must_use]
@@ -58,7 +57,7 @@ pub fn cage(deform: &Deform) -> Vec<Handle> {
 /// let compiled = rats::compile_at(&project, &[asset], 0.0);
 /// let to = DVec3::new(1.0, 0.0, 0.5);
 /// let edit = assist::handles::pull(&project, &compiled.deforms[0], 0, to, 0.01).unwrap();
-/// let moved = assist::apply(&project, &[edit]);
+/// let moved = project.apply(&[edit]);
 /// let last = moved.files[0].text.lines().last();
 /// assert_eq!(last, Some("deform { control <1 0 0> move <0 0 0.5> }"));
 /// ```
@@ -69,7 +68,7 @@ pub fn pull(
     index: usize,
     to: DVec3,
     grain: f64,
-) -> Option<Edit> {
+) -> Option<TextEdit> {
     let control = deform.controls.get(index)?;
     let file = deform.origin.file as usize;
     let text = &project.files.get(file)?.text;
@@ -91,7 +90,7 @@ pub fn pull(
     Some(match &control.way_span {
         Some(span) => {
             let is_closed = text.get(span.clone())?.starts_with(['<', '{', '(']);
-            Edit {
+            TextEdit {
                 file,
                 span: span.clone(),
                 text: if is_closed {
@@ -101,7 +100,7 @@ pub fn pull(
                 },
             }
         }
-        None => Edit {
+        None => TextEdit {
             file,
             span: control.span.end..control.span.end,
             text: format!(" move <{words}>"),

@@ -2,8 +2,8 @@
 
 use super::decimal::{power, write};
 use super::handle::{Editable, Handle, Moves, triple};
-use crate::edit::Edit;
 use glam::{DMat3, DVec3};
+use rats::TextEdit;
 use rats::limits::MAX_MAGNITUDE;
 use rats::provenance::{Number, Source};
 
@@ -14,7 +14,7 @@ use rats::provenance::{Number, Source};
 /// The changes are in the order of the text, apart from each other; made from the last to the first, no
 /// range moves under another. There are none if the handle is fixed, or a number would be out of range.
 #[must_use]
-pub fn drag(handle: &Handle, to: DVec3, grain: f64) -> Vec<Edit> {
+pub fn drag(handle: &Handle, to: DVec3, grain: f64) -> Vec<TextEdit> {
     if matches!(handle.edit, Editable::Fixed { .. }) || !to.is_finite() {
         return Vec::new();
     }
@@ -26,7 +26,7 @@ pub fn drag(handle: &Handle, to: DVec3, grain: f64) -> Vec<Edit> {
     let Some(values) = values(handle, to, grain) else {
         return Vec::new();
     };
-    let mut edits: Vec<Edit> = Vec::new();
+    let mut edits: Vec<TextEdit> = Vec::new();
     for (number, (value, grain)) in handle.numbers.iter().zip(values) {
         let Source::Literal {
             file,
@@ -44,13 +44,13 @@ pub fn drag(handle: &Handle, to: DVec3, grain: f64) -> Vec<Edit> {
             continue;
         }
         let value = if *negated { -value } else { value };
-        edits.push(Edit {
+        edits.push(TextEdit {
             file: *file,
             span: span.clone(),
             text: write(value, grain),
         });
     }
-    let place = |edit: &Edit| (edit.file, edit.span.start);
+    let place = |edit: &TextEdit| (edit.file, edit.span.start);
     field::heap_sort(&mut edits, |a, b| place(a) < place(b));
     edits
 }

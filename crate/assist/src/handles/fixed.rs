@@ -74,7 +74,7 @@ pub fn why_repeated(project: &Project, origin: Origin) -> Option<String> {
                         why = Some(format!("is made by the library's `{}`", spec.name));
                     } else if command.span.start == at
                         && let Some(spec) = command.spec
-                        && matches!(spec.name, "mesh" | "terra")
+                        && spec.reads_shape()
                     {
                         why = Some(format!("is made by `{}` from a file", spec.name));
                     } else if command.span.start == at && command.spec.is_none() {

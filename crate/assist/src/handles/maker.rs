@@ -3,7 +3,7 @@
 use super::handle::{Editable, Handle, Kind, Moves, handle};
 use glam::{DMat3, DVec3};
 use rats::Placement;
-use rats::commands::Kind as Takes;
+use rats::commands::{Kind as Takes, Role};
 use rats::provenance::{Operand, Provenance};
 use scene::{Element, Flesh, Scene, Shape};
 
@@ -23,18 +23,18 @@ impl Maker<'_> {
     pub fn handles(&self) -> Vec<Handle> {
         let mut handles = Vec::new();
         for (index, operand) in self.seen.operands.iter().enumerate() {
-            let same = |o: &&Operand| o.meaning == operand.meaning;
-            let mut label = operand.meaning.to_owned();
+            let same = |o: &&Operand| o.parameter.meaning == operand.parameter.meaning;
+            let mut label = operand.parameter.meaning.to_owned();
             if self.seen.operands.iter().filter(same).count() > 1 {
                 let number = self.seen.operands[..=index].iter().filter(same).count();
                 label = format!("{label} ({number})");
             }
-            match operand.kind {
+            match operand.parameter.kind {
                 // A quadric's triples are factors and bounds.
                 Takes::Vector if matches!(self.element.shape, Shape::Quadric(_)) => {}
                 Takes::Vector => handles.push(self.point(operand, label)),
                 Takes::Direction => handles.extend(self.direction(operand, label)),
-                Takes::Number { .. } if self.seen.spec.name == "skeleton" => {
+                Takes::Number { .. } if operand.parameter.role == Role::NodeRadius => {
                     let node = self.seen.operands[..index].last();
                     handles.extend(node.and_then(|node| self.node_radius(node, operand, label)));
                 }
@@ -126,7 +126,11 @@ impl Maker<'_> {
                 angle,
                 ..
             } => {
-                let width = self.seen.operands.iter().find(|o| o.name == "a2");
+                let width = self
+                    .seen
+                    .operands
+                    .iter()
+                    .find(|o| o.parameter.role == Role::Width);
                 let width = width.map_or(1.0, |width| width.numbers[0].value);
                 // Turning a full circle changes nothing.
                 let moves = Moves::Circle {
@@ -142,21 +146,20 @@ impl Maker<'_> {
             }
             _ => None,
         };
-        let (kind, moves) = match (self.seen.spec.name, operand.name) {
-            ("arc", "a1") => (Kind::Angle, circle(true)?),
-            ("arc", "a2") => (Kind::Angle, circle(false)?),
-            ("arc" | "torus", "a") => (Kind::Length, self.sweep()?),
-            ("brick", side) => (Kind::Length, self.side(side)?),
-            ("sphere" | "cylinder" | "pipe", "r")
-            | ("arc" | "torus" | "arch" | "curve" | "cone", "b")
-            | ("cone", "a") => {
+        let role = operand.parameter.role;
+        let (kind, moves) = match role {
+            Role::Start => (Kind::Angle, circle(true)?),
+            Role::Width => (Kind::Angle, circle(false)?),
+            Role::Sweep => (Kind::Length, self.sweep()?),
+            Role::Side(axis) => (Kind::Length, self.side(axis)?),
+            Role::Radius | Role::ApexRadius => {
                 if self.material_decides() {
                     return None;
                 }
-                let at_apex = operand.name == "a";
-                (Kind::Length, self.radius(if at_apex { 1.0 } else { 0.0 }))
+                let end = if role == Role::ApexRadius { 1.0 } else { 0.0 };
+                (Kind::Length, self.radius(end))
             }
-            _ => return None,
+            Role::None | Role::NodeRadius => return None,
         };
         Some(handle(kind, label, operand.numbers.clone(), moves))
     }
@@ -253,15 +256,14 @@ impl Maker<'_> {
         }
     }
 
-    /// Where the knob of a brick's side is: in the middle of a face.
-    fn side(&self, name: &str) -> Option<Moves> {
+    /// Where the knob of a box's side along an axis is: in the middle of a face.
+    fn side(&self, k: usize) -> Option<Moves> {
         let Shape::Box { center, axes } = self.element.shape else {
             return None;
         };
-        let k = ["x", "y", "z"].iter().position(|side| *side == name)?;
         Some(Moves::Along {
             anchor: center,
-            along: axes[k].try_normalize()?,
+            along: axes.get(k)?.try_normalize()?,
             // The side is as long as both halves.
             growth: 0.5 * self.placement.to_world.matrix3.col(k).length(),
         })

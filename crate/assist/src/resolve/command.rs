@@ -4,8 +4,7 @@ use super::state::{Frame, Local, Open, Resolver, taken};
 use crate::grammar::Grammar;
 use crate::index::SymbolKind;
 use crate::slots::{Slot, Slots, Type, What};
-use crate::walk;
-use rats::commands::{self, CommandSpec, Names};
+use rats::commands::{self, Bracket, CommandSpec, Names};
 use rats::syntax::{Command, Datum, Define, Item, Syntax};
 use std::ops::Range;
 use std::rc::Rc;
@@ -34,13 +33,13 @@ impl<'p, 's> Resolver<'p, 's> {
         }
         // A name that is made is there only after the operands have been read.
         self.make_names(file, command, items, &slots);
-        match walk::name(command) {
-            Some("chain") => self.frame().objects.push(true),
-            Some("object" | "body") => self.frame().objects.push(false),
-            Some("close") => {
+        match command.spec.and_then(|spec| spec.bracket) {
+            Some(Bracket::Chain) => self.frame().objects.push(true),
+            Some(Bracket::Object) => self.frame().objects.push(false),
+            Some(Bracket::Close) => {
                 self.frame().objects.pop();
             }
-            _ => {}
+            None => {}
         }
         reads.reverse();
         reads
@@ -100,7 +99,10 @@ impl<'p, 's> Resolver<'p, 's> {
                 let start = span.end - bare.len();
                 let entity = self.named(SymbolKind::File, &self.project.files[read].name);
                 self.note(entity, file, start..span.end, command.span.clone(), false);
-                return (walk::name(command) == Some("read")).then_some(read);
+                return command
+                    .spec
+                    .is_some_and(|spec| spec.includes)
+                    .then_some(read);
             }
             What::Named => {
                 let word = self.symbols.word(command.word);
@@ -137,7 +139,7 @@ impl<'p, 's> Resolver<'p, 's> {
                 SymbolKind::Variable => {
                     // `var a += 1` reads the one and may set the other.
                     let is_set = slots.iter().any(|slot| matches!(slot.what, What::Lead));
-                    if !is_set && walk::name(command) == Some("var") {
+                    if !is_set && command.spec.is_some_and(|spec| !spec.is_structure()) {
                         self.changed(&text[span.clone()]);
                     }
                     self.set_variable(file, span, value.unwrap_or(Type::Any), command);

@@ -3,7 +3,7 @@
 use super::state::{Local, Resolver};
 use crate::index::SymbolKind;
 use crate::slots::Type;
-use crate::walk;
+use rats::commands::CommandSpec;
 use rats::syntax::Command;
 use rats::{colours, functions};
 use std::ops::Range;
@@ -46,7 +46,7 @@ impl<'p> Resolver<'p, '_> {
     ) {
         let name = &self.text(file)[span.clone()];
         let owner = self.frame().owner;
-        if walk::name(command) == Some("for") {
+        if command.spec.is_some_and(CommandSpec::is_structure) {
             let entity = self.entity(SymbolKind::Loop, name);
             self.entities[entity].owner = owner;
             self.entities[entity].value = Type::Number;

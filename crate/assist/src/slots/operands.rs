@@ -293,7 +293,7 @@ impl<'p> Slots<'_, 'p> {
             && match self.datum(0) {
                 Some(Datum::Number(_) | Datum::Sign(b'-' | b'(')) => true,
                 Some(Datum::Sign(b'+')) => self.datum(1) != Some(Datum::Sign(b'=')),
-                Some(Datum::Word(_)) => !self.is_option_next(options::VAR),
+                Some(Datum::Word(_)) => !self.is_option_next(options::VAR_OPTIONS),
                 _ => false,
             };
         if goes_on {

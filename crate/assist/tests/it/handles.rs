@@ -44,7 +44,7 @@ fn dragged(text: &str, label: &str, to: [f64; 3]) -> String {
     let mut project = project(&format!("{MATERIAL}{text}"));
     let handles = of(&project, 0);
     let edits = handles::drag(labelled(&handles, label), DVec3::from(to), 0.01);
-    project = assist::apply(&project, &edits);
+    project = project.apply(&edits);
     project.files[0].text[MATERIAL.len()..].to_owned()
 }
 
@@ -178,14 +178,14 @@ fn copies_follow_and_loops_share_a_radius() {
     let handle = labelled(&handles, "the centre");
     assert_eq!(handle.place, DVec3::X * 2.0);
     let edits = handles::drag(handle, DVec3::new(2.0, 0.5, 0.0), 0.1);
-    project = assist::apply(&project, &edits);
+    project = project.apply(&edits);
     assert!(project.files[0].text.contains("sphere s 1 0 0.5 0"));
     let shared = |text: &str, to: f64| {
         let mut project = self::project(&format!("{MATERIAL}{text}"));
         let handles = of(&project, 2);
         let handle = handles.iter().find(|h| h.kind == Kind::Length)?;
         let edits = handles::drag(handle, handle.place + DVec3::X * to, 0.01);
-        project = assist::apply(&project, &edits);
+        project = project.apply(&edits);
         Some(project.files[0].text[MATERIAL.len()..].to_owned())
     };
     assert_eq!(
@@ -240,7 +240,7 @@ fn a_file_that_is_read_twice_makes_fixed_shapes() {
     project.files[0].text = format!("{MATERIAL}read b.rat\n");
     let handles = of(&project, 0);
     let edits = handles::drag(labelled(&handles, "the centre"), DVec3::Y, 0.1);
-    project = assist::apply(&project, &edits);
+    project = project.apply(&edits);
     assert_eq!(project.files[1].text, "sphere s 1 0 1 0\n");
 }
 
@@ -364,7 +364,7 @@ fn a_handle_goes_where_it_is_dragged() {
         let to = handle.place + by() * f64::from(u.int_in_range(-4..=4)?);
         let edits = handles::drag(handle, to, GRAIN);
         let old = project.files[0].text.clone();
-        project = assist::apply(&project, &edits);
+        project = project.apply(&edits);
         let text = &project.files[0].text;
         assert_eq!(without_numbers(&old), without_numbers(text));
         let after = compile(&project);
@@ -436,7 +436,7 @@ fn knobs_follow_along_their_own_way() {
             _ => handle.place,
         };
         let edits = handles::drag(handle, to, 1e-6);
-        project = assist::apply(&project, &edits);
+        project = project.apply(&edits);
         let handles = of(&project, 0);
         let now = labelled(&handles, label).place;
         let tolerance = if handle.kind == Kind::Direction {
@@ -496,11 +496,11 @@ fn any_text_has_handles_without_a_panic() {
                 }
                 let edits = handles::drag(&handle, DVec3::splat(far), 1e-3);
                 let mut changed = project.clone();
-                changed = assist::apply(&changed, &edits);
+                changed = changed.apply(&edits);
                 drop(compile(&changed));
             }
         }
-        project = assist::apply(&project, &[]);
+        project = project.apply(&[]);
         Ok(())
     })
     .cases(1_000);

@@ -1,7 +1,6 @@
 //! Where names are made and used, and renaming them.
 
 use crate::texts::{corpus, examples, file, marked, names_soup, one_file, soup};
-use assist::apply;
 use assist::{Index, SymbolKind, definition, references, rename, rename_file};
 use rats::{Compiled, Project, compile};
 use trials::trials;
@@ -166,7 +165,7 @@ fn words_that_are_no_names() {
 fn renamed(text: &str, name: &str) -> Result<String, String> {
     let (project, file, byte) = marked(text);
     let edits = rename(&project, file, byte, name)?;
-    Ok(apply(&project, &edits).files[0].text.clone())
+    Ok(project.apply(&edits).files[0].text.clone())
 }
 
 #[test]
@@ -244,7 +243,7 @@ fn renaming_files() {
     project.files.push(file("b.rat", ""));
     let edits = rename_file(&project, 1, "sub/c-2.rat").expect("edits");
     assert_eq!(
-        apply(&project, &edits).files[0].text,
+        project.apply(&edits).files[0].text,
         "read sub/c-2.rat, ./sub/c-2.rat\nread b.rat\n"
     );
     assert_eq!(
@@ -282,7 +281,7 @@ fn any_rename(project: &Project) -> bool {
             Err(why) if why.starts_with("first mend") => return false,
             Err(why) => panic!("{}: {why}\n{:?}", symbol.name, project.files),
         };
-        let after = apply(project, &edits);
+        let after = project.apply(&edits);
         // A command that fails may leave a variable unset, and then another one of its name counts.
         if has_errors {
             continue;

@@ -5,8 +5,8 @@
 //! the single-precision forms that pictures are made with are held to the same bound.
 
 use crate::common::{Folder, printed, sinew};
-use field::quadrature;
 use glam::DVec3;
+use oracle::quadrature;
 use serde_json::Value;
 use std::fmt::Write;
 use trials::{Random, count};

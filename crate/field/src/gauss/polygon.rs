@@ -279,7 +279,7 @@ fn small<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::integral;
+    use crate::integral::integral;
 
     /// S by quadrature, over the angle φ with τ = h·tan φ, in which nothing is steep.
     fn by_angle(h: f64, t: f64) -> f64 {

@@ -165,7 +165,7 @@ impl Found {
             };
             let primitive = Primitive::new(skeleton, &shaping, None).expect("flesh");
             let point = random.near(&primitive.skeleton, -1.0, 0.3);
-            own.numbers([field::quadrature::value(&primitive, point)]);
+            own.numbers([oracle::quadrature::value(&primitive, point)]);
             for blob in primitive.blob_chain().unwrap_or_default() {
                 blobs.numbers([blob.scale, blob.amplitude]);
                 blobs.numbers(blob.center.to_array());

@@ -1,8 +1,8 @@
 //! Blobs along rays: values are the field's, and bounds hold.
 
-use crate::common::primitive;
 use field::{Blob, Evaluate, Kernel, Limits, Primitive, Profile, Real, Skeleton, Wave};
 use glam::DVec3;
+use oracle::evaluation::primitive;
 use trials::{Random, count};
 use wide::f32x8;
 
@@ -269,7 +269,8 @@ fn bounds_in_single_precision_hold() {
     );
 }
 
-/// Where a ramp stops to rise the slope falls by at most `Limits::kink`; where it starts to rise it does not fall.
+/// A field's slope along a ray falls by at most `Limits::kink` at the end of a ramp, and does not fall
+/// at its start.
 #[test]
 fn kinks_of_ramps_are_bounded() {
     let mut random = Random::new(54);

@@ -1,8 +1,8 @@
 //! Blob chains add up to the bone they stand for.
 
-use crate::common::primitive;
 use field::{Kernel, Primitive, Real, Skeleton, THRESHOLD, Taper};
 use glam::DVec3;
+use oracle::evaluation::primitive;
 use trials::{Random, count};
 
 /// Gaussian bones of each kind that has a chain, from short to long in kernel widths.

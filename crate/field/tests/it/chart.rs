@@ -1,656 +1,49 @@
-//! The conformance suite: every kernel × every kind of skeleton × every evaluator, against adaptive
-//! quadrature, against differences, and against the laws that convolution obeys.
+//! Every kernel × every kind of skeleton × every evaluator, held to the conformance suite; and the
+//! suite, to faults that it must find.
 
-use crate::common::{extent, jet, primitive, sensitivity, single};
-use core::f64::consts::TAU;
-use field::{Kernel, Primitive, Shaping, Skeleton, quadrature};
-use glam::{DQuat, DVec3};
-use trials::skeletons::{ALL_KINDS, Kind, shaping};
-use trials::{Random, count};
+use field::Kernel;
+use glam::DVec3;
+use oracle::cells;
+use oracle::evaluation::{Evaluation, jet, peak};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use trials::skeletons::{ALL_KINDS, Kind};
 use wide::f32x8;
 
-const EPSILON32: f64 = f32::EPSILON as f64 / 2.0;
-
-/// How exact cells are: errors are at most `relative·|f| + floor·(the largest field it can have)`.
-#[derive(Clone, Copy)]
-struct Accuracy {
-    relative: f64,
-    floor: f64,
-}
-
-/// Of double precision against quadrature, in every cell.
-const DOUBLE: Accuracy = Accuracy {
-    relative: 1e-9,
-    floor: 1e-13,
-};
-
-/// Of single precision against double, in every cell.
-const SINGLE: Accuracy = Accuracy {
-    relative: 1e-5,
-    floor: 2e-6,
-};
-
-fn shaped(random: &mut Random, kernel: Kernel) -> Shaping {
-    Shaping {
-        kernel,
-        ..random.shaping(1.0)
-    }
-}
-
-/// The largest field a primitive can have (at a radius from poles).
-fn peak(primitive: &Primitive) -> f64 {
-    let from = match primitive.kernel {
-        kernel if kernel.has_pole() => 1.0 / primitive.width,
-        _ => 0.0,
-    };
-    primitive.bound_at(from)
-}
-
-/// A random skeleton for a kernel, of these decades of its radius (1).
-fn skeleton(random: &mut Random, kind: Kind, low: f64, high: f64) -> Skeleton {
-    let size = random.decades(low, high);
-    random.skeleton(kind, size)
-}
-
-fn matches_quadrature(kernel: Kernel, kind: Kind) {
-    let mut random = Random::new(101);
-    let cases = match kind {
-        Kind::Triangle => 120,
-        Kind::Polygon => 40,
-        _ => 250,
-    };
-    for _ in 0..count(cases) {
-        let skeleton = skeleton(&mut random, kind, -2.0, 1.2);
-        let shaping = shaped(&mut random, kernel);
-        let primitive = primitive(skeleton.clone(), &shaping, None);
-        let far = random.pick(&[0.3, 0.3, 2.0]);
-        let point = random.near(&skeleton, -4.0, far);
-        let want = quadrature::value(&primitive, point);
-        let (value, gradient) = jet::<f64>(&primitive, point);
-        let Accuracy { relative, floor } = DOUBLE;
-        let tolerance = relative * want.abs()
-            + floor * peak(&primitive)
-            + 64.0 * f64::EPSILON * sensitivity(&primitive, point);
-        assert!(
-            (value - want).abs() <= tolerance,
-            "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {primitive:?} at {point:?}",
-            (value - want).abs()
-        );
-        assert!(gradient.is_finite(), "{primitive:?} at {point:?}");
-    }
-}
-
-fn single_matches_double(kernel: Kernel, kind: Kind) {
-    let mut random = Random::new(102);
-    for _ in 0..count(2_000) {
-        let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
-        let shaping = shaped(&mut random, kernel);
-        let primitive = primitive(skeleton.clone(), &shaping, None);
-        let point = single(random.near(&skeleton, -3.0, 1.0));
-        let (want, want_gradient) = jet::<f64>(&primitive, point);
-        let (value, gradient) = jet::<f32>(&primitive, point);
-        let (value8, gradient8) = jet::<f32x8>(&primitive, point);
-        assert_eq!(
-            (value.to_bits(), gradient),
-            (value8.to_bits(), gradient8),
-            "{primitive:?} at {point:?}"
-        );
-        let Accuracy {
-            mut relative,
-            floor,
-        } = SINGLE;
-        if kernel == Kernel::Cubed && kind == Kind::Curve && skeleton.distance(point) < 1e-3 {
-            // A curve's spans are rounded where they meet (tests/it/taper.rs): next to the pole such gaps count.
-            relative = 1e-3;
-        }
-        let slack = 64.0 * EPSILON32 * sensitivity(&primitive, point);
-        let tolerance = relative * want.abs() + floor * peak(&primitive) + slack;
-        assert!(
-            (value - want).abs() <= tolerance,
-            "{value:e} instead of {want:e} (off by {:e}, at most {tolerance:e}): {primitive:?} at {point:?}",
-            (value - want).abs()
-        );
-        // Near poles slopes are steep, and as exact as their size allows.
-        let near = (primitive.width * skeleton.distance(point)).max(1e-3);
-        let slopes = primitive.width * (1.0 + 1.0 / near);
-        let mut tolerance = 30.0 * (tolerance * slopes + relative * want_gradient.length());
-        if kernel.has_pole() {
-            // A rounding of the coordinates changes a slope by as much of it as it changes the
-            // distance from the pole; within a rounding of a pole the slope has no meaning.
-            let rounding = 8.0 * EPSILON32 * (point.length() + extent(&skeleton));
-            let distance = skeleton.distance(point);
-            if distance <= rounding {
-                continue;
-            }
-            let steepest = want_gradient.length() + peak(&primitive) * primitive.width;
-            tolerance += 3.0 * steepest * rounding / distance;
-        }
-        let error = (gradient - want_gradient).length();
-        assert!(
-            error <= tolerance,
-            "{gradient} instead of {want_gradient} (off by {error:e}, at most {tolerance:e}): {primitive:?} at {point:?}"
-        );
-    }
-}
-
-fn gradient_is_the_derivative(kernel: Kernel, kind: Kind) {
-    let mut random = Random::new(103);
-    for _ in 0..count(600) {
-        let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
-        let shaping = shaped(&mut random, kernel);
-        let primitive = primitive(skeleton.clone(), &shaping, None);
-        let point = random.near(&skeleton, -2.0, 0.5);
-        let u = primitive.width * skeleton.distance(point);
-        // A difference is worth nothing across a kink, or next to a pole.
-        if kernel.has_pole() && u < 0.05 || kernel == Kernel::Metaballs && u < 0.01 {
-            continue;
-        }
-        let (_, gradient) = jet::<f64>(&primitive, point);
-        let h = 1e-5 / primitive.width;
-        for axis in 0..3 {
-            let at = |step: f64| {
-                let mut p = point;
-                p[axis] += step * h;
-                primitive.value(p.to_array())
-            };
-            let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
-            let tolerance =
-                2e-4 * primitive.width * peak(&primitive).max(gradient.length() / primitive.width);
-            assert!(
-                (gradient[axis] - difference).abs() <= tolerance,
-                "axis {axis}: {} instead of {difference}, at most {tolerance:e} off: {primitive:?} at {point:?}",
-                gradient[axis]
-            );
-        }
-    }
-}
-
-/// Cut in two: nothing changes.
-fn superposition(kernel: Kernel, kind: Kind) {
-    let mut random = Random::new(104);
-    for _ in 0..count(300) {
-        let skeleton = skeleton(&mut random, kind, -1.0, 0.7);
-        let at = random.range(0.1, 0.9);
-        let Some(parts) = halves(&skeleton, at) else {
-            continue;
-        };
-        let shaping = shaped(&mut random, kernel);
-        let whole = primitive(skeleton.clone(), &shaping, None);
-        let parts = parts.map(|part| primitive(part, &shaping, None));
-        let point = random.near(&skeleton, -2.0, 0.5);
-        let (value, gradient) = jet::<f64>(&whole, point);
-        let (mut sum, mut slopes) = (0.0, DVec3::ZERO);
-        for part in &parts {
-            let (value, gradient) = jet::<f64>(part, point);
-            sum += value;
-            slopes += gradient;
-        }
-        let Accuracy { relative, floor } = DOUBLE;
-        let tolerance = 2.0 * relative * value.abs() + 4.0 * floor * peak(&whole);
-        assert!(
-            (sum - value).abs() <= tolerance,
-            "{sum:e} instead of {value:e}: {whole:?} at {point:?}"
-        );
-        let near = (whole.width * skeleton.distance(point)).max(1e-4);
-        let tolerance = 1e3 * (tolerance * whole.width / near + relative * gradient.length());
-        assert!(
-            (slopes - gradient).length() <= tolerance,
-            "{slopes} instead of {gradient}: {whole:?} at {point:?}"
-        );
-    }
-}
-
-/// Moved, turned and scaled with its surroundings, a field stays what it was.
-fn rigid_motion_and_scale(kernel: Kernel, kind: Kind) {
-    let mut random = Random::new(105);
-    for _ in 0..count(200) {
-        let skeleton = skeleton(&mut random, kind, -1.0, 0.7);
-        let shaping = shaped(&mut random, kernel);
-        let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, TAU));
-        let shift = random.vector(3.0);
-        let scale = random.decades(-1.0, 1.0);
-        let point = random.near(&skeleton, -2.0, 0.5);
-        let here = primitive(skeleton.clone(), &shaping, None);
-        let to = |p: DVec3| turn * p * scale + shift;
-        let there = Shaping {
-            radius: shaping.radius * scale,
-            ..shaping
-        };
-        let there = primitive(moved(&skeleton, turn, scale, shift), &there, None);
-        let (value, gradient) = jet::<f64>(&here, point);
-        let (after, slopes) = jet::<f64>(&there, to(point));
-        let Accuracy { relative, floor } = DOUBLE;
-        let tolerance = 2.0 * relative * value.abs()
-            + 4.0 * floor * peak(&here)
-            + 64.0 * f64::EPSILON * (sensitivity(&here, point) + sensitivity(&there, to(point)));
-        assert!(
-            (after - value).abs() <= tolerance,
-            "{after:e} instead of {value:e}: {here:?} at {point:?}"
-        );
-        let near = (here.width * skeleton.distance(point)).max(1e-4);
-        let tolerance = 1e3 * (tolerance * here.width / near + relative * gradient.length());
-        let error = (slopes * scale - turn * gradient).length();
-        assert!(
-            error <= tolerance,
-            "{slopes} instead of {gradient}, {error:e} > {tolerance:e}: {here:?} at {point:?}"
-        );
-    }
-}
-
-/// Straight away from the skeleton the field falls, stays within its bound, and is exactly 0 beyond a
-/// compact kernel's support.
-fn falls_to_nothing(kernel: Kernel, kind: Kind) {
-    let mut random = Random::new(106);
-    for _ in 0..count(100) {
-        let skeleton = skeleton(&mut random, kind, -1.5, 0.7);
-        let shaping = Shaping {
-            kernel,
-            ..shaping(1.0, random.decades(-1.0, 1.0))
-        };
-        let primitive = primitive(skeleton.clone(), &shaping, None);
-        let place = random.near(&skeleton, -1.0, 0.5);
-        let nearest = skeleton.nearest(place);
-        let Some(outward) = (place - nearest).try_normalize() else {
-            continue;
-        };
-        type Evaluator = fn(&Primitive, DVec3) -> (f64, DVec3);
-        let evaluators: [(Evaluator, f64); 2] =
-            [(jet::<f64>, f64::EPSILON), (jet::<f32>, EPSILON32)];
-        for (evaluator, epsilon) in evaluators {
-            for i in 1..40 {
-                let distance = 0.1 * f64::from(i) / primitive.width;
-                let point = nearest + outward * distance;
-                let value = evaluator(&primitive, point).0;
-                let distance = skeleton.distance(point);
-                // The field where the rounded point is, which near a pole is another.
-                let slack =
-                    1e-5 * peak(&primitive) + 64.0 * epsilon * sensitivity(&primitive, point);
-                assert!(
-                    value >= -slack,
-                    "{value} at {distance}: {primitive:?} at {point:?}"
-                );
-                let bound = primitive.bound_at(distance);
-                assert!(
-                    value <= bound * (1.0 + 1e-6) + slack,
-                    "{value} > {bound} at {distance}: {primitive:?} at {point:?}"
-                );
-                if kernel.is_compact() && distance * primitive.width > 1.0 + 1e-6 {
-                    assert_eq!(value, 0.0, "at {distance}: {primitive:?} at {point:?}");
-                }
-            }
-            // Far along the way out of a ball around everything it falls with every step.
-            let Some((center, radius)) = skeleton.bounding_sphere() else {
-                continue;
-            };
-            let mut before = f64::INFINITY;
-            for i in 1..20 {
-                let point =
-                    center + outward * (radius * 1.01 + 0.2 * f64::from(i) / primitive.width);
-                let value = evaluator(&primitive, point).0;
-                let slack = 1e-6 * peak(&primitive);
-                assert!(
-                    value <= before + slack,
-                    "{value} after {before}: {primitive:?} at {point:?}"
-                );
-                before = value;
-            }
-        }
-    }
-}
-
-/// Degenerate bones and places, and their neighbours a few units in the last place away: finite, and
-/// continuous.
-fn degenerate_geometry(kernel: Kernel, kind: Kind) {
-    let shaping = Shaping {
-        kernel,
-        ..shaping(1.0, 1.0)
-    };
-    let mut points = vec![];
-    for x in [0.0, 1.0, -1.0, 2.0, 0.5, 1e6] {
-        for y in [0.0, 1.0, 0.5, -1.0] {
-            for z in [0.0, 1.0, 1e-8, 1e-300, -1e6] {
-                points.push(DVec3::new(x, y, z));
-            }
-        }
-    }
-    for skeleton in degenerate(kind) {
-        let primitive = primitive(skeleton.clone(), &shaping, None);
-        for &point in &points {
-            let beside = DVec3::new(point.x.next_up(), point.y.next_down(), point.z.next_up());
-            let (value, gradient) = jet::<f64>(&primitive, point);
-            let (other, slopes) = jet::<f64>(&primitive, beside);
-            assert!(
-                value.is_finite() && gradient.is_finite(),
-                "{skeleton:?} at {point:?}: {value} {gradient}"
-            );
-            assert!(
-                other.is_finite() && slopes.is_finite(),
-                "{skeleton:?} at {beside:?}: {other} {slopes}"
-            );
-            let peak = peak(&primitive).max(value.abs());
-            // The width of a needle, or of nothing, is uncertain by its length.
-            let needle = 64.0 * sensitivity(&primitive, point);
-            assert!(
-                (value - other).abs() <= 1e-7 * peak + needle * f64::EPSILON,
-                "{value} {other}: {skeleton:?} at {point:?}"
-            );
-            let narrow = point.to_array().map(|x| f64::from(x as f32));
-            let wide = narrow.map(|x| f64::from((x as f32).next_up()));
-            for p in [narrow, wide].map(DVec3::from_array) {
-                let (value8, gradient8) = jet::<f32x8>(&primitive, p);
-                assert!(
-                    value8.is_finite() && gradient8.is_finite(),
-                    "{skeleton:?} at {p:?}: {value8} {gradient8}"
-                );
-                let (want, want_gradient) = jet::<f64>(&primitive, p);
-                // Values below single precision's smallest number become 0: a bone 1e-300 long.
-                let slack = 64.0 * EPSILON32 * (want_gradient.length() + peak)
-                    + f64::from(f32::MIN_POSITIVE) * primitive.height.abs().max(1.0);
-                // As in `single_matches_double`.
-                let on_pole = kernel == Kernel::Cubed && kind == Kind::Curve;
-                let relative = if on_pole { 1e-3 } else { 1e-4 };
-                assert!(
-                    (value8 - want).abs() <= relative * peak + needle * EPSILON32 + slack,
-                    "{value8} instead of {want}: {skeleton:?} at {p:?}"
-                );
-            }
-        }
-    }
-}
-
-fn degenerate(kind: Kind) -> Vec<Skeleton> {
-    let arc = |radius: f64, angle: f64| Skeleton::Arc {
-        center: DVec3::ZERO,
-        u: DVec3::X,
-        v: DVec3::Y,
-        radius,
-        angle,
-    };
-    let flat = |b: [f64; 2], c: [f64; 2]| {
-        [
-            DVec3::ZERO,
-            DVec3::new(b[0], b[1], 0.0),
-            DVec3::new(c[0], c[1], 0.0),
-        ]
-    };
-    let triangles = [
-        flat([2.0, 0.0], [0.0, 2.0]),
-        flat([2.0, 0.0], [1.0, 0.0]),
-        flat([2.0, 0.0], [1.0, 1e-16]),
-        flat([2.0, 0.0], [2.0, 0.0]),
-        flat([0.0, 0.0], [0.0, 0.0]),
-        flat([1e-9, 0.0], [0.0, 1e-9]),
-        flat([1e-300, 0.0], [0.0, 1e-300]),
-    ];
-    match kind {
-        Kind::Point => vec![Skeleton::Point {
-            center: DVec3::ZERO,
-        }],
-        Kind::Plane => vec![Skeleton::Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::Z,
-        }],
-        Kind::Segment => [2.0, 0.0, 1e-300, 1e-30, 1e-9, 1e3]
-            .map(|length| Skeleton::Segment {
-                base: DVec3::ZERO,
-                apex: DVec3::X * length,
-            })
-            .to_vec(),
-        Kind::Arc => vec![
-            arc(1.0, TAU),
-            arc(1.0, TAU / 2.0),
-            arc(1.0, TAU.next_down()),
-            arc(1.0, 1e-9),
-            arc(1.0, 1e-300),
-            arc(1.0, 0.0),
-            arc(0.0, 3.0),
-            arc(1e-12, TAU),
-            arc(1e-300, TAU),
-            arc(1e3, 1e-3),
-        ],
-        Kind::Triangle => triangles
-            .map(|corners| Skeleton::Triangle { corners })
-            .to_vec(),
-        Kind::Polygon => triangles
-            .into_iter()
-            .map(|corners| Skeleton::Polygon {
-                rings: vec![corners.to_vec()],
-            })
-            .chain([
-                // Corners on a side, a corner given twice, a hole, two corners only.
-                Skeleton::Polygon {
-                    rings: vec![vec![
-                        DVec3::ZERO,
-                        DVec3::X,
-                        DVec3::X * 2.0,
-                        DVec3::X * 2.0,
-                        DVec3::Y * 2.0,
-                        DVec3::Y,
-                    ]],
-                },
-                Skeleton::Polygon {
-                    rings: vec![
-                        vec![DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0],
-                        flat([0.5, 0.0], [0.0, 0.5])
-                            .map(|p| p + DVec3::new(0.2, 0.2, 0.0))
-                            .to_vec(),
-                    ],
-                },
-                Skeleton::Polygon {
-                    rings: vec![vec![DVec3::ZERO, DVec3::X]],
-                },
-            ])
-            .collect(),
-        Kind::Curve => {
-            let [o, x, y] = [DVec3::ZERO, DVec3::X, DVec3::Y];
-            [
-                [o, o, o, o],
-                [o, x, x, x],
-                [o, x * 0.5, x * 1.5, x * 2.0],
-                [o, x * 2.0, o, x * 2.0],
-                [o, x, y, o],
-                [x, y, y, x],
-                [o, x * 1e-300, y * 1e-300, x * 1e-300],
-                [o, x * 1e-9, y * 1e-9, x * 1e-9],
-            ]
-            .map(|control| Skeleton::Curve { control })
-            .to_vec()
-        }
-    }
-}
-
-/// A skeleton cut in two.
-fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
-    Some(match *skeleton {
-        Skeleton::Segment { base, apex } => {
-            let middle = base + (apex - base) * at;
-            [
-                Skeleton::Segment { base, apex: middle },
-                Skeleton::Segment { base: middle, apex },
-            ]
-        }
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let turn = angle * at;
-            let (sine, cosine) = libm::sincos(turn);
-            let part = |u, v, angle| Skeleton::Arc {
-                center,
-                u,
-                v,
-                radius,
-                angle,
-            };
-            [
-                part(u, v, turn),
-                part(u * cosine + v * sine, v * cosine - u * sine, angle - turn),
-            ]
-        }
-        Skeleton::Triangle { corners: [a, b, c] } => {
-            let middle = a + (b - a) * at;
-            [
-                Skeleton::Triangle {
-                    corners: [a, middle, c],
-                },
-                Skeleton::Triangle {
-                    corners: [middle, b, c],
-                },
-            ]
-        }
-        Skeleton::Polygon { ref rings } => {
-            // From the centre of the star to two corners.
-            let ring = &rings[0];
-            if rings.len() > 1 || ring.len() < 4 {
-                return None;
-            }
-            let center = (ring[0] + ring[2]) * 0.5;
-            let half = ring.len() / 2;
-            let mut first: Vec<DVec3> = ring[..=half].to_vec();
-            first.push(center);
-            let mut second: Vec<DVec3> = ring[half..].to_vec();
-            second.extend([ring[0], center]);
-            // Only if both are simple, with areas that add up.
-            let whole = skeleton.measure();
-            let parts = [first, second].map(|ring| Skeleton::Polygon { rings: vec![ring] });
-            let sum = parts[0].measure() + parts[1].measure();
-            if (sum - whole).abs() > 1e-9 * whole {
-                return None;
-            }
-            parts
-        }
-        Skeleton::Curve {
-            control: [a, b, c, d],
-        } => {
-            let mix = |p: DVec3, q: DVec3| p + (q - p) * at;
-            let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
-            let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
-            let m = mix(abc, bcd);
-            [
-                Skeleton::Curve {
-                    control: [a, ab, abc, m],
-                },
-                Skeleton::Curve {
-                    control: [m, bcd, cd, d],
-                },
-            ]
-        }
-        Skeleton::Point { .. } | Skeleton::Plane { .. } => return None,
-    })
-}
-
-fn moved(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
-    let to = |p: DVec3| turn * p * scale + shift;
-    match *skeleton {
-        Skeleton::Point { center } => Skeleton::Point { center: to(center) },
-        Skeleton::Segment { base, apex } => Skeleton::Segment {
-            base: to(base),
-            apex: to(apex),
-        },
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => Skeleton::Arc {
-            center: to(center),
-            u: turn * u,
-            v: turn * v,
-            radius: radius * scale,
-            angle,
-        },
-        Skeleton::Triangle { corners } => Skeleton::Triangle {
-            corners: corners.map(to),
-        },
-        Skeleton::Plane { point, normal } => Skeleton::Plane {
-            point: to(point),
-            normal: turn * normal,
-        },
-        Skeleton::Polygon { ref rings } => Skeleton::Polygon {
-            rings: rings
-                .iter()
-                .map(|ring| ring.iter().map(|p| to(*p)).collect())
-                .collect(),
-        },
-        Skeleton::Curve { control } => Skeleton::Curve {
-            control: control.map(to),
-        },
-    }
-}
-
-/// A point, a plane and a line that is as good as infinite have F = T at a radius from them, and for
-/// compact kernels nothing at the depth of influence.
-fn radius_in_isolation(kernel: Kernel, kind: Kind) {
-    let mut random = Random::new(107);
-    for _ in 0..count(40) {
-        let radius = random.decades(-1.0, 1.0);
-        let shaping = Shaping {
-            radius,
-            kernel,
-            ..shaping(1.0, random.decades(-1.0, 1.0))
-        };
-        // Of the inverse kernel, a line of ten radii either way stands for an infinite one.
-        let reach = if kernel == Kernel::Inverse { 10.0 } else { 1e5 };
-        let skeleton = match kind {
-            Kind::Point => Skeleton::Point {
-                center: DVec3::ZERO,
-            },
-            Kind::Plane => Skeleton::Plane {
-                point: DVec3::ZERO,
-                normal: DVec3::Y,
-            },
-            Kind::Segment => Skeleton::Segment {
-                base: DVec3::X * (reach * radius),
-                apex: DVec3::NEG_X * (reach * radius),
-            },
-            _ => continue,
-        };
-        let primitive = primitive(skeleton, &shaping, None);
-        let (value, _) = jet::<f64>(&primitive, DVec3::Y * radius);
-        let tolerance = if kernel == Kernel::Squared {
-            1e-4
-        } else {
-            1e-9
-        };
-        assert!((value - 1.0).abs() < tolerance, "{value}: {primitive:?}");
-        if kind == Kind::Point {
-            // The radius that follows from a depth of influence is the one that has it.
-            let depth = if kernel.is_compact() {
-                1.0 / primitive.width
-            } else {
-                primitive.influence
-            };
-            let found = shaping.radius_of_depth(depth, 0).expect("a radius");
-            assert!(
-                (found - radius).abs() < 1e-6 * radius,
-                "{found} instead of {radius}: {primitive:?}"
-            );
-        }
-    }
-}
+const DOUBLE: Evaluation<'static> = &jet::<f64>;
+const SINGLE: Evaluation<'static> = &jet::<f32>;
+const EIGHT: Evaluation<'static> = &jet::<f32x8>;
 
 /// Every check on every kind of skeleton, one test each, in a module named after the kernel.
 macro_rules! chart {
     ($($module:ident: $kernel:expr;)*) => {$(
         mod $module {
             use super::*;
-            chart!(@checks $kernel, matches_quadrature, single_matches_double, gradient_is_the_derivative,
-                superposition, rigid_motion_and_scale, falls_to_nothing, degenerate_geometry, radius_in_isolation);
+            chart!(@checks $kernel;
+                matches_quadrature: DOUBLE;
+                single_matches_double: [SINGLE, EIGHT];
+                gradient_is_the_derivative: DOUBLE;
+                superposition: DOUBLE;
+                rigid_motion_and_scale: DOUBLE;
+                doubles_fall_to_nothing falls_to_nothing: DOUBLE, f64::EPSILON;
+                singles_fall_to_nothing falls_to_nothing: SINGLE, f64::from(f32::EPSILON) / 2.0;
+                degenerate_geometry: [DOUBLE, EIGHT];
+                radius_in_isolation: DOUBLE;
+            );
         }
     )*};
-    (@checks $kernel:expr, $($check:ident),*) => {
-        $(
-            #[test]
-            fn $check() {
-                for kind in ALL_KINDS {
-                    super::$check($kernel, kind);
-                }
+    (@checks $kernel:expr; $($test:ident $($check:ident)?: $($input:expr),*;)*) => {
+        $(chart!(@check $test $($check)?, $kernel, $($input),*);)*
+    };
+    (@check $check:ident, $kernel:expr, $($input:expr),*) => {
+        chart!(@check $check $check, $kernel, $($input),*);
+    };
+    (@check $test:ident $check:ident, $kernel:expr, $($input:expr),*) => {
+        #[test]
+        fn $test() {
+            for kind in ALL_KINDS {
+                cells::$check($kernel, kind, $($input),*);
             }
-        )*
+        }
     };
 }
 
@@ -664,4 +57,110 @@ chart! {
     quartic: Kernel::Quartic;
     compact6: Kernel::Compact6;
     cubed: Kernel::Cubed;
+}
+
+/// Asserts that a check of every kernel on a kind of skeleton finds a fault.
+fn is_told(kind: Kind, check: impl Fn(Kernel, Kind)) {
+    for kernel in Kernel::ALL {
+        let held = catch_unwind(AssertUnwindSafe(|| check(kernel, kind)));
+        assert!(held.is_err(), "{kernel:?} {kind:?}");
+    }
+}
+
+#[test]
+fn a_value_that_is_off_is_told() {
+    for (share, kind) in [
+        (1e-7, Kind::Segment),
+        (-1e-7, Kind::Arc),
+        (1e-7, Kind::Point),
+    ] {
+        let off: Evaluation<'_> = &|primitive, point| {
+            let (value, gradient) = jet::<f64>(primitive, point);
+            (value * (1.0 + share), gradient)
+        };
+        is_told(kind, |kernel, kind| {
+            cells::matches_quadrature(kernel, kind, off)
+        });
+    }
+    let off: Evaluation<'_> = &|primitive, point| {
+        let (value, gradient) = jet::<f64>(primitive, point);
+        (value * 1.001, gradient)
+    };
+    is_told(Kind::Point, |kernel, kind| {
+        cells::radius_in_isolation(kernel, kind, off)
+    });
+}
+
+#[test]
+fn a_single_form_that_is_off_is_told() {
+    let off: Evaluation<'_> = &|primitive, point| {
+        let (value, gradient) = jet::<f32>(primitive, point);
+        (value * 1.0002, gradient)
+    };
+    is_told(Kind::Segment, |kernel, kind| {
+        cells::single_matches_double(kernel, kind, [off, off]);
+    });
+    is_told(Kind::Segment, |kernel, kind| {
+        cells::single_matches_double(kernel, kind, [SINGLE, off]);
+    });
+}
+
+#[test]
+fn a_gradient_that_is_off_is_told() {
+    let off: Evaluation<'_> = &|primitive, point| {
+        let (value, gradient) = jet::<f64>(primitive, point);
+        (value, 1.01 * gradient)
+    };
+    is_told(Kind::Segment, |kernel, kind| {
+        cells::gradient_is_the_derivative(kernel, kind, off);
+    });
+}
+
+#[test]
+fn a_field_that_does_not_add_up_is_told() {
+    let off: Evaluation<'_> = &|primitive, point| {
+        let (value, gradient) = jet::<f64>(primitive, point);
+        (value + 1e-6 * peak(primitive), gradient)
+    };
+    is_told(Kind::Segment, |kernel, kind| {
+        cells::superposition(kernel, kind, off)
+    });
+}
+
+#[test]
+fn a_field_that_knows_a_direction_is_told() {
+    let off: Evaluation<'_> = &|primitive, point| {
+        let (value, gradient) = jet::<f64>(primitive, point);
+        (
+            value + 1e-6 * peak(primitive) * point.normalize_or_zero().x,
+            gradient,
+        )
+    };
+    is_told(Kind::Arc, |kernel, kind| {
+        cells::rigid_motion_and_scale(kernel, kind, off)
+    });
+}
+
+#[test]
+fn a_field_that_does_not_fall_is_told() {
+    let off: Evaluation<'_> = &|primitive, point| {
+        let (value, gradient) = jet::<f64>(primitive, point);
+        let distance = primitive.width * primitive.skeleton.distance(point);
+        (value + 1e-3 * peak(primitive) * distance, gradient)
+    };
+    is_told(Kind::Segment, |kernel, kind| {
+        cells::falls_to_nothing(kernel, kind, off, f64::EPSILON);
+    });
+}
+
+#[test]
+fn a_number_that_is_none_is_told() {
+    let off: Evaluation<'_> = &|primitive, point| {
+        let (value, gradient) = jet::<f64>(primitive, point);
+        let is_odd = point == DVec3::new(0.5, 0.5, 1e-300);
+        (if is_odd { f64::NAN } else { value }, gradient)
+    };
+    is_told(Kind::Triangle, |kernel, kind| {
+        cells::degenerate_geometry(kernel, kind, [off, EIGHT]);
+    });
 }

@@ -13,8 +13,8 @@ use wide::f32x8;
 #[cfg(not(target_arch = "wasm32"))]
 mod errors {
     use super::name;
-    use crate::common::{jet, primitive, single};
     use field::{Kernel, Shaping, Skeleton};
+    use oracle::evaluation::{jet, primitive, single};
     use trials::skeletons::{ALL_KINDS, Kind, shaping};
     use trials::{Random, count};
     use wide::f32x8;

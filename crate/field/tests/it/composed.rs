@@ -7,7 +7,7 @@ use trials::skeletons::shaping;
 use trials::{Random, count};
 use wide::f32x8;
 
-/// Some balls.
+/// Returns `count` random balls that melt together, with a random hardness.
 fn balls(random: &mut Random, count: usize) -> Exponentials {
     let hardness = random.range(1.0, 9.0);
     let balls = (0..count).map(|_| (random.vector(1.0), random.range(0.1, 0.6)));

@@ -1,9 +1,10 @@
 //! Every primitive × every evaluator, against quadrature.
 
-use crate::common::{extent, jet, primitive, sensitivity, single};
 use core::f64::consts::{PI, TAU};
-use field::{Evaluate, Kernel, Primitive, Real, Shaping, Skeleton, quadrature};
+use field::{Evaluate, Kernel, Primitive, Real, Shaping, Skeleton};
 use glam::DVec3;
+use oracle::evaluation::{extent, jet, primitive, sensitivity, single};
+use oracle::quadrature;
 use trials::skeletons::{KINDS, Kind, shaping};
 use trials::{Random, count};
 use wide::f32x8;

@@ -1,11 +1,12 @@
 //! Far out, a field is a tiny fraction of its largest value, and surfaces of great blobbiness lie there: relative accuracy
 //! must hold.
 
-use crate::common::{primitive, single, span_error};
 use core::f64::consts::TAU;
 use field::bound::{Nearness, SpanLength};
-use field::{BlobScale, Bound, Kernel, Primitive, Profile, Shaping, Skeleton, Wave, quadrature};
+use field::{BlobScale, Bound, Kernel, Primitive, Profile, Shaping, Skeleton, Wave};
 use glam::DVec3;
+use oracle::evaluation::{primitive, single, span_error};
+use oracle::quadrature;
 use trials::skeletons::Kind;
 use trials::{Random, count};
 

@@ -1,9 +1,9 @@
 //! Bounds on random primitives: depth of influence, ray intervals, spheres, distances.
 
-use crate::common::{jet, primitive, sensitivity};
 use core::f64::consts::TAU;
 use field::{Kernel, Primitive, Profile, Shaping, Skeleton, THRESHOLD, Wave};
 use glam::DVec3;
+use oracle::evaluation::{jet, primitive, sensitivity};
 use trials::skeletons::{KINDS, Kind, shaping};
 use trials::{Random, count};
 

@@ -1,12 +1,11 @@
 //! Laws of convolution surfaces: the radius as asked, no bulges at joints, invariance under rigid motions, strengths and
 //! profiles that multiply.
 
-use crate::common::{jet, primitive, sensitivity, single};
 use core::f64::consts::TAU;
-use field::{
-    BlobScale, Kernel, Primitive, Profile, Shaping, Skeleton, Sum, THRESHOLD, Wave, quadrature,
-};
+use field::{BlobScale, Kernel, Primitive, Profile, Shaping, Skeleton, Sum, THRESHOLD, Wave};
 use glam::{DQuat, DVec3};
+use oracle::evaluation::{jet, primitive, sensitivity, single};
+use oracle::quadrature;
 use trials::skeletons::{KINDS, Kind, shaping};
 use trials::{Random, count};
 use wide::f32x8;

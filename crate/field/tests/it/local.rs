@@ -1,10 +1,9 @@
 //! Local convolution: against its definition, by quadrature and search; its bounds, by sampling; and how far it jumps.
 
 use field::local::{Limb, Place, Two};
-use field::{
-    Ball, BlobScale, Implicit, Kernel, Local, Primitive, Shaping, Skeleton, Taper, quadrature,
-};
+use field::{Ball, BlobScale, Implicit, Kernel, Local, Primitive, Shaping, Skeleton, Taper};
 use glam::DVec3;
+use oracle::quadrature;
 use trials::{Random, count};
 
 /// A skeleton: points with radii, and segments between them, curve by curve.

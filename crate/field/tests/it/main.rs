@@ -10,8 +10,6 @@ mod blob_chain;
 mod chart;
 mod chart_figures;
 #[cfg(not(target_arch = "wasm32"))]
-mod common;
-#[cfg(not(target_arch = "wasm32"))]
 mod composed;
 #[cfg(not(target_arch = "wasm32"))]
 mod conformance;

@@ -1,9 +1,9 @@
 //! [`field::Bound`] holds: for values, slopes, curvatures and the errors of Hermite spans.
 
-use crate::common::{primitive, span_error};
 use field::bound::{Bound, Estimate, SpanLength};
 use field::{Kernel, Primitive, Profile, Shaping, Taper, Wave};
 use glam::DVec3;
+use oracle::evaluation::{primitive, span_error};
 use trials::skeletons::{ALL_KINDS, Kind};
 use trials::{Random, count};
 

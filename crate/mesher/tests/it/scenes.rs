@@ -11,12 +11,12 @@ use field::Kernel;
 use glam::DVec3;
 use mesh::{Topology, TriangleMesh, self_intersections};
 use mesher::{MeshError, Model, Progress, Step, Tolerance, Wishes, mesh_scene};
+use oracle::Reference;
+use oracle::reference::Near;
 use scene::{Scene, Surface};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
-use tracer::Reference;
-use tracer::reference::Near;
 use trials::scenes::{self, KINDS};
 use trials::{Random, count};
 

@@ -25,11 +25,14 @@ pub struct Program {
     pub number: fn(&[u8]) -> Option<u64>,
 }
 
-/// The program of tracing workers.
+/// The program of tracing workers, with the root finders for comparison.
 pub const TRACER: Program = Program {
     serve: trace,
     number: generation,
 };
+
+/// The program of tracing workers that have the root finders for comparison.
+pub const COMPARING: Program = TRACER;
 
 /// The program of tools workers.
 pub const TOOLS: Program = Program {
@@ -49,7 +52,7 @@ fn generation(request: &[u8]) -> Option<u64> {
 fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &dyn Fn(Vec<u8>) -> bool) {
     let clock = Instant::now();
     let answer = |answer| pack(&[answer].as_slice()).is_ok_and(send);
-    let mut engine = Engine::default();
+    let mut engine = Engine::new(digger::prepare);
     let mut listened = answer(Answer::Started);
     let mut generation = 0;
     while listened {
@@ -142,6 +145,11 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         Self {
             inner: Rc::new(inner),
         }
+    }
+
+    /// Whether the workers can do what needs this program: there is one for all tracing.
+    pub fn serves(&self, _: Program) -> bool {
+        true
     }
 
     /// Has the workers' program loaded; a thread has it.

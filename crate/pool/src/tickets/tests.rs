@@ -137,10 +137,10 @@ fn jobs_fail_if_the_tools_cannot_be_loaded() {
     let mut jobs = Jobs::new(Refused(0));
     let (_, news) = jobs.submit(read("a.obj"), 0.0);
     assert!(news.borrow().result.is_none() && !jobs.is_busy());
-    jobs.loaded(Err(String::from("offline")), 0.0);
+    jobs.loaded(Err(String::from("they are offline. Wait")), 0.0);
     let result = news.borrow_mut().result.take();
     assert!(
-        matches!(&result, Some(Err(reason)) if reason.contains("offline")),
+        matches!(&result, Some(Err(reason)) if reason.ends_with("they are offline. Wait and try again.")),
         "{result:?}"
     );
     assert_eq!(jobs.workers.0, 0);

@@ -15,23 +15,36 @@ use workers::describe;
 
 pub use workers::WebWorkers as PlatformWorkers;
 
-/// The program that workers run: their script and its wasm, relative to the page.
-#[derive(Clone, Copy)]
+/// The program that workers run.
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Program {
+    /// The script of a worker, relative to the page.
     script: &'static str,
+    /// Its wasm, relative to the page.
     wasm: &'static str,
+    /// Its name in messages.
+    name: &'static str,
 }
 
 /// The program of tracing workers.
 pub const TRACER: Program = Program {
     script: "./worker.js",
     wasm: "./tracer_bg.wasm",
+    name: "The tracer",
+};
+
+/// The same with the root finders for comparison.
+pub const COMPARING: Program = Program {
+    script: "./digger_worker.js",
+    wasm: "./digger_bg.wasm",
+    name: "The root finders for comparison (`digger`)",
 };
 
 /// The program of tools workers.
 pub const TOOLS: Program = Program {
     script: "./tools_worker.js",
     wasm: "./tools_bg.wasm",
+    name: "they",
 };
 
 /// Returns the number of the processor's cores.
@@ -95,6 +108,14 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         Self { inner }
     }
 
+    /// Whether the workers can do what needs this program: the larger build of the tracer, once it
+    /// is there, does all that the other one does.
+    pub fn serves(&self, program: Program) -> bool {
+        let inner = &mut *self.inner.borrow_mut();
+        inner.program == program
+            || inner.program == COMPARING && inner.manager.workers().has_module()
+    }
+
     /// Has the workers' program loaded, unless that was done.
     pub fn load(&self) {
         let inner = &mut *self.inner.borrow_mut();
@@ -102,7 +123,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
             return;
         }
         inner.is_loading = true;
-        let wasm = inner.program.wasm;
+        let Program { wasm, name, .. } = inner.program;
         let weak = Rc::downgrade(&self.inner);
         spawn_local(async move {
             let module = load(wasm).await;
@@ -110,7 +131,11 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
             let crew = Self { inner };
             crew.ask(|manager, now| {
                 let outcome = module.map(|module| manager.workers().set_module(module));
-                manager.loaded(outcome.map_err(describe), now);
+                let trouble = |error| {
+                    let reason = describe(error);
+                    format!("{name} could not be loaded: {reason}. Check the connection")
+                };
+                manager.loaded(outcome.map_err(trouble), now);
             });
             {
                 let inner = &mut *crew.inner.borrow_mut();

@@ -1,89 +1,306 @@
 //! Makes rows of the table of commands.
+//!
+//! ```text
+//! pub static SPHERE: CommandSpec = row(
+//!     "sphere",
+//!     "sphere; a point when soft",
+//!     takes!(sphere, SN, length("r", "the radius"), vector("POS", "the centre")),
+//! )
+//! .example(flesh!("sphere Flesh 0.6, 0 0 0"));
+//!
+//! fn sphere<'a>(
+//!     run: &mut Evaluator<'a>,
+//!     command: &'a Command,
+//!     sn: Name<'a>,
+//!     radius: f64,
+//!     center: DVec3,
+//! ) -> Outcome<Flow> { … }
+//! ```
 
 use super::parameter::{OptionSpec, Parameter};
-use super::spec::{Action, CommandSpec, Routine};
+use super::spec::{Action, Bracket, CommandSpec, Routine};
+use crate::evaluator::state::Evaluator;
+use crate::limits;
+use crate::syntax::Command;
 
 /// The text of an example: a light, a material to be seen by it, and the shapes.
 macro_rules! clay {
     ($text:literal) => {
         concat!(
-            "light White, position 4 8 10\nsurface Clay, diffuse SandyBrown, specular Gray50, shine 40\n",
+            "light White, position 4 8 10\n\
+             surface Clay, diffuse SandyBrown, specular Gray50, shine 40\n",
             $text
         )
     };
 }
+
 /// As `clay`, with a soft material.
 macro_rules! flesh {
     ($text:literal) => {
         concat!(
-            "light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine 40, radius 0.6, blobbiness -2\n",
+            "light White, position 4 8 10\n\
+             surface Flesh, diffuse SandyBrown, specular Gray50, shine 40, radius 0.6, \
+             blobbiness -2\n",
             $text
         )
     };
 }
-pub(super) use {clay, flesh};
 
-pub(super) const fn row(name: &'static str, meaning: &'static str, action: Action) -> CommandSpec {
+/// Makes a routine that reads operands and hands their values, in this order, to a function; a list of
+/// options in brackets is handed on before them.
+///
+/// All is read first; the function is only called if nothing was wrong.
+macro_rules! reads {
+    ($run:path) => {
+        |run, command| {
+            run.given(command)?;
+            $run(run, command)
+        }
+    };
+    ($run:path, [$options:expr]) => {
+        |run, command| {
+            let given = run.given(command)?;
+            $run(run, command, &given.options)
+        }
+    };
+    ($run:path, [$options:expr], $($slot:expr),+ $(,)?) => {
+        |run, command| {
+            let given = run.given(command)?;
+            let mut values = given.values();
+            $run(run, command, &given.options, $(values.take(|| $slot)?),+)
+        }
+    };
+    ($run:path, $($slot:expr),+ $(,)?) => {
+        |run, command| {
+            let given = run.given(command)?;
+            let mut values = given.values();
+            $run(run, command, $(values.take(|| $slot)?),+)
+        }
+    };
+}
+
+/// The operands of a command and the function that runs it with their values (see `reads!`):
+/// `takes!(light, [LIGHT_OPTIONS], colour("Color", "the light's colour"))`.
+macro_rules! takes {
+    ($run:path, [$options:expr] $(, $slot:expr)* $(,)?) => {
+        $crate::commands::build::by_itself(
+            $crate::commands::build::reads!($run, [$options] $(, $slot)*),
+            &[$($slot.plain),*],
+            $options,
+        )
+    };
+    ($run:path $(, $slot:expr)* $(,)?) => {
+        $crate::commands::build::by_itself(
+            $crate::commands::build::reads!($run $(, $slot)*),
+            &[$($slot.plain),*],
+            &[],
+        )
+    };
+}
+
+/// The operand of a command that sets something to its value:
+/// `sets!(|run, gamma| run.settings.gamma = gamma as f32, number("value", "gamma"))`.
+macro_rules! sets {
+    (|$run:ident, $value:ident| $set:expr, $slot:expr $(,)?) => {
+        $crate::commands::build::by_itself(
+            |$run, command| {
+                let $value = $run.given(command)?.values().take(|| $slot)?;
+                $set;
+                Ok($crate::evaluator::state::Flow::Next)
+            },
+            &[$slot.plain],
+            &[],
+        )
+    };
+}
+
+/// Makes parameters as the table keeps them.
+macro_rules! plain {
+    ($($slot:expr),* $(,)?) => { &[$($slot.plain),*] };
+}
+
+/// Makes an option of its name, default, meaning and operands.
+macro_rules! choice {
+    ($name:literal, $default:literal, $meaning:expr) => {
+        $crate::commands::slot::Choice::none($crate::commands::build::option(
+            $name,
+            $default,
+            $meaning,
+            &[],
+        ))
+    };
+    ($name:literal, $default:literal, $meaning:expr, $a:expr) => {
+        $crate::commands::slot::Choice::one(
+            $crate::commands::build::option($name, $default, $meaning, &[$a.plain]),
+            || $a,
+        )
+    };
+    ($name:literal, $default:literal, $meaning:expr, $a:expr, $b:expr) => {
+        $crate::commands::slot::Choice::two(
+            $crate::commands::build::option($name, $default, $meaning, &[$a.plain, $b.plain]),
+            || $a,
+            || $b,
+        )
+    };
+    ($name:literal, $default:literal, $meaning:expr, $a:expr, $b:expr, $c:expr) => {
+        $crate::commands::slot::Choice::three(
+            $crate::commands::build::option(
+                $name,
+                $default,
+                $meaning,
+                &[$a.plain, $b.plain, $c.plain],
+            ),
+            || $a,
+            || $b,
+            || $c,
+        )
+    };
+}
+pub(crate) use {choice, clay, flesh, plain, reads, sets, takes};
+
+/// The way a command is written and carried out.
+pub struct Form {
+    pub parameters: &'static [Parameter],
+    pub options: &'static [OptionSpec],
+    pub action: Action,
+}
+
+/// Makes the form of a command whose function reads its operands by itself.
+pub const fn by_itself(
+    run: Routine,
+    parameters: &'static [Parameter],
+    options: &'static [OptionSpec],
+) -> Form {
+    Form {
+        parameters,
+        options,
+        action: Action::Run(run),
+    }
+}
+
+/// Makes the form of a command that changes nothing, for this reason.
+pub const fn idle(reason: &'static str, parameters: &'static [Parameter]) -> Form {
+    Form {
+        parameters,
+        options: &[],
+        action: Action::NoEffect(reason),
+    }
+}
+
+/// Makes the form of a command that the parser makes part of the tree.
+pub const fn structure(parameters: &'static [Parameter]) -> Form {
+    Form {
+        parameters,
+        options: &[],
+        action: Action::Structure,
+    }
+}
+
+/// The form of a command that is written in the language itself (see [`crate::library`]), which also
+/// tells its parameters.
+pub const LIBRARY: Form = Form {
+    parameters: &[],
+    options: &[],
+    action: Action::Library,
+};
+
+/// Makes a row of the table.
+pub const fn row(name: &'static str, meaning: &'static str, form: Form) -> CommandSpec {
+    let Form {
+        parameters,
+        options,
+        action,
+    } = form;
     CommandSpec {
         name,
-        parameters: &[],
+        parameters,
         meaning,
         details: "",
         default: "",
-        options: &[],
+        options,
         example: "",
+        bracket: None,
+        includes: false,
         is_newer: false,
+        interrupts: false,
+        most_operands: limits::MAX_OPERANDS,
         action,
+        mark_failed: None,
     }
-}
-
-pub(super) const fn run(routine: Routine) -> Action {
-    Action::Run(routine)
-}
-
-pub(super) const fn idle(reason: &'static str) -> Action {
-    Action::NoEffect(reason)
-}
-
-pub(super) const fn structure(name: &'static str, meaning: &'static str) -> CommandSpec {
-    row(name, meaning, Action::Structure)
-}
-
-/// A command that is written in the language itself (see [`crate::library`]), which also tells its
-/// parameters.
-pub(super) const fn library(name: &'static str, meaning: &'static str) -> CommandSpec {
-    row(name, meaning, Action::Library)
 }
 
 impl CommandSpec {
-    pub(super) const fn takes(mut self, parameters: &'static [Parameter]) -> Self {
-        self.parameters = parameters;
-        self
-    }
-
-    pub(super) const fn default(mut self, default: &'static str) -> Self {
+    pub(crate) const fn default(mut self, default: &'static str) -> Self {
         self.default = default;
         self
     }
 
-    pub(super) const fn options(mut self, options: &'static [OptionSpec]) -> Self {
-        self.options = options;
-        self
-    }
-
-    pub(super) const fn details(mut self, details: &'static str) -> Self {
+    pub(crate) const fn details(mut self, details: &'static str) -> Self {
         self.details = details;
         self
     }
 
     /// Newer than the first published texts: one's own command of this name hides it.
-    pub(super) const fn newer(mut self) -> Self {
+    pub(crate) const fn newer(mut self) -> Self {
         self.is_newer = true;
         self
     }
 
-    pub(super) const fn example(mut self, example: &'static str) -> Self {
+    pub(crate) const fn example(mut self, example: &'static str) -> Self {
         self.example = example;
         self
     }
+
+    /// Ends or undoes the run of the text it stands in.
+    pub(crate) const fn interrupts(mut self) -> Self {
+        self.interrupts = true;
+        self
+    }
+
+    /// Begins or ends a group of shapes.
+    pub(crate) const fn bracket(mut self, bracket: Bracket) -> Self {
+        self.bracket = Some(bracket);
+        self
+    }
+
+    /// Runs the texts of the files that it names.
+    pub(crate) const fn includes(mut self) -> Self {
+        self.includes = true;
+        self
+    }
+
+    /// Lets more operands than usual stand behind it.
+    pub(crate) const fn most_operands(mut self, most: usize) -> Self {
+        self.most_operands = most;
+        self
+    }
+
+    /// Runs this where the command fails.
+    pub(crate) const fn mark_failed(
+        mut self,
+        mark: for<'a> fn(&mut Evaluator<'a>, &'a Command),
+    ) -> Self {
+        self.mark_failed = Some(mark);
+        self
+    }
+}
+
+/// Makes an option as the table keeps it.
+pub const fn option(
+    name: &'static str,
+    default: &'static str,
+    meaning: &'static str,
+    parameters: &'static [Parameter],
+) -> OptionSpec {
+    OptionSpec {
+        name,
+        parameters,
+        meaning,
+        default,
+    }
+}
+
+/// Makes an option of a word alone.
+pub const fn word_of(name: &'static str, meaning: &'static str) -> OptionSpec {
+    option(name, "", meaning, &[])
 }

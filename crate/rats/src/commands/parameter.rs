@@ -114,6 +114,27 @@ impl Unit {
     }
 }
 
+/// The part of a shape that a number says, by which a hand takes hold of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Nothing that a hand could move.
+    None,
+    /// The radius, at the base if the shape has two.
+    Radius,
+    /// The radius at the apex.
+    ApexRadius,
+    /// The radius at the node that stands before it.
+    NodeRadius,
+    /// The radius of the circle that an arc lies on.
+    Sweep,
+    /// The angle where an arc begins.
+    Start,
+    /// The angle from there to an arc's end.
+    Width,
+    /// The length of a box along x (0), y (1) or z (2).
+    Side(usize),
+}
+
 /// How often a parameter is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arity {
@@ -142,6 +163,11 @@ pub struct Parameter {
     pub default: &'static str,
     /// How often it is given.
     pub arity: Arity,
+    /// Whether it is the material of a shape, which shapes leave out in a `chain`, as the chain
+    /// gives it.
+    pub in_chain: bool,
+    /// The part of a shape that it says.
+    pub role: Role,
 }
 
 impl Parameter {
@@ -175,36 +201,6 @@ impl Parameter {
             Arity::Many => format!("{name} …"),
             Arity::Any => format!("[{name} …]"),
         }
-    }
-
-    pub(super) const fn unit(mut self, unit: Unit) -> Self {
-        self.unit = unit;
-        self
-    }
-
-    pub(super) const fn optional(mut self, default: &'static str) -> Self {
-        self.arity = Arity::Optional;
-        self.default = default;
-        self
-    }
-
-    pub(super) const fn many(mut self) -> Self {
-        self.arity = Arity::Many;
-        self
-    }
-
-    pub(super) const fn any(mut self) -> Self {
-        self.arity = Arity::Any;
-        self
-    }
-
-    pub(super) const fn from(mut self, low: f64, high: f64) -> Self {
-        self.kind = Kind::Number { low, high };
-        self
-    }
-
-    pub(super) const fn at_least(self, low: f64) -> Self {
-        self.from(low, MAX_MAGNITUDE)
     }
 }
 
@@ -254,72 +250,3 @@ fn range(low: f64, high: f64) -> String {
         (false, false) => String::new(),
     }
 }
-
-pub(super) const fn parameter(name: &'static str, kind: Kind, meaning: &'static str) -> Parameter {
-    Parameter {
-        name,
-        kind,
-        meaning,
-        unit: Unit::None,
-        default: "",
-        arity: Arity::One,
-    }
-}
-
-/// A number of any size.
-pub(super) const fn number(name: &'static str, meaning: &'static str) -> Parameter {
-    let kind = Kind::Number {
-        low: -MAX_MAGNITUDE,
-        high: MAX_MAGNITUDE,
-    };
-    parameter(name, kind, meaning)
-}
-
-/// A length of any sign.
-pub(super) const fn length(name: &'static str, meaning: &'static str) -> Parameter {
-    number(name, meaning).unit(Unit::Length)
-}
-
-/// An angle in degrees.
-pub(super) const fn degrees(name: &'static str, meaning: &'static str) -> Parameter {
-    number(name, meaning).unit(Unit::Degrees)
-}
-
-/// A whole number.
-pub(super) const fn whole(
-    name: &'static str,
-    low: u32,
-    high: u32,
-    meaning: &'static str,
-) -> Parameter {
-    parameter(name, Kind::Whole { low, high }, meaning)
-}
-
-/// A place.
-pub(super) const fn vector(name: &'static str, meaning: &'static str) -> Parameter {
-    parameter(name, Kind::Vector, meaning).unit(Unit::Length)
-}
-
-/// A direction.
-pub(super) const fn direction(name: &'static str, meaning: &'static str) -> Parameter {
-    parameter(name, Kind::Direction, meaning)
-}
-
-/// A colour.
-pub(super) const fn colour(name: &'static str, meaning: &'static str) -> Parameter {
-    parameter(name, Kind::Colour, meaning)
-}
-
-/// One of some words.
-pub(super) const fn word(
-    name: &'static str,
-    words: &'static [OptionSpec],
-    meaning: &'static str,
-) -> Parameter {
-    parameter(name, Kind::Word(words), meaning)
-}
-
-/// `on` or `off`.
-pub(super) const ON_OFF: Parameter = parameter("on|off", Kind::Switch, "`on` or `off`");
-/// The parameters of a switch.
-pub(super) const SWITCH: &[Parameter] = &[ON_OFF];

@@ -1,8 +1,11 @@
-//! A row of the table of commands. Rows are plain data: [`Routine`] names what runs a command, and the
-//! evaluator's `dispatch` maps each name to its function.
+//! The row of a command in the table: its name, its operands, its meaning, and the function that runs
+//! it.
 
-use super::parameter::{OptionSpec, Parameter, join};
-use crate::{library, limits};
+use super::parameter::{Kind, OptionSpec, Parameter, join};
+use crate::evaluator::state::{Evaluator, Flow};
+use crate::library;
+use crate::problem::Outcome;
+use crate::syntax::Command;
 
 /// The groups of appendix C of the thesis, and ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -27,127 +30,31 @@ pub enum Group {
     Extensions,
 }
 
-/// The routine of the evaluator that runs a command. A command and its synonyms share one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Routine {
-    Pause,
-    Return,
-    Info,
-    Help,
-    Man,
-    Var,
-    Quit,
-    Aperture,
-    Focus,
-    Shutter,
-    Vrp,
-    Vup,
-    Cp,
-    Vpn,
-    Window,
-    Eyep,
-    Fov,
-    Surface,
-    Texture,
-    Arc,
-    Arch,
-    Box,
-    Brick,
-    Cone,
-    Cylinder,
-    Pipe,
-    Dot,
-    Gauss,
-    Line,
-    Sphere,
-    Triangle,
-    Triad,
-    Plane,
-    Polygon,
-    Patch,
-    Torus,
-    Quadric,
-    Terra,
-    Chain,
-    Object,
-    Body,
-    Close,
-    Instance,
-    Translate,
-    Rotate,
-    Scale,
-    Explode,
-    Transform,
-    Deform,
-    SilentSwitch,
-    Warning,
-    Verbose,
-    Soft,
-    Double,
-    Map,
-    Nosave,
-    Gamma,
-    Framesize,
-    Filename,
-    Format,
-    Digger,
-    Contrast,
-    Fragile,
-    Sample,
-    Mesh,
-    Penumbra,
-    Epsilon,
-    Vanish,
-    Maxdepth,
-    Tone,
-    Light,
-    Fog,
-    Background,
-    Cloud,
-    Sky,
-    Ground,
-    Remove,
-    Report,
-    Reset,
-    Shoot,
-    Animate,
-    Play,
-    Split,
-    Collage,
-    Fli,
-    Convert,
-    Resize,
-    Diff,
-    And,
-    Xor,
-    Show,
-    Colors,
-    Rats,
-    Table,
-    Blobscale,
-    Skeleton,
-    Motion,
-    Contact,
-    Influence,
-    Curve,
-    Seed,
-}
+/// Runs one command on the state of a running text.
+pub(crate) type Routine = for<'a> fn(&mut Evaluator<'a>, &'a Command) -> Outcome<Flow>;
 
 /// How a command is carried out.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Action {
-    /// By a routine, fully or as far as the routine itself says.
+    /// A function runs it, fully or as far as the function itself says.
     Run(Routine),
-    /// By running other files (`read`).
-    Read,
-    /// By running the example of a command (`test`).
-    Test,
     /// The parser makes it part of the tree.
     Structure,
     /// A file of the library defines it.
     Library,
     /// It never changes the picture, for the reason given.
     NoEffect(&'static str),
+}
+
+/// The way a command begins or ends a group of shapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bracket {
+    /// Begins an object.
+    Object,
+    /// Begins shapes of one material.
+    Chain,
+    /// Ends the group that was begun last.
+    Close,
 }
 
 /// A command.
@@ -167,10 +74,20 @@ pub struct CommandSpec {
     pub default: &'static str,
     /// A small text that uses it, complete and without mistakes.
     pub example: &'static str,
+    /// The way it begins or ends a group of shapes, if it does.
+    pub bracket: Option<Bracket>,
+    /// Whether it runs the texts of the files that it names.
+    pub includes: bool,
     /// Whether it is newer than the first published texts.
     pub(crate) is_newer: bool,
+    /// Whether it ends or undoes the run of the text it stands in.
+    pub(crate) interrupts: bool,
+    /// Words, numbers and signs that may stand behind it at most.
+    pub(crate) most_operands: usize,
     /// How it is carried out.
     pub(crate) action: Action,
+    /// Leaves a mark where the command fails, so that what builds on it is not reported, too.
+    pub(crate) mark_failed: Option<for<'a> fn(&mut Evaluator<'a>, &'a Command)>,
 }
 
 impl std::fmt::Debug for CommandSpec {
@@ -209,9 +126,7 @@ impl CommandSpec {
     #[must_use]
     pub fn idle(&self) -> Option<&'static str> {
         match self.action {
-            Action::Run(_) | Action::Read | Action::Test | Action::Structure | Action::Library => {
-                None
-            }
+            Action::Run(_) | Action::Structure | Action::Library => None,
             Action::NoEffect(reason) => Some(reason),
         }
     }
@@ -223,12 +138,25 @@ impl CommandSpec {
         self.is_newer || self.is_library()
     }
 
-    /// Words, numbers and signs that may stand behind it at most.
-    pub(crate) fn most_operands(&self) -> usize {
-        match self.action {
-            Action::Run(Routine::Deform) => limits::MAX_CONTROL_OPERANDS,
-            _ => limits::MAX_OPERANDS,
-        }
+    /// Whether it makes a shape from a file.
+    #[must_use]
+    pub fn reads_shape(&self) -> bool {
+        let is_file = |parameter: &Parameter| matches!(parameter.kind, Kind::File);
+        self.parameters.first().is_some_and(|first| first.in_chain)
+            && self.parameters.iter().any(is_file)
+    }
+
+    /// Whether its name may be copied from an old one: `surface new = old`.
+    #[must_use]
+    pub fn copies(&self) -> bool {
+        let is_copy = |parameter: &Parameter| matches!(parameter.kind, Kind::Copy(_));
+        self.parameters.iter().any(is_copy)
+    }
+
+    /// Whether the parser makes it part of the tree: `for`, `if`, `else`, `define`.
+    #[must_use]
+    pub fn is_structure(&self) -> bool {
+        matches!(self.action, Action::Structure)
     }
 
     /// Whether a file of the library defines it.

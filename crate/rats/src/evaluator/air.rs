@@ -2,7 +2,12 @@
 
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::given::Given;
+use crate::commands::build::{choice, clay, flesh, row, takes};
+use crate::commands::slot::{
+    Choice, Named, backdrop, colour, existing, length, number, vector, whole,
+};
+use crate::commands::{CommandSpec, Names, OptionSpec};
+use crate::given::{Behind, Options};
 use crate::limits::{MAX_BACKDROPS, MAX_CLOUDS};
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
@@ -12,109 +17,308 @@ use scene::{Background, Cloud, Fog, Ground, Rgb, Sky, extent};
 /// Directions in which a ray looks for the sky, if the text does not say.
 const SKY_SAMPLES: u32 = 4;
 
-fn number(given: &Given<'_>, option: &'static str, parameter: &'static str) -> Option<f64> {
-    Some(given.option(option)?.given.number(parameter))
-}
+const BACKGROUND_TO: Choice<Rgb> = choice!(
+    "to",
+    "",
+    "another colour below the first: they change over around the horizon (ours)",
+    colour("Color", "the colour below")
+);
 
-/// The colour of every `to`, in order.
-fn more_colours(given: &Given<'_>) -> impl Iterator<Item = Rgb> {
-    let to = given.options.iter().filter(|chosen| chosen.name == "to");
-    to.map(|chosen| chosen.given.colour("Color"))
-}
+/// `background`.
+pub static BACKGROUND_OPTIONS: &[OptionSpec] = &[BACKGROUND_TO.plain];
 
 /// `background Color [to Color …]`, `background fn`
-pub fn background<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let Some(name) = given.maybe_name("Color|fn").cloned() else {
-        let mut colours = vec![given.colour("Color|fn")];
-        colours.extend(more_colours(&given));
-        if colours.len() > MAX_BACKDROPS {
-            return Err(Problem::new(
-                command.span.clone(),
-                format!("a background has at most {MAX_BACKDROPS} colours"),
-            )
-            .hint("use an image: `background file.png`"));
+pub static BACKGROUND: CommandSpec = row(
+    "background",
+    "what is behind everything: a colour, colours or an image",
+    takes!(
+        background,
+        [BACKGROUND_OPTIONS],
+        backdrop(
+            "Color|fn",
+            "the background's colour, or the name of an image"
+        )
+    ),
+)
+.default("a dark slate, or the `sky`")
+.details(
+    "With `to` it goes from the first colour, above, to the last, below; they change over around \
+     the horizon. An image lies around the scene: the whole way round across, its middle towards \
+     −z, from straight up to straight down. It is seen in mirrors and through glass, but it gives \
+     no light: `sky` does. What is above is said by `vup`.",
+)
+.example(clay!(
+    "background SteelBlue to White to SaddleBrown\n\
+     surface Chrome, diffuse Gray10, reflective 80%\n\
+     sphere Chrome 2, 0 0 0\nsphere Clay 0.7, 2.4 -1 2"
+));
+
+fn background<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    behind: Behind<'a>,
+) -> Outcome<Flow> {
+    run.air.background = Some(match behind {
+        Behind::Colour(colour) => {
+            let mut colours = vec![colour];
+            colours.extend(options.all(&BACKGROUND_TO));
+            if colours.len() > MAX_BACKDROPS {
+                return Err(Problem::new(
+                    command.span.clone(),
+                    format!("a background has at most {MAX_BACKDROPS} colours"),
+                )
+                .hint("use an image: `background file.png`"));
+            }
+            match colours[..] {
+                [colour] => Background::Colour(colour),
+                _ => Background::Gradient(colours),
+            }
         }
-        run.air.background = Some(match colours[..] {
-            [colour] => Background::Colour(colour),
-            _ => Background::Gradient(colours),
-        });
-        return Ok(Flow::Next);
-    };
-    if let Some(to) = given.option("to") {
-        run.say(Severity::Warning, to.span.clone(), || {
-            (
-                String::from("`to` says nothing about a background that is an image"),
-                None,
-            )
-        });
-    }
-    let image = run.image(&name)?;
-    run.air.background = Some(Background::Image(image as u32));
+        Behind::Image(name) => {
+            if let Some(to) = options.find(&BACKGROUND_TO) {
+                run.say(Severity::Warning, to.span.clone(), || {
+                    (
+                        String::from("`to` says nothing about a background that is an image"),
+                        None,
+                    )
+                });
+            }
+            Background::Image(run.image(&name)? as u32)
+        }
+    });
     Ok(Flow::Next)
 }
 
+const SKY_TO: Choice<Rgb> = choice!(
+    "to",
+    "as above",
+    "light from the horizon and below",
+    colour("Color", "the horizon's colour")
+);
+const INTENSITY: Choice<f64> = choice!(
+    "intensity",
+    "1",
+    "multiplies its light, not what is seen of it",
+    number("k", "the intensity").from(0.0, 1e6)
+);
+const SAMPLES: Choice<u32> = choice!(
+    "samples",
+    "4",
+    "directions in which each ray looks for the sky",
+    whole("n", 1, scene::Sky::MAX_SAMPLES, "the number of directions")
+);
+
+/// `sky`.
+pub static SKY_OPTIONS: &[OptionSpec] = &[SKY_TO.plain, INTENSITY.plain, SAMPLES.plain];
+
 /// `sky Color [to Color] [intensity k] [samples n]`
-pub fn sky<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let above = given.colour("Color");
-    let horizon = more_colours(&given).last().unwrap_or(above);
-    let intensity = number(&given, "intensity", "k").unwrap_or(1.0) as f32;
+pub static SKY: CommandSpec = row(
+    "sky",
+    "light from everywhere",
+    takes!(
+        sky,
+        [SKY_OPTIONS],
+        colour("Color", "the light's colour from straight above")
+    ),
+)
+.default("none")
+.details(
+    "Every place gets the light of the part of the sky that it sees: hollows and what touches the \
+     ground get darker, as on a cloudy day. Materials whose `ambient` is not given have none \
+     under a sky. The sky is seen behind everything unless there is a `background`.",
+)
+.example(flesh!(
+    "sky White to SteelBlue, intensity 0.8\n\
+     ground Gray80\neyep 0 3 9\nsphere Flesh 0.6, -0.6 0 0\n\
+     sphere Flesh 0.6, 0.6 0 0"
+));
+
+fn sky<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    options: &Options<'a>,
+    above: Rgb,
+) -> Outcome<Flow> {
+    let horizon = options.last(&SKY_TO).unwrap_or(above);
+    let intensity = options.last(&INTENSITY).unwrap_or(1.0) as f32;
     let lit = |colour: Rgb| colour.map(|c| c * intensity);
     let sky = Sky {
         colour: lit(above),
         horizon: lit(horizon),
-        samples: number(&given, "samples", "n").map_or(SKY_SAMPLES, |n| n as u32),
+        samples: options.last(&SAMPLES).unwrap_or(SKY_SAMPLES),
     };
     run.air.sky = Some((sky, [above, horizon]));
     Ok(Flow::Next)
 }
 
+const GROUND_HEIGHT: Choice<f64> = choice!(
+    "height",
+    "just below everything",
+    "where it is, along the direction up",
+    length("h", "the height")
+);
+
+/// `ground`.
+pub static GROUND_OPTIONS: &[OptionSpec] = &[GROUND_HEIGHT.plain];
+
 /// `ground Color [height h]`
-pub fn ground<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
+pub static GROUND: CommandSpec = row(
+    "ground",
+    "a plane to stand on",
+    takes!(
+        ground,
+        [GROUND_OPTIONS],
+        colour("Color", "the ground's colour")
+    ),
+)
+.default("none")
+.details(
+    "An endless plane across the direction up (`vup`) that receives light and shadows. Without a \
+     height it touches the lowest shape.",
+)
+.example(clay!(
+    "ground Wheat\nlight White, distant, direction -1 -2 -1\neyep 0 3 9\nsphere Clay 2, 0 0 0"
+));
+
+fn ground<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    options: &Options<'a>,
+    colour: Rgb,
+) -> Outcome<Flow> {
     run.air.ground = Some(Ground {
-        colour: given.colour("Color"),
-        height: number(&given, "height", "h"),
+        colour,
+        height: options.last(&GROUND_HEIGHT),
     });
     Ok(Flow::Next)
 }
 
+const FOG_DISTANCE: Choice<f64> = choice!(
+    "distance",
+    "twice as far as vrp",
+    "where 37% of the light is left, 14% at twice that (ours)",
+    length("d", "the distance").at_least(1e-9)
+);
+const FOG_HEIGHT: Choice<f64> = choice!(
+    "height",
+    "as dense everywhere",
+    "over which the fog thins out to 37%, upwards from 0 (ours)",
+    length("h", "the height").at_least(1e-9)
+);
+
+/// `fog`.
+pub static FOG_OPTIONS: &[OptionSpec] = &[FOG_DISTANCE.plain, FOG_HEIGHT.plain];
+
 /// `fog Color [distance d] [height h]`
-pub fn fog<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let distance = number(&given, "distance", "d");
+pub static FOG: CommandSpec = row(
+    "fog",
+    "fog over everything",
+    takes!(fog, [FOG_OPTIONS], colour("Color", "the fog's colour")),
+)
+.default("none")
+.details(
+    "Of light that comes from the distance x the share e^(−x/d) is left; the rest is the fog's \
+     own colour. With a `height` it lies low: thinner the higher, and as dense below 0 as at 0. \
+     What is high is said by `vup`. One fog at a time: the last one counts.",
+)
+.example(clay!(
+    "fog LightSteelBlue, distance 12\n\
+     background LightSteelBlue\neyep 0 2 9\n\
+     for i = 0 to 5 { sphere Clay 1, 3-2*i, 0, 3-4*i }"
+));
+
+fn fog<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    options: &Options<'a>,
+    colour: Rgb,
+) -> Outcome<Flow> {
+    let distance = options.last(&FOG_DISTANCE);
     let fog = Fog {
-        colour: given.colour("Color"),
+        colour,
         distance: distance.unwrap_or(1.0),
-        height: number(&given, "height", "h"),
+        height: options.last(&FOG_HEIGHT),
     };
     run.air.fog = Some((fog, distance.is_some()));
     Ok(Flow::Next)
 }
 
+const POSITION: Choice<DVec3> = choice!(
+    "position",
+    "0 0 0",
+    "its middle (ours)",
+    vector("XYZ", "the cloud's middle")
+);
+const OBJECT: Choice<Named> = choice!(
+    "object",
+    "",
+    "an object in the middle of it, in place of a position: a halo (ours)",
+    existing("name", Names::Object, "the object's name")
+);
+const RADIUS: Choice<f64> = choice!(
+    "radius",
+    "1; of a halo, twice the object's",
+    "how far it reaches (ours)",
+    length("r", "the cloud's radius").at_least(1e-9)
+);
+const DENSITY: Choice<f64> = choice!(
+    "density",
+    "1",
+    "multiplies its light (ours)",
+    number("k", "the density").from(0.0, 1e6)
+);
+
+/// `cloud`.
+pub static CLOUD_OPTIONS: &[OptionSpec] =
+    &[POSITION.plain, OBJECT.plain, RADIUS.plain, DENSITY.plain];
+
 /// `cloud Color [position P | object name] [radius r] [density k]`
-pub fn cloud<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
+pub static CLOUD: CommandSpec = row(
+    "cloud",
+    "a cloud of light, or a halo",
+    takes!(
+        cloud,
+        [CLOUD_OPTIONS],
+        colour("Color", "the cloud's colour")
+    ),
+)
+.default("none")
+.details(
+    "A glowing ball of mist without a surface: it hides nothing and casts no shadow. At the \
+     distance r from its middle its density is k·(1 − (r/radius)²)², and a ray gets the integral \
+     of that along its way, in units of the radius, times the colour.",
+)
+.example(clay!(
+    "background Black\nobject LAMP\n  \
+     sphere Clay 0.6, 0 1 0\nclose\n\
+     cloud Gold, object LAMP, radius 2.5\n\
+     cloud SlateBlue, position -2 -1 0, radius 2, density 0.5"
+));
+
+fn cloud<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    colour: Rgb,
+) -> Outcome<Flow> {
     if run.air.clouds.len() >= MAX_CLOUDS {
         return Err(Problem::new(
             command.span.clone(),
             format!("there are more than {MAX_CLOUDS} clouds"),
         ));
     }
-    let place = given.option("position");
-    let mut position = place.map_or(DVec3::ZERO, |chosen| chosen.given.vector("XYZ"));
+    let mut position = options.last(&POSITION).unwrap_or(DVec3::ZERO);
     let mut radius = 1.0;
-    if let Some(object) = given.option("object") {
-        if let Some(place) = place {
+    if let Some(name) = options.last(&OBJECT) {
+        if let Some(place) = options.find(&POSITION) {
             return Err(Problem::new(
                 place.span.clone(),
                 "a cloud has a position or an object in its middle, not both",
             )
             .hint("leave one out"));
         }
-        let name = object.given.name("name");
-        let range = run.model.find(name)?;
+        let range = run.model.find(&name)?;
         run.scope.step(range.len() as u64, &name.span)?;
         let parts = run.model.parts[range].iter();
         let (middle, reach) = extent(parts.map(|part| &part.element.shape)).ok_or_else(|| {
@@ -130,10 +334,10 @@ pub fn cloud<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
         (position, radius) = (middle, (2.0 * reach).max(1e-9));
     }
     run.air.clouds.push(Cloud {
-        colour: given.colour("Color"),
+        colour,
         position,
-        radius: number(&given, "radius", "r").unwrap_or(radius),
-        density: number(&given, "density", "k").unwrap_or(1.0),
+        radius: options.last(&RADIUS).unwrap_or(radius),
+        density: options.last(&DENSITY).unwrap_or(1.0),
     });
     Ok(Flow::Next)
 }

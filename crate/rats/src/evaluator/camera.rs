@@ -2,14 +2,25 @@
 
 use super::state::{Evaluator, Flow};
 use crate::Severity;
+use crate::commands::CommandSpec;
+use crate::commands::build::{clay, row, sets, takes};
+use crate::commands::slot::{degrees, direction, length, number, vector};
 use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
 
 /// `eyep XYZ`
-pub fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.camera.eye = run.given(command)?.vector("XYZ");
+pub static EYEP: CommandSpec = row(
+    "eyep",
+    "position of the eye",
+    takes!(eyep, vector("XYZ", "the eye's position")),
+)
+.default("0 0 10")
+.example(clay!("eyep 5 5 8\nsphere Clay 2, 0 0 0"));
+
+fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command, eye: DVec3) -> Outcome<Flow> {
+    run.camera.eye = eye;
     let before = std::mem::take(&mut run.view_plane);
     if before.cp.is_some() || before.normal.is_some() || before.window.is_some() {
         run.say(Severity::Note, command.word_span.clone(), || {
@@ -26,23 +37,59 @@ pub fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 }
 
 /// `vrp XYZ`
-pub fn vrp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.camera.target = run.given(command)?.vector("XYZ");
+pub static VRP: CommandSpec = row(
+    "vrp",
+    "view reference point, in the middle of the picture",
+    takes!(vrp, vector("XYZ", "the view reference point")),
+)
+.default("0 0 0")
+.example(clay!("vrp 0 1 0\nsphere Clay 2, 0 0 0"));
+
+fn vrp<'a>(run: &mut Evaluator<'a>, command: &'a Command, target: DVec3) -> Outcome<Flow> {
+    run.camera.target = target;
     run.aimed_at = (run.file, command.span.clone());
     Ok(Flow::Next)
 }
 
 /// `vup XYZ`
-pub fn vup<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.camera.up = run.given(command)?.vector("XYZ");
-    Ok(Flow::Next)
-}
+pub static VUP: CommandSpec = row(
+    "vup",
+    "direction that is up in the picture",
+    sets!(
+        |run, up| run.camera.up = up,
+        direction("XYZ", "the direction up")
+    ),
+)
+.default("0 1 0")
+.example(clay!(
+    "vup 0 0 1\neyep 8 4 4\ncylinder Clay 1, <0 0 -2>, <0 0 2>"
+));
 
 /// `fov hor [vert]`
-pub fn fov<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let angle = given.number("hor");
-    let vertical = given.maybe_number("vert").unwrap_or(angle);
+pub static FOV: CommandSpec = row(
+    "fov",
+    "angle of view",
+    takes!(
+        fov,
+        degrees("hor", "the horizontal angle of view").from(0.01, 179.0),
+        degrees("vert", "the vertical angle of view")
+            .from(0.01, 179.0)
+            .optional("as the frame's sides")
+    ),
+)
+.default("45")
+.details(
+    "Pixels are square, so the vertical angle follows from the horizontal one and `framesize`.",
+)
+.example(clay!("fov 30\nsphere Clay 2, 0 0 0"));
+
+fn fov<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    angle: f64,
+    vertical: Option<f64>,
+) -> Outcome<Flow> {
+    let vertical = vertical.unwrap_or(angle);
     run.camera.fov = angle;
     run.view_plane.window = None;
     // Equal angles are how the datasets write "no other proportions than the frame's".
@@ -51,27 +98,93 @@ pub fn fov<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
 }
 
 /// `aperture radius`
-pub fn aperture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.lens.aperture = run.given(command)?.number("radius");
-    Ok(Flow::Next)
-}
+pub static APERTURE: CommandSpec = row(
+    "aperture",
+    "radius of the lens",
+    sets!(
+        |run, radius| run.lens.aperture = radius,
+        length("radius", "the radius of the lens").at_least(0.0)
+    ),
+)
+.default("0")
+.details(
+    "0 is a pinhole, which draws everything sharp. A lens draws sharp what is as far away as \
+     `focus` says, measured along the direction of view; a point at another distance z becomes a \
+     disc, of the radius radius·|focus − z|/z where it is sharp. More samples (`sample`) make the \
+     blur smoother.",
+)
+.example(clay!(
+    "aperture 0.3\nfocus 8\nsample 3\n\
+     sphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\n\
+     sphere Clay 0.7, 1.2 0 5"
+));
 
 /// `focus distance`
-pub fn focus<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.lens.focus = Some(run.given(command)?.number("distance"));
-    Ok(Flow::Next)
-}
+pub static FOCUS: CommandSpec = row(
+    "focus",
+    "distance that the lens draws sharp",
+    sets!(
+        |run, distance| run.lens.focus = Some(distance),
+        length("distance", "the distance of the focal plane").at_least(1e-9)
+    ),
+)
+.default("to vrp")
+.details("It only shows when the lens has an `aperture`.")
+.example(clay!(
+    "aperture 0.3\nfocus 5\nsample 3\n\
+     sphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\n\
+     sphere Clay 0.7, 1.2 0 5"
+));
 
 /// `shutter fraction`
-pub fn shutter<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.shutter = run.given(command)?.number("fraction");
-    Ok(Flow::Next)
-}
+pub static SHUTTER: CommandSpec = row(
+    "shutter",
+    "how long the shutter is open",
+    sets!(
+        |run, fraction| run.shutter = fraction,
+        number("fraction", "the fraction of time").from(0.0, 1.0)
+    ),
+)
+.default("0")
+.details(
+    "A share of the time from one frame of an animation to the next: 0 is no blur, with 1 \
+     whatever moves is blurred along its whole way. What moves is what is made of variables that \
+     change with every frame; `transform` holds an object still meanwhile. More samples \
+     (`sample`) make the blur smoother.",
+)
+.example(clay!(
+    "var x = -1 += 2\nshutter 1\nsample 4\nsphere Clay 1, 0 1.5 0\nsphere Clay 1, x -1 0"
+));
 
 /// `cp x y z [w]`
-pub fn cp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let weight = given.maybe_number("w").unwrap_or(1.0);
+pub static CP: CommandSpec = row(
+    "cp",
+    "centre of projection, view coordinates",
+    takes!(
+        cp,
+        length("x", "the place to the right"),
+        length("y", "the place upwards"),
+        length("z", "the distance before the view plane").at_least(1e-9),
+        number("w", "the weight").optional("1")
+    ),
+)
+.details(
+    "The camera of Foley et al.: the view plane goes through `vrp` with normal `vpn`; `window` is \
+     the part of it that the picture shows, seen from `cp`. The weight divides the others.",
+)
+.example(clay!(
+    "vrp 0 0 0\nvpn 0 0 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0"
+));
+
+fn cp<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    x: f64,
+    y: f64,
+    z: f64,
+    weight: Option<f64>,
+) -> Outcome<Flow> {
+    let weight = weight.unwrap_or(1.0);
     if weight == 0.0 {
         return Err(Problem::new(
             command.span.clone(),
@@ -79,7 +192,7 @@ pub fn cp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
         )
         .hint("put the eye far away and make the window's angle small"));
     }
-    let point = DVec3::new(given.number("x"), given.number("y"), given.number("z")) / weight;
+    let point = DVec3::new(x, y, z) / weight;
     if !(point.is_finite() && point.abs().max_element() <= MAX_MAGNITUDE) {
         return Err(Problem::new(
             command.span.clone(),
@@ -99,24 +212,56 @@ pub fn cp<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
 }
 
 /// `vpn XYZ`
-pub fn vpn<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.view_plane.normal = Some(run.given(command)?.vector("XYZ"));
+pub static VPN: CommandSpec = row(
+    "vpn",
+    "normal of the view plane, towards the eye",
+    takes!(vpn, direction("XYZ", "the normal of the view plane")),
+)
+.default("0 0 1")
+.example(clay!(
+    "vpn 1 1 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0"
+));
+
+fn vpn<'a>(run: &mut Evaluator<'a>, command: &'a Command, normal: DVec3) -> Outcome<Flow> {
+    run.view_plane.normal = Some(normal);
     run.view_plane.place = (run.file, command.span.clone());
     Ok(Flow::Next)
 }
 
 /// `window x X y Y`
-pub fn window<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let edges = ["x", "X", "y", "Y"].map(|edge| given.number(edge));
-    if edges[0] >= edges[1] || edges[2] >= edges[3] {
+pub static WINDOW: CommandSpec = row(
+    "window",
+    "the part of the view plane that the picture shows",
+    takes!(
+        window,
+        length("x", "the left edge"),
+        length("X", "the right edge"),
+        length("y", "the lower edge"),
+        length("Y", "the upper edge")
+    ),
+)
+.details(
+    "In view coordinates, as for `cp`. Pixels are square: the width counts, the height follows \
+     from `framesize`.",
+)
+.example(clay!("cp 0 0 8\nwindow -4 4 -4 4\nsphere Clay 2, 0 0 0"));
+
+fn window<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    left: f64,
+    right: f64,
+    lower: f64,
+    upper: f64,
+) -> Outcome<Flow> {
+    if left >= right || lower >= upper {
         return Err(Problem::new(
             command.span.clone(),
             "the window's first edge must be less than the second, its third less than the fourth",
         )
         .hint("it is written `window left right lower upper`"));
     }
-    run.view_plane.window = Some(edges);
+    run.view_plane.window = Some([left, right, lower, upper]);
     run.view_plane.place = (run.file, command.span.clone());
     Ok(Flow::Next)
 }

@@ -2,25 +2,96 @@
 
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::given::Given;
+use crate::commands::build::{choice, flesh, row, takes};
+use crate::commands::slot::{Choice, Placed, Slot, existing, number, whole};
+use crate::commands::{CommandSpec, Names, OptionSpec};
+use crate::given::Options;
 use crate::limits::MAX_CONTACTS;
 use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
 use crate::syntax::Command;
 use contact::Bulge;
 use scene::Contact;
 
+const BULGE_START: Slot<f64> =
+    number("c", "the other's field where the bulge begins").from(0.001, 0.999);
+const BULGE_HEIGHT: Slot<f64> = number("h", "the height of the bulge").from(0.0, 0.999);
+
+const FAST: Choice<f64> = choice!(
+    "fast",
+    "0.2",
+    "a plain bulge, which begins where the other's field is c",
+    BULGE_START
+);
+const HEIGHT: Choice<(f64, Placed<f64>, f64)> = choice!(
+    "height",
+    "",
+    "a bulge from c on that is highest, h, where the other's field is m",
+    BULGE_START,
+    number("m", "the other's field where the bulge is highest")
+        .from(0.001, 0.999)
+        .with_place(),
+    BULGE_HEIGHT
+);
+const RIPPLE: Choice<(f64, f64, u32)> = choice!(
+    "ripple",
+    "",
+    "a bulge of height h with n ripples outside it, from c on",
+    BULGE_START,
+    BULGE_HEIGHT,
+    whole(
+        "n",
+        0,
+        contact::Bulge::MOST_RIPPLES,
+        "the number of ripples"
+    )
+);
+
+/// `contact`.
+pub static CONTACT_OPTIONS: &[OptionSpec] = &[FAST.plain, HEIGHT.plain, RIPPLE.plain];
+
 /// `contact A B [fast c | height c m h | ripple c h n]`, `contact A self …`
-pub fn contact<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let (a, b) = (given.name("A"), given.name("B"));
-    let first = run.model.find_body(a)?;
+pub static CONTACT: CommandSpec = row(
+    "contact",
+    "let two bodies touch instead of overlap",
+    takes!(
+        contact,
+        [CONTACT_OPTIONS],
+        existing("A", Names::Object, "a body's name"),
+        existing("B", Names::Object, "the other body's name, or `self`")
+    ),
+)
+.newer()
+.default("fast 0.2")
+.details(
+    "Where the bodies would overlap, each is pressed flat against the other, and beside it both \
+     swell a little. Fields are in units of the threshold: the other body's surface is where its \
+     field is 1, and the bulge begins where it is c. The smaller c, the wider the bulge; where \
+     the fields fall slowly a wide and high one would coat the other body, which a warning tells. \
+     A body can touch many others. With `self` the folds of a body's skeletons touch, which needs \
+     `local` there.",
+)
+.example(flesh!(
+    "body LEFT\n  sphere Flesh 1.2, -0.9 0 0\n\
+     close\nbody RIGHT\n  sphere Flesh 1.2, 0.9 0 0\n\
+     close\ncontact LEFT RIGHT"
+));
+
+fn contact<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    a: Name<'a>,
+    b: Name<'a>,
+) -> Outcome<Flow> {
+    let first = run.model.find_body(&a)?;
     let folds = b.text == "self";
     let bodies = [
         first,
         if folds {
             first
         } else {
-            run.model.find_body(b)?
+            run.model.find_body(&b)?
         },
     ];
     if folds && !run.model.has_local(first) {
@@ -36,7 +107,7 @@ pub fn contact<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
                 .hint("name another body, or write `self` for its folds"),
         );
     }
-    let bulge = bulge(&given)?;
+    let bulge = bulge(options)?;
     let model = &mut run.model;
     let contacts = &mut model.contacts;
     let same = |c: &Contact| c.bodies == bodies || c.bodies == [bodies[1], bodies[0]];
@@ -81,8 +152,8 @@ pub fn contact<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
 }
 
 /// The bulge that the options say; the default without any.
-fn bulge(given: &Given<'_>) -> Outcome<Bulge> {
-    let [chosen, others @ ..] = &given.options[..] else {
+fn bulge(options: &Options<'_>) -> Outcome<Bulge> {
+    let [chosen, others @ ..] = &options.0[..] else {
         return Ok(Bulge::default());
     };
     if let Some(second) = others.first() {
@@ -91,28 +162,21 @@ fn bulge(given: &Given<'_>) -> Outcome<Bulge> {
                 .hint("write `fast c`, `height c m h` or `ripple c h n`"),
         );
     }
-    let number = |name| chosen.given.number(name);
-    let c = number("c");
-    let bulge = match chosen.name {
-        "height" => Bulge::Height {
-            c,
-            m: number("m"),
-            h: number("h"),
-        },
-        "ripple" => Bulge::Ripple {
-            c,
-            h: number("h"),
-            n: number("n") as u32,
-        },
-        _ => Bulge::Fast { c },
+    let mut span = chosen.span.clone();
+    let bulge = if let Some(c) = FAST.of(chosen) {
+        Bulge::Fast { c }
+    } else if let Some((c, (m, place), h)) = HEIGHT.of(chosen) {
+        span = place;
+        Bulge::Height { c, m, h }
+    } else if let Some((c, h, n)) = RIPPLE.of(chosen) {
+        Bulge::Ripple { c, h, n }
+    } else {
+        Bulge::default()
     };
     if !bulge.is_usable() {
-        let span = chosen.given.span("m");
-        return Err(Problem::new(
-            span.unwrap_or_else(|| chosen.span.clone()),
-            "the bulge is highest before it begins",
-        )
-        .hint("m must be above c"));
+        return Err(
+            Problem::new(span, "the bulge is highest before it begins").hint("m must be above c")
+        );
     }
     Ok(bulge)
 }

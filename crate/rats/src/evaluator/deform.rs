@@ -4,10 +4,14 @@ use super::model::{Model, Part};
 use super::objects::target;
 use super::state::{Evaluator, Flow};
 use super::watch::written_out;
+use crate::commands::build::{choice, clay, row, takes};
+use crate::commands::slot::{Choice, Placed, existing, vector};
+use crate::commands::{CommandSpec, Names, OptionSpec};
 use crate::compiled::{Control, Deform};
-use crate::given::Chosen;
-use crate::limits::{MAX_DEFORMED, STEPS_PER_VERTEX};
+use crate::given::Options;
+use crate::limits::{MAX_CONTROL_OPERANDS, MAX_DEFORMED, STEPS_PER_VERTEX};
 use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
 use crate::syntax::Command;
 use fit::Deformation;
 use glam::DVec3;
@@ -55,12 +59,55 @@ fn deformation(vertices: &[DVec3], controls: &[DVec3]) -> Result<Rc<Deformation>
     })
 }
 
+const CONTROL: Choice<Placed<DVec3>> = choice!(
+    "control",
+    "",
+    "a control point",
+    vector("XYZ", "the control point").with_place()
+);
+const MOVE: Choice<Placed<DVec3>> = choice!(
+    "move",
+    "0 0 0",
+    "by how much it moves what is near",
+    vector("XYZ", "the way").with_place()
+);
+
+/// `deform`.
+pub static DEFORM_OPTIONS: &[OptionSpec] = &[CONTROL.plain, MOVE.plain];
+
 /// `deform [object] { control XYZ [move XYZ] … }`
-pub fn deform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let range = target(run, command, &given)?;
+pub static DEFORM: CommandSpec = row(
+    "deform",
+    "bend a mesh by control points",
+    takes!(
+        deform,
+        [DEFORM_OPTIONS],
+        existing("object", Names::Object, "an object's name").optional("the last one")
+    ),
+)
+.newer()
+.most_operands(MAX_CONTROL_OPERANDS)
+.details(
+    "Control points may lie anywhere, at most 4096; each takes along what is near when it moves, \
+     and one without `move` holds it. All that is between follows smoothly (by natural \
+     neighbours), and far away nothing moves. Triangles, patches and meshes can be deformed, soft \
+     surfaces around meshes too.",
+)
+.example(clay!(
+    "eyep 3 4 3\nfov 30\nvup 0 0 1\n\
+     mesh Clay gem.obj\ndeform { control <0 0 1> move <0.4 0 0.6>\n  \
+     control <0 0 0>\n  control <0 0 -1> move <-0.4 0 0> }"
+));
+
+fn deform<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    object: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let range = target(run, command, object.as_ref())?;
     let text = run.sources.all[run.file].text;
-    let points = controls(text, &given.options)?;
+    let points = controls(text, options)?;
     if points.is_empty() {
         return Err(Problem::new(
             command.span.clone(),
@@ -105,22 +152,24 @@ pub fn deform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 }
 
 /// The control points with their moves; those without one stay.
-fn controls(text: &str, options: &[Chosen<'_>]) -> Outcome<Vec<Control>> {
+fn controls(text: &str, options: &Options<'_>) -> Outcome<Vec<Control>> {
     let mut controls: Vec<Control> = Vec::new();
-    for chosen in options {
-        let vector = chosen.given.vector("XYZ");
-        let span = chosen.given.span("XYZ");
-        let span = closed(text, span.unwrap_or_else(|| chosen.span.clone()));
-        if chosen.name == "control" {
+    for chosen in options.iter() {
+        if let Some((place, span)) = CONTROL.of(chosen) {
             controls.push(Control {
-                place: vector,
+                place,
                 way: DVec3::ZERO,
-                span,
+                span: closed(text, span),
                 way_span: None,
                 is_literal: true,
             });
-        } else if let Some(last) = controls.last_mut().filter(|c| c.way_span.is_none()) {
-            last.way = vector;
+        }
+        let Some((way, span)) = MOVE.of(chosen) else {
+            continue;
+        };
+        let span = closed(text, span);
+        if let Some(last) = controls.last_mut().filter(|c| c.way_span.is_none()) {
+            last.way = way;
             last.is_literal =
                 written_out(text, span.clone()).is_some_and(|numbers| numbers.len() == 3);
             last.way_span = Some(span);

@@ -2,7 +2,10 @@
 
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::given::Given;
+use crate::commands::OptionSpec;
+use crate::commands::build::choice;
+use crate::commands::slot::{Choice, length, number};
+use crate::given::{Chosen, Options};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
@@ -17,48 +20,74 @@ use std::sync::Arc;
 /// The least product of k and the mean edge: below it the balls of many facets add up, and the surface bulges.
 const LEAST: f64 = 10.0;
 
+const METABALLS: Choice<()> = choice!(
+    "metaballs",
+    "",
+    "a soft surface around the mesh, of one metaball a facet: `spherical` or `triangular` (ours)"
+);
+const SPHERICAL: Choice<f64> = choice!(
+    "spherical",
+    "",
+    "of balls around the circumcircles of the facets",
+    number("k", "how sharply the field falls")
+);
+const TRIANGULAR: Choice<(f64, f64)> = choice!(
+    "triangular",
+    "",
+    "of shells of this thickness around the facets",
+    length("d0", "the thickness").at_least(0.0),
+    number("k", "how sharply the field falls")
+);
+
+/// `mesh` as an implicit surface.
+pub static MESH_OPTIONS: &[OptionSpec] = &[METABALLS.plain, SPHERICAL.plain, TRIANGULAR.plain];
+
 /// What surrounds the facets, and k, with the place of the numbers in the text; `None` if the mesh is to be drawn as it is.
 ///
 /// # Errors
 /// If `metaballs` has no kind, or two, or a kind stands alone.
-pub fn metaballs(given: &Given<'_>) -> Outcome<Option<(Kind, f64, Range<usize>)>> {
-    let [word, spherical, triangular] =
-        ["metaballs", "spherical", "triangular"].map(|name| given.option(name));
-    let kinds = [spherical, triangular];
-    let Some(word) = word else {
-        return match kinds.into_iter().flatten().next() {
+pub fn metaballs(options: &Options<'_>) -> Outcome<Option<(Kind, f64, Range<usize>)>> {
+    let (spherical, triangular) = (options.find(&SPHERICAL), options.find(&TRIANGULAR));
+    let Some(word) = options.find(&METABALLS) else {
+        return match spherical.or(triangular) {
             None => Ok(None),
-            Some(kind) => Err(Problem::new(
-                kind.span.clone(),
-                format!("`{}` is a kind of `metaballs`, which is missing", kind.name),
-            )
-            .hint(format!("write `metaballs {}`", kind.name))),
+            Some(chosen) => {
+                let kind = chosen.option.name;
+                Err(Problem::new(
+                    chosen.span.clone(),
+                    format!("`{kind}` is a kind of `metaballs`, which is missing"),
+                )
+                .hint(format!("write `metaballs {kind}`")))
+            }
         };
     };
-    match kinds {
-        [Some(chosen), None] => {
-            let k = chosen.given.number("k");
-            Ok(Some((Kind::Spherical, k, chosen.span.clone())))
-        }
-        [None, Some(chosen)] => {
-            let thickness = chosen.given.number("d0");
-            let k = chosen.given.number("k");
-            Ok(Some((
-                Kind::Triangular { thickness },
-                k,
-                chosen.span.clone(),
-            )))
-        }
-        [None, None] => Err(Problem::new(
-            word.span.clone(),
-            "expected the kind of metaballs behind this",
-        )
-        .hint("write `metaballs triangular d0 k` or `metaballs spherical k`")),
-        [Some(_), Some(second)] => Err(Problem::new(
+    if let (Some(_), Some(second)) = (spherical, triangular) {
+        return Err(Problem::new(
             second.span.clone(),
             "metaballs are spherical or triangular, not both",
-        )),
+        ));
     }
+    let of = |chosen: &Chosen<'_>| {
+        let (kind, k) = match SPHERICAL.of(chosen) {
+            Some(k) => (Kind::Spherical, k),
+            None => {
+                let (thickness, k) = TRIANGULAR.of(chosen)?;
+                (Kind::Triangular { thickness }, k)
+            }
+        };
+        Some((kind, k, chosen.span.clone()))
+    };
+    spherical
+        .or(triangular)
+        .and_then(of)
+        .map(Some)
+        .ok_or_else(|| {
+            Problem::new(
+                word.span.clone(),
+                "expected the kind of metaballs behind this",
+            )
+            .hint("write `metaballs triangular d0 k` or `metaballs spherical k`")
+        })
 }
 
 /// Adds the implicit surface of a mesh as one soft shape.

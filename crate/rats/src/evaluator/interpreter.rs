@@ -1,7 +1,6 @@
 //! Runs files, blocks, loops, choices and calls of defined commands.
 
 use super::state::{Evaluator, Flow};
-use super::{dispatch, run};
 use crate::commands::Action;
 use crate::limits;
 use crate::problem::{Outcome, Problem};
@@ -98,9 +97,11 @@ impl<'a> Evaluator<'a> {
         }
         self.tell_after_shot(command);
         match spec.action {
-            Action::Run(routine) => dispatch::function(routine)(self, command),
-            Action::Read => self.read(command),
-            Action::Test => self.test(command),
+            Action::Run(run) => run(self, command).inspect_err(|_| {
+                if let Some(mark) = spec.mark_failed {
+                    mark(self, command);
+                }
+            }),
             // The parser gives these no plain command.
             Action::Structure => Ok(Flow::Next),
             Action::Library => self.call_library(command, spec.name),
@@ -247,37 +248,8 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// `read fn1 [fn2 …]`
-    fn read(&mut self, command: &'a Command) -> Outcome<Flow> {
-        for name in self.given(command)?.names("fn") {
-            let file = self.find_file(&name)?;
-            if self.reading.contains(&file) {
-                return Err(Problem::new(
-                    name.span,
-                    format!(
-                        "`{}` is being read already: this would never end",
-                        name.text
-                    ),
-                ));
-            }
-            if self.reading.len() >= limits::MAX_NESTED_FILES {
-                return Err(Problem::new(
-                    name.span,
-                    format!(
-                        "files can read each other {} deep at most",
-                        limits::MAX_NESTED_FILES
-                    ),
-                ));
-            }
-            if self.run_inner(command, file)? == Flow::Quit {
-                return Ok(Flow::Quit);
-            }
-        }
-        Ok(Flow::Next)
-    }
-
     /// Runs another text; what is said about one of the library or an example is said here.
-    fn run_inner(&mut self, command: &'a Command, file: usize) -> Outcome<Flow> {
+    pub(super) fn run_inner(&mut self, command: &'a Command, file: usize) -> Outcome<Flow> {
         self.enter(&command.word_span)?;
         let leaves_own = self.is_own() && file >= self.sources.own;
         if leaves_own {
@@ -291,7 +263,8 @@ impl<'a> Evaluator<'a> {
         Ok(flow)
     }
 
-    fn find_file(&self, name: &Name<'_>) -> Outcome<usize> {
+    /// The file of a name, of the project or the library.
+    pub(super) fn find_file(&self, name: &Name<'_>) -> Outcome<usize> {
         let places = places(&self.sources.all[self.file].name, name.text);
         let found = places.iter().find_map(|place| self.sources.find(place));
         found.ok_or_else(|| {
@@ -310,33 +283,5 @@ impl<'a> Evaluator<'a> {
             )
             .hint(hint)
         })
-    }
-
-    /// `test command [print]`
-    fn test(&mut self, command: &'a Command) -> Outcome<Flow> {
-        let given = self.given(command)?;
-        let spec = run::find_command(self, given.name("command"))?;
-        // These would end or undo the run that they are shown in.
-        let would_harm = matches!(spec.name, "quit" | "reset" | "shoot");
-        if given.word("print").is_some() || would_harm {
-            self.say(Severity::Note, command.span.clone(), || {
-                let hint = would_harm.then(|| {
-                    String::from("it is only shown, as running it would end or undo what is here")
-                });
-                (spec.example.to_owned(), hint)
-            });
-            return Ok(Flow::Next);
-        }
-        let Some(file) = self.sources.find_built_in(&format!("test {}", spec.name)) else {
-            return Err(Problem::new(
-                given.name("command").span.clone(),
-                format!("the example of `{}` cannot be run from here", spec.name),
-            )
-            .hint("write the name out after `test`"));
-        };
-        if self.reading.contains(&file) {
-            return Ok(Flow::Next);
-        }
-        self.run_inner(command, file)
     }
 }

@@ -2,41 +2,133 @@
 
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::given::Given;
+use crate::commands::build::{choice, row, takes};
+use crate::commands::slot::{Choice, Placed, colour, degrees, direction, length, number, vector};
+use crate::commands::{CommandSpec, OptionSpec};
+use crate::given::Options;
 use crate::limits::MAX_LIGHTS;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
-use scene::{Light, LightKind};
+use scene::{Light, LightKind, Rgb};
 
 /// Angle of a spot that gives none, in degrees.
 const SPOT_ANGLE: f64 = 30.0;
 /// Share of a spot's angle over which its light fades, if the text gives no edge.
 const SPOT_EDGE: f64 = 0.25;
 
+const POINT: Choice<()> = choice!(
+    "point",
+    "",
+    "shines from a point; the kind of a light that names none"
+);
+const DISTANT: Choice<()> = choice!("distant", "", "shines from infinity");
+const SPOT: Choice<()> = choice!("spot", "", "shines in a cone");
+const POSITION: Choice<DVec3> = choice!(
+    "position",
+    "",
+    "where it is; a distant light shines from there to 0 0 0",
+    vector("XYZ", "the light's position")
+);
+const DIRECTION: Choice<DVec3> = choice!(
+    "direction",
+    "to 0 0 0",
+    "where a distant light or a spot shines to",
+    direction("XYZ", "the light's direction")
+);
+const INTENSITY: Choice<f64> = choice!(
+    "intensity",
+    "1",
+    "multiplies the colour",
+    number("k", "the intensity").from(0.0, 1e6)
+);
+const NOSHADOW: Choice<()> = choice!("noshadow", "", "nothing stops it");
+const ANGLE: Choice<f64> = choice!(
+    "angle",
+    "30",
+    "angle of a spot from its axis to the end of its light (ours)",
+    degrees("a", "the spot's angle").from(0.01, 180.0)
+);
+const EDGE: Choice<Placed<f64>> = choice!(
+    "edge",
+    "a quarter of the angle",
+    "angle at the end of a spot over which its light fades (ours)",
+    degrees("e", "the spot's soft edge")
+        .from(0.0, 180.0)
+        .with_place()
+);
+const SIZE: Choice<f64> = choice!(
+    "size",
+    "0",
+    "radius, for soft shadows with `penumbra on`; of a distant light at the distance 1 (ours)",
+    length("s", "the light's radius").from(0.0, 1e6)
+);
+
+/// `light`.
+pub static LIGHT_OPTIONS: &[OptionSpec] = &[
+    POINT.plain,
+    DISTANT.plain,
+    SPOT.plain,
+    POSITION.plain,
+    DIRECTION.plain,
+    INTENSITY.plain,
+    NOSHADOW.plain,
+    ANGLE.plain,
+    EDGE.plain,
+    SIZE.plain,
+];
+
 /// `light Color [option …]`
-pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let kinds = ["point", "distant", "spot"];
-    let mut named = given.options.iter().map(|chosen| chosen.name);
-    let name = named.rfind(|name| kinds.contains(name)).unwrap_or(kinds[0]);
-    let kind = match name {
-        "distant" => distant(&given, command)?,
-        "spot" => spot(&given, command)?,
+pub static LIGHT: CommandSpec = row(
+    "light",
+    "make a light",
+    takes!(
+        light,
+        [LIGHT_OPTIONS],
+        colour("Color", "the light's colour")
+    ),
+)
+.details(
+    "A scene without lights and without a `sky` is lit evenly. Light does not fade with distance, \
+     as in the published datasets. A spot shines fully within its angle less its edge, and fades \
+     to nothing at its angle. A light with a `size` has soft shadows where `penumbra` is on.",
+)
+.example(
+    "surface Clay, diffuse SandyBrown, specular Gray50, shine 40\n\
+     surface Floor, diffuse Gray70\n\
+     eyep 0 5 12\nlight White, spot, position 6 8 4, direction -6 -9 -4, angle 18, edge 6\n\
+     light SkyBlue, distant, direction 1 -1 -1, intensity 0.2, noshadow\n\
+     sphere Clay 2, 0 0 0\nplane Floor <0 -2 0> <0 1 0>",
+);
+
+fn light<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    colour: Rgb,
+) -> Outcome<Flow> {
+    let mut named = options.iter().rev();
+    let named = named.find(|c| POINT.is(c) || DISTANT.is(c) || SPOT.is(c));
+    let kind = match named {
+        Some(chosen) if DISTANT.is(chosen) => distant(options, command)?,
+        Some(chosen) if SPOT.is(chosen) => spot(options, command)?,
         _ => LightKind::Point {
-            position: position(&given, command)?,
+            position: position(options, command)?,
         },
     };
     // What says nothing about this kind of light is not passed over in silence.
-    for chosen in &given.options {
-        let counts = match chosen.name {
-            "direction" => name != "point",
-            "position" => name != "distant" || given.option("direction").is_none(),
-            "angle" | "edge" => name == "spot",
-            _ => true,
+    for chosen in options.iter() {
+        let is_idle = match kind {
+            LightKind::Point { .. } => DIRECTION.is(chosen) || ANGLE.is(chosen) || EDGE.is(chosen),
+            LightKind::Distant { .. } => {
+                POSITION.is(chosen) && options.has(&DIRECTION)
+                    || ANGLE.is(chosen)
+                    || EDGE.is(chosen)
+            }
+            LightKind::Spot { .. } => false,
         };
-        if !counts {
-            let option = chosen.name;
+        if is_idle {
+            let option = chosen.option.name;
             run.say(Severity::Warning, chosen.span.clone(), || {
                 (
                     format!("`{option}` says nothing about this kind of light"),
@@ -51,36 +143,32 @@ pub fn light<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
             format!("there are more than {MAX_LIGHTS} lights"),
         ));
     }
-    let number = |option, parameter| Some(given.option(option)?.given.number(parameter));
-    let size = number("size", "s").unwrap_or(0.0);
+    let size = options.last(&SIZE).unwrap_or(0.0);
     if size > 0.0 && run.sized_light.is_none() {
-        let span = given.option("size").map(|chosen| chosen.span.clone());
-        run.sized_light = span.map(|span| (run.file, span));
+        let chosen = options.find(&SIZE);
+        run.sized_light = chosen.map(|chosen| (run.file, chosen.span.clone()));
     }
-    let intensity = number("intensity", "k").unwrap_or(1.0);
+    let intensity = options.last(&INTENSITY).unwrap_or(1.0);
     run.lights.push(Light {
         kind,
-        colour: given.colour("Color").map(|c| c * intensity as f32),
-        shadow: given.option("noshadow").is_none(),
+        colour: colour.map(|c| c * intensity as f32),
+        shadow: !options.has(&NOSHADOW),
         size,
     });
     Ok(Flow::Next)
 }
 
-fn vector(given: &Given<'_>, name: &'static str) -> Option<DVec3> {
-    Some(given.option(name)?.given.vector("XYZ"))
-}
-
-fn position(given: &Given<'_>, command: &Command) -> Outcome<DVec3> {
-    vector(given, "position").ok_or_else(|| {
+fn position(options: &Options<'_>, command: &Command) -> Outcome<DVec3> {
+    options.last(&POSITION).ok_or_else(|| {
         Problem::new(command.span.clone(), "this light has no position")
             .hint("add `position x y z`")
     })
 }
 
-fn distant(given: &Given<'_>, command: &Command) -> Outcome<LightKind> {
-    let from = || vector(given, "position").and_then(DVec3::try_normalize);
-    let towards = vector(given, "direction")
+fn distant(options: &Options<'_>, command: &Command) -> Outcome<LightKind> {
+    let from = || options.last(&POSITION).and_then(DVec3::try_normalize);
+    let towards = options
+        .last(&DIRECTION)
         .map(|d| -d)
         .or_else(from)
         .ok_or_else(|| {
@@ -90,27 +178,25 @@ fn distant(given: &Given<'_>, command: &Command) -> Outcome<LightKind> {
     Ok(LightKind::Distant { towards })
 }
 
-fn spot(given: &Given<'_>, command: &Command) -> Outcome<LightKind> {
-    let position = position(given, command)?;
+fn spot(options: &Options<'_>, command: &Command) -> Outcome<LightKind> {
+    let position = position(options, command)?;
     let to_origin = || (-position).try_normalize();
-    let direction = vector(given, "direction")
-        .or_else(to_origin)
-        .ok_or_else(|| {
-            Problem::new(command.span.clone(), "a spot at 0 0 0 needs a direction")
-                .hint("add `direction x y z`")
-        })?;
-    let degrees = |option, parameter| Some(given.option(option)?.given.number(parameter));
-    let angle = degrees("angle", "a").unwrap_or(SPOT_ANGLE);
-    let edge = degrees("edge", "e").unwrap_or(SPOT_EDGE * angle);
-    if edge > angle
-        && let Some(chosen) = given.option("edge")
-    {
-        return Err(Problem::new(
-            chosen.given.span("e").unwrap_or(chosen.span.clone()),
-            format!("the spot's soft edge must be at most its angle, {angle}, not {edge}"),
-        )
-        .hint("the light fades over the edge, within the angle"));
-    }
+    let direction = options.last(&DIRECTION).or_else(to_origin).ok_or_else(|| {
+        Problem::new(command.span.clone(), "a spot at 0 0 0 needs a direction")
+            .hint("add `direction x y z`")
+    })?;
+    let angle = options.last(&ANGLE).unwrap_or(SPOT_ANGLE);
+    let edge = match options.last(&EDGE) {
+        Some((edge, span)) if edge > angle => {
+            return Err(Problem::new(
+                span,
+                format!("the spot's soft edge must be at most its angle, {angle}, not {edge}"),
+            )
+            .hint("the light fades over the edge, within the angle"));
+        }
+        Some((edge, _)) => edge,
+        None => SPOT_EDGE * angle,
+    };
     Ok(LightKind::Spot {
         position,
         direction,

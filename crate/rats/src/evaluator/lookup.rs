@@ -42,18 +42,16 @@ impl<'a> Evaluator<'a> {
     }
 
     /// All operands and options of a command, read as the table says. Within a chain its shapes leave
-    /// out the material's name.
+    /// out the material's name, which is that of the chain.
     pub(super) fn given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
         let Some(spec) = command.spec else {
             return Ok(Given::default());
         };
         self.scope
             .step(limits::STEPS_PER_OPERANDS, &command.word_span)?;
-        let mut parameters = spec.parameters;
+        let is_shape = spec.parameters.first().is_some_and(|first| first.in_chain);
         let mut skipped = 0;
-        if let Some(first) = parameters.first()
-            && first.name == "sn"
-        {
+        if is_shape {
             let in_chain = self.model.chain.is_some();
             let mut read = self.reader(command);
             read.more();
@@ -81,13 +79,15 @@ impl<'a> Evaluator<'a> {
                 }
                 _ => {}
             }
-            if in_chain {
-                parameters = &parameters[1..];
-            }
         }
+        let chain = self.model.chain.clone().filter(|_| is_shape);
         let mut read = self.reader(command);
         read.at = skipped;
-        read.given(parameters, spec.options)
+        let given = read.given(spec.parameters, spec.options, chain)?;
+        if is_shape {
+            self.watch_shape(command, &given);
+        }
+        Ok(given)
     }
 
     /// A mesh file that a text of the project names, if there is one.

@@ -2,8 +2,14 @@
 
 use super::palette::{Colours, Surface};
 use super::state::{Evaluator, Flow};
+use super::textures::LAYERS;
 use crate::Severity;
-use crate::given::Chosen;
+use crate::commands::build::{Form, choice, row, takes, word_of};
+use crate::commands::slot::{
+    Choice, Named, Placed, Word, colour, copy, length, new, number, share, word,
+};
+use crate::commands::{CommandSpec, Names, OptionSpec};
+use crate::given::Options;
 use crate::operands::Share;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
@@ -11,21 +17,213 @@ use crate::syntax::Command;
 use field::Kernel;
 use scene::{Finish, Flesh, Rgb};
 
+/// The kernels: how a skeleton's flesh fades with distance (fields.md §1).
+const KERNELS: &[OptionSpec] = &[
+    word_of(
+        "cauchy",
+        "1/(1+s²r²)²: wide and smooth, closed forms for every primitive",
+    ),
+    word_of("gauss", "exp(−a²r²): falls fast"),
+    word_of("inverse", "1/r: the Newtonian potential, very wide"),
+    word_of("squared", "1/r²"),
+    word_of("metaballs", "piecewise quadratic, nothing beyond r = 1"),
+    word_of(
+        "soft",
+        "the soft objects' polynomial of degree 6, nothing beyond r = 1",
+    ),
+    word_of("quartic", "(1−r²)², nothing beyond r = 1"),
+    word_of("compact6", "(1−r²)³, nothing beyond r = 1"),
+    word_of("cubed", "1/r³: no width, so the blobbiness is ignored"),
+];
+
+/// Rays that `skip` names.
+const RAYS: &[OptionSpec] = &[
+    word_of("pixel", "rays from the eye"),
+    word_of("shadow", "rays to the lights"),
+    word_of("reflected", "mirrored rays"),
+    word_of("transmitted", "rays let through"),
+];
+
+const BODY: Choice<Rgb> = choice!(
+    "body",
+    "as diffuse",
+    "main colour, of which `N%` are taken",
+    colour("RGB", "the body's colour")
+);
+const AMBIENT: Choice<Share> = choice!(
+    "ambient",
+    "15% of diffuse",
+    "light given off",
+    share("the ambient colour")
+);
+const DIFFUSE: Choice<Share> = choice!(
+    "diffuse",
+    "as body",
+    "light scattered evenly",
+    share("the diffuse colour")
+);
+const SPECULAR: Choice<Share> = choice!(
+    "specular",
+    "0 0 0",
+    "colour of the highlight",
+    share("the specular colour")
+);
+const REFLECTIVE: Choice<Share> = choice!(
+    "reflective",
+    "0 0 0",
+    "light reflected as by a mirror",
+    share("the share of light mirrored")
+);
+const TRANSPARENT: Choice<Share> = choice!(
+    "transparent",
+    "0 0 0",
+    "light let through",
+    share("the share of light let through")
+);
+const INDEX: Choice<f64> = choice!(
+    "index",
+    "1",
+    "index of refraction",
+    number("k", "the index of refraction").from(0.01, 100.0)
+);
+const DISPERSION: Choice<f64> = choice!(
+    "dispersion",
+    "0",
+    "how the index varies with colour",
+    number("d", "the dispersion").from(0.0, 100.0)
+);
+const SHINE: Choice<f64> = choice!(
+    "shine",
+    "0",
+    "Phong's exponent: the larger, the smaller the highlight",
+    number("p", "the shine").from(0.0, 1e6)
+);
+const RADIUS: Choice<(Placed<f64>, Option<f64>)> = choice!(
+    "radius",
+    "0",
+    "radius in isolation of soft shapes; a second one at the other end of lines, arcs, curves \
+     (ours)",
+    length("r", "the radius").at_least(0.0).with_place(),
+    length("end", "the radius at the other end")
+        .at_least(0.0)
+        .optional("")
+);
+const BLOBBINESS: Choice<(f64, Option<Placed<f64>>)> = choice!(
+    "blobbiness",
+    "0",
+    "softness: negative; near 0 is blobby, far from 0 crisp; 0 is hard; a second one at the other \
+     end (ours)",
+    number("b", "the blobbiness"),
+    number("end", "the blobbiness at the other end")
+        .with_place()
+        .optional("")
+);
+const DEPTH: Choice<f64> = choice!(
+    "depth",
+    "0",
+    "depth of influence, from which the radius follows (ours)",
+    length("d", "the depth").at_least(0.0)
+);
+const STRENGTH: Choice<f64> = choice!(
+    "strength",
+    "1",
+    "multiplies the field; negative carves",
+    number("s", "the strength")
+);
+const RESTRICTION: Choice<f64> = choice!(
+    "restriction",
+    "0",
+    "share of a triangle's field taken away at its edges: 1 creases a mesh (ours)",
+    number("f", "the restriction").from(0.0, 1.0)
+);
+const SKIP: Choice<Vec<Word>> = choice!(
+    "skip",
+    "",
+    "rays that do not see it",
+    word(
+        "RAYTYPE",
+        RAYS,
+        "`pixel`, `shadow`, `reflected` or `transmitted`"
+    )
+    .many()
+);
+const TEXTURE: Choice<Vec<Named>> = choice!("texture", "", "layers of textures", LAYERS);
+const KERNEL: Choice<Word> = choice!(
+    "kernel",
+    "the command's own: cauchy, or as it says",
+    "the kernel of soft shapes (ours)",
+    word("name", KERNELS, "the kernel's name")
+);
+
+/// `surface`, `material`.
+pub static SURFACE_OPTIONS: &[OptionSpec] = &[
+    BODY.plain,
+    AMBIENT.plain,
+    DIFFUSE.plain,
+    SPECULAR.plain,
+    REFLECTIVE.plain,
+    TRANSPARENT.plain,
+    INDEX.plain,
+    DISPERSION.plain,
+    SHINE.plain,
+    RADIUS.plain,
+    BLOBBINESS.plain,
+    DEPTH.plain,
+    STRENGTH.plain,
+    RESTRICTION.plain,
+    SKIP.plain,
+    TEXTURE.plain,
+    KERNEL.plain,
+];
+
+/// `surface`, `material`.
+const FORM: Form = takes!(
+    surface,
+    [SURFACE_OPTIONS],
+    new("alias", Names::Material, "the material's name"),
+    copy("= old", Names::Material, "the name of the old material").optional(""),
+);
+
 /// `surface { alias option … }`, `surface new = old`
 ///
 /// Of our own: `surface new = old option …` changes some fields of the copy.
-pub fn surface<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.scope.step(8, &command.word_span)?;
-    let name = run.reader(command).new_name("the material's name")?;
-    make(run, command).inspect_err(|_| run.palette.insert_broken(name.text))?;
-    Ok(Flow::Next)
-}
+pub static SURFACE: CommandSpec = row(
+    "surface",
+    "make a material",
+    FORM,
+)
+.mark_failed(insert_broken)
+.details(
+    "All fields are optional; braces around them let them run over several lines. A material with \
+     a blobbiness is soft: its shapes are skeletons, and their flesh melts together; all fields \
+     are mixed where two materials meet, the index and the shine too. A colour is a name, three \
+     numbers or N%: of the body's colour for `ambient` and `diffuse`, of the light that comes for \
+     `specular`, `reflective` and `transparent`. Light that goes into a transparent material is \
+     bent by its `index`: glass 1.5, water 1.33, diamond 2.42; it colours the shadow. \
+     `dispersion` is how much larger the index is for blue than for red. `surface new = old` \
+     copies a material; options behind it change the copy (ours).",
+)
+.example(
+    "light White, position 4 8 10\nbackground SteelBlue to White to SaddleBrown\n\
+     surface { Red, body OrangeRed\n  \
+     specular 50%, shine 40\n  radius 0.8, blobbiness -1 }\n\
+     surface Blue = Red, diffuse RoyalBlue\n\
+     surface Glass, diffuse Black, transparent 90%, reflective 10%, index 1.5, specular White, \
+     shine 200\nsphere Red 1, -1 0 0\n\
+     sphere Blue 1, 1 0 0\nsphere Glass 0.8, 0 -1 3",
+);
 
-fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
-    let given = run.given(command)?;
-    let name = given.name("alias").clone();
-    let old = given.maybe_name("= old").cloned();
-    run.watch_material(&name, old.as_ref(), &given);
+fn surface<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    name: Name<'a>,
+    old: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    run.scope.step(8, &command.word_span)?;
+    let radius = options.last(&RADIUS).map(|(radius, _)| radius);
+    let has_depth = options.last(&DEPTH).is_some_and(|depth| depth > 0.0);
+    run.watch_material(&name, old.as_ref(), radius, has_depth);
     let mut surface = match &old {
         Some(old) => {
             let index = run.material(old)?;
@@ -44,12 +242,10 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     };
     (surface.used, surface.copied) = (false, false);
     surface.origin = (run.file, name.span.clone());
-    let mut textures = Vec::new();
-    for chosen in given.options {
-        field(chosen, &mut surface, &mut textures)?;
-    }
-    settle_colours(&mut surface.finish, &surface.colours);
+    set_flesh(options, &mut surface.flesh)?;
+    set_finish(options, &mut surface.finish, &mut surface.colours);
     surface.finish.name = name.text.to_owned();
+    let textures: Vec<Name<'a>> = options.all(&TEXTURE).flatten().collect();
     if !textures.is_empty() {
         let texture = run.palette.layers(&textures)?;
         surface.finish.layers = texture.layers;
@@ -63,61 +259,76 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
             )
         });
     }
-    run.palette.insert(&name, surface)
+    run.palette.insert(&name, surface)?;
+    Ok(Flow::Next)
 }
 
-fn field<'a>(
-    chosen: Chosen<'a>,
-    surface: &mut Surface,
-    textures: &mut Vec<Name<'a>>,
-) -> Outcome<()> {
-    let Chosen { name, span, given } = chosen;
-    let flesh = &mut surface.flesh;
-    let finish = &mut surface.finish;
-    match name {
-        "body" => surface.colours.body = Some(given.colour("RGB")),
-        "ambient" => surface.colours.ambient = Some(given.share()),
-        "diffuse" => surface.colours.diffuse = Some(given.share()),
-        "specular" => finish.specular = of_light(given.share()),
-        "reflective" => finish.reflective = of_light(given.share()),
-        "transparent" => finish.transparent = of_light(given.share()),
-        "index" => finish.index = given.number("k") as f32,
-        "dispersion" => finish.dispersion = given.number("d") as f32,
-        "shine" => finish.shine = given.number("p") as f32,
-        "radius" => {
-            flesh.radius = given.number("r");
-            flesh.end_radius = given.maybe_number("end");
-        }
-        "blobbiness" => {
-            flesh.blobbiness = given.number("b");
-            flesh.end_blobbiness = given.maybe_number("end");
-            if flesh.end_blobbiness == Some(0.0)
-                || flesh.end_blobbiness.is_some() && flesh.blobbiness == 0.0
-            {
-                return Err(Problem::new(
-                    given.span("end").unwrap_or(span),
-                    "a blobbiness that varies must not be 0 at an end",
-                )
-                .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"));
-            }
-        }
-        "restriction" => flesh.restriction = given.number("f"),
-        "depth" => flesh.depth = given.number("d"),
-        "strength" => flesh.strength = given.number("s"),
-        "skip" => {
-            for (ray, _) in given.words("RAYTYPE") {
-                match ray {
-                    "pixel" => finish.skip.pixel = true,
-                    "shadow" => finish.skip.shadow = true,
-                    "reflected" => finish.skip.reflected = true,
-                    _ => finish.skip.transmitted = true,
-                }
-            }
-        }
-        "texture" => textures.extend(given.names("t1 +")),
-        _ => flesh.kernel = given.word("name").and_then(Kernel::named),
+/// Keeps the name of a material that could not be made.
+fn insert_broken<'a>(run: &mut Evaluator<'a>, command: &'a Command) {
+    if let Ok(name) = run.reader(command).new_name("the material's name") {
+        run.palette.insert_broken(name.text);
     }
+}
+
+/// Replaces a field by the value that was given, if it was.
+fn set<T>(field: &mut T, given: Option<T>) {
+    if let Some(value) = given {
+        *field = value;
+    }
+}
+
+fn set_flesh(options: &Options<'_>, flesh: &mut Flesh) -> Outcome<()> {
+    if let Some(((radius, _), end)) = options.last(&RADIUS) {
+        (flesh.radius, flesh.end_radius) = (radius, end);
+    }
+    for (blobbiness, end) in options.all(&BLOBBINESS) {
+        flesh.blobbiness = blobbiness;
+        flesh.end_blobbiness = None;
+        if let Some((at_end, span)) = end {
+            flesh.end_blobbiness = Some(at_end);
+            if at_end == 0.0 || blobbiness == 0.0 {
+                return Err(
+                    Problem::new(span, "a blobbiness that varies must not be 0 at an end")
+                        .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"),
+                );
+            }
+        }
+    }
+    set(&mut flesh.restriction, options.last(&RESTRICTION));
+    set(&mut flesh.depth, options.last(&DEPTH));
+    set(&mut flesh.strength, options.last(&STRENGTH));
+    set(&mut flesh.kernel, options.last(&KERNEL).map(Kernel::named));
     Ok(())
+}
+
+fn set_finish(options: &Options<'_>, finish: &mut Finish, colours: &mut Colours) {
+    set(&mut colours.body, options.last(&BODY).map(Some));
+    set(&mut colours.ambient, options.last(&AMBIENT).map(Some));
+    set(&mut colours.diffuse, options.last(&DIFFUSE).map(Some));
+    settle_colours(finish, colours);
+    set(&mut finish.specular, options.last(&SPECULAR).map(of_light));
+    set(
+        &mut finish.reflective,
+        options.last(&REFLECTIVE).map(of_light),
+    );
+    set(
+        &mut finish.transparent,
+        options.last(&TRANSPARENT).map(of_light),
+    );
+    set(&mut finish.index, options.last(&INDEX).map(|k| k as f32));
+    set(
+        &mut finish.dispersion,
+        options.last(&DISPERSION).map(|d| d as f32),
+    );
+    set(&mut finish.shine, options.last(&SHINE).map(|p| p as f32));
+    for ray in options.all(&SKIP).flatten() {
+        match ray {
+            "pixel" => finish.skip.pixel = true,
+            "shadow" => finish.skip.shadow = true,
+            "reflected" => finish.skip.reflected = true,
+            _ => finish.skip.transmitted = true,
+        }
+    }
 }
 
 /// The colours that follow from those the text gives.
@@ -167,3 +378,11 @@ impl Evaluator<'_> {
         }
     }
 }
+
+/// `material`
+pub static MATERIAL: CommandSpec = row("material", "the same as surface", FORM)
+    .mark_failed(insert_broken)
+    .example(
+        "light White, position 4 8 10\nmaterial Gold { diffuse Gold, specular White, shine 80 }\n\
+     sphere Gold 2, 0 0 0",
+    );

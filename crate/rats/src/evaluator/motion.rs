@@ -6,7 +6,10 @@
 
 use super::model::Part;
 use super::state::{Evaluator, Flow};
-use crate::given::Given;
+use crate::commands::build::{choice, row, takes};
+use crate::commands::slot::{Choice, Named, direction, existing, number, triple, vector, whole};
+use crate::commands::{CommandSpec, Names, OptionSpec};
+use crate::given::Options;
 use crate::limits::{MAX_MOTION_WORK, MAX_MOTIONS, MAX_PIN_STEPS};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
@@ -85,10 +88,127 @@ thread_local! {
     static TOLD: RefCell<Option<Told>> = const { RefCell::new(None) };
 }
 
+const GRAVITY: Choice<DVec3> = choice!(
+    "gravity",
+    "0 -9.81 0",
+    "acceleration of all that falls, lengths per second²",
+    triple("V", "the acceleration")
+);
+const DAMPING: Choice<f64> = choice!(
+    "damping",
+    "0.2",
+    "share of the speed that air takes in a second",
+    number("d", "the damping").at_least(0.0)
+);
+const STIFFNESS: Choice<f64> = choice!(
+    "stiffness",
+    "1000",
+    "force that stretches a curve to twice its length, for nodes of a mean mass of 1",
+    number("k", "the stiffness").at_least(0.0)
+);
+const BENDING: Choice<f64> = choice!(
+    "bending",
+    "0.2",
+    "share of the stiffness with which curves resist bending and twisting",
+    number("b", "the share").at_least(0.0)
+);
+const STEPS: Choice<u32> = choice!(
+    "steps",
+    "16",
+    "steps of a frame",
+    whole("n", 1, motion::MOST_STEPS, "the steps of a frame")
+);
+const RATE: Choice<f64> = choice!(
+    "rate",
+    "25",
+    "frames of a second",
+    number("f", "frames of a second").from(0.1, 1000.0)
+);
+const FLOOR: Choice<(DVec3, DVec3)> = choice!(
+    "floor",
+    "none",
+    "a floor or wall; the normal points to where there is room; there may be several",
+    vector("P", "a point of the floor"),
+    direction("N", "the floor's normal")
+);
+const BOUNCE: Choice<f64> = choice!(
+    "bounce",
+    "0",
+    "share of the speed that is left after a blow",
+    number("e", "the share").from(0.0, 1.0)
+);
+const FRICTION: Choice<f64> = choice!(
+    "friction",
+    "0.4",
+    "friction: 0 is ice, 1 is rubber",
+    number("m", "the coefficient").from(0.0, 1000.0)
+);
+const PIN: Choice<Vec<Named>> = choice!(
+    "pin",
+    "",
+    "nodes that stay where the text has them, frame by frame",
+    existing("A", Names::Node, "the name of a node").many()
+);
+const AGAINST: Choice<Vec<Named>> = choice!(
+    "against",
+    "",
+    "objects that stand in the way: boxes, spheres, cylinders, cones, pipes, planes, skeletons",
+    existing("object", Names::Object, "an object's name").many()
+);
+
+/// `motion`.
+pub static MOTION_OPTIONS: &[OptionSpec] = &[
+    GRAVITY.plain,
+    DAMPING.plain,
+    STIFFNESS.plain,
+    BENDING.plain,
+    STEPS.plain,
+    RATE.plain,
+    FLOOR.plain,
+    BOUNCE.plain,
+    FRICTION.plain,
+    PIN.plain,
+    AGAINST.plain,
+];
+
 /// `motion [A B …] { gravity V damping d stiffness k steps n floor P N … }`
-pub fn motion<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let wanted = Wanted::read(run, command, &given)?;
+pub static MOTION: CommandSpec = row(
+    "motion",
+    "let skeletons fall, swing and touch",
+    takes!(
+        motion,
+        [MOTION_OPTIONS],
+        existing("object", Names::Object, "an object's name").any()
+    ),
+)
+.newer()
+.details(
+    "Stands behind skeletons, and moves the last one or those of the objects it names, together. \
+     Nodes are masses and curves are springs; frame 0 has them where the text has them, and each \
+     further frame follows from the one before. Floors, the objects of `against` and the flesh of \
+     all that moves together, own folds too, push back. A chain of n nodes that hangs is \
+     stretched by a share of n·gravity/stiffness at its upper end. Flesh moves at most half its \
+     thickness in a step, so that it passes through nothing: fast things need more `steps`. A \
+     node that is pinned follows variables that change with the frames. At most 200 nodes move \
+     together, 3000 frames long.",
+)
+.example(
+    "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
+     Gray50, shine 40, radius 0.4, blobbiness -2\n\
+     skeleton Flesh, TAIL {\n  node ROOT <-3 2 0> radius 0.6\n  \
+     node A <-1.5 2.2 0> node B <0 2 0> node C <1.5 2.2 0>\n  \
+     node TIP <3 2 0> radius 0.2\n  \
+     curve ROOT A B C TIP\n}\nmotion TAIL { gravity 0 -10 0, stiffness 400, steps 20, pin ROOT, \
+     floor <0 -2 0> <0 1 0> }",
+);
+
+fn motion<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    objects: Vec<Name<'a>>,
+) -> Outcome<Flow> {
+    let wanted = Wanted::read(run, command, &objects, options)?;
     if run.moving.count >= MAX_MOTIONS {
         return Err(Problem::new(
             command.word_span.clone(),
@@ -142,10 +262,14 @@ struct Wanted {
 }
 
 impl Wanted {
-    fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command, given: &Given<'a>) -> Outcome<Self> {
-        let names = given.names("object");
+    fn read<'a>(
+        run: &mut Evaluator<'a>,
+        command: &'a Command,
+        names: &[Name<'a>],
+        options: &Options<'a>,
+    ) -> Outcome<Self> {
         let mut ranges = Vec::new();
-        for name in &names {
+        for name in names {
             ranges.push((name.span.clone(), run.model.find(name)?));
         }
         if names.is_empty() {
@@ -177,15 +301,15 @@ impl Wanted {
                     .hint("make one with `skeleton` before, and name it: `motion TAIL { … }`"));
             }
         }
-        pin(run, given, &parts, &mut bodies)?;
-        let obstacles = obstacles(run, given, &parts)?;
+        pin(run, options, &parts, &mut bodies)?;
+        let obstacles = obstacles(run, options, &parts)?;
         let nodes: usize = bodies.iter().map(|b| b.skeleton.nodes.len()).sum();
         run.scope.step(8 * nodes as u64, &command.word_span)?;
         Ok(Self {
             setup: Setup {
                 bodies,
                 obstacles,
-                settings: settings(given),
+                settings: settings(options),
             },
             parts,
         })
@@ -234,47 +358,39 @@ fn put(part: &mut Part, places: &[DVec3]) -> Result<(), skeleton::Error> {
     Ok(())
 }
 
-fn settings(given: &Given<'_>) -> Settings {
-    let number = |option, name, other| {
-        let chosen = given.option(option);
-        chosen.map_or(other, |chosen| chosen.given.number(name))
-    };
+fn settings(options: &Options<'_>) -> Settings {
     let usual = Settings::default();
     Settings {
-        gravity: given
-            .option("gravity")
-            .map_or(usual.gravity, |chosen| chosen.given.vector("V")),
-        damping: number("damping", "d", usual.damping),
-        stiffness: number("stiffness", "k", usual.stiffness),
-        bending: number("bending", "b", usual.bending),
-        bounce: number("bounce", "e", usual.bounce),
-        friction: number("friction", "m", usual.friction),
-        steps: number("steps", "n", f64::from(usual.steps)) as u32,
-        rate: number("rate", "f", usual.rate),
+        gravity: options.last(&GRAVITY).unwrap_or(usual.gravity),
+        damping: options.last(&DAMPING).unwrap_or(usual.damping),
+        stiffness: options.last(&STIFFNESS).unwrap_or(usual.stiffness),
+        bending: options.last(&BENDING).unwrap_or(usual.bending),
+        bounce: options.last(&BOUNCE).unwrap_or(usual.bounce),
+        friction: options.last(&FRICTION).unwrap_or(usual.friction),
+        steps: options.last(&STEPS).unwrap_or(usual.steps),
+        rate: options.last(&RATE).unwrap_or(usual.rate),
     }
 }
 
 /// Pins the nodes of these names.
 fn pin<'a>(
     run: &Evaluator<'a>,
-    given: &Given<'a>,
+    options: &Options<'a>,
     parts: &[usize],
     bodies: &mut [Body],
 ) -> Outcome<()> {
     let names = |index: usize| run.model.parts[index].nodes.as_deref();
-    for chosen in given.options.iter().filter(|c| c.name == "pin") {
-        for name in chosen.given.names("A") {
-            let mut found = false;
-            for (body, &index) in bodies.iter_mut().zip(parts) {
-                let mut own = names(index).into_iter().flatten();
-                if let Some(node) = own.position(|own| own == name.text) {
-                    found = true;
-                    body.pinned.push(node);
-                }
+    for name in options.all(&PIN).flatten() {
+        let mut found = false;
+        for (body, &index) in bodies.iter_mut().zip(parts) {
+            let mut own = names(index).into_iter().flatten();
+            if let Some(node) = own.position(|own| own == name.text) {
+                found = true;
+                body.pinned.push(node);
             }
-            if !found {
-                return Err(no_such_node(&name, parts.iter().filter_map(|&i| names(i))));
-            }
+        }
+        if !found {
+            return Err(no_such_node(&name, parts.iter().filter_map(|&i| names(i))));
         }
     }
     for body in bodies {
@@ -296,22 +412,15 @@ fn no_such_node<'n>(name: &Name<'_>, all: impl Iterator<Item = &'n Vec<String>>)
 /// Floors, walls, and the shapes of objects that stand in the way.
 fn obstacles<'a>(
     run: &mut Evaluator<'a>,
-    given: &Given<'a>,
+    options: &Options<'a>,
     parts: &[usize],
 ) -> Outcome<Vec<Obstacle>> {
     let mut obstacles = Vec::new();
-    for chosen in &given.options {
-        if chosen.name == "floor" {
-            let normal = chosen.given.vector("N");
-            obstacles.push(Obstacle::Plane {
-                point: chosen.given.vector("P"),
-                normal,
-            });
+    for chosen in options.iter() {
+        if let Some((point, normal)) = FLOOR.of(chosen) {
+            obstacles.push(Obstacle::Plane { point, normal });
         }
-        if chosen.name != "against" {
-            continue;
-        }
-        for name in chosen.given.names("object") {
+        for name in AGAINST.of(chosen).unwrap_or_default() {
             let range = run.model.find(&name)?;
             run.scope.step(1 + range.len() as u64, &name.span)?;
             for index in range {

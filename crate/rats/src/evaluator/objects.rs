@@ -3,64 +3,129 @@
 use super::model::Group;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
+use crate::commands::build::{clay, flesh, row, takes};
+use crate::commands::slot::{Named, Slot, degrees, direction, existing, new, triple, vector};
+use crate::commands::{Bracket, CommandSpec, Names};
 use crate::geometry::Transform;
-use crate::given::Given;
 use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
 use crate::syntax::Command;
 use glam::DVec3;
 use scene::Shape;
 use std::ops::Range;
 
+/// The object that a transform is for.
+pub(super) const TARGET: Slot<Option<Named>> =
+    existing("object", Names::Object, "an object's name").optional("the last one");
+
 /// `chain sn, name`
-pub fn chain<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let opened = run.given(command).and_then(|given| {
-        let material = given.name("material");
-        run.material(material)?;
-        let file = run.file;
-        run.model
-            .open(file, given.name("name"), Group::Chain(material.clone()))
-    });
-    opened.inspect_err(|_| run.model.refused += 1)?;
+pub static CHAIN: CommandSpec = row(
+    "chain",
+    "begin shapes of one material, whose name they leave out",
+    takes!(
+        chain,
+        existing("material", Names::Material, "the material's name"),
+        new("name", Names::Object, "the chain's name")
+    ),
+)
+.bracket(Bracket::Chain)
+.mark_failed(refuse)
+.example(flesh!(
+    "chain Flesh, LINKS\n  sphere 0.6, -1 0 0\n  sphere 0.6, 0 0 0\n  sphere 0.6, 1 0 0\nclose"
+));
+
+fn chain<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    material: Name<'a>,
+    name: Name<'a>,
+) -> Outcome<Flow> {
+    run.material(&material)?;
+    run.model.open(run.file, &name, Group::Chain(material))?;
     Ok(Flow::Next)
 }
 
+/// Expects the `close` of an object that was refused.
+fn refuse<'a>(run: &mut Evaluator<'a>, _: &'a Command) {
+    run.model.refused += 1;
+}
+
 /// `object name`
-pub fn object<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    begin(run, command, Group::Object)
+pub static OBJECT: CommandSpec = row(
+    "object",
+    "begin an object",
+    takes!(object, new("name", Names::Object, "the object's name")),
+)
+.bracket(Bracket::Object)
+.mark_failed(refuse)
+.details("Objects can stand inside each other, 16 deep at most.")
+.example(clay!(
+    "object PAIR\n  sphere Clay 1, -1.5 0 0\n  \
+     sphere Clay 1, 1.5 0 0\nclose\n\
+     rotate 0 0 1 30, PAIR"
+));
+
+fn object<'a>(run: &mut Evaluator<'a>, _: &'a Command, name: Name<'a>) -> Outcome<Flow> {
+    begin(run, &name, Group::Object)
 }
 
 /// `body name`: an object whose shapes blend with one another and with no others.
-pub fn body<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    begin(run, command, Group::Body)
+pub static BODY: CommandSpec = row(
+    "body",
+    "begin a body, whose shapes blend with no others",
+    takes!(body, new("name", Names::Object, "the body's name")),
+)
+.bracket(Bracket::Object)
+.mark_failed(refuse)
+.details(
+    "Soft shapes of a body flow together; those of two bodies do not, however near they are: legs \
+     that touch stay legs. Shapes that stand in no body make one together. A body is an object: \
+     it is moved, turned and copied by its name, and a copy is a new body. Objects can stand in \
+     bodies and bodies in objects, but no body in a body.",
+)
+.example(flesh!(
+    "body LEFT\n  sphere Flesh 1, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1, 0.9 0 0\nclose"
+));
+
+fn body<'a>(run: &mut Evaluator<'a>, _: &'a Command, name: Name<'a>) -> Outcome<Flow> {
+    begin(run, &name, Group::Body)
 }
 
-fn begin<'a>(run: &mut Evaluator<'a>, command: &'a Command, group: Group<'a>) -> Outcome<Flow> {
-    let opened = run.given(command).and_then(|given| {
-        let name = given.name("name");
-        if let Some(earlier) = run.model.unnamed(name.text).cloned() {
-            run.say_made_twice(Severity::Note, name, earlier, || {
-                format!(
-                    "the object `{0}` above stays, but the name `{0}` now means this one",
-                    name.text
-                )
-            });
-        }
-        run.model.open(run.file, name, group)
-    });
-    // Its `close` will come all the same.
-    opened.inspect_err(|_| run.model.refused += 1)?;
+fn begin<'a>(run: &mut Evaluator<'a>, name: &Name<'a>, group: Group<'a>) -> Outcome<Flow> {
+    if let Some(earlier) = run.model.unnamed(name.text).cloned() {
+        run.say_made_twice(Severity::Note, name, earlier, || {
+            format!(
+                "the object `{0}` above stays, but the name `{0}` now means this one",
+                name.text
+            )
+        });
+    }
+    run.model.open(run.file, name, group)?;
     Ok(Flow::Next)
 }
 
 /// `close [name]`
-pub fn close<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
+pub static CLOSE: CommandSpec = row(
+    "close",
+    "end an object or chain",
+    takes!(
+        close,
+        existing("name", Names::Object, "the object's name").optional("the one that is open")
+    ),
+)
+.bracket(Bracket::Close)
+.example(clay!("object BALL\n  sphere Clay 2, 0 0 0\nclose BALL"));
+
+fn close<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    name: Option<Name<'a>>,
+) -> Outcome<Flow> {
     if run.model.refused > 0 {
         run.model.refused -= 1;
         return Ok(Flow::Next);
     }
-    if let (Some(name), Some((innermost, (file, span)))) =
-        (given.maybe_name("name"), run.model.innermost())
+    if let (Some(name), Some((innermost, (file, span)))) = (&name, run.model.innermost())
         && name.text != innermost
     {
         return Err(Problem::new(
@@ -80,48 +145,119 @@ pub fn close<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 }
 
 /// `instance name [new name]`
-pub fn instance<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let old = given.name("name");
-    let new = given.maybe_name("copy").unwrap_or(old);
-    let range = run.model.find(old)?;
+pub static INSTANCE: CommandSpec = row(
+    "instance",
+    "copy an object",
+    takes!(
+        instance,
+        existing("name", Names::Object, "the object's name"),
+        new("copy", Names::Object, "the copy's name").optional("the same name")
+    ),
+)
+.example(clay!(
+    "object BALL\n  sphere Clay 1, -1.5 0 0\nclose\ninstance BALL, OTHER\ntranslate 3 0 0, OTHER"
+));
+
+fn instance<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    old: Name<'a>,
+    new: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let range = run.model.find(&old)?;
     charge(run, command, &range)?;
-    run.model.copy(range, new)?;
+    run.model.copy(range, &new.unwrap_or(old))?;
     Ok(Flow::Next)
 }
 
 /// `translate x y z [object]`
-pub fn translate<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let transform = Transform::translation(given.vector("x y z"));
-    transform_by(run, command, &given, &transform)
+pub static TRANSLATE: CommandSpec = row(
+    "translate",
+    "move an object",
+    takes!(translate, vector("x y z", "the shift"), TARGET),
+)
+.example(clay!("sphere Clay 1, 0 0 0\ntranslate 1 1 0"));
+
+fn translate<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    shift: DVec3,
+    object: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let transform = Transform::translation(shift);
+    transform_by(run, command, object, &transform)
 }
 
 /// `rotate x y z angle [object]`
-pub fn rotate<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let transform = Transform::rotation(given.vector("x y z"), given.number("angle"));
-    transform_by(run, command, &given, &transform)
+pub static ROTATE: CommandSpec = row(
+    "rotate",
+    "turn an object about an axis through the origin",
+    takes!(
+        rotate,
+        direction("x y z", "the axis"),
+        degrees("angle", "the angle"),
+        TARGET
+    ),
+)
+.example(clay!(
+    "cylinder Clay 0.6, <-2 0 0>, <2 0 0>\nrotate 0 0 1 30"
+));
+
+fn rotate<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    axis: DVec3,
+    angle: f64,
+    object: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let transform = Transform::rotation(axis, angle);
+    transform_by(run, command, object, &transform)
 }
 
 /// `scale x y z [object]`
-pub fn scale<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let factors = given.vector("x y z");
+pub static SCALE: CommandSpec = row(
+    "scale",
+    "scale an object",
+    takes!(scale, triple("x y z", "the scale").with_place(), TARGET),
+)
+.details("Radii grow by the mean of the three factors: round shapes stay round.")
+.example(clay!("sphere Clay 1, 0 0 0\nscale 2 2 2"));
+
+fn scale<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    (factors, span): (DVec3, Range<usize>),
+    object: Option<Name<'a>>,
+) -> Outcome<Flow> {
     if factors.to_array().iter().any(|f| f.abs() < 1e-9) {
-        return Err(Problem::new(
-            given.span("x y z").unwrap_or_else(|| command.span.clone()),
-            "a scale factor must not be 0",
-        ));
+        return Err(Problem::new(span, "a scale factor must not be 0"));
     }
-    transform_by(run, command, &given, &Transform::scaling(factors))
+    transform_by(run, command, object, &Transform::scaling(factors))
 }
 
 /// `explode x y z [object]`: each shape moves away from the middle of the object.
-pub fn explode<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let shares = given.vector("x y z");
-    let range = target(run, command, &given)?;
+pub static EXPLODE: CommandSpec = row(
+    "explode",
+    "move the parts of an object apart",
+    takes!(explode, triple("x y z", "the shares"), TARGET),
+)
+.details(
+    "Each shape moves away from the middle of the object, by the share x, y, z of its distance \
+     along each axis: 0 leaves it, 1 doubles the distance.",
+)
+.example(clay!(
+    "object PARTS\n  sphere Clay 0.8, -0.5 0 0\n  \
+     sphere Clay 0.8, 0.5 0 0\n  sphere Clay 0.8, 0 0.8 0\n\
+     close\nexplode 2 2 0, PARTS"
+));
+
+fn explode<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    shares: DVec3,
+    object: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let range = target(run, command, object.as_ref())?;
     charge(run, command, &range)?;
     let parts = &run.model.parts[range.clone()];
     let centres: Vec<DVec3> = parts.iter().map(|p| middle(&p.element.shape)).collect();
@@ -168,18 +304,49 @@ fn middle(shape: &Shape) -> DVec3 {
 }
 
 /// `transform [object]`: what has been done to the object so far holds still while the shutter is open.
-pub fn transform<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let range = target(run, command, &given)?;
+pub static TRANSFORM: CommandSpec = row(
+    "transform",
+    "hold an object still while the shutter is open",
+    takes!(transform, TARGET),
+)
+.details(
+    "Transforms are applied at once. What variables that change with every frame have done to the \
+     object so far is then the same for the whole time of the `shutter`; what comes after this is \
+     blurred.",
+)
+.example(clay!(
+    "var x = -1.5 += 3\nshutter 1\nsample 3\n\
+     object STILL\n  sphere Clay 1, x 1.2 0\n\
+     close\ntransform STILL\nobject MOVING\n  \
+     sphere Clay 1, x -1.2 0\nclose"
+));
+
+fn transform<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    object: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let range = target(run, command, object.as_ref())?;
     charge(run, command, &range)?;
     run.frozen.hold(&mut run.model, range);
     Ok(Flow::Next)
 }
 
 /// `remove object`
-pub fn remove<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let range = run.model.find(given.name("object"))?;
+pub static REMOVE: CommandSpec = row(
+    "remove",
+    "remove an object",
+    takes!(
+        remove,
+        existing("object", Names::Object, "the object's name")
+    ),
+)
+.example(clay!(
+    "sphere Clay 2, 0 0 0\nobject EXTRA\n  sphere Clay 2, 1 0 0\nclose\nremove EXTRA"
+));
+
+fn remove<'a>(run: &mut Evaluator<'a>, command: &'a Command, object: Name<'a>) -> Outcome<Flow> {
+    let range = run.model.find(&object)?;
     charge(run, command, &range)?;
     run.model.remove(range);
     Ok(Flow::Next)
@@ -188,10 +355,10 @@ pub fn remove<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 fn transform_by<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
-    given: &Given<'a>,
+    object: Option<Name<'a>>,
     transform: &Transform,
 ) -> Outcome<Flow> {
-    let range = target(run, command, given)?;
+    let range = target(run, command, object.as_ref())?;
     charge(run, command, &range)?;
     if !transform.uniform && run.model.has_round(range.clone()) {
         run.say(Severity::Warning, command.span.clone(), || {
@@ -211,9 +378,9 @@ fn transform_by<'a>(
 pub(super) fn target<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
-    given: &Given<'a>,
+    object: Option<&Name<'a>>,
 ) -> Outcome<Range<usize>> {
-    match given.maybe_name("object") {
+    match object {
         Some(name) => run.model.find(name),
         None => run.model.last(&command.word_span),
     }

@@ -2,59 +2,143 @@
 
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::commands::options::{FORMATS, MESH};
+use crate::commands::build::{choice, clay, flesh, idle, plain, row, sets, takes, word_of};
+use crate::commands::slot::{ON_OFF, colour, new_file, number, text, whole, word};
+use crate::commands::{CommandSpec, OptionSpec, Unit};
 use crate::problem::Outcome;
+use crate::reader::Name;
 use crate::syntax::Command;
 use field::BlobScale;
-use scene::{Digger, Fragile, Tone};
+use scene::{Digger, Fragile, Settings, Tone};
+use std::ops::Range;
+
+const SAVING: &str = "the picture is named and saved by whoever draws it";
+const PACKING: &str = "shapes are sorted as suits them best";
+const REPORTS: &str = "the page and the program report what they do";
+const WINDOWS: &str = "there are no windows here";
+
+/// `indicator`.
+pub static INDICATORS: &[OptionSpec] = &[
+    word_of("none", "nothing"),
+    word_of("all", "all of these"),
+    word_of("bar", "a bar"),
+    word_of("text", "words"),
+    word_of("pixel", "every pixel"),
+    word_of("line", "every line"),
+    word_of("ETA", "the time that is left"),
+];
+
+/// `pack`.
+pub static PACKINGS: &[OptionSpec] = &[
+    word_of("none", "a list"),
+    choice!(
+        "grid",
+        "",
+        "a grid of cells",
+        whole("X Y Z", 1, 1024, "the cells of the grid").any()
+    )
+    .plain,
+];
 
 /// `echo on|off`: nothing is echoed anyway, and every published dataset says it, so nothing is said.
-pub fn silent_switch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.given(command)?;
+pub static ECHO: CommandSpec = row("echo", "echo commands", takes!(silent_switch, ON_OFF))
+    .default("on")
+    .example("echo off");
+
+fn silent_switch<'a>(_: &mut Evaluator<'a>, _: &'a Command, _: bool) -> Outcome<Flow> {
     Ok(Flow::Next)
 }
 
 /// `warning on|off`
-pub fn warning<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.report.no_warnings = !run.given(command)?.switch();
-    Ok(Flow::Next)
-}
+pub static WARNING: CommandSpec = row(
+    "warning",
+    "show warnings",
+    sets!(|run, is_on| run.report.no_warnings = !is_on, ON_OFF),
+)
+.default("on")
+.example("warning off");
 
 /// `verbose on|off`
-pub fn verbose<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.report.no_notes = !run.given(command)?.switch();
-    Ok(Flow::Next)
-}
+pub static VERBOSE: CommandSpec = row(
+    "verbose",
+    "show notes",
+    sets!(|run, is_on| run.report.no_notes = !is_on, ON_OFF),
+)
+.default("on")
+.example("verbose off");
 
 /// `soft on|off`
-pub fn soft<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.soft = run.given(command)?.switch();
-    Ok(Flow::Next)
-}
+pub static SOFT: CommandSpec = row(
+    "soft",
+    "blend soft shapes; off draws their offset surfaces",
+    sets!(|run, is_on| run.settings.soft = is_on, ON_OFF),
+)
+.default("on")
+.example(flesh!(
+    "soft off\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+));
 
 /// `double on|off`
-pub fn double<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.double_sided = run.given(command)?.switch();
-    Ok(Flow::Next)
-}
+pub static DOUBLE: CommandSpec = row(
+    "double",
+    "draw both sides of faces",
+    sets!(|run, is_on| run.settings.double_sided = is_on, ON_OFF),
+)
+.default("on")
+.details(
+    "Off hides the faces of triangles, polygons, patches and meshes that are seen from behind; \
+     the front of a face is the side from which its corners run counterclockwise. RATS had \
+     `double` off unless a dataset said otherwise; here it is on.",
+)
+.example(clay!(
+    "double off\ntriangle Clay, <-2 -1 0> <2 -1 0> <0 2 0>"
+));
 
 /// `gamma value`
-pub fn gamma<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.gamma = run.given(command)?.number("value") as f32;
-    Ok(Flow::Next)
-}
+pub static GAMMA: CommandSpec = row(
+    "gamma",
+    "gamma correction",
+    sets!(
+        |run, value| run.settings.gamma = value as f32,
+        number("value", "gamma").from(0.1, 10.0)
+    ),
+)
+.default("1")
+.example(clay!("gamma 1.8\nsphere Clay 2, 0 0 0"));
 
 /// `framesize w h`
-pub fn framesize<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    run.settings.frame = ["w", "h"].map(|side| given.number(side) as u32);
+pub static FRAMESIZE: CommandSpec = row(
+    "framesize",
+    "size of the picture",
+    takes!(
+        framesize,
+        whole("w", 1, Settings::MAX_FRAME, "the width").unit(Unit::Pixels),
+        whole("h", 1, Settings::MAX_FRAME, "the height").unit(Unit::Pixels)
+    ),
+)
+.default("128 128")
+.example(clay!("framesize 320 200\nsphere Clay 2, 0 0 0"));
+
+fn framesize<'a>(run: &mut Evaluator<'a>, _: &'a Command, w: u32, h: u32) -> Outcome<Flow> {
+    run.settings.frame = [w, h];
     Ok(Flow::Next)
 }
 
 /// `filename name`: an ending that is a format counts as `format` too.
-pub fn filename<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let name = given.name("name").text;
+pub static FILENAME: CommandSpec = row(
+    "filename",
+    "name of the saved picture",
+    takes!(filename, new_file("name", "the picture's name")),
+)
+.default("scene")
+.details(
+    "The program saves the picture under this name, and tools such as `collage` know it by this \
+     name and its `format`: `shell.png`.",
+)
+.example("filename shell");
+
+fn filename<'a>(run: &mut Evaluator<'a>, _: &'a Command, name: Name<'a>) -> Outcome<Flow> {
+    let name = name.text;
     let format = name.rsplit_once('.').and_then(|(stem, ending)| {
         let known = FORMATS
             .iter()
@@ -71,24 +155,68 @@ pub fn filename<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
     Ok(Flow::Next)
 }
 
+/// `format`.
+pub static FORMATS: &[OptionSpec] = &[
+    word_of("tif", "TIFF"),
+    word_of("tga", "Targa"),
+    word_of("mtv", "MTV: width, height and bytes"),
+    word_of("png", "PNG (ours)"),
+];
+
 /// `format tif|tga|mtv|png`
-pub fn format<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.output.format = run.given(command)?.word("format");
-    Ok(Flow::Next)
-}
+pub static FORMAT: CommandSpec = row(
+    "format",
+    "format of the saved picture",
+    sets!(
+        |run, format| run.output.format = Some(format),
+        word("format", FORMATS, "a format, such as `tif`")
+    ),
+)
+.default("tif")
+.details("The program writes all of these; the page saves PNG whatever stands here.")
+.example("format png");
 
 /// `nosave on|off`
-pub fn nosave<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.output.saved = !run.given(command)?.switch();
-    Ok(Flow::Next)
-}
+pub static NOSAVE: CommandSpec = row(
+    "nosave",
+    "do not save the picture",
+    sets!(|run, is_on| run.output.saved = !is_on, ON_OFF),
+)
+.default("off")
+.details(
+    "The program that runs the dataset then neither traces nor writes the picture, unless it is \
+     told a name for it with `-o`. In the page, tools do not find the picture among the files; \
+     you can still save it by hand.",
+)
+.example("nosave on");
 
 /// `sample n`
-pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    run.settings.samples = given.number("n") as u32;
+pub static SAMPLE: CommandSpec = row(
+    "sample",
+    "at most n×n rays a pixel",
+    takes!(
+        sample,
+        whole("n", 1, Settings::MAX_SAMPLES, "the number of samples"),
+        text("method", "the method").optional("")
+    ),
+)
+.default("1")
+.details(
+    "The first ray of each pixel makes a whole picture; more follow where neighbours differ (see \
+     `contrast`), and everywhere where a lens, the shutter, a light's size or the sky ask for \
+     many; if they do, n is 4 unless it is given.",
+)
+.example(clay!("sample 4\nsphere Clay 2, 0 0 0"));
+
+fn sample<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    n: u32,
+    method: Option<Range<usize>>,
+) -> Outcome<Flow> {
+    run.settings.samples = n;
     run.sampled = true;
-    if let Some(span) = given.span("method") {
+    if let Some(span) = method {
         run.say(Severity::Note, span, || {
             (
                 String::from(
@@ -102,48 +230,151 @@ pub fn sample<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 }
 
 /// `penumbra on|off`
-pub fn penumbra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.penumbra = run.given(command)?.switch();
-    Ok(Flow::Next)
-}
+pub static PENUMBRA: CommandSpec = row(
+    "penumbra",
+    "soft shadows",
+    sets!(|run, is_on| run.settings.penumbra = is_on, ON_OFF),
+)
+.default("off")
+.details(
+    "Shadows of lights that have a `size` get soft edges: a place gets the share of the light \
+     that it sees. More samples (`sample`) make them smoother.",
+)
+.example(
+    "surface Clay, diffuse SandyBrown, specular Gray50, shine 40\n\
+     penumbra on\nsample 3\nground Gray80\n\
+     eyep 0 4 9\nlight White, position 5 9 4, size 1.5\n\
+     sphere Clay 1.5, 0 0 0",
+);
 
 /// `epsilon value`
-pub fn epsilon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.epsilon = run.given(command)?.number("value");
-    Ok(Flow::Next)
-}
+pub static EPSILON: CommandSpec = row(
+    "epsilon",
+    "how far mirrored and refracted rays start from hard surfaces",
+    sets!(
+        |run, value| run.settings.epsilon = value,
+        number("value", "the precision").from(1e-12, 0.1)
+    ),
+)
+.default("1e-4")
+.details(
+    "A share of the scene's size. Rays from soft surfaces start as near as their own error allows.",
+)
+.example(clay!(
+    "epsilon 1e-4\nsurface Chrome, diffuse Gray20, reflective 70%\n\
+     sphere Chrome 1.5, -1 0 0\nsphere Clay 1, 1.5 0 1"
+));
 
 /// `vanish value`
-pub fn vanish<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.vanish = run.given(command)?.number("value") as f32;
-    Ok(Flow::Next)
-}
+pub static VANISH: CommandSpec = row(
+    "vanish",
+    "least share of light that a mirrored or refracted ray must bring",
+    sets!(
+        |run, value| run.settings.vanish = value as f32,
+        number("value", "the least colour").from(0.0, 1.0)
+    ),
+)
+.default("4e-3")
+.details("A ray that would change each of red, green and blue of its pixel by less is not sent.")
+.example(clay!(
+    "vanish 0.01\nsurface Chrome, diffuse Gray20, reflective 70%\n\
+     sphere Chrome 1.5, -1 0 0\nsphere Clay 1, 1.5 0 1"
+));
 
 /// `maxdepth number`
-pub fn maxdepth<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.max_depth = run.given(command)?.number("number") as u32;
-    Ok(Flow::Next)
-}
+pub static MAXDEPTH: CommandSpec = row(
+    "maxdepth",
+    "how many surfaces may mirror or refract a ray, one after the other",
+    sets!(
+        |run, number| run.settings.max_depth = number,
+        whole("number", 0, Settings::MAX_DEPTH, "the depth")
+    ),
+)
+.default("5")
+.details(
+    "Light goes into a glass and out again at two surfaces, and through a hollow one at four. 0: \
+     nothing mirrors or is seen through.",
+)
+.example(clay!(
+    "maxdepth 2\nsurface Chrome, diffuse Gray20, reflective 70%\n\
+     sphere Chrome 1.5, -1.6 0 0\nsphere Chrome 1.5, 1.6 0 0\n\
+     sphere Clay 0.6, 0 0 2"
+));
+
+/// `tone`.
+pub static TONES: &[OptionSpec] = &[
+    word_of("none", "what is brighter than the screen is cut"),
+    word_of("filmic", "bright light fades softly into white, as on film"),
+];
 
 /// `tone none|filmic`
-pub fn tone<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.tone = match run.given(command)?.word("what") {
-        Some("filmic") => Tone::Filmic,
-        _ => Tone::None,
-    };
-    Ok(Flow::Next)
-}
+pub static TONE: CommandSpec = row(
+    "tone",
+    "how bright light becomes colours of the screen",
+    sets!(
+        |run, what| run.settings.tone = if what == "filmic" {
+            Tone::Filmic
+        } else {
+            Tone::None
+        },
+        word("what", TONES, "`none` or `filmic`")
+    ),
+)
+.default("none")
+.details(
+    "Filmic: light up to 0.6 stays as it is; above that 0.6 + 0.4·t/(1 + t), where t = (x − \
+     0.6)/0.4, so that what glares keeps its form.",
+)
+.example(clay!(
+    "tone filmic\nlight White, position -4 8 10, intensity 1.5\nsphere Clay 2, 0 0 0"
+));
 
 /// `contrast r g b`
-pub fn contrast<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.contrast = run.given(command)?.colour("r g b");
-    Ok(Flow::Next)
-}
+pub static CONTRAST: CommandSpec = row(
+    "contrast",
+    "contrast above which a pixel is sampled further",
+    sets!(
+        |run, contrast| run.settings.contrast = contrast,
+        colour("r g b", "the contrast")
+    ),
+)
+.default(".25 .2 .4")
+.example(clay!(
+    "contrast 0.1 0.1 0.1\nsample 4\nsphere Clay 2, 0 0 0"
+));
+
+/// `fragile`.
+pub static FRAGILE_WORDS: &[OptionSpec] = &[
+    word_of("all", "all of these"),
+    word_of("arc", "arcs and arches"),
+    word_of("pipe", "pipes"),
+    word_of("cylinder", "cylinders"),
+    word_of("sphere", "spheres"),
+    word_of("none", "none of these"),
+];
 
 /// `fragile all|none|arc|…`: what it names, and nothing else.
-pub fn fragile<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+pub static FRAGILE: CommandSpec = row(
+    "fragile",
+    "soft shapes whose own radius is overruled by their material's",
+    takes!(
+        fragile,
+        word(
+            "what",
+            FRAGILE_WORDS,
+            "`all`, `none` or the names of primitives"
+        )
+        .many()
+    ),
+)
+.default("none")
+.example(flesh!(
+    "fragile all\nsphere Flesh 2, -0.6 0 0\nsphere Flesh 0.1, 0.6 0 0"
+));
+
+fn fragile<'a>(run: &mut Evaluator<'a>, _: &'a Command, what: Vec<&'static str>) -> Outcome<Flow> {
     let mut fragile = Fragile::default();
-    for (name, _) in run.given(command)?.words("what") {
+    for name in what {
         match name {
             "all" => fragile = Fragile::ALL,
             "none" => fragile = Fragile::default(),
@@ -157,35 +388,110 @@ pub fn fragile<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
     Ok(Flow::Next)
 }
 
+/// `blobscale`.
+pub static BLOB_SCALES: &[OptionSpec] = &[
+    word_of("relative", "the width is |B|/R²"),
+    word_of("absolute", "the width is |B|"),
+];
+
 /// `blobscale relative|absolute`
-pub fn blobscale<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.blob_scale = match run.given(command)?.word("what") {
-        Some("absolute") => BlobScale::Absolute,
-        _ => BlobScale::Relative,
-    };
-    Ok(Flow::Next)
-}
+pub static BLOBSCALE: CommandSpec = row(
+    "blobscale",
+    "how blobbiness is read",
+    sets!(
+        |run, what| run.settings.blob_scale = if what == "absolute" {
+            BlobScale::Absolute
+        } else {
+            BlobScale::Relative
+        },
+        word("what", BLOB_SCALES, "`relative` or `absolute`")
+    ),
+)
+.default("relative")
+.details("relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read.")
+.example(flesh!("blobscale absolute\nsphere Flesh 0.6, 0 0 0"));
 
 /// `influence e`
-pub fn influence<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.settings.influence = run.given(command)?.number("e");
-    Ok(Flow::Next)
-}
+pub static INFLUENCE: CommandSpec = row(
+    "influence",
+    "share of the threshold below which the draft ignores a soft shape",
+    sets!(
+        |run, e| run.settings.influence = e,
+        number("e", "the share of the threshold").from(1e-9, 0.5)
+    ),
+)
+.default("0.001")
+.details(
+    "Counts for the draft and for every digger but hermite: traced pictures ignore nothing that \
+     could be seen.",
+)
+.example(flesh!("influence 1e-4\nsphere Flesh 0.6, 0 0 0"));
+
+/// `digger`.
+pub static DIGGERS: &[OptionSpec] = &[
+    word_of(
+        "hermite",
+        "Hermite spans as short as a certified bound of their error demands; packets of rays",
+    ),
+    word_of(
+        "hermite2",
+        "equally long Hermite spans on each shape's part of the ray, two as published",
+    ),
+    word_of("lagrange", "polynomials of degree 4 through samples"),
+    word_of("brent", "steps to a change of sign, then Brent's method"),
+    word_of("ridder", "steps to a change of sign, then Ridders' method"),
+    word_of("RF", "steps to a change of sign, then the regula falsi"),
+    word_of(
+        "LG",
+        "halving until Lipschitz constants settle it (Kalra and Barr)",
+    ),
+    word_of("sphere", "sphere tracing (Hart)"),
+];
 
 /// `digger name [n]`
-pub fn digger<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    run.settings.digger = match given.word("name") {
-        Some("hermite2") => Digger::Spans(given.maybe_number("n").map_or(2, |n| n as u32)),
-        Some("lagrange") => Digger::Lagrange,
-        Some("brent") => Digger::Brent,
-        Some("ridder") => Digger::Ridder,
-        Some("RF") => Digger::RegulaFalsi,
-        Some("LG") => Digger::Lg,
-        Some("sphere") => Digger::Sphere,
+pub static DIGGER: CommandSpec = row(
+    "digger",
+    "what finds where a ray meets the soft surface",
+    takes!(
+        digger,
+        word("name", DIGGERS, "the digger's name"),
+        whole(
+            "n",
+            1,
+            Settings::MAX_SPANS,
+            "the number of spans a shape gets from `hermite2`"
+        )
+        .with_place()
+        .optional("2")
+    ),
+)
+.default("hermite")
+.details(
+    "Only `hermite` is certified, and it is the fastest. The others are there to compare with: \
+     they follow rays one by one, and what they miss or misplace is missing or misplaced in the \
+     picture.",
+)
+.example(flesh!(
+    "digger hermite2 4\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+));
+
+fn digger<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    name: &'static str,
+    spans: Option<(u32, Range<usize>)>,
+) -> Outcome<Flow> {
+    run.settings.digger = match name {
+        "hermite2" => Digger::Spans(spans.as_ref().map_or(2, |(n, _)| *n)),
+        "lagrange" => Digger::Lagrange,
+        "brent" => Digger::Brent,
+        "ridder" => Digger::Ridder,
+        "RF" => Digger::RegulaFalsi,
+        "LG" => Digger::Lg,
+        "sphere" => Digger::Sphere,
         _ => Digger::Hermite,
     };
-    if let Some(span) = given.span("n")
+    if let Some((_, span)) = spans
         && !matches!(run.settings.digger, Digger::Spans(_))
     {
         run.say(Severity::Warning, span, || {
@@ -199,32 +505,114 @@ pub fn digger<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 }
 
 /// `map on|off [N]`
-pub fn map<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let gamma = given.maybe_number("N").unwrap_or(1.0) as f32;
-    run.settings.map = given.switch().then_some(gamma);
+pub static MAP: CommandSpec = row(
+    "map",
+    "show what each pixel costs instead of its colour",
+    takes!(
+        map,
+        ON_OFF,
+        number("N", "the gamma of the map")
+            .from(0.1, 10.0)
+            .optional("1")
+    ),
+)
+.default("off")
+.details(
+    "Black is no work, white the dearest pixel of a sample (a packet of rays in every 16×16 \
+     pixels); N above 1 lifts what is dark. Work is counted, not timed, so that a map is the same \
+     everywhere: an evaluation of one shape's field at one point counts 1, and so does each ray \
+     to the eye or to a light. Rays of a packet share the work that is done for all of them, and \
+     a pixel shows the mean of its rays.",
+)
+.example(flesh!(
+    "map on 1.5\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+));
+
+fn map<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    is_on: bool,
+    gamma: Option<f64>,
+) -> Outcome<Flow> {
+    run.settings.map = is_on.then_some(gamma.unwrap_or(1.0) as f32);
     Ok(Flow::Next)
 }
 
-/// `mesh robust|fast`, `mesh sn fn`
-pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let mut read = run.reader(command);
-    let is_control = read.peek_word().is_some_and(|(_, word)| {
-        MESH.iter()
-            .any(|control| control.name.eq_ignore_ascii_case(word))
-    });
-    // A material may be called so: then a file follows.
-    let alone = read.items.len() == read.at + 1;
-    if !is_control || !alone {
-        return super::primitives::mesh(run, command);
-    }
-    read.at += 1;
-    read.end()?;
-    run.say(Severity::Note, command.word_span.clone(), || {
-        (
-            String::from("`mesh` with this word changes nothing here: faces are always checked"),
-            None,
-        )
-    });
-    Ok(Flow::Next)
-}
+/// `bounds`
+pub static BOUNDS: CommandSpec = row(
+    "bounds",
+    "use bounding volumes",
+    idle(PACKING, plain![ON_OFF]),
+)
+.default("on")
+.example("bounds on");
+
+/// `timer`
+pub static TIMER: CommandSpec = row("timer", "report times", idle(REPORTS, plain![ON_OFF]))
+    .default("on")
+    .example("timer on");
+
+/// `dither`
+pub static DITHER: CommandSpec = row(
+    "dither",
+    "dither pictures for viewing",
+    idle("screens show all colours now", plain![ON_OFF]),
+)
+.default("on")
+.example("dither on");
+
+/// `compress`
+pub static COMPRESS: CommandSpec = row(
+    "compress",
+    "compress saved pictures",
+    idle(SAVING, plain![ON_OFF]),
+)
+.default("on")
+.example("compress on");
+
+/// `stat`
+pub static STAT: CommandSpec = row("stat", "report statistics", idle(REPORTS, plain![ON_OFF]))
+    .default("off")
+    .example("stat on");
+
+/// `noview`
+pub static NOVIEW: CommandSpec = row(
+    "noview",
+    "do not display the picture",
+    idle(WINDOWS, plain![ON_OFF]),
+)
+.default("off")
+.example("noview on");
+
+/// `maxmol`
+pub static MAXMOL: CommandSpec = row(
+    "maxmol",
+    "largest group of soft shapes",
+    idle(
+        "groups can have any size",
+        plain![whole("number", 1, 1_000_000_000, "the number of shapes")],
+    ),
+)
+.default("300")
+.example("maxmol 300");
+
+/// `pack`
+pub static PACK: CommandSpec = row(
+    "pack",
+    "how shapes are sorted",
+    idle(PACKING, plain![word("what", PACKINGS, "`none` or `grid`")]),
+)
+.default("grid")
+.example("pack none");
+
+/// `indicator`
+pub static INDICATOR: CommandSpec = row(
+    "indicator",
+    "how progress is shown",
+    idle(
+        REPORTS,
+        plain![word("what", INDICATORS, "what to show, such as `bar`").many()],
+    ),
+)
+.default("bar")
+.example("indicator bar");

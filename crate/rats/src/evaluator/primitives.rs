@@ -1,12 +1,17 @@
 //! PRIMITIVES: shapes made of a material.
 
-use super::implicit_mesh;
+use super::implicit_mesh::{self, MESH_OPTIONS};
 use super::model::Part;
 use super::state::{Evaluator, Flow};
 use super::tints;
 use crate::Severity;
+use crate::commands::build::{by_itself, choice, clay, flesh, plain, reads, row, takes, word_of};
+use crate::commands::slot::{
+    Choice, Named, SN, Slot, degrees, direction, file, length, number, triple, vector,
+};
+use crate::commands::{CommandSpec, OptionSpec, Role, Routine};
 use crate::geometry::{self, ThreePoints, Transform};
-use crate::given::Given;
+use crate::given::Options;
 use crate::limits::MAX_CORNERS;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
@@ -17,28 +22,44 @@ use field::Kernel;
 use glam::{DMat3, DVec3};
 use mesh::TriangleMesh;
 use scene::{Element, Quadric, Shape};
+use std::ops::Range;
 use std::rc::Rc;
 
-/// The operands, and the material's name: the chain's inside a chain, where shapes leave it out.
-pub(super) fn operands<'a>(
+/// Takes the operands of a command that makes one shape, those behind the material, and the shape:
+/// `makes!(add, |radius, center| Shape::Sphere { center, radius }, …)`.
+macro_rules! makes {
+    ($add:path, |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?) => {
+        by_itself(
+            |run, command| {
+                let given = run.given(command)?;
+                let mut values = given.values();
+                let sn = values.take(|| SN)?;
+                let ($($value,)+) = ($(values.take(|| $slot)?,)+);
+                $add(run, command, &sn, $shape)
+            },
+            plain![SN, $($slot),+],
+            &[],
+        )
+    };
+}
+
+/// Adds a shape of a material.
+fn add<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
-) -> Outcome<(Name<'a>, Given<'a>)> {
-    let given = run.given(command)?;
-    let name = match run.model.chain.clone() {
-        Some(name) => name,
-        None => given.name("sn").clone(),
-    };
-    run.watch_shape(command, &name, &given);
-    Ok((name, given))
+    sn: &Name<'a>,
+    shape: Shape,
+) -> Outcome<Flow> {
+    let material = run.material(sn)?;
+    run.add_of(command, material, shape, Kernel::Cauchy)
+}
+
+fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Shape {
+    let (corners, radius) = ([a, b, c], 0.0);
+    Shape::Triangle { corners, radius }
 }
 
 impl<'a> Evaluator<'a> {
-    fn add(&mut self, command: &'a Command, name: &Name<'a>, shape: Shape) -> Outcome<Flow> {
-        let material = self.material(name)?;
-        self.add_of(command, material, shape, Kernel::Cauchy)
-    }
-
     pub(super) fn add_of(
         &mut self,
         command: &'a Command,
@@ -77,54 +98,85 @@ impl<'a> Evaluator<'a> {
 }
 
 /// `sphere sn r POS`
-pub fn sphere<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let shape = Shape::Sphere {
-        center: given.vector("POS"),
-        radius: given.number("r"),
-    };
-    run.add(command, &name, shape)
-}
-
-fn cylinder_of(given: &Given<'_>) -> Shape {
-    Shape::Cylinder {
-        radius: given.number("r"),
-        base: given.vector("BASE"),
-        apex: given.vector("APEX"),
-    }
-}
+pub static SPHERE: CommandSpec = row(
+    "sphere",
+    "sphere; a point when soft",
+    makes!(
+        add,
+        |radius, center| Shape::Sphere { center, radius },
+        length("r", "the radius").role(Role::Radius),
+        vector("POS", "the centre")
+    ),
+)
+.example(flesh!(
+    "sphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+));
 
 /// `cylinder sn r BASE APEX`
-pub fn cylinder<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    run.add(command, &name, cylinder_of(&given))
-}
+pub static CYLINDER: CommandSpec = row(
+    "cylinder",
+    "cylinder with lids; a line segment when soft",
+    makes!(
+        add,
+        |radius, base, apex| Shape::Cylinder { base, apex, radius },
+        length("r", "the radius").role(Role::Radius),
+        vector("BASE", "the base"),
+        vector("APEX", "the apex")
+    ),
+)
+.example(flesh!("cylinder Flesh 0.6, <-2 -1 0>, <2 1 0>"));
 
 /// `pipe sn r BASE APEX`
-pub fn pipe<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let shape = Shape::Pipe {
-        radius: given.number("r"),
-        base: given.vector("BASE"),
-        apex: given.vector("APEX"),
-    };
-    run.add(command, &name, shape)
-}
+pub static PIPE: CommandSpec = row(
+    "pipe",
+    "cylinder without lids",
+    makes!(
+        add,
+        |radius, base, apex| Shape::Pipe { base, apex, radius },
+        length("r", "the radius").role(Role::Radius),
+        vector("BASE", "the base"),
+        vector("APEX", "the apex")
+    ),
+)
+.example(clay!("eyep 3 3 9\npipe Clay 1, <-2 0 0>, <2 0 1>"));
 
 /// `arc sn a b P N a1 a2`
-pub fn arc<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let width = given.number("a2");
-    let shape = geometry::arc(
-        given.vector("P"),
-        given.vector("N"),
-        given.number("a"),
-        given.number("b"),
-        given.number("a1"),
-        width,
-    );
+pub static ARC: CommandSpec = row(
+    "arc",
+    "arc of a circle",
+    takes!(
+        arc,
+        SN,
+        length("a", "the sweep radius").role(Role::Sweep),
+        length("b", "the tube radius").role(Role::Radius),
+        vector("P", "the centre"),
+        direction("N", "the normal"),
+        degrees("a1", "the start angle").role(Role::Start),
+        degrees("a2", "the width, an angle")
+            .role(Role::Width)
+            .with_place()
+    ),
+)
+.details(
+    "Angles run from the local x axis (the world's, made perpendicular to the normal) towards \
+     normal × x; so they run clockwise when the normal points away. Soft: the arc itself is the \
+     skeleton.",
+)
+.example(flesh!("arc Flesh 2, 0.6, <0 0 0>, <0 0 1>, 30 240"));
+
+#[expect(clippy::too_many_arguments, reason = "the operands of the command")]
+fn arc<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    sweep: f64,
+    tube: f64,
+    center: DVec3,
+    normal: DVec3,
+    start: f64,
+    (width, span): (f64, Range<usize>),
+) -> Outcome<Flow> {
     if width.abs() > 360.0 {
-        let span = given.span("a2").unwrap_or_else(|| command.span.clone());
         run.say(Severity::Warning, span, || {
             (
                 format!("an arc of {width} degrees is a full circle"),
@@ -134,16 +186,36 @@ pub fn arc<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
             )
         });
     }
-    run.add(command, &name, shape)
+    let shape = geometry::arc(center, normal, sweep, tube, start, width);
+    add(run, command, &sn, shape)
 }
 
 /// `arch sn b P1 P2 P3`
-pub fn arch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let radius = given.number("b");
-    let [a, b, c] = ["P1", "P2", "P3"].map(|point| given.vector(point));
+pub static ARCH: CommandSpec = row(
+    "arch",
+    "arc through three points",
+    takes!(
+        arch,
+        SN,
+        length("b", "the tube radius").role(Role::Radius),
+        vector("P1", "the first point"),
+        vector("P2", "the second point"),
+        vector("P3", "the third point")
+    ),
+)
+.example(flesh!("arch Flesh 0.6, <-2 -1 0>, <0 1.5 0>, <2 -1 0>"));
+
+fn arch<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    radius: f64,
+    a: DVec3,
+    b: DVec3,
+    c: DVec3,
+) -> Outcome<Flow> {
     match geometry::through(a, b, c, radius) {
-        ThreePoints::Arc(shape) => run.add(command, &name, shape),
+        ThreePoints::Arc(shape) => add(run, command, &sn, shape),
         ThreePoints::Line(base, apex) => {
             run.say(Severity::Warning, command.span.clone(), || {
                 (
@@ -151,7 +223,7 @@ pub fn arch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
                     None,
                 )
             });
-            run.add(command, &name, Shape::Cylinder { base, apex, radius })
+            add(run, command, &sn, Shape::Cylinder { base, apex, radius })
         }
         ThreePoints::Same => Err(Problem::new(
             command.span.clone(),
@@ -161,48 +233,89 @@ pub fn arch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 }
 
 /// `torus sn a b POS NORM`
-pub fn torus<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let shape = geometry::arc(
-        given.vector("POS"),
-        given.vector("NORM"),
-        given.number("a"),
-        given.number("b"),
-        0.0,
-        360.0,
-    );
-    run.add(command, &name, shape)
-}
-
-fn corners(given: &Given<'_>) -> Shape {
-    Shape::Triangle {
-        corners: ["V1", "V2", "V3"].map(|corner| given.vector(corner)),
-        radius: 0.0,
-    }
-}
+pub static TORUS: CommandSpec = row(
+    "torus",
+    "ring of a round tube",
+    makes!(
+        add,
+        |sweep, tube, center, normal| geometry::arc(center, normal, sweep, tube, 0.0, 360.0),
+        length("a", "the sweep radius").role(Role::Sweep),
+        length("b", "the tube radius").role(Role::Radius),
+        vector("POS", "the centre"),
+        direction("NORM", "the normal")
+    ),
+)
+.example(flesh!("torus Flesh 2, 0.6, <0 0 0>, <0 1 2>"));
 
 /// `triangle sn V1 V2 V3`
-pub fn triangle<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    run.add(command, &name, corners(&given))
-}
+pub static TRIANGLE: CommandSpec = row(
+    "triangle",
+    "flat triangle; a Cauchy triangle when soft",
+    makes!(
+        add,
+        |a, b, c| triangle(a, b, c),
+        vector("V1", "the first corner"),
+        vector("V2", "the second corner"),
+        vector("V3", "the third corner")
+    ),
+)
+.example(flesh!("triangle Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>"));
 
 /// `plane sn POS NORM`
-pub fn plane<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let shape = Shape::Plane {
-        point: given.vector("POS"),
-        normal: given.vector("NORM"),
-        radius: 0.0,
-    };
-    run.add(command, &name, shape)
-}
+pub static PLANE: CommandSpec = row(
+    "plane",
+    "infinite plane",
+    makes!(
+        add,
+        |point, normal| Shape::Plane {
+            point,
+            normal,
+            radius: 0.0
+        },
+        vector("POS", "a point of the plane"),
+        direction("NORM", "the normal")
+    ),
+)
+.example(clay!("plane Clay, <0 -2 0>, <0 1 0>"));
+
+const HOLE: Choice<Vec<DVec3>> = choice!(
+    "hole",
+    "",
+    "a hole in it (ours)",
+    vector("W1", "a corner of the hole").many()
+);
+
+/// `polygon`.
+pub static POLYGON_OPTIONS: &[OptionSpec] = &[HOLE.plain];
 
 /// `polygon sn V1 … Vn [hole W1 … Wm …]`
-pub fn polygon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let mut rings = vec![given.vectors("V1")];
-    rings.extend(given.options.iter().map(|hole| hole.given.vectors("W1")));
+pub static POLYGON: CommandSpec = row(
+    "polygon",
+    "planar polygon, with holes",
+    takes!(
+        polygon,
+        [POLYGON_OPTIONS],
+        SN,
+        vector("V1", "a corner").many()
+    ),
+)
+.details(
+    "At least three corners, at most 800 with those of the holes; edges must not cross. (RATS \
+     stopped at 128; holes are ours.)",
+)
+.example(clay!(
+    "polygon Clay, <-2 -2 0> <2 -2 0> <2 2 0> <-2 2 0> hole <-1 -1 0> <-1 1 0> <1 1 0> <1 -1 0>"
+));
+
+fn polygon<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    sn: Name<'a>,
+    corners: Vec<DVec3>,
+) -> Outcome<Flow> {
+    let mut rings = vec![corners];
+    rings.extend(options.all(&HOLE));
     let corners: usize = rings.iter().map(Vec::len).sum();
     if corners > MAX_CORNERS {
         return Err(Problem::new(
@@ -238,18 +351,43 @@ pub fn polygon<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flo
             )
         });
     }
-    run.add(command, &name, Shape::Polygon { rings, radius: 0.0 })
+    add(run, command, &sn, Shape::Polygon { rings, radius: 0.0 })
 }
 
 /// `curve sn b P1 P2 P3 P4 [P …]`: cubic Bézier curves, each beginning where the last one ends.
-pub fn curve<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let radius = given.number("b");
-    let mut points: Vec<_> = ["P1", "P2", "P3", "P4"]
-        .iter()
-        .map(|point| given.vector(point))
-        .collect();
-    points.extend(given.vectors("P"));
+pub static CURVE: CommandSpec = row(
+    "curve",
+    "cubic Bézier curve",
+    takes!(
+        curve,
+        SN,
+        length("b", "the tube radius").role(Role::Radius),
+        vector("P1", "the first control point"),
+        vector("P2", "the second control point"),
+        vector("P3", "the third control point"),
+        vector("P4", "the end point"),
+        vector("P", "a further control point").any()
+    ),
+)
+.details("More points, three at a time, join more curves: each begins where the last one ends.")
+.example(flesh!(
+    "curve Flesh 0.6, <-3 -1 0> <-1 3 0> <1 -3 0> <3 1 0>"
+));
+
+#[expect(clippy::too_many_arguments, reason = "the operands of the command")]
+fn curve<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    radius: f64,
+    a: DVec3,
+    b: DVec3,
+    c: DVec3,
+    d: DVec3,
+    more: Vec<DVec3>,
+) -> Outcome<Flow> {
+    let mut points = vec![a, b, c, d];
+    points.extend(more);
     if points.len() % 3 != 1 {
         let missing = 3 - (points.len() - 1) % 3;
         return Err(Problem::new(
@@ -260,7 +398,7 @@ pub fn curve<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
     }
     for i in (0..points.len() - 1).step_by(3) {
         let control = [points[i], points[i + 1], points[i + 2], points[i + 3]];
-        run.add(command, &name, Shape::Curve { control, radius })?;
+        add(run, command, &sn, Shape::Curve { control, radius })?;
     }
     Ok(Flow::Next)
 }
@@ -269,12 +407,11 @@ pub fn curve<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 fn of_kernel<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
+    sn: &Name<'a>,
     kernel: Kernel,
-    shape: fn(&Given<'a>) -> Shape,
+    mut shape: Shape,
 ) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let mut shape = shape(&given);
-    let material = run.material(&name)?;
+    let material = run.material(sn)?;
     let flesh = &run.palette.surfaces[material].flesh;
     if !flesh.is_soft() {
         // Drawn as an offset surface, which has a radius.
@@ -285,48 +422,129 @@ fn of_kernel<'a>(
     run.add_of(command, material, shape, kernel)
 }
 
-fn point(given: &Given<'_>) -> Shape {
-    Shape::Sphere {
-        center: given.vector("POS"),
-        radius: 0.0,
-    }
-}
-
 /// `dot sn POS`
-pub fn dot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Quartic, |given| point(given))
+pub static DOT: CommandSpec = row(
+    "dot",
+    "point with a polynomial kernel",
+    takes!(dot, SN, vector("POS", "the position")),
+)
+.example(flesh!("dot Flesh, -0.5 0 0\ndot Flesh, 0.5 0 0"));
+
+fn dot<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    center: DVec3,
+) -> Outcome<Flow> {
+    let (kernel, radius) = (Kernel::Quartic, 0.0);
+    of_kernel(run, command, &sn, kernel, Shape::Sphere { center, radius })
 }
 
 /// `gauss sn POS`
-pub fn gauss<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Gauss, |given| point(given))
+pub static GAUSS: CommandSpec = row(
+    "gauss",
+    "point with a Gaussian kernel",
+    takes!(gauss, SN, vector("POS", "the position")),
+)
+.example(flesh!("gauss Flesh, -0.6 0 0\ngauss Flesh, 0.6 0 0"));
+
+fn gauss<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    center: DVec3,
+) -> Outcome<Flow> {
+    let (kernel, radius) = (Kernel::Gauss, 0.0);
+    of_kernel(run, command, &sn, kernel, Shape::Sphere { center, radius })
 }
 
 /// `line sn BASE APEX`
-pub fn line<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Gauss, |given| Shape::Cylinder {
-        base: given.vector("BASE"),
-        apex: given.vector("APEX"),
+pub static LINE: CommandSpec = row(
+    "line",
+    "line segment with a Gaussian kernel",
+    takes!(
+        line,
+        SN,
+        vector("BASE", "the base"),
+        vector("APEX", "the apex")
+    ),
+)
+.example(flesh!(
+    "line Flesh, <-2 0 0>, <2 0 0>\nline Flesh, <0 0 0>, <0 2 0>"
+));
+
+fn line<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    base: DVec3,
+    apex: DVec3,
+) -> Outcome<Flow> {
+    let shape = Shape::Cylinder {
+        base,
+        apex,
         radius: 0.0,
-    })
+    };
+    of_kernel(run, command, &sn, Kernel::Gauss, shape)
 }
 
 /// `triad sn V1 V2 V3`
-pub fn triad<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    of_kernel(run, command, Kernel::Inverse, |given| corners(given))
+pub static TRIAD: CommandSpec = row(
+    "triad",
+    "triangle with the Newtonian kernel",
+    takes!(
+        triad,
+        SN,
+        vector("V1", "the first corner"),
+        vector("V2", "the second corner"),
+        vector("V3", "the third corner")
+    ),
+)
+.details(
+    "The potential of a flat mass. Its flesh is as thick as the radius only where the triangle is \
+     many radii wide; smaller ones need more `strength`.",
+)
+.example(
+    "light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine 40, \
+     radius 0.4, blobbiness -2, strength 3\n\
+     triad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>",
+);
+
+fn triad<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    a: DVec3,
+    b: DVec3,
+    c: DVec3,
+) -> Outcome<Flow> {
+    of_kernel(run, command, &sn, Kernel::Inverse, triangle(a, b, c))
 }
 
 /// `cone sn b BASE a APEX`
-pub fn cone<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let shape = Shape::Cone {
-        base: given.vector("BASE"),
-        base_radius: given.number("b"),
-        apex: given.vector("APEX"),
-        apex_radius: given.number("a"),
-    };
-    run.add(command, &name, shape)
-}
+pub static CONE: CommandSpec = row(
+    "cone",
+    "cone with lids",
+    makes!(
+        add,
+        |base_radius, base, apex_radius, apex| Shape::Cone {
+            base,
+            base_radius,
+            apex,
+            apex_radius
+        },
+        length("b", "the radius at the base")
+            .role(Role::Radius)
+            .at_least(0.0),
+        vector("BASE", "the base"),
+        length("a", "the radius at the apex")
+            .role(Role::ApexRadius)
+            .at_least(0.0),
+        vector("APEX", "the apex")
+    ),
+)
+.details("Soft: a line segment whose flesh tapers with the cone.")
+.example(clay!("cone Clay 1.5, <0 -2 0>, 0.2, <0 2 0>"));
 
 /// A shape that has no skeleton: a soft material makes it no softer.
 fn add_hard<'a>(
@@ -345,7 +563,12 @@ fn add_hard<'a>(
             )
         });
     }
-    run.add(command, name, shape)
+    add(run, command, name, shape)
+}
+
+/// Returns a box around the origin.
+fn brick(size: DVec3) -> Shape {
+    box_between(-0.5 * size, 0.5 * size)
 }
 
 fn box_between(low: DVec3, high: DVec3) -> Shape {
@@ -357,94 +580,249 @@ fn box_between(low: DVec3, high: DVec3) -> Shape {
 }
 
 /// `box sn PMIN PMAX`
-pub fn box_<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let shape = box_between(given.vector("PMIN"), given.vector("PMAX"));
-    add_hard(run, command, &name, shape)
-}
+pub static BOX: CommandSpec = row(
+    "box",
+    "box between two corners",
+    makes!(
+        add_hard,
+        |low, high| box_between(low, high),
+        vector("PMIN", "one corner"),
+        vector("PMAX", "the opposite corner")
+    ),
+)
+.details("A box is always hard: it is no skeleton.")
+.example(clay!("eyep 6 5 8\nbox Clay, <-2 -1 -1>, <2 1 1>"));
 
 /// `brick sn x y z`
-pub fn brick<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let half = DVec3::from_array(["x", "y", "z"].map(|side| given.number(side))) * 0.5;
-    add_hard(run, command, &name, box_between(-half, half))
-}
+pub static BRICK: CommandSpec = row(
+    "brick",
+    "box around the origin",
+    makes!(
+        add_hard,
+        |x, y, z| brick(DVec3::new(x, y, z)),
+        length("x", "the width").role(Role::Side(0)).at_least(0.0),
+        length("y", "the height").role(Role::Side(1)).at_least(0.0),
+        length("z", "the depth").role(Role::Side(2)).at_least(0.0)
+    ),
+)
+.details("A brick is always hard: it is no skeleton.")
+.example(clay!("eyep 6 5 8\nbrick Clay, 4 1 2"));
 
 /// `patch sn V1 N1 V2 N2 V3 N3`
-pub fn patch<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let shape = Shape::Patch {
-        corners: ["V1", "V2", "V3"].map(|corner| given.vector(corner)),
-        normals: ["N1", "N2", "N3"].map(|normal| given.vector(normal)),
-    };
-    run.add(command, &name, shape)
-}
+pub static PATCH: CommandSpec = row(
+    "patch",
+    "triangle shaded as if it were curved",
+    makes!(
+        add,
+        |v1, n1, v2, n2, v3, n3| Shape::Patch {
+            corners: [v1, v2, v3],
+            normals: [n1, n2, n3]
+        },
+        vector("V1", "the first corner"),
+        direction("N1", "the first normal"),
+        vector("V2", "the second corner"),
+        direction("N2", "the second normal"),
+        vector("V3", "the third corner"),
+        direction("N3", "the third normal")
+    ),
+)
+.details("Phong's shading: the normal varies between the corners. Soft: a triangle.")
+.example(clay!(
+    "patch Clay, <-2 -1.5 0> <-1 0 1>, <2 -1.5 0> <1 0 1>, <0 2 0> <0 1 1>"
+));
+
+const TRANSLATE: Choice<DVec3> =
+    choice!("translate", "0 0 0", "moves it", vector("XYZ", "the shift"));
+const SCALE: Choice<DVec3> = choice!("scale", "1 1 1", "scales it", triple("XYZ", "the scale"));
+const BOUNDS: Choice<(DVec3, DVec3)> = choice!(
+    "bounds",
+    "-1 -1 -1 1 1 1",
+    "the box it is cut off at",
+    vector("MIN", "the lowest corner"),
+    vector("MAX", "the highest corner")
+);
+
+/// `quadric`.
+pub static QUADRIC_OPTIONS: &[OptionSpec] = &[TRANSLATE.plain, SCALE.plain, BOUNDS.plain];
 
 /// `quadric sn a b c d e f g h i j [translate XYZ] [scale XYZ] [bounds MIN MAX]`
-pub fn quadric<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let [a, b, c, d, e, f, g, h, i, j] =
-        ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j"].map(|factor| given.number(factor));
+pub static QUADRIC: CommandSpec = row(
+    "quadric",
+    "quadric surface",
+    takes!(
+        quadric,
+        [QUADRIC_OPTIONS],
+        SN,
+        number("a", "the factor of x²"),
+        number("b", "the factor of y²"),
+        number("c", "the factor of z²"),
+        number("d", "the factor of xy"),
+        number("e", "the factor of yz"),
+        number("f", "the factor of zx"),
+        number("g", "the factor of x"),
+        number("h", "the factor of y"),
+        number("i", "the factor of z"),
+        number("j", "the constant")
+    ),
+)
+.details(
+    "The points where ax² + by² + cz² + dxy + eyz + fzx + gx + hy + iz + j = 0 in local \
+     coordinates, cut off at the box `bounds`. The printed table leaves its operands open; these \
+     are ours. A quadric is always hard.",
+)
+.example(clay!(
+    "eyep 4 4 8\nquadric Clay, 1 -1 1  0 0 0  0 0 0  -0.2, scale 2 2 2"
+));
+
+#[expect(clippy::too_many_arguments, reason = "the operands of the command")]
+fn quadric<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    sn: Name<'a>,
+    a: f64,
+    b: f64,
+    c: f64,
+    d: f64,
+    e: f64,
+    f: f64,
+    g: f64,
+    h: f64,
+    i: f64,
+    j: f64,
+) -> Outcome<Flow> {
     let square = DMat3::from_cols(
         DVec3::new(a, 0.5 * d, 0.5 * f),
         DVec3::new(0.5 * d, b, 0.5 * e),
         DVec3::new(0.5 * f, 0.5 * e, c),
     );
     let linear = DVec3::new(g, h, i) * 0.5;
-    let (low, high) = given
-        .option("bounds")
-        .map_or((-DVec3::ONE, DVec3::ONE), |bounds| {
-            let (low, high) = (bounds.given.vector("MIN"), bounds.given.vector("MAX"));
-            (low.min(high), low.max(high))
-        });
-    let mut quadric = Quadric::new(square, linear, j, low, high).ok_or_else(|| {
-        Problem::new(
-            command.span.clone(),
-            "this quadric is no surface: its factors are all 0, or its box has no volume",
-        )
-    })?;
-    let vector = |option| {
-        given
-            .option(option)
-            .map(|chosen| chosen.given.vector("XYZ"))
-    };
-    let scale = vector("scale").unwrap_or(DVec3::ONE);
-    let shift = vector("translate").unwrap_or(DVec3::ZERO);
+    let (low, high) = options.last(&BOUNDS).unwrap_or((-DVec3::ONE, DVec3::ONE));
+    let mut quadric =
+        Quadric::new(square, linear, j, low.min(high), low.max(high)).ok_or_else(|| {
+            Problem::new(
+                command.span.clone(),
+                "this quadric is no surface: its factors are all 0, or its box has no volume",
+            )
+        })?;
+    let scale = options.last(&SCALE).unwrap_or(DVec3::ONE);
+    let shift = options.last(&TRANSLATE).unwrap_or(DVec3::ZERO);
     quadric.axes = quadric.axes.map(|axis| axis * scale);
     quadric.center = quadric.center * scale + shift;
-    add_hard(run, command, &name, Shape::Quadric(Box::new(quadric)))
+    add_hard(run, command, &sn, Shape::Quadric(Box::new(quadric)))
 }
 
 /// `terra sn fn PMIN PMAX`: an image as a height field, lowest where it is black.
-pub fn terra<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let asset = run.asset(given.name("fn"))?;
+pub static TERRA: CommandSpec = row(
+    "terra",
+    "height field from an image",
+    takes!(
+        terra,
+        SN,
+        file("fn", "the image's name"),
+        vector("PMIN", "one corner"),
+        vector("PMAX", "the opposite corner")
+    ),
+)
+.details(
+    "A PNG image of the project (`hills.png` is built in): black lies at the lowest z of the box \
+     between the two corners, white at the highest; the image lies along x and y. The printed \
+     table leaves its operands open; these are ours.",
+)
+.example(clay!(
+    "eyep 4 -5 5\nvup 0 0 1\nterra Clay hills.png, <-3 -3 0> <3 3 1.5>"
+));
+
+fn terra<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    sn: Name<'a>,
+    file: Name<'a>,
+    one: DVec3,
+    other: DVec3,
+) -> Outcome<Flow> {
+    let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
-    let (one, other) = (given.vector("PMIN"), given.vector("PMAX"));
     let (low, size) = (one.min(other), (other - one).abs());
     let mesh = assets::terra(asset, size)
-        .map_err(|error| Problem::new(given.name("fn").span.clone(), error.to_string()))?;
+        .map_err(|error| Problem::new(file.span.clone(), error.to_string()))?;
     let move_there = Transform::translation(low);
-    add_mesh(run, command, &name, &mesh, Some(&move_there))
+    add_mesh(run, command, &sn, &mesh, Some(&move_there))
+}
+
+/// `mesh` as RATS has it.
+pub static CHECKS: &[OptionSpec] = &[
+    word_of("robust", "faces are checked"),
+    word_of("fast", "faces are taken as they are"),
+];
+
+const MESH_FILE: Slot<Named> = file("fn", "the mesh's name");
+
+/// `mesh robust|fast`, `mesh sn fn`
+pub static MESH: CommandSpec = row(
+    "mesh",
+    "triangles of a file (ours), or how polygons are checked",
+    by_itself(mesh, plain![SN, MESH_FILE], MESH_OPTIONS),
+)
+.default("robust")
+.details(
+    "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB \
+     (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, \
+     made by strokes of tools (Sculpt writes them). Where the mesh has colours (of vertices), or \
+     is painted, they are multiplied with the material's diffuse and ambient. Soft: each triangle \
+     is a skeleton. `mesh sn file.obj metaballs triangular d0 k` makes a soft surface of any \
+     material around the mesh: a shell of the thickness d0 on both sides of each facet, the \
+     sharper the larger k; `metaballs spherical k` makes it of balls around the facets, good for \
+     many small and even ones. k times the mean edge should be 10 or more. `mesh robust`, as RATS \
+     has it, changes nothing here: faces are always checked.",
+)
+.example(clay!("eyep 3 4 3\nfov 30\nvup 0 0 1\nmesh Clay gem.obj"));
+
+fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let mut read = run.reader(command);
+    let is_control = read.peek_word().is_some_and(|(_, word)| {
+        CHECKS
+            .iter()
+            .any(|control| control.name.eq_ignore_ascii_case(word))
+    });
+    // A material may be called so: then a file follows.
+    let alone = read.items.len() == read.at + 1;
+    if !is_control || !alone {
+        let draw: Routine = reads!(mesh_of_file, [MESH_OPTIONS], SN, MESH_FILE);
+        return draw(run, command);
+    }
+    read.at += 1;
+    read.end()?;
+    run.say(Severity::Note, command.word_span.clone(), || {
+        (
+            String::from("`mesh` with this word changes nothing here: faces are always checked"),
+            None,
+        )
+    });
+    Ok(Flow::Next)
 }
 
 /// `mesh sn fn`, `mesh sn fn metaballs spherical k`, `mesh sn fn metaballs triangular d0 k`
-pub fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (name, given) = operands(run, command)?;
-    let file = given.name("fn");
+fn mesh_of_file<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    name: Name<'a>,
+    file: Name<'a>,
+) -> Outcome<Flow> {
     if is_strokes(file.text) {
-        let made = sculpted(run, command, file)?;
-        if let Some(metaballs) = implicit_mesh::metaballs(&given)? {
+        let made = sculpted(run, command, &file)?;
+        if let Some(metaballs) = implicit_mesh::metaballs(options)? {
             let topology = made.topology().cloned();
             return implicit_mesh::add(run, command, &name, topology, &made.mesh, metaballs);
         }
         return add_mesh(run, command, &name, &made.mesh, None);
     }
-    let asset = run.asset(file)?;
+    let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
     let mesh =
         assets::mesh(asset).map_err(|error| Problem::new(file.span.clone(), error.to_string()))?;
-    if let Some(metaballs) = implicit_mesh::metaballs(&given)? {
+    if let Some(metaballs) = implicit_mesh::metaballs(options)? {
         let topology = assets::topology(asset).ok().map(|own| (*own).clone());
         return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);
     }

@@ -1,15 +1,37 @@
 //! RUN: messages and help.
 
 use super::state::{Evaluator, Flow};
-use crate::commands::{self, CommandSpec};
-use crate::limits::STEPS_PER_LOOKUP;
+use crate::commands::build::{by_itself, clay, idle, plain, row, takes, word_of};
+use crate::commands::slot::{existing, file, new_file, text, word};
+use crate::commands::{self, CommandSpec, Names, OptionSpec};
+use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use crate::{Severity, colours, manual};
 
+const REPORTS: &str = "the page and the program report what they do";
+
+/// `stopwatch`.
+pub static STOPWATCH_WORDS: &[OptionSpec] = &[
+    word_of("start", "begin"),
+    word_of("stop", "end and tell the time"),
+];
+
 /// `pause [message]`: a page cannot wait, so the message is shown.
-pub fn pause<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+pub static PAUSE: CommandSpec = row(
+    "pause",
+    "show a message",
+    by_itself(
+        pause,
+        plain![text("message", "the message").optional("")],
+        &[],
+    ),
+)
+.details("RATS waits for a key. A page cannot, so the message is shown among the notes.")
+.example("pause this stands among the notes");
+
+fn pause<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let source = &run.sources.all[run.file];
     let message = source.text[command.word_span.end..command.span.end].trim();
     run.say(Severity::Note, command.span.clone(), || {
@@ -20,20 +42,30 @@ pub fn pause<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 }
 
 /// `return`
-pub fn return_<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.reader(command).end()?;
+pub static RETURN: CommandSpec = row(
+    "return",
+    "return from a file, or from a defined command",
+    takes!(return_),
+)
+.example(clay!("sphere Clay 2, 0 0 0\nreturn\nnothing here is run"));
+
+fn return_<'a>(_: &mut Evaluator<'a>, _: &'a Command) -> Outcome<Flow> {
     Ok(Flow::Return)
 }
 
 /// `quit`
-pub fn quit<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.reader(command).end()?;
+pub static QUIT: CommandSpec = row("quit", "end the run", takes!(quit))
+    .interrupts()
+    .example(clay!("sphere Clay 2, 0 0 0\nquit\nnothing here is run"));
+
+fn quit<'a>(_: &mut Evaluator<'a>, _: &'a Command) -> Outcome<Flow> {
     Ok(Flow::Quit)
 }
 
 /// `info`
-pub fn info<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.given(command)?;
+pub static INFO: CommandSpec = row("info", "tell the version", takes!(info)).example("info");
+
+fn info<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     run.say(Severity::Note, command.word_span.clone(), || {
         let version = env!("CARGO_PKG_VERSION");
         (format!("Sinew {version}, the language of RATS 7.31"), None)
@@ -42,8 +74,9 @@ pub fn info<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 }
 
 /// `rats`
-pub fn rats<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.given(command)?;
+pub static RATS: CommandSpec = row("rats", "small talk", takes!(rats)).example("rats");
+
+fn rats<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     run.say(Severity::Note, command.word_span.clone(), || {
         (String::from("squeak"), None)
     });
@@ -51,8 +84,10 @@ pub fn rats<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 }
 
 /// `colors`
-pub fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.given(command)?;
+pub static COLORS: CommandSpec =
+    row("colors", "list the colours by name", takes!(colors)).example("colors");
+
+fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     run.say(Severity::Note, command.word_span.clone(), || {
         let names: Vec<_> = colours::names().collect();
         (
@@ -64,10 +99,23 @@ pub fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 }
 
 /// `help [command]`
-pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let spec = match given.maybe_name("command") {
-        Some(name) => Some(find_command(run, name)?),
+pub static HELP: CommandSpec = row(
+    "help",
+    "explain a command, or list all",
+    takes!(
+        help,
+        existing("command", Names::Command, "a command").optional("")
+    ),
+)
+.example("help sphere");
+
+fn help<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    name: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let spec = match name {
+        Some(name) => Some(find_command(run, &name)?),
         None => None,
     };
     run.say(Severity::Note, command.span.clone(), || {
@@ -77,9 +125,15 @@ pub fn help<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
 }
 
 /// `man command`
-pub fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let spec = find_command(run, given.name("command"))?;
+pub static MAN: CommandSpec = row(
+    "man",
+    "explain a command and its options",
+    takes!(man, existing("command", Names::Command, "a command")),
+)
+.example("man surface");
+
+fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command, name: Name<'a>) -> Outcome<Flow> {
+    let spec = find_command(run, &name)?;
     run.say(Severity::Note, command.span.clone(), || {
         (manual::page(spec), None)
     });
@@ -90,8 +144,8 @@ pub fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
 ///
 /// # Errors
 /// If there is none.
-pub fn find_command(run: &mut Evaluator<'_>, name: &Name<'_>) -> Outcome<&'static CommandSpec> {
-    run.scope.step(STEPS_PER_LOOKUP, &name.span)?;
+fn find_command(run: &mut Evaluator<'_>, name: &Name<'_>) -> Outcome<&'static CommandSpec> {
+    run.scope.step(limits::STEPS_PER_LOOKUP, &name.span)?;
     commands::find(name.text).ok_or_else(|| {
         Problem::new(
             name.span.clone(),
@@ -99,4 +153,119 @@ pub fn find_command(run: &mut Evaluator<'_>, name: &Name<'_>) -> Outcome<&'stati
         )
         .maybe_hint(commands::suggestion(name.text, std::iter::empty()))
     })
+}
+
+/// `log`
+pub static LOG: CommandSpec = row(
+    "log",
+    "open or close a log",
+    idle(
+        REPORTS,
+        plain![new_file("file", "the log's name").optional("")],
+    ),
+)
+.example("log session.txt");
+
+/// `stopwatch`
+pub static STOPWATCH: CommandSpec = row(
+    "stopwatch",
+    "measure time",
+    idle(
+        REPORTS,
+        plain![word("what", STOPWATCH_WORDS, "`start` or `stop`")],
+    ),
+)
+.example("stopwatch start");
+
+/// `read fn1 [fn2 …]`
+pub static READ: CommandSpec = row(
+    "read",
+    "run the commands of other files",
+    takes!(read, file("fn", "a file's name").many()),
+)
+.includes()
+.details(
+    "A file is looked for among the files of the project, then in the library (`tree.rat`, \
+     `shell.rat`, …). A file that reads itself, even by way of others, is refused.",
+)
+.example(
+    "read sphereflake.rat\nlight White, position 4 8 10\n\
+     surface Clay, diffuse SandyBrown\n\
+     sphereflake Clay, 2",
+);
+
+fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command, files: Vec<Name<'a>>) -> Outcome<Flow> {
+    for name in files {
+        let file = run.find_file(&name)?;
+        if run.reading.contains(&file) {
+            return Err(Problem::new(
+                name.span,
+                format!(
+                    "`{}` is being read already: this would never end",
+                    name.text
+                ),
+            ));
+        }
+        if run.reading.len() >= limits::MAX_NESTED_FILES {
+            return Err(Problem::new(
+                name.span,
+                format!(
+                    "files can read each other {} deep at most",
+                    limits::MAX_NESTED_FILES
+                ),
+            ));
+        }
+        if run.run_inner(command, file)? == Flow::Quit {
+            return Ok(Flow::Quit);
+        }
+    }
+    Ok(Flow::Next)
+}
+
+/// `test`.
+pub static TEST_WORDS: &[OptionSpec] = &[word_of("print", "only show the text")];
+
+/// `test command [print]`
+pub static TEST: CommandSpec = row(
+    "test",
+    "run the example of a command",
+    takes!(
+        test,
+        existing("command", Names::Command, "a command"),
+        word("print", TEST_WORDS, "`print`").optional("")
+    ),
+)
+.details(
+    "The example joins the scene as if it had been read from a file. With `print` its text is \
+     only shown.",
+)
+.example("test torus");
+
+fn test<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    name: Name<'a>,
+    print: Option<&'static str>,
+) -> Outcome<Flow> {
+    let spec = find_command(run, &name)?;
+    if print.is_some() || spec.interrupts {
+        run.say(Severity::Note, command.span.clone(), || {
+            let hint = spec.interrupts.then(|| {
+                String::from("it is only shown, as running it would end or undo what is here")
+            });
+            (spec.example.to_owned(), hint)
+        });
+        return Ok(Flow::Next);
+    }
+    let Some(file) = run.sources.find_built_in(&format!("test {}", spec.name)) else {
+        return Err(Problem::new(
+            name.span,
+            format!("the example of `{}` cannot be run from here", spec.name),
+        )
+        .hint("write the name out after `test`"));
+    };
+    if run.reading.contains(&file) {
+        return Ok(Flow::Next);
+    }
+    run.run_inner(command, file)
 }

@@ -3,20 +3,49 @@
 use super::state::{Evaluator, Flow};
 use super::surroundings::Air;
 use crate::Severity;
+use crate::commands::build::{clay, idle, plain, row, takes, word_of};
+use crate::commands::slot::{text, word};
+use crate::commands::{CommandSpec, OptionSpec};
 use crate::problem::Outcome;
 use crate::syntax::Command;
 use scene::{Background, Camera, Lens, Settings};
+use std::ops::Range;
+
+/// `reset`, `report`.
+pub static RESET_WORDS: &[OptionSpec] = &[
+    word_of("all", "everything"),
+    word_of("data", "shapes and objects"),
+    word_of("model", "shapes and objects"),
+    word_of("surfaces", "materials"),
+    word_of("textures", "textures"),
+    word_of("lights", "lights"),
+    word_of("background", "the background, sky and ground"),
+    word_of("clouds", "clouds of light"),
+    word_of("fog", "fog"),
+    word_of("cameras", "the camera"),
+    word_of("options", "all settings"),
+    word_of("var", "variables"),
+];
 
 /// `report [what …]`
-pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let words = given.words("what");
-    let is_named = |name: &str| words.iter().any(|(word, _)| *word == name);
+pub static REPORT: CommandSpec = row(
+    "report",
+    "tell what the scene holds",
+    takes!(report, word("what", RESET_WORDS, "what to report on").any()),
+)
+.example("report");
+
+fn report<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    words: Vec<&'static str>,
+) -> Outcome<Flow> {
+    let is_named = |name: &str| words.contains(&name);
     let is = |names: &[&str]| {
         words.is_empty()
             || words
                 .iter()
-                .any(|(word, _)| names.contains(word) || *word == "all")
+                .any(|word| names.contains(word) || *word == "all")
     };
     run.scope
         .step(1 + run.model.parts.len() as u64 / 16, &command.word_span)?;
@@ -80,9 +109,24 @@ pub fn report<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow
 }
 
 /// `reset all|data|…`
-pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let what = given.words("what").into_iter().map(|(word, _)| word);
+pub static RESET: CommandSpec = row(
+    "reset",
+    "put things back to what they are at the start",
+    takes!(
+        reset,
+        word("what", RESET_WORDS, "what to reset, such as `all`").many()
+    ),
+)
+.interrupts()
+.example(clay!(
+    "sphere Clay 2, 3 0 0\nreset data\nsphere Clay 2, 0 0 0"
+));
+
+fn reset<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    what: Vec<&'static str>,
+) -> Outcome<Flow> {
     for name in what {
         let is = |wanted: &str| name == wanted || name == "all";
         if is("data") || is("model") {
@@ -136,9 +180,24 @@ pub fn reset<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
 }
 
 /// `shoot`: the picture is the scene as it is here.
-pub fn shoot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    if let Some(span) = given.span("options") {
+pub static SHOOT: CommandSpec = row(
+    "shoot",
+    "draw the picture",
+    takes!(shoot, text("options", "the picture's options").optional("")),
+)
+.interrupts()
+.details(
+    "The picture shows what has been made so far. Without `shoot` it shows what there is at the \
+     end.",
+)
+.example(clay!("sphere Clay 2, 0 0 0\nshoot"));
+
+fn shoot<'a>(
+    run: &mut Evaluator<'a>,
+    _: &'a Command,
+    options: Option<Range<usize>>,
+) -> Outcome<Flow> {
+    if let Some(span) = options {
         run.say(Severity::Note, span, || {
             (
                 String::from("`shoot` has no options here: the picture is as the commands say"),
@@ -152,3 +211,14 @@ pub fn shoot<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow>
     }
     Ok(Flow::Next)
 }
+
+/// `preview`
+pub static PREVIEW: CommandSpec = row(
+    "preview",
+    "preview",
+    idle(
+        "the draft is always shown",
+        plain![text("options", "the preview's options").optional("")],
+    ),
+)
+.example("preview");

@@ -1,30 +1,136 @@
 //! `skeleton`: subdivision curves through named nodes, with flesh around them.
 
 use super::model::{Group, Part};
-use super::primitives::operands;
 use super::state::{Evaluator, Flow};
-use crate::given::{Chosen, Given};
+use crate::commands::build::{choice, row, takes, word_of};
+use crate::commands::slot::{
+    Choice, Named, Placed, SN, Word, existing, length, new, vector, whole, word,
+};
+use crate::commands::{CommandSpec, Names, OptionSpec, Role};
+use crate::given::{Chosen, Options};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use crate::{Severity, suggest};
 use field::Kernel;
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Form, Function, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
+/// Schemes of subdivision.
+const SCHEMES: &[OptionSpec] = &[
+    word_of("cubic", "the smoothest: cubic B-splines"),
+    word_of(
+        "chaikin",
+        "nearer to the nodes: corners are cut, quadratic B-splines",
+    ),
+    word_of("fourpoint", "through every node"),
+];
+
 /// Levels of subdivision unless the text says so.
-const LEVELS: f64 = 3.0;
+const LEVELS: u32 = 3;
 /// Segments that cost as much as a step.
 const SEGMENTS_PER_STEP: usize = 4;
 
+const NODE: Choice<(Named, DVec3)> = choice!(
+    "node",
+    "",
+    "a node, with a name that curves call it by",
+    new("A", Names::Node, "the node's name"),
+    vector("P", "the node's place")
+);
+const RADIUS: Choice<f64> = choice!(
+    "radius",
+    "the material's",
+    "radius of the flesh at the node that stands before it",
+    length("r", "the radius at the node")
+        .at_least(0.0)
+        .role(Role::NodeRadius)
+);
+const CURVE: Choice<Vec<Named>> = choice!(
+    "curve",
+    "",
+    "a curve along nodes, two at least: from the first to the last, drawn towards those between",
+    existing("A B", Names::Node, "the name of a node").many()
+);
+const SUBDIVIDE: Choice<u32> = choice!(
+    "subdivide",
+    "3",
+    "how often curves are refined: each time doubles their segments",
+    whole(
+        "n",
+        0,
+        skeleton::MOST_LEVELS,
+        "how often curves are refined"
+    )
+);
+const SCHEME: Choice<Word> = choice!(
+    "scheme",
+    "cubic",
+    "how curves are refined",
+    word("name", SCHEMES, "the scheme's name")
+);
+const LOCAL: Choice<Placed<f64>> = choice!(
+    "local",
+    "",
+    "folds do not blend: at a point only what is within D along the curves counts",
+    length("D", "the length along the curves within which flesh blends")
+        .at_least(1e-6)
+        .with_place()
+);
+
+/// `skeleton`.
+pub static SKELETON_OPTIONS: &[OptionSpec] = &[
+    NODE.plain,
+    RADIUS.plain,
+    CURVE.plain,
+    SUBDIVIDE.plain,
+    SCHEME.plain,
+    LOCAL.plain,
+];
+
 /// `skeleton sn, name [subdivide n] [scheme name] [local D] { node A <x y z> [radius r] … curve A B … … }`
-pub fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let (sn, given) = operands(run, command)?;
-    let name = given.name("name").clone();
+pub static SKELETON: CommandSpec = row(
+    "skeleton",
+    "curves that branch, with flesh around them",
+    takes!(
+        skeleton,
+        [SKELETON_OPTIONS],
+        SN,
+        new("name", Names::Object, "the skeleton's name")
+    ),
+)
+.newer()
+.details(
+    "Nodes and curves stand in `{ … }`. A curve begins and ends at its end nodes, passes through \
+     nodes that it shares with other curves, which branch there, and is drawn towards all others. \
+     A curve that ends where it begins is closed. The radius varies smoothly from node to node. \
+     The flesh is soft whatever the material's blobbiness; its kernel is `cubed` unless the \
+     material names another. With `local D` only the stretch within D along the curves counts at \
+     a point, so that a fold does not blend with what lies beside it; about four radii suit. A \
+     skeleton is an object: it is moved, turned and copied by its name.",
+)
+.example(
+    "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
+     Gray50, shine 40, radius 0.6, blobbiness -2\n\
+     skeleton Flesh, HAND {\n  node WRIST <-3 -1 0> radius 0.5\n  \
+     node PALM <-0.5 0 0> radius 0.9\n  \
+     node TIP <3 1.2 0> radius 0.3\n  \
+     node THUMB <0.5 2.4 0> radius 0.3\n  \
+     curve WRIST PALM TIP\n  curve PALM THUMB\n\
+     }",
+);
+
+fn skeleton<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    sn: Name<'a>,
+    name: Name<'a>,
+) -> Outcome<Flow> {
     let material = run.material(&sn)?;
     let flesh = &run.palette.surfaces[material].flesh;
     let mut read = Read {
@@ -33,8 +139,8 @@ pub fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
         material: sn.text,
         radius: flesh.radius,
     };
-    read.nodes(&given)?;
-    for chosen in given.options.iter().filter(|c| c.name == "curve") {
+    read.nodes(options)?;
+    for chosen in options.iter().filter(|chosen| CURVE.is(chosen)) {
         run.scope
             .step((read.nodes.len() / 8) as u64, &chosen.span)?;
         read.curve(chosen)?;
@@ -48,7 +154,7 @@ pub fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Fl
     let lonely = read.lonely();
     let names = read.nodes.iter().map(|(name, _)| name.text.to_owned());
     let names = names.collect();
-    let curves = read.refined(command, &given)?;
+    let curves = read.refined(command, options)?;
     let segments = curves.polyline().map_or(0, |p| p.segments.len());
     run.scope
         .step((segments / SEGMENTS_PER_STEP) as u64, &command.word_span)?;
@@ -104,14 +210,15 @@ struct Read<'a> {
 
 impl<'a> Read<'a> {
     /// The nodes and their radii.
-    fn nodes(&mut self, given: &Given<'a>) -> Outcome<()> {
-        let mut before = None;
-        for chosen in &given.options {
-            match chosen.name {
-                "node" => self.node(chosen)?,
+    fn nodes(&mut self, options: &Options<'a>) -> Outcome<()> {
+        let mut is_behind_node = false;
+        for chosen in options.iter() {
+            if let Some((name, place)) = NODE.of(chosen) {
+                self.node(name, place)?;
+            } else if let Some(radius) = RADIUS.of(chosen) {
                 // It belongs to the node right before it.
-                "radius" => match (before, self.nodes.last_mut()) {
-                    (Some("node"), Some((_, node))) => node.radius = chosen.given.number("r"),
+                match self.nodes.last_mut() {
+                    Some((_, node)) if is_behind_node => node.radius = radius,
                     _ => {
                         return Err(Problem::new(
                             chosen.span.clone(),
@@ -119,16 +226,14 @@ impl<'a> Read<'a> {
                         )
                         .hint("write `node A <0 0 0> radius 0.5`"));
                     }
-                },
-                _ => {}
+                }
             }
-            before = Some(chosen.name);
+            is_behind_node = NODE.is(chosen);
         }
         Ok(())
     }
 
-    fn node(&mut self, chosen: &Chosen<'a>) -> Outcome<()> {
-        let name = chosen.given.name("A").clone();
+    fn node(&mut self, name: Name<'a>, place: DVec3) -> Outcome<()> {
         if let Some((first, _)) = self.nodes.iter().find(|(n, _)| n.text == name.text) {
             return Err(Problem::new(
                 name.span.clone(),
@@ -138,7 +243,7 @@ impl<'a> Read<'a> {
             .related(None, first.span.clone(), "the first one"));
         }
         let node = Node {
-            position: chosen.given.vector("P"),
+            position: place,
             radius: self.radius,
         };
         self.nodes.push((name, node));
@@ -146,7 +251,7 @@ impl<'a> Read<'a> {
     }
 
     fn curve(&mut self, chosen: &Chosen<'a>) -> Outcome<()> {
-        let names = chosen.given.names("A B");
+        let names = CURVE.of(chosen).unwrap_or_default();
         let along: Vec<usize> = names.iter().map(|n| self.find(n)).collect::<Outcome<_>>()?;
         if along.len() < 2 {
             return Err(Problem::new(
@@ -192,11 +297,9 @@ impl<'a> Read<'a> {
     }
 
     /// The curves, refined as the options say.
-    fn refined(self, command: &Command, given: &Given<'_>) -> Outcome<Curves> {
-        let levels = given.option("subdivide");
-        let levels = levels.map_or(LEVELS, |chosen| chosen.given.number("n")) as u32;
-        let scheme = given.option("scheme");
-        let scheme = match scheme.and_then(|chosen| chosen.given.word("name")) {
+    fn refined(self, command: &Command, options: &Options<'_>) -> Outcome<Curves> {
+        let levels = options.last(&SUBDIVIDE).unwrap_or(LEVELS);
+        let scheme = match options.last(&SCHEME) {
             Some("chaikin") => Scheme::Chaikin,
             Some("fourpoint") => Scheme::FourPoint,
             _ => Scheme::Cubic,
@@ -208,12 +311,11 @@ impl<'a> Read<'a> {
             .fold(0.0, |most: f64, node| most.max(node.radius));
         let mut curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
             .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
-        if let Some(local) = given.option("local") {
-            let reach = local.given.number("D");
+        if let Some((reach, span)) = options.last(&LOCAL) {
             // So few of the field's sources count within less that no flesh is left.
             if reach < LEAST_REACH * thickest {
                 return Err(Problem::new(
-                    local.given.span("D").unwrap_or_else(|| local.span.clone()),
+                    span,
                     format!(
                         "flesh as thick as {thickest} blends along {reach} of its curves only, and vanishes"
                     ),

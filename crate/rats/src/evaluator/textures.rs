@@ -3,9 +3,12 @@
 use super::palette::Texture;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::commands::OptionSpec;
-use crate::commands::options::{MAPPINGS, SOLIDS, TARGETS, TEXTURE, WAVES};
-use crate::given::Chosen;
+use crate::commands::build::{by_itself, choice, option, plain, row, word_of};
+use crate::commands::slot::{
+    Choice, Named, Slot, copy, existing, new, number, triple, unread, vector, whole, word,
+};
+use crate::commands::{CommandSpec, Kind, Names, OptionSpec};
+use crate::given::{Chosen, One};
 use crate::problem::{Outcome, Problem};
 use crate::reader::{Name, Reader};
 use crate::suggest;
@@ -14,6 +17,51 @@ use field::Profile;
 use glam::DVec3;
 use std::ops::Range;
 use texture::{Fault, Mapping, Region, Solid, Target};
+
+/// The ways in which an image lies on a surface.
+pub static MAPPINGS: &[OptionSpec] = &[
+    word_of("plain", "by u and v, over the whole shape"),
+    option(
+        "region",
+        "",
+        "on points in a box whose normals pass through a rectangle",
+        plain![
+            vector("MIN", "the region's lowest corner"),
+            vector("MAX", "the region's highest corner"),
+            vector("P1", "the rectangle's lower left corner"),
+            vector("P2", "the rectangle's lower right corner"),
+            vector("P3", "the rectangle's upper right corner"),
+            vector("P4", "the rectangle's upper left corner")
+        ],
+    ),
+];
+
+/// The waves of the method `Fu Fv`, along a shape's u and v.
+pub static WAVES: &[OptionSpec] = &[
+    word_of("one", "1 everywhere"),
+    word_of("x", "from 0 to 1"),
+    word_of("saw", "from 0 to 1 again and again"),
+    word_of("hat", "up and down in straight lines"),
+    word_of("step", "0, then 1"),
+    word_of("sin", "a sine between 0 and 1"),
+    word_of("cos", "a cosine between 0 and 1"),
+    word_of("sin^2", "a squared sine"),
+    word_of("cos^2", "a squared cosine"),
+];
+
+/// Solid textures.
+pub static SOLIDS: &[OptionSpec] = &[
+    word_of("marble", "marble"),
+    word_of("agate", "agate"),
+    word_of("granite", "granite"),
+    word_of("moon", "craters"),
+    word_of("onion", "shells"),
+    word_of("wood", "rings"),
+    word_of("ripples", "waves"),
+    word_of("sandal", "sandal wood"),
+    word_of("checker", "checkers"),
+    word_of("paint", "paint"),
+];
 
 /// The waves of the table, for profiles and for textures.
 #[rustfmt::skip]
@@ -53,13 +101,147 @@ fn target(name: &str) -> Option<Target> {
     })
 }
 
+/// Layers of textures, joined by `+`.
+pub const LAYERS: Slot<Vec<Named>> = existing("t1 +", Names::Texture, "the texture's name").many();
+
+const TRANSLATE: Choice<DVec3> = choice!(
+    "translate",
+    "0 0 0",
+    "moves the texture, in units of the object; of waves and images in shares of u and v",
+    vector("XYZ", "the shift")
+);
+const SCALE: Choice<DVec3> = choice!(
+    "scale",
+    "1 1 1",
+    "factors on the place: the larger, the finer the texture",
+    triple("XYZ", "the scale")
+);
+const TIMES: Choice<DVec3> = choice!(
+    "times",
+    "1 1 1",
+    "scales its values, and the height of bumps",
+    triple("RGB", "the factor")
+);
+const BOUNDS: Choice<(DVec3, DVec3)> = choice!(
+    "bounds",
+    "0 0 0 1 1 1",
+    "its lowest and highest value: two colours between which it goes",
+    triple("RGB", "the lowest value"),
+    triple("RGB", "the highest value")
+);
+const TURBULENCE: Choice<f64> = choice!(
+    "turbulence",
+    "1",
+    "noise of solids: 0 is none",
+    number("t", "the turbulence").at_least(0.0)
+);
+const OCTAVES: Choice<f64> = choice!(
+    "octaves",
+    "5",
+    "detail of the noise of solids",
+    number("r", "the octaves").from(0.0, 32.0)
+);
+const MASK: Choice<Vec<u32>> = choice!(
+    "mask",
+    "",
+    "tiles shown (1) and left out (0), row by row: as many as the scale has tiles along x, times \
+     those along y",
+    whole("1 0", 0, 1, "an entry of the mask").many()
+);
+const REPLACE: Choice<()> = choice!(
+    "replace",
+    "",
+    "values take the place of the target's, instead of scaling them"
+);
+const UPON: Choice<Vec<Named>> = choice!(
+    "texture",
+    "",
+    "layers of other textures, upon this one",
+    LAYERS
+);
+
+/// `texture`.
+pub static TEXTURE_OPTIONS: &[OptionSpec] = &[
+    TRANSLATE.plain,
+    SCALE.plain,
+    TIMES.plain,
+    BOUNDS.plain,
+    TURBULENCE.plain,
+    OCTAVES.plain,
+    MASK.plain,
+    REPLACE.plain,
+    UPON.plain,
+];
+
+/// Properties of a material that a texture changes.
+pub static TARGETS: &[OptionSpec] = &[
+    word_of("diffuse", "the diffuse colour"),
+    word_of("ambient", "the ambient colour"),
+    word_of("specular", "the highlight"),
+    word_of("reflective", "the mirror's colour"),
+    word_of("transparent", "the colour let through"),
+    word_of("index", "the index of refraction"),
+    word_of("shine", "the highlight's size"),
+    word_of("pigment", "diffuse and ambient"),
+    word_of("normal", "bumps"),
+    word_of("strength", "the field: a profile"),
+    choice!("texture", "", "layers of other textures", LAYERS).plain,
+];
+
 /// `texture { alias target method option … }`, `texture new = old`
 ///
 /// Of our own: `texture new = old option …` changes the copy.
-pub fn texture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let name = run.reader(command).new_name("the texture's name")?;
-    make(run, command).inspect_err(|_| run.palette.insert_broken(name.text))?;
+pub static TEXTURE: CommandSpec = row(
+    "texture",
+    "make a texture",
+    by_itself(
+        texture,
+        plain![
+            new("alias", Names::Texture, "the texture's name"),
+            copy("= old", Names::Texture, "the name of the old texture").optional(""),
+            word(
+                "Target",
+                TARGETS,
+                "what the texture changes, such as `pigment`"
+            ),
+            unread("Method", Kind::Method, WHAT),
+        ],
+        TEXTURE_OPTIONS,
+    ),
+)
+.mark_failed(insert_broken)
+.details(
+    "A method is a solid (`wood`), which fills the space of the object; a pair of waves along u \
+     and v (`sin one`; their x is u or v times the scale, in radians for sines); a colour; or an \
+     image (`face.png plain`). Its values go from the first of the `bounds` to the second, and \
+     scale the target: black leaves nothing of it, white all. Textures move, turn and scale with \
+     their object. `normal` makes bumps. u and v run from 0 to 1: along a limb and around it, \
+     around a ball and up; each shape of a blend is textured by itself, and the results are \
+     mixed. With the target `strength` waves are a profile: they model the flesh along the \
+     skeleton (thesis, section 3.4). `texture t1 + t2` puts layers upon each other, at most 12; \
+     `texture new = old` copies a texture. Options behind these change each of the layers (ours).",
+)
+.example(
+    "light White, position 4 8 10\nlight White, position -8 2 6, intensity 0.3, noshadow\n\
+     texture Rings, pigment wood, scale 2 2 1, bounds SaddleBrown BurlyWood, replace\n\
+     texture Veins, pigment marble, bounds SteelBlue White\n\
+     texture Dimples, normal ripples, scale 1.5 1.5 1.5\n\
+     surface Wood, diffuse White, texture Rings\n\
+     surface Stone, diffuse White, specular Gray50, shine 60, radius 0.8, blobbiness -3, texture \
+     Veins + Dimples\nsphere Wood 1.2, -1.8 0 0\n\
+     sphere Stone 1, 1.2 0.7 0\nsphere Stone 1, 2 -0.7 0",
+);
+
+fn texture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    make(run, command)?;
     Ok(Flow::Next)
+}
+
+/// Keeps the name of a texture that could not be made.
+fn insert_broken<'a>(run: &mut Evaluator<'a>, command: &'a Command) {
+    if let Ok(name) = run.reader(command).new_name("the texture's name") {
+        run.palette.insert_broken(name.text);
+    }
 }
 
 /// Where a texture's values come from, as the text says it.
@@ -74,10 +256,10 @@ enum Method<'a> {
 
 fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let mut read = run.reader(command);
-    let name = read.name("the texture's name")?;
+    let name = read.new_name("the texture's name")?;
     if read.sign(b'=') {
         let old = read.known_name("the name of the old texture")?;
-        let options = read.chosen(TEXTURE)?;
+        let options = read.chosen(TEXTURE_OPTIONS)?;
         read.end()?;
         let texture = run.palette.texture(&old)?.clone();
         return finish(run, &name, texture, options);
@@ -85,17 +267,20 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let Some((word, _)) = read.option(TARGETS)? else {
         return Err(read.expected("what the texture changes, such as `pigment`"));
     };
-    let below = read.operands(word.parameters, TEXTURE)?.names("t1 +");
+    let below = read.operands(word.parameters, TEXTURE_OPTIONS)?;
     let start = read.start();
     let method = match word.name {
         "texture" => None,
         _ => Some(method(&mut read)?),
     };
     let span = read.since(start);
-    let options = read.chosen(TEXTURE)?;
+    let options = read.chosen(TEXTURE_OPTIONS)?;
     read.end()?;
     let texture = match method {
-        None => run.palette.layers(&below)?,
+        None => {
+            let below: Vec<_> = below.iter().filter_map(Named::of).collect();
+            run.palette.layers(&below)?
+        }
         Some(method) => own_layer(run, target(word.name), method, span)?,
     };
     finish(run, &name, texture, options)
@@ -156,11 +341,11 @@ fn finish<'a>(
     let mut above = Vec::new();
     let mut mask = None;
     for chosen in options {
-        if chosen.name == "texture" {
-            above.extend(chosen.given.names("t1 +"));
+        if let Some(layers) = UPON.of(&chosen) {
+            above.extend(layers);
             continue;
         }
-        if matches!(chosen.name, "mask" | "scale") {
+        if MASK.is(&chosen) || SCALE.is(&chosen) {
             mask = Some(chosen.span.clone());
         }
         if let Some(message) = set(&mut texture, &chosen) {
@@ -185,28 +370,24 @@ fn finish<'a>(
 
 /// Sets an option of every layer and of the profile. Returns what is to be said if it changes nothing.
 fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
-    let Chosen { name, given, .. } = chosen;
+    let name = chosen.option.name;
     let layers = &mut texture.layers;
     if let Some(profile) = &mut texture.profile {
         // A strength is one number: the first of three.
-        match *name {
-            "scale" => profile.scale = [given.vector("XYZ").x, given.vector("XYZ").y],
-            "times" => profile.times = given.vector("RGB").x,
-            "bounds" => {
-                let bounds = given.vectors("RGB");
-                profile.bounds = [bounds[0].x, bounds[1].x];
-            }
-            "translate" if given.vector("XYZ") == DVec3::ZERO => {}
-            _ if layers.is_empty() => {
-                return Some(format!(
-                    "`{name}` changes nothing about a strength: `scale`, `bounds` and `times` do"
-                ));
-            }
-            _ => {}
+        if let Some(scale) = SCALE.of(chosen) {
+            profile.scale = [scale.x, scale.y];
+        } else if let Some(times) = TIMES.of(chosen) {
+            profile.times = times.x;
+        } else if let Some((low, high)) = BOUNDS.of(chosen) {
+            profile.bounds = [low.x, high.x];
+        } else if layers.is_empty() && TRANSLATE.of(chosen) != Some(DVec3::ZERO) {
+            return Some(format!(
+                "`{name}` changes nothing about a strength: `scale`, `bounds` and `times` do"
+            ));
         }
     }
     let is_solid = |layer: &texture::Texture| matches!(layer.method, texture::Method::Solid(_));
-    if matches!(*name, "turbulence" | "octaves")
+    if (TURBULENCE.is(chosen) || OCTAVES.is(chosen))
         && !layers.is_empty()
         && !layers.iter().any(is_solid)
     {
@@ -215,21 +396,22 @@ fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
         ));
     }
     for layer in layers {
-        match *name {
-            "translate" => layer.translate = given.vector("XYZ"),
-            "scale" => layer.scale = given.vector("XYZ"),
-            "times" => layer.times = given.vector("RGB"),
-            "bounds" => {
-                let bounds = given.vectors("RGB");
-                layer.bounds = [bounds[0], bounds[1]];
-            }
-            "turbulence" => layer.grain.turbulence = given.number("t"),
-            "octaves" => layer.grain.octaves = given.number("r"),
-            "mask" => {
-                let entries = given.numbers("1 0");
-                layer.mask = entries.into_iter().map(|entry| entry == 1.0).collect();
-            }
-            _ => layer.replace = true,
+        if let Some(shift) = TRANSLATE.of(chosen) {
+            layer.translate = shift;
+        } else if let Some(scale) = SCALE.of(chosen) {
+            layer.scale = scale;
+        } else if let Some(times) = TIMES.of(chosen) {
+            layer.times = times;
+        } else if let Some((low, high)) = BOUNDS.of(chosen) {
+            layer.bounds = [low, high];
+        } else if let Some(turbulence) = TURBULENCE.of(chosen) {
+            layer.grain.turbulence = turbulence;
+        } else if let Some(octaves) = OCTAVES.of(chosen) {
+            layer.grain.octaves = octaves;
+        } else if let Some(mask) = MASK.of(chosen) {
+            layer.mask = mask.into_iter().map(|entry| entry == 1).collect();
+        } else if REPLACE.is(chosen) {
+            layer.replace = true;
         }
     }
     None

@@ -3,20 +3,29 @@
 
 use super::state::{Evaluator, Flow};
 use crate::colours;
-use crate::given::Given;
+use crate::commands::build::{choice, idle, plain, row, takes};
+use crate::commands::slot::{
+    Choice, Named, Placed, Slot, Text, colour, file, new_file, number, text, whole,
+};
+use crate::commands::{CommandSpec, OptionSpec, Unit};
+use crate::given::Options;
 use crate::limits::MAX_TOOLS;
 use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
 use crate::syntax::Command;
 use crate::tool::{Playback, Shown, Tool};
+use scene::Rgb;
+
+const FILE: Slot<Named> = file("fn", "a picture's name");
+const OTHER: Slot<Named> = file("fn2", "another picture's name");
+const WINDOW: Slot<Option<Text>> = text("w", "a window").optional("");
+/// The place of the pictures, for the details of all commands.
+const WORK: &str = "The program works on files of the dataset's folder when it runs the dataset. \
+    The page works on the images of the work and on its own picture (`scene.png`, or as `filename` and \
+    `format` say), and shows the results below the picture.";
 
 /// Lists a job.
-fn job<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    make: impl FnOnce(&Given<'a>) -> Outcome<Tool>,
-) -> Outcome<Flow> {
-    let given = run.given(command)?;
-    let tool = make(&given)?;
+fn job<'a>(run: &mut Evaluator<'a>, command: &'a Command, tool: Tool) -> Outcome<Flow> {
     if run.tools.len() >= MAX_TOOLS {
         return Err(Problem::new(
             command.span.clone(),
@@ -28,173 +37,389 @@ fn job<'a>(
     Ok(Flow::Next)
 }
 
-fn files(given: &Given<'_>) -> Vec<String> {
-    given
-        .names("fn")
-        .iter()
-        .map(|name| name.text.to_owned())
-        .collect()
+/// The files' names.
+fn texts(names: &[Name<'_>]) -> Vec<String> {
+    names.iter().map(|name| name.text.to_owned()).collect()
 }
 
-fn file(given: &Given<'_>, parameter: &'static str) -> String {
-    given.name(parameter).text.to_owned()
-}
+const LOOP: Choice<()> = choice!("loop", "", "again and again");
+const MIRROR: Choice<()> = choice!("mirror", "", "there and back");
+const DITHER: Choice<()> = choice!("dither", "", "fewer colours");
 
-fn saved(given: &Given<'_>) -> Option<String> {
-    let chosen = given.option("save")?;
-    Some(file(&chosen.given, "fn"))
-}
+/// `animate`, `play`.
+pub static ANIMATE_OPTIONS: &[OptionSpec] = &[LOOP.plain, MIRROR.plain, DITHER.plain];
 
 /// `animate fn1 … [loop|mirror|dither]`
-pub fn animate<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let has = |name| given.option(name).is_some();
-        Ok(Tool::Animate {
-            files: files(given),
-            playback: match (has("loop"), has("mirror")) {
-                (_, true) => Playback::Mirror,
-                (true, _) => Playback::Loop,
-                _ => Playback::Once,
-            },
-            dither: has("dither"),
-        })
-    })
+pub static ANIMATE: CommandSpec = row(
+    "animate",
+    "make a film of pictures",
+    takes!(animate, [ANIMATE_OPTIONS], FILE.many()),
+)
+.details(WORK)
+.example("animate one.png two.png loop");
+
+fn animate<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    files: Vec<Name<'a>>,
+) -> Outcome<Flow> {
+    let tool = Tool::Animate {
+        files: texts(&files),
+        playback: match (options.has(&LOOP), options.has(&MIRROR)) {
+            (_, true) => Playback::Mirror,
+            (true, _) => Playback::Loop,
+            _ => Playback::Once,
+        },
+        dither: options.has(&DITHER),
+    };
+    job(run, command, tool)
 }
 
 /// `play fn`
-pub fn play<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let file = file(given, "fn");
-        Ok(Tool::Play { file })
-    })
+pub static PLAY: CommandSpec = row("play", "play a film", takes!(play, FILE))
+    .details(WORK)
+    .example("play film.gif");
+
+fn play<'a>(run: &mut Evaluator<'a>, command: &'a Command, file: Name<'a>) -> Outcome<Flow> {
+    let file = file.text.to_owned();
+    job(run, command, Tool::Play { file })
 }
 
 /// `split fn [frame.fmt]`
-pub fn split<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        Ok(Tool::Split {
-            file: file(given, "fn"),
-            pattern: given.maybe_name("frame.fmt").map(|n| n.text.to_owned()),
-        })
-    })
+pub static SPLIT: CommandSpec = row(
+    "split",
+    "split a film into pictures",
+    takes!(
+        split,
+        FILE,
+        new_file("frame.fmt", "the pictures' name").optional("frame.png")
+    ),
+)
+.details(WORK)
+.example("split film.gif frame.png");
+
+fn split<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    file: Name<'a>,
+    pattern: Option<Name<'a>>,
+) -> Outcome<Flow> {
+    let tool = Tool::Split {
+        file: file.text.to_owned(),
+        pattern: pattern.map(|name| name.text.to_owned()),
+    };
+    job(run, command, tool)
 }
+
+const COLUMNS: Choice<u32> = choice!(
+    "columns",
+    "as many as make it square",
+    "pictures side by side",
+    whole("n", 1, 256, "the number of columns")
+);
+const GAP: Choice<u32> = choice!(
+    "gap",
+    "0",
+    "room between pictures",
+    whole("p", 0, 256, "the gap").unit(Unit::Pixels)
+);
+
+/// `collage`.
+pub static COLLAGE_OPTIONS: &[OptionSpec] = &[COLUMNS.plain, GAP.plain];
 
 /// `collage fn1 fn2 … [columns n]`
-pub fn collage<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let columns = given.option("columns").map(|c| c.given.number("n") as u32);
-        Ok(Tool::Collage {
-            columns,
-            files: files(given),
-        })
-    })
+pub static COLLAGE: CommandSpec = row(
+    "collage",
+    "put pictures side by side",
+    takes!(collage, [COLLAGE_OPTIONS], FILE.many()),
+)
+.details(WORK)
+.example("collage one.png two.png columns 2");
+
+fn collage<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    files: Vec<Name<'a>>,
+) -> Outcome<Flow> {
+    let tool = Tool::Collage {
+        columns: options.last(&COLUMNS),
+        files: texts(&files),
+    };
+    job(run, command, tool)
 }
 
+const SPEED: Choice<u32> = choice!(
+    "speed",
+    "10",
+    "pictures in a second",
+    whole("N", 1, 100, "the pictures in a second")
+);
+const SIZE: Choice<(u32, u32)> = choice!(
+    "size",
+    "of the first",
+    "size of the film",
+    whole("W", 1, 4096, "the width").unit(Unit::Pixels),
+    whole("H", 1, 4096, "the height").unit(Unit::Pixels)
+);
+
+/// `fli`.
+pub static FLI_OPTIONS: &[OptionSpec] = &[SPEED.plain, SIZE.plain];
+
 /// `fli fn1 … [speed N] [size W H]`
-pub fn fli<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let speed = given.option("speed").map(|c| c.given.number("N"));
-        let size = given
-            .option("size")
-            .map(|c| ["W", "H"].map(|side| c.given.number(side) as u32));
-        Ok(Tool::Fli {
-            files: files(given),
-            speed,
-            size,
-        })
-    })
+pub static FLI: CommandSpec = row(
+    "fli",
+    "make a film of pictures of one size",
+    takes!(fli, [FLI_OPTIONS], FILE.many()),
+)
+.details(
+    "RATS wrote Autodesk's FLI; ours writes an animated GIF, and `animate` an animated PNG. The \
+     program works on files of the dataset's folder, the page on the images of the work.",
+)
+.example("fli one.png two.png speed 12");
+
+fn fli<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    files: Vec<Name<'a>>,
+) -> Outcome<Flow> {
+    let tool = Tool::Fli {
+        files: texts(&files),
+        speed: options.last(&SPEED).map(f64::from),
+        size: options.last(&SIZE).map(|(width, height)| [width, height]),
+    };
+    job(run, command, tool)
 }
 
 /// `convert fn1 fn2`
-pub fn convert<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        Ok(Tool::Convert {
-            from: file(given, "fn"),
-            to: file(given, "fn2"),
-        })
-    })
+pub static CONVERT: CommandSpec = row(
+    "convert",
+    "convert a picture",
+    takes!(convert, FILE, new_file("fn2", "the new picture's name")),
+)
+.details(WORK)
+.example("convert one.png one.tga");
+
+fn convert<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    from: Name<'a>,
+    to: Name<'a>,
+) -> Outcome<Flow> {
+    let tool = Tool::Convert {
+        from: from.text.to_owned(),
+        to: to.text.to_owned(),
+    };
+    job(run, command, tool)
 }
 
 /// `resize fn x y`
-pub fn resize<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        Ok(Tool::Resize {
-            file: file(given, "fn"),
-            width: given.number("x") as u32,
-            height: given.number("y") as u32,
-        })
-    })
+pub static RESIZE: CommandSpec = row(
+    "resize",
+    "resize a picture",
+    takes!(
+        resize,
+        FILE,
+        whole("x", 1, 8192, "the width").unit(Unit::Pixels),
+        whole("y", 1, 8192, "the height").unit(Unit::Pixels)
+    ),
+)
+.details(WORK)
+.example("resize one.png 320 200");
+
+fn resize<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    file: Name<'a>,
+    width: u32,
+    height: u32,
+) -> Outcome<Flow> {
+    let tool = Tool::Resize {
+        file: file.text.to_owned(),
+        width,
+        height,
+    };
+    job(run, command, tool)
 }
 
+const SAVE: Choice<Named> = choice!(
+    "save",
+    "",
+    "writes the result",
+    new_file("fn", "the new file's name")
+);
+
+/// `diff`, `and`, `xor`.
+pub static SAVE_OPTIONS: &[OptionSpec] = &[SAVE.plain];
+
 /// `diff fn1 fn2 [save fn]`
-pub fn diff<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let (a, b, save) = (file(given, "fn"), file(given, "fn2"), saved(given));
-        Ok(Tool::Diff { a, b, save })
-    })
+pub static DIFF: CommandSpec = row(
+    "diff",
+    "difference of two pictures",
+    takes!(diff, [SAVE_OPTIONS], FILE, OTHER),
+)
+.details(WORK)
+.example("diff one.png two.png save difference.png");
+
+fn diff<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    a: Name<'a>,
+    b: Name<'a>,
+) -> Outcome<Flow> {
+    let [a, b] = [a, b].map(|name| name.text.to_owned());
+    let save = options.last(&SAVE).map(|name| name.text.to_owned());
+    job(run, command, Tool::Diff { a, b, save })
 }
 
 /// `and fn1 fn2 [save fn]`
-pub fn and<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let (a, b, save) = (file(given, "fn"), file(given, "fn2"), saved(given));
-        Ok(Tool::And { a, b, save })
-    })
+pub static AND: CommandSpec = row(
+    "and",
+    "AND of two pictures",
+    takes!(and, [SAVE_OPTIONS], FILE, OTHER),
+)
+.details(WORK)
+.example("and one.png two.png save both.png");
+
+fn and<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    a: Name<'a>,
+    b: Name<'a>,
+) -> Outcome<Flow> {
+    let [a, b] = [a, b].map(|name| name.text.to_owned());
+    let save = options.last(&SAVE).map(|name| name.text.to_owned());
+    job(run, command, Tool::And { a, b, save })
 }
 
 /// `xor fn1 fn2 [save fn]`
-pub fn xor<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let (a, b, save) = (file(given, "fn"), file(given, "fn2"), saved(given));
-        Ok(Tool::Xor { a, b, save })
-    })
+pub static XOR: CommandSpec = row(
+    "xor",
+    "XOR of two pictures",
+    takes!(xor, [SAVE_OPTIONS], FILE, OTHER),
+)
+.details(WORK)
+.example("xor one.png two.png save either.png");
+
+fn xor<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    a: Name<'a>,
+    b: Name<'a>,
+) -> Outcome<Flow> {
+    let [a, b] = [a, b].map(|name| name.text.to_owned());
+    let save = options.last(&SAVE).map(|name| name.text.to_owned());
+    job(run, command, Tool::Xor { a, b, save })
 }
 
+const PICTURE: Choice<Named> = choice!("file", "", "a picture", file("fn", "a picture's name"));
+const COLOUR: Choice<Placed<Rgb>> = choice!(
+    "color",
+    "",
+    "a colour",
+    colour("Color", "a colour").with_place()
+);
+const PALETTE: Choice<()> = choice!("palette", "", "all colours with a name");
+
+/// `show`.
+pub static SHOW_OPTIONS: &[OptionSpec] = &[PICTURE.plain, COLOUR.plain, PALETTE.plain];
+
 /// `show file fn`, `show color Color`, `show palette`
-pub fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+pub static SHOW: CommandSpec = row(
+    "show",
+    "show a file, a colour, a palette",
+    takes!(show, [SHOW_OPTIONS]),
+)
+.details(WORK)
+.example("show color OrangeRed");
+
+fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command, options: &Options<'a>) -> Outcome<Flow> {
     let source = &run.sources.all[run.file];
-    job(run, command, |given| {
-        if let [_, second, ..] = &given.options[..] {
+    let chosen = match &options.0[..] {
+        [] => {
+            return Err(
+                Problem::new(command.span.clone(), "`show` needs something to show")
+                    .hint("`file`, `color` or `palette`"),
+            );
+        }
+        [chosen] => chosen,
+        [_, second, ..] => {
             return Err(Problem::new(
                 second.span.clone(),
                 "`show` shows one thing at a time",
             ));
         }
-        let Some(chosen) = given.options.first() else {
-            return Err(
-                Problem::new(command.span.clone(), "`show` needs something to show")
-                    .hint("`file`, `color` or `palette`"),
-            );
+    };
+    let what = if let Some(file) = PICTURE.of(chosen) {
+        Shown::File(file.text.to_owned())
+    } else if let Some((rgb, span)) = COLOUR.of(chosen) {
+        let written = &source.text[span];
+        // How a text is laid out must not matter, so only a word is kept as it is written.
+        let name = if written.chars().all(char::is_alphanumeric) {
+            written.to_owned()
+        } else {
+            rgb.map(|share| share.to_string()).join(" ")
         };
-        let what = match chosen.name {
-            "file" => Shown::File(file(&chosen.given, "fn")),
-            "color" => {
-                let written = &source.text[chosen.given.span("Color").unwrap_or(0..0)];
-                let rgb = chosen.given.colour("Color");
-                // How a text is laid out must not matter, so only a word is kept as it is written.
-                let name = if written.chars().all(char::is_alphanumeric) {
-                    written.to_owned()
-                } else {
-                    rgb.map(|share| share.to_string()).join(" ")
-                };
-                Shown::Colour { name, rgb }
-            }
-            _ => Shown::Palette(colours::names().filter_map(colours::find).collect()),
-        };
-        Ok(Tool::Show { what })
-    })
+        Shown::Colour { name, rgb }
+    } else {
+        Shown::Palette(colours::names().filter_map(colours::find).collect())
+    };
+    job(run, command, Tool::Show { what })
 }
 
 /// `table v1 v2 …`
-pub fn table<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    job(run, command, |given| {
-        let values = given.numbers("v");
-        if !(2..=256).contains(&values.len()) {
-            return Err(Problem::new(
-                command.span.clone(),
-                format!("a table has from 2 to 256 numbers, not {}", values.len()),
-            ));
-        }
-        Ok(Tool::Table { values })
-    })
+pub static TABLE: CommandSpec = row(
+    "table",
+    "plot numbers",
+    takes!(table, number("v", "a number").many()),
+)
+.details(
+    "A polyline of 2 to 256 points. The program draws it as a picture `table.png`, and the page \
+     shows it below its own picture.",
+)
+.example("table 1 4 9 16 25");
+
+fn table<'a>(run: &mut Evaluator<'a>, command: &'a Command, values: Vec<f64>) -> Outcome<Flow> {
+    if !(2..=256).contains(&values.len()) {
+        return Err(Problem::new(
+            command.span.clone(),
+            format!("a table has from 2 to 256 numbers, not {}", values.len()),
+        ));
+    }
+    job(run, command, Tool::Table { values })
 }
+
+/// `kill`
+pub static KILL: CommandSpec = row(
+    "kill",
+    "close windows",
+    idle(
+        "results go when the commands that made them go",
+        plain![WINDOW],
+    ),
+)
+.example("kill");
+
+/// `refresh`
+pub static REFRESH: CommandSpec = row(
+    "refresh",
+    "draw windows again",
+    idle(
+        "results are made again when the text or its pictures change",
+        plain![WINDOW],
+    ),
+)
+.example("refresh");
+
+/// `tile`
+pub static TILE: CommandSpec = row(
+    "tile",
+    "arrange windows",
+    idle("results lie side by side anyway", plain![WINDOW]),
+)
+.example("tile");

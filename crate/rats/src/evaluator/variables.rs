@@ -2,6 +2,9 @@
 
 use super::state::{Evaluator, Flow};
 use crate::Severity;
+use crate::commands::build::{by_itself, choice, clay, plain, row, sets};
+use crate::commands::slot::{new, number, unread};
+use crate::commands::{CommandSpec, Kind, Names, OptionSpec};
 use crate::compiled::{HotValue, HotVariable};
 use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
@@ -13,14 +16,65 @@ use crate::value::Value;
 use glam::DVec3;
 use std::ops::Range;
 
+/// `var`.
+pub static VAR_OPTIONS: &[OptionSpec] = &[
+    choice!(
+        "hot",
+        "",
+        "a slider in the page; its range and step are ours",
+        number("low", "the slider's lowest value").optional(""),
+        number("high", "the slider's highest value").optional(""),
+        number("step", "the slider's step").optional("")
+    )
+    .plain,
+    choice!(
+        "+=",
+        "",
+        "grows with every frame of an animation",
+        number("step", "the change with every frame")
+    )
+    .plain,
+    choice!(
+        "*=",
+        "",
+        "is multiplied with every frame of an animation",
+        number("factor", "the change with every frame")
+    )
+    .plain,
+];
+
 /// `var name = value [hot] [+= step | *= factor]`
-pub fn var<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    set(run, command).inspect_err(|_| {
-        if let Some((name, _)) = run.reader(command).peek_word() {
-            run.scope.set_broken(name);
-        }
-    })?;
+pub static VAR: CommandSpec = row(
+    "var",
+    "create or change a variable; `hot` makes it a slider",
+    by_itself(
+        var,
+        plain![
+            new("name", Names::Variable, "the variable's name"),
+            unread("= value", Kind::Value, "a value")
+        ],
+        VAR_OPTIONS,
+    ),
+)
+.mark_failed(set_broken)
+.details(
+    "A value is a number, three numbers or a colour. A colour stays a colour when it is set to \
+     three numbers. `+= step` and `*= factor` change it with every frame of an animation.",
+)
+.example(clay!(
+    "var r = 1.5 hot 0.5 2.5 0.1\nvar Where = 0 0 0\nsphere Clay r, Where"
+));
+
+fn var<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    set(run, command)?;
     Ok(Flow::Next)
+}
+
+/// Remembers that a variable could not be set.
+fn set_broken<'a>(run: &mut Evaluator<'a>, command: &'a Command) {
+    if let Some((name, _)) = run.reader(command).peek_word() {
+        run.scope.set_broken(name);
+    }
 }
 
 fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
@@ -355,7 +409,15 @@ fn make_hot(
 }
 
 /// `seed n`
-pub fn seed<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.scope.random = Random::new(run.given(command)?.number("n"));
-    Ok(Flow::Next)
-}
+pub static SEED: CommandSpec = row(
+    "seed",
+    "start the random numbers of `rand`",
+    sets!(
+        |run, seed| run.scope.random = Random::new(seed),
+        number("n", "the seed")
+    ),
+)
+.default("0")
+.example(clay!(
+    "seed 7\nfor i = 1 to 20 { sphere Clay 0.3, rand*6-3, rand*6-3, 0 }"
+));

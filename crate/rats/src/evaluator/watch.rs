@@ -5,7 +5,7 @@
 //! for a picture, and the run notes where variables and the radii of materials were written.
 
 use super::state::Evaluator;
-use crate::commands::Parameter;
+use crate::commands::slot::Named;
 use crate::given::{self, Filled, Given};
 use crate::lexer::{TokenKind, lex};
 use crate::provenance::{Number, Operand, Provenance, Source};
@@ -54,22 +54,21 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Notes where the radius of a material was given; a copy takes over that of the old one.
+    /// Notes where the radius of a material was given, with its place; a copy takes over that of the
+    /// old one. A radius follows from a depth if there is one.
     pub(super) fn watch_material(
         &mut self,
         name: &Name<'a>,
         old: Option<&Name<'_>>,
-        given: &Given<'_>,
+        radius: Option<(f64, Range<usize>)>,
+        has_depth: bool,
     ) {
         if self.watch.is_none() {
             return;
         }
-        let own = given.option("radius").and_then(|radius| {
-            let span = radius.given.span("r")?;
-            Some(Number {
-                value: radius.given.number("r"),
-                source: self.source(span, 0),
-            })
+        let own = radius.map(|(value, span)| Number {
+            value,
+            source: self.source(span, 0),
         });
         let Some(watch) = &mut self.watch else { return };
         let inherited = || watch.radii.get(old?.text).cloned();
@@ -77,42 +76,27 @@ impl<'a> Evaluator<'a> {
             value: 0.0,
             source: Source::Computed(String::from("is not given")),
         });
-        if given
-            .option("depth")
-            .is_some_and(|d| d.given.number("d") > 0.0)
-        {
+        if has_depth {
             let why = format!("follows from the `depth` of `{}`", name.text);
             radius.source = Source::Computed(why);
         }
         watch.radii.insert(name.text, radius);
     }
 
-    /// Looks at a shape's command that has just been read.
-    pub(super) fn watch_shape(
-        &mut self,
-        command: &'a Command,
-        material: &Name<'a>,
-        given: &Given<'a>,
-    ) {
+    /// Looks at a shape's command that has just been read; its first operand is the material.
+    pub(super) fn watch_shape(&mut self, command: &'a Command, given: &Given<'a>) {
         let Some(watch) = &self.watch else { return };
         if watch.seen.is_some() || !self.is_own() || self.origin(command) != watch.target {
             return;
         }
-        let Some(spec) = command.spec else { return };
+        let (Some(spec), Some(material)) = (command.spec, given.operands().next::<Named>()) else {
+            return;
+        };
         let radius = watch.radii.get(material.text).cloned();
         let mut operands = Vec::new();
-        for filled in &given.operands {
-            operands.extend(self.operand(command, spec.parameters, filled));
-        }
-        for chosen in &given.options {
-            let option = spec
-                .options
-                .iter()
-                .find(|option| option.name == chosen.name);
-            for filled in &chosen.given.operands {
-                let parameters = option.map_or(&[][..], |option| option.parameters);
-                operands.extend(self.operand(command, parameters, filled));
-            }
+        let chosen = given.options.iter().flat_map(|chosen| &chosen.operands);
+        for filled in given.filled.iter().chain(chosen) {
+            operands.extend(self.operand(command, filled));
         }
         let seen = Provenance {
             spec,
@@ -129,13 +113,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// An operand of the command's with the sources of its numbers; `None` if it is no number.
-    fn operand(
-        &mut self,
-        command: &Command,
-        parameters: &'static [Parameter],
-        filled: &Filled<'a>,
-    ) -> Option<Operand> {
-        let parameter = parameters.iter().find(|p| p.name == filled.parameter)?;
+    fn operand(&mut self, command: &Command, filled: &Filled<'a>) -> Option<Operand> {
         let values = match filled.operand {
             given::Operand::Number(number) => vec![number],
             // A direction was made a unit vector; here it is wanted as it is written.
@@ -149,9 +127,7 @@ impl<'a> Evaluator<'a> {
         };
         let numbers = values.into_iter().zip(sources);
         Some(Operand {
-            name: parameter.name,
-            meaning: parameter.meaning,
-            kind: parameter.kind,
+            parameter: filled.parameter,
             numbers: numbers
                 .map(|(value, source)| Number { value, source })
                 .collect(),

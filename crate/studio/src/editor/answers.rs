@@ -143,10 +143,7 @@ impl Editor {
         if neat != text {
             let lines = neat.split_inclusive('\n').take(self.line.saturating_sub(1));
             self.place = Some(lines.map(str::len).sum());
-            commands.push(Command::Step {
-                file: self.file,
-                text: neat,
-            });
+            commands.push(Command::step(rats::TextEdit::whole(self.file, neat)));
         }
     }
 

@@ -113,7 +113,7 @@ impl Rename {
         let Place { file, byte } = self.place;
         match assist::rename(session.project(), file, byte, self.name.trim()) {
             Ok(edits) => {
-                commands.push(Command::Edit(edits));
+                commands.push(Command::Edit { edits, step: true });
                 true
             }
             Err(trouble) => {

@@ -6,7 +6,7 @@ use crate::places;
 use crate::session::Session;
 use assist::Tint;
 use egui::{Popup, Rect, Ui, UiBuilder, vec2};
-use rats::{HotValue, hot};
+use rats::{HotValue, TextEdit, hot};
 
 /// Side of a square of colour, and the space between two.
 const SIDE: f32 = 16.0;
@@ -73,11 +73,9 @@ impl Tints {
                     ..place
                 });
                 let colour = bytes.map(|byte| f32::from(byte) / 255.0);
-                commands.push(Command::Replace {
-                    file: place.file,
-                    range: tint.span.clone(),
-                    with: hot::write(&HotValue::Colour(colour)),
-                });
+                let colour = hot::write(&HotValue::Colour(colour));
+                let edit = TextEdit::new(place.file, tint.span.clone(), colour);
+                commands.push(Command::edit(edit));
             }
         }
         if dragging != self.dragging {

@@ -140,11 +140,7 @@ impl Cage {
             let Some(target) = target else { continue };
             let grain = sight.point(handle.place);
             if let Some(edit) = handles::pull(session.project(), deform, i, target, grain) {
-                commands.push(Command::Replace {
-                    file: edit.file,
-                    range: edit.span,
-                    with: edit.text,
-                });
+                commands.push(Command::edit(edit));
             }
         }
     }

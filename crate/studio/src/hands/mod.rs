@@ -2,7 +2,7 @@
 //! knobs on it move the numbers of the text.
 //!
 //! The chosen shape also follows the caret of the editor. Nothing is kept here that the text does not
-//! say: each change goes through [`Command::Replace`], and a drag is one undo step.
+//! say: each change goes through [`Command::Edit`], and a drag is one undo step.
 
 mod cage;
 mod knob;
@@ -283,14 +283,8 @@ impl Hands {
             }
             if let Some(target) = target {
                 let grain = sight.point(handle.place);
-                // From the last to the first, so that no place in the text moves under another.
-                for edit in handles::drag(handle, target, grain).into_iter().rev() {
-                    commands.push(Command::Replace {
-                        file: edit.file,
-                        range: edit.span,
-                        with: edit.text,
-                    });
-                }
+                let edits = handles::drag(handle, target, grain);
+                commands.push(Command::Edit { edits, step: false });
             }
         }
     }

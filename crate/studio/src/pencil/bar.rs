@@ -199,8 +199,8 @@ fn thickness(ui: &mut Ui, value: &mut f32) {
     // As high as the slider is, or it would lie lower, on its caption.
     let height = ui.spacing().interact_size.y.max(26.0);
     let place = Rect::from_center_size(wedge.center(), vec2(width, height));
-    let builder = egui::UiBuilder::new().max_rect(place);
-    let mut inner = ui.new_child(builder.layout(Layout::left_to_right(Align::Center)));
+    let part = places::part("draw thickness", place);
+    let mut inner = ui.new_child(part.layout(Layout::left_to_right(Align::Center)));
     slider::colours(&mut inner);
     inner.spacing_mut().slider_width = width - 2.0;
     let slider = inner.add(

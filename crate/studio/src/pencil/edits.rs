@@ -6,7 +6,7 @@ use crate::hands::Sight;
 use crate::session::Session;
 use egui::{Pos2, Vec2, pos2};
 use glam::{DAffine3, DVec3};
-use rats::Project;
+use rats::{Project, TextEdit};
 use scene::Rgb;
 use skeleton::Node;
 use sketch::{Limb, Mark, Sample, Start, Stroke};
@@ -40,15 +40,6 @@ pub struct Brush {
     pub colour: Option<Rgb>,
     /// Whether fingers are likely.
     pub touch: bool,
-}
-
-/// A new text of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Change {
-    /// The file's index.
-    pub file: usize,
-    /// Its text.
-    pub text: String,
 }
 
 /// What a stroke grows from.
@@ -408,7 +399,7 @@ pub fn draw(
     samples: &[Sample],
     brush: &Brush,
     point: f64,
-) -> Option<Change> {
+) -> Option<TextEdit> {
     // A skeleton of another colour is another one.
     let rooted = match begin.root {
         Root::Node(index, _) | Root::End(index, _) => Some(index),
@@ -480,17 +471,14 @@ pub fn draw(
         let drawn = &all[index];
         let text = &project.files.get(drawn.file)?.text;
         let text = sketch::extend(text, drawn.span.clone(), &limbs, grain)?;
-        return Some(Change {
-            file: drawn.file,
-            text,
-        });
+        return Some(TextEdit::whole(drawn.file, text));
     }
     let texts = || project.files.iter().map(|file| file.text.as_str());
     let colour = brush.colour.unwrap_or(page::COLOURS[0].1);
     let (text, material) = page::with_surface(&project.files.first()?.text, texts, colour, true);
     let name = sketch::free_name(texts(), "DRAWING");
     let text = sketch::create(&text, &material, &name, &limbs, grain)?;
-    Some(Change { file: 0, text })
+    Some(TextEdit::whole(0, text))
 }
 
 /// The beginning of a curve that grows from a skeleton.
@@ -549,7 +537,7 @@ pub fn bead(
     at: DVec3,
     colour: Rgb,
     point: f64,
-) -> Option<Change> {
+) -> Option<TextEdit> {
     let radius = 0.6 * begin.radius;
     let texts = || project.files.iter().map(|file| file.text.as_str());
     let (mut text, material) =
@@ -567,7 +555,7 @@ pub fn bead(
         let radius = number(radius, 0.1 * point);
         text += &format!("sphere {material} {radius}, <{x} {y} {z}>\n");
     }
-    Some(Change { file: 0, text })
+    Some(TextEdit::whole(0, text))
 }
 
 /// A number without the digits that are below a tenth of the grain.
@@ -606,12 +594,10 @@ pub fn grounded(text: &str, all: &[Drawn]) -> String {
 /// Says why the change cannot be made: the compiler's message.
 pub fn checked(
     session: &Session,
-    change: Change,
-) -> Result<(Change, Project, rats::Compiled), String> {
-    let mut project = session.project().clone();
-    if let Some(file) = project.files.get_mut(change.file) {
-        file.text.clone_from(&change.text);
-    }
+    change: TextEdit,
+) -> Result<(TextEdit, Project, rats::Compiled), String> {
+    let file = change.file;
+    let project = session.project().apply(&[change]);
     let compiled = rats::compile_at(&project, session.assets(), f64::from(session.film_frame()));
     let errors = |diagnostics: &[rats::Diagnostic]| {
         let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
@@ -628,8 +614,9 @@ pub fn checked(
         let why = new.map_or("the text would have a mistake", |d| &d.message);
         return Err(format!("This cannot be drawn here: {why}."));
     }
-    let text = grounded(&change.text, &Drawn::all(&project, &compiled));
-    Ok((Change { text, ..change }, project, compiled))
+    let changed = project.files.get(file).map_or("", |file| &file.text);
+    let text = grounded(changed, &Drawn::all(&project, &compiled));
+    Ok((TextEdit::whole(file, text), project, compiled))
 }
 
 /// Makes a change, and then what is the same on the other side of the mirror, in one step. `again` gets the skeletons after the first.
@@ -638,9 +625,9 @@ pub fn checked(
 /// As [`checked`].
 pub fn twice(
     session: &Session,
-    change: Change,
-    again: impl FnOnce(&Project, &[Drawn]) -> Option<Change>,
-) -> Result<Change, String> {
+    change: TextEdit,
+    again: impl FnOnce(&Project, &[Drawn]) -> Option<TextEdit>,
+) -> Result<TextEdit, String> {
     let (first, project, compiled) = checked(session, change)?;
     let all = Drawn::all(&project, &compiled);
     match again(&project, &all).filter(|second| second.file == first.file) {

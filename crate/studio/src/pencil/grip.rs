@@ -7,6 +7,7 @@ use crate::session::Session;
 use assist::handles::{self, Editable, Handle, Kind};
 use egui::Pos2;
 use glam::DVec3;
+use rats::TextEdit;
 
 /// The handles of an element of a revision and frame of the film.
 #[derive(Default)]
@@ -131,7 +132,7 @@ impl Grip {
         if let Some(twin) = self.twin.and_then(|twin| of_node(handles, twin)) {
             add_apart(&mut edits, handles::drag(twin.0, other, grain));
         }
-        replace(&edits, commands);
+        write(edits, commands);
         None
     }
 }
@@ -174,22 +175,19 @@ pub fn widen(
                     grain / growth,
                 )?;
                 // The mirrored one follows at the next turn, when its number stands in the text.
-                commands.push(Command::SetText {
-                    file: drawn.file,
-                    text: new,
-                });
+                commands.push(Command::edit(TextEdit::whole(drawn.file, new)));
                 return None;
             }
         }
     }
-    replace(&edits, commands);
+    write(edits, commands);
     None
 }
 
 /// Adds changes of other places.
-fn add_apart(edits: &mut Vec<assist::Edit>, more: Vec<assist::Edit>) {
+fn add_apart(edits: &mut Vec<TextEdit>, more: Vec<TextEdit>) {
     for edit in more {
-        let meets = |other: &assist::Edit| {
+        let meets = |other: &TextEdit| {
             other.file == edit.file
                 && other.span.start < edit.span.end
                 && edit.span.start < other.span.end
@@ -200,16 +198,8 @@ fn add_apart(edits: &mut Vec<assist::Edit>, more: Vec<assist::Edit>) {
     }
 }
 
-/// From the last to the first, so that no place in the text moves under another.
-fn replace(edits: &[assist::Edit], commands: &mut Vec<Command>) {
-    let mut order: Vec<usize> = (0..edits.len()).collect();
-    let place = |i: usize| (edits[i].file, edits[i].span.start, i);
-    field::heap_sort(&mut order, |a, b| place(*a) > place(*b));
-    for edit in order.into_iter().map(|i| &edits[i]) {
-        commands.push(Command::Replace {
-            file: edit.file,
-            range: edit.span.clone(),
-            with: edit.text.clone(),
-        });
-    }
+/// Makes changes that are apart from each other.
+fn write(mut edits: Vec<TextEdit>, commands: &mut Vec<Command>) {
+    edits.sort_by_key(|edit| (edit.file, edit.span.start));
+    commands.push(Command::Edit { edits, step: false });
 }

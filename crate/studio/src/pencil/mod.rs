@@ -19,10 +19,11 @@ use crate::hands::Sight;
 use crate::session::Session;
 use crate::{places, platform};
 use drawn::{Spot, crossing, node_at, spot_at};
-use edits::{Begin, Brush, Change, Root, Wish};
+use edits::{Begin, Brush, Root, Wish};
 use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
 use glam::DVec3;
 use grip::Grip;
+use rats::TextEdit;
 use scene::Shape;
 use sketch::{Mark, Stroke};
 use tool::Tool;
@@ -65,7 +66,7 @@ struct Other {
     /// The text with the last stroke.
     now: String,
     /// The text with the other one, in its place.
-    change: Change,
+    change: TextEdit,
     /// Whether that is a pair.
     pair: bool,
 }
@@ -154,10 +155,8 @@ impl Pencil {
         }
         std::mem::swap(&mut other.now, &mut other.change.text);
         commands.push(Command::Undo);
-        commands.push(Command::Step {
-            file: other.change.file,
-            text: other.now.clone(),
-        });
+        let edit = TextEdit::whole(other.change.file, other.now.as_str());
+        commands.push(Command::step(edit));
         other.pair = !other.pair;
         other.revision = None;
     }
@@ -517,18 +516,12 @@ impl Pencil {
         ) else {
             return;
         };
-        let change = Change {
-            file: drawn.file,
-            text,
-        };
+        let change = TextEdit::whole(drawn.file, text);
         let number = drawn.knobs.len();
         match edits::checked(session, change) {
             Ok((change, project, compiled)) => {
                 commands.push(Command::Hold);
-                commands.push(Command::SetText {
-                    file: change.file,
-                    text: change.text,
-                });
+                commands.push(Command::edit(change));
                 let all = Drawn::all(&project, &compiled);
                 let found = (spot.drawn, number);
                 if all
@@ -577,10 +570,7 @@ impl Pencil {
                     let text = session.text(drawn.file);
                     let new = edits::grounded(text, &self.all);
                     if session.is_compiled() && new != text {
-                        commands.push(Command::SetText {
-                            file: drawn.file,
-                            text: new,
-                        });
+                        commands.push(Command::edit(TextEdit::whole(drawn.file, new)));
                     }
                 }
                 commands.push(Command::Release);
@@ -597,7 +587,7 @@ impl Pencil {
         touch: bool,
         at: Pos2,
         begin: &Begin,
-    ) -> Option<Result<Change, String>> {
+    ) -> Option<Result<TextEdit, String>> {
         let reach = if touch { 16.0 } else { 5.0 };
         let hit = hit(session, sight, at, reach)?;
         let colour = self
@@ -620,7 +610,7 @@ impl Pencil {
         sight: &Sight,
         touch: bool,
         stroke: &Stroke,
-    ) -> Option<Result<Change, String>> {
+    ) -> Option<Result<TextEdit, String>> {
         let (change, is_pair) = self.grown(session, sight, touch, stroke, None)?;
         let change = match edits::checked(session, change) {
             Ok((change, ..)) => change,
@@ -650,7 +640,7 @@ impl Pencil {
         touch: bool,
         stroke: &Stroke,
         pair: Option<bool>,
-    ) -> Option<(Change, bool)> {
+    ) -> Option<(TextEdit, bool)> {
         let brush = self.brush(touch);
         let home = session.camera().target;
         let start = stroke.marks()[0].at;
@@ -691,7 +681,7 @@ impl Pencil {
                     origin.start as usize..origin.end as usize,
                 );
                 let text = sketch::without_commands(session.text(file), &[span]);
-                let change = text.map(|text| Change { file, text });
+                let change = text.map(|text| TextEdit::whole(file, text));
                 step(
                     change.map(|change| edits::checked(session, change).map(|(c, ..)| c)),
                     commands,
@@ -716,20 +706,17 @@ impl Pencil {
         let Some(text) = sketch::remove_curve(text, drawn.span.clone(), spot.curve) else {
             return;
         };
-        let change = Change {
-            file: drawn.file,
-            text,
-        };
+        let change = TextEdit::whole(drawn.file, text);
         let other = self.mirrored(spot.drawn, spot.place);
         let radius = spot.radius;
         let result = edits::twice(session, change, |project, all| {
             let (index, spot) = near(all, other?, 0.6 * radius)?;
             let drawn = &all[index];
             let text = &project.files[drawn.file].text;
-            Some(Change {
-                file: drawn.file,
-                text: sketch::remove_curve(text, drawn.span.clone(), spot.curve)?,
-            })
+            Some(TextEdit::whole(
+                drawn.file,
+                sketch::remove_curve(text, drawn.span.clone(), spot.curve)?,
+            ))
         });
         step(Some(result), commands);
     }
@@ -747,10 +734,7 @@ impl Pencil {
         let Some(text) = sketch::remove(text, drawn.span.clone(), node) else {
             return;
         };
-        let change = Change {
-            file: drawn.file,
-            text,
-        };
+        let change = TextEdit::whole(drawn.file, text);
         let other = self.mirrored(
             index,
             drawn
@@ -767,10 +751,10 @@ impl Pencil {
             });
             let (drawn, node) = found?;
             let text = &project.files[drawn.file].text;
-            Some(Change {
-                file: drawn.file,
-                text: sketch::remove(text, drawn.span.clone(), node)?,
-            })
+            Some(TextEdit::whole(
+                drawn.file,
+                sketch::remove(text, drawn.span.clone(), node)?,
+            ))
         });
         step(Some(result), commands);
     }
@@ -804,18 +788,15 @@ impl Pencil {
         let Some(text) = cut(drawn, session.text(drawn.file), &spot) else {
             return;
         };
-        let change = Change {
-            file: drawn.file,
-            text,
-        };
+        let change = TextEdit::whole(drawn.file, text);
         let other = self.mirrored(spot.drawn, spot.place);
         let result = edits::twice(session, change, |project, all| {
             let (index, spot) = near(all, other?, 0.6 * spot.radius)?;
             let drawn = &all[index];
-            Some(Change {
-                file: drawn.file,
-                text: cut(drawn, &project.files[drawn.file].text, &spot)?,
-            })
+            Some(TextEdit::whole(
+                drawn.file,
+                cut(drawn, &project.files[drawn.file].text, &spot)?,
+            ))
         });
         step(Some(result), commands);
     }
@@ -1018,9 +999,9 @@ fn near(all: &[Drawn], place: DVec3, reach: f64) -> Option<(usize, Spot)> {
     })
 }
 
-fn step(result: Option<Result<Change, String>>, commands: &mut Vec<Command>) {
+fn step(result: Option<Result<TextEdit, String>>, commands: &mut Vec<Command>) {
     match result {
-        Some(Ok(Change { file, text })) => commands.push(Command::Step { file, text }),
+        Some(Ok(edit)) => commands.push(Command::step(edit)),
         Some(Err(why)) => commands.push(Command::Tell(why)),
         None => {}
     }

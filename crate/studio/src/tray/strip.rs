@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
     }
     let measures = if narrow { &NARROW } else { &WIDE };
     let all = ui.available_rect_before_wrap();
-    let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(all));
+    let mut ui = ui.new_child(places::part("tray results", all));
     // A wheel, too, goes along the strip.
     ui.style_mut().always_scroll_the_only_direction = true;
     ScrollArea::horizontal()
@@ -92,10 +92,8 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
 fn head(ui: &mut Ui, tray: &Tray, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEAD), Sense::hover());
-    let builder = egui::UiBuilder::new()
-        .max_rect(rect)
-        .layout(Layout::left_to_right(Align::Center));
-    let mut ui = ui.new_child(builder);
+    let part = places::part("tray head", rect).layout(Layout::left_to_right(Align::Center));
+    let mut ui = ui.new_child(part);
     ui.add_space(12.0);
     let count = tray.items().len();
     let refused = tray.items().iter().filter(|item| item.is_refused()).count();

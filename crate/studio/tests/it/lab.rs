@@ -220,11 +220,11 @@ fn every_lesson_is_drawn_at_both_sizes_and_in_both_palettes() {
         for theme in [Theme::Dark, Theme::Light] {
             let mut window = Window::with_work(size);
             window.harness.ctx.set_theme(theme);
-            for lesson in Lesson::ALL {
+            for lesson in Lesson::all() {
                 window.follow(&lesson.hash());
                 window.steps(4);
                 let lab = window.lab().unwrap();
-                assert_eq!(lab.lesson, lesson.word());
+                assert_eq!(lab.lesson, lesson.words().link);
                 assert!(!lab.readings.is_empty(), "{lesson:?}");
                 let screen = window.harness.ctx.content_rect();
                 for name in ["lab back", "lab share", "lab dataset", "lab figure"] {
@@ -253,7 +253,7 @@ fn every_lesson_is_drawn_at_both_sizes_and_in_both_palettes() {
 fn every_control_of_the_lab_has_a_name() {
     for size in [DESK, PHONE] {
         let mut window = Window::with_work(size);
-        for lesson in Lesson::ALL {
+        for lesson in Lesson::all() {
             window.follow(&lesson.hash());
             window.steps(6);
             window.until("rest", |window| {
@@ -393,7 +393,7 @@ fn a_picture_of_the_editor_that_runs_is_finished_first() {
 
 #[test]
 fn every_lesson_opens_as_a_dataset_that_compiles() {
-    for lesson in Lesson::ALL {
+    for lesson in Lesson::all() {
         let parts = Parts::new();
         platform::set_hash("");
         let mut window = Window::open(DESK, parts.clone());

@@ -112,6 +112,41 @@ fn turning_the_picture_keeps_its_camera_while_the_text_changes() {
 }
 
 #[test]
+fn a_click_counts_though_the_first_picture_comes_meanwhile() {
+    let parts = Parts::new();
+    let mut mine = Window::open_with(1000.0, 700.0, parts.clone());
+    mine.load(TEXT);
+    mine.edit();
+    mine.write("# mine\n");
+    mine.steps(20);
+    drop(mine);
+
+    // A picture that takes longer than the window takes to open.
+    let spheres = "for i = 1 to 400 { sphere flesh 0.1, sin(i) cos(2 * i) sin(3 * i) }\n";
+    let theirs = Project {
+        files: vec![File {
+            name: String::from("shell.rat"),
+            text: TEXT.replace("64 48", "640 480") + spheres,
+        }],
+    };
+    let link = share::link("https://sinew.example/", &theirs, None).unwrap();
+    platform::set_hash(&link[link.find('#').unwrap()..]);
+    let mut window = Window::open_with(1000.0, 700.0, parts);
+    let button = window.harness.get_by_label("Back to my work");
+    let at = button.rect().center();
+    window.harness.event(Event::PointerMoved(at));
+    window.steps(1);
+    window.press(at, true);
+    window.steps(1);
+    assert!(window.image().is_empty(), "the picture is not there yet");
+    window.arrive();
+    window.press(at, false);
+    window.steps(2);
+    assert!(window.text().starts_with("# mine\n"), "{}", window.text());
+    platform::set_hash("");
+}
+
+#[test]
 fn a_shared_link_leaves_the_own_work_alone() {
     let parts = Parts::new();
     let mut mine = Window::open_with(1000.0, 700.0, parts.clone());

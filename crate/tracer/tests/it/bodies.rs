@@ -2,10 +2,11 @@
 
 use field::{Ball, Enclosure, Implicit, Jet, Kernel, Sum, THRESHOLD};
 use glam::{DAffine3, DMat3, DVec3};
+use oracle::Reference;
+use oracle::rays::{Row, Trial, check, parameters};
 use scene::{Body, Element, Form, Function, Scene, Shape};
 use std::sync::Arc;
-use tracer::{Hit, Pass, Picture, Reference, Stats, Tile};
-use trials::rays::{Row, Trial, check};
+use tracer::{Hit, Pass, Picture, Stats, Tile};
 use trials::scenes::{Kind, blend};
 use trials::{Random, count};
 use wide::f32x8;
@@ -152,7 +153,7 @@ fn surfaces_of_functions_are_within_the_tolerance() {
                     let body = picture.add_function(Arc::new(sum), vec![0]);
                     let hits = picture.cast(&trial.rays);
                     assert!(hits.iter().flatten().all(|hit| hit.body == Some(body)));
-                    hits
+                    parameters(&hits)
                 };
                 let seed = 8_000_000 + seed;
                 let trial = Trial::new(kernel, kind, seed, 2);

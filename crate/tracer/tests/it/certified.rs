@@ -1,134 +1,44 @@
-//! Pictures against the true surface: no hits further from it than the tolerance, none missed where it is thicker than that, none
-//! invented. The same on many more rays, kernel by kernel: `cargo run --release -p tracer
-//! --example certify`.
+//! Ways of finding surfaces, held to the conformance suite: no hits further from the true surface
+//! than the tolerance, none missed where it is thicker than that, none invented. The same on many
+//! more rays, kernel by kernel: `cargo run --release -p tracer --example certify`.
 
 use field::Kernel;
 use glam::DVec3;
+use oracle::rays::{Method, parameters};
+use oracle::surfaces::{self, judge};
 use scene::{Element, Scene, Shape};
-use tracer::{Hit, Pass, Picture, Stats, Tile};
-use trials::rays::{Row, Trial, check};
+use tracer::{Pass, Picture, Stats, Tile};
 use trials::scenes::{Kind, clothe, element, empty, soft};
 use trials::{Random, count};
 
-/// Judges some scenes of each kind, with the kernels in turn.
-fn run(
-    kernels: &[Kernel],
-    kinds: &[Kind],
-    scenes: usize,
-    packets: usize,
-    cast: &dyn Fn(&Trial, &Picture) -> Vec<Option<Hit>>,
-) -> (Row, String) {
-    let mut told = String::new();
-    let mut total = Row::default();
-    for &kind in kinds {
-        let many = matches!(kind, Kind::Cluster | Kind::Cloud);
-        let packets = if many { 2 } else { packets };
-        for (seed, &kernel) in (7_000_000..).zip(kernels.iter().cycle().take(count(scenes))) {
-            // Other seeds than those of the large run.
-            let trial = Trial::new(kernel, kind, seed, packets);
-            total.add(&check(trial, cast, &mut told));
+/// The way of pictures.
+const PICTURES: Method<'static> = &|trial, picture| parameters(&picture.cast(&trial.rays));
+
+/// The exact way.
+const EXACT: Method<'static> = &|trial, picture| {
+    let first = |&(origin, direction): &(DVec3, DVec3)| {
+        picture.hits(origin, direction).first().map(|hit| hit.t)
+    };
+    trial.rays.iter().map(first).collect()
+};
+
+/// A test for each check of the suite, so that they run side by side.
+macro_rules! held {
+    ($($module:ident: $method:expr, $($check:ident),*;)*) => {$(
+        mod $module {
+            use super::*;
+            $(#[test]
+            fn $check() {
+                surfaces::$check($method);
+            })*
         }
-    }
-    (total, told)
+    )*};
 }
 
-/// Compact kernels, whose fields are not cut off.
-const COMPACT: [Kernel; 4] = [
-    Kernel::Metaballs,
-    Kernel::Soft,
-    Kernel::Quartic,
-    Kernel::Compact6,
-];
-
-/// Kernels that never end, or are cut off.
-const ENDLESS: [Kernel; 5] = [
-    Kernel::Cauchy,
-    Kernel::Gauss,
-    Kernel::Inverse,
-    Kernel::Squared,
-    Kernel::Cubed,
-];
-
-/// Pictures have no inaccurate hit and miss no surface. With infinite kernels they may miss surfaces that rays graze, as next to the
-/// poles of squared polygons: no more often than this share. `examples/certify.rs` lists the cases.
-fn certify(kinds: &[Kind], most_grazed: f64) {
-    let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);
-    let (mut all, mut faults) = run(&COMPACT, kinds, 4, 4, &cast);
-    assert!(all.faults() == 0, "{all:?}\n{faults}");
-    let (endless, told) = run(&ENDLESS, kinds, 5, 4, &cast);
-    all.add(&endless);
-    faults += &told;
-    let scenes = ((count(4) + count(5)) * kinds.len()) as u64;
-    assert!(all.rays > 14 * scenes && all.hits > 8 * scenes, "{all:?}");
-    assert!(all.uncertain * 100 < all.rays, "{all:?}");
-    assert!(all.missed == 0 && all.invented == 0, "{all:?}\n{faults}");
-    let grazed = all.grazed as f64 / all.rays as f64;
-    assert!(grazed <= most_grazed, "{all:?}\n{faults}");
-}
-
-/// Points, which take the fast path, have no fault at all.
-#[test]
-fn pictures_of_blobs_are_within_the_tolerance() {
-    let kernels = [&[Kernel::Gauss][..], &COMPACT].concat();
-    let (row, told) = run(&kernels, &[Kind::Point], 30, 6, &|trial, picture| {
-        picture.cast(&trial.rays)
-    });
-    assert!(row.faults() == 0, "{row:?}\n{told}");
-    assert!(row.hits > count(500) as u64, "{row:?}");
-}
-
-// Cut into several tests so that they run side by side.
-
-#[test]
-fn pictures_of_points_and_lines_are_within_the_tolerance() {
-    certify(&[Kind::Segment, Kind::Arc, Kind::Curve, Kind::Taper], 0.002);
-    certify(&[Kind::Point], 0.0);
-}
-
-#[test]
-fn pictures_of_faces_are_within_the_tolerance() {
-    certify(
-        &[Kind::Triangle, Kind::Polygon, Kind::Plane, Kind::Restricted],
-        0.002,
-    );
-}
-
-#[test]
-fn pictures_of_profiles_are_within_the_tolerance() {
-    certify(&[Kind::Waves, Kind::Kinks], 0.0);
-}
-
-#[test]
-fn pictures_of_mixtures_and_clusters_are_within_the_tolerance() {
-    certify(&[Kind::Mixed], 0.002);
-    certify(&[Kind::Cluster], 0.0);
-}
-
-/// Very many points of kernels that never end, whose far field is a hierarchy of polynomials.
-#[test]
-fn pictures_of_clouds_are_within_the_tolerance() {
-    let endless = [
-        Kernel::Cauchy,
-        Kernel::Inverse,
-        Kernel::Squared,
-        Kernel::Cubed,
-    ];
-    let (row, told) = run(&endless, &[Kind::Cloud], 48, 4, &|trial, picture| {
-        picture.cast(&trial.rays)
-    });
-    assert!(row.faults() == 0, "{row:?}\n{told}");
-    assert!(row.hits > count(300) as u64, "{row:?}");
-}
-
-/// A ray that starts close to a cloud's surface is as exact as its own distance asks, not that of the middle of its cell.
-#[test]
-fn rays_that_start_beside_a_cloud_are_within_the_tolerance() {
-    let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);
-    let mut told = String::new();
-    let trial = Trial::earlier(Kernel::Cubed, Kind::Cloud, 911, 3);
-    let row = check(trial, &cast, &mut told);
-    assert!(row.faults() == 0, "{row:?}\n{told}");
-    assert!(row.hits >= 12, "{row:?}");
+held! {
+    pictures: PICTURES, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds,
+        starts_beside_a_cloud, earlier_faults, earlier_faults_that_are_hard_to_judge;
+    exact: EXACT, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds;
 }
 
 /// Kinds in whose pictures each of the following faults would show.
@@ -136,7 +46,7 @@ const PLAIN: [Kind; 3] = [Kind::Point, Kind::Segment, Kind::Arc];
 
 #[test]
 fn a_hit_that_is_three_tolerances_off_is_told() {
-    let (total, _) = run(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
+    let (total, _) = judge(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
         let mut hits = picture.cast(&trial.rays);
         for (hit, (_, direction)) in hits.iter_mut().zip(&trial.rays) {
             if let Some(hit) = hit {
@@ -145,15 +55,15 @@ fn a_hit_that_is_three_tolerances_off_is_told() {
                 hit.t -= 3.0 * picture.tolerance(hit.t) / steep;
             }
         }
-        hits
+        parameters(&hits)
     });
     assert!(total.invented * 10 > total.hits * 8, "{total:?}");
 }
 
 #[test]
 fn a_hit_that_is_not_reported_is_told() {
-    let (total, _) = run(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
-        let mut hits = picture.cast(&trial.rays);
+    let (total, _) = judge(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
+        let mut hits = parameters(&picture.cast(&trial.rays));
         hits.iter_mut().step_by(3).for_each(|hit| *hit = None);
         hits
     });
@@ -162,9 +72,9 @@ fn a_hit_that_is_not_reported_is_told() {
 
 #[test]
 fn the_far_side_instead_of_the_near_one_is_told() {
-    let (total, _) = run(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
-        let far = |&(origin, direction): &(glam::DVec3, glam::DVec3)| {
-            picture.hits(origin, direction).last().copied()
+    let (total, _) = judge(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
+        let far = |&(origin, direction): &(DVec3, DVec3)| {
+            picture.hits(origin, direction).last().map(|hit| hit.t)
         };
         trial.rays.iter().map(far).collect()
     });
@@ -173,11 +83,11 @@ fn the_far_side_instead_of_the_near_one_is_told() {
 
 #[test]
 fn a_primitive_that_is_left_out_is_told() {
-    let (total, _) = run(&Kernel::ALL, &[Kind::Mixed], 9, 3, &|trial, _| {
+    let (total, _) = judge(&Kernel::ALL, &[Kind::Mixed], 9, 3, &|trial, _| {
         let mut scene = trial.scene.clone();
         scene.elements.pop();
         let size = [trial.size; 2];
-        Picture::new(&scene, size).cast(&trial.rays)
+        parameters(&Picture::new(&scene, size).cast(&trial.rays))
     });
     assert!(total.faults() * 20 > total.rays, "{total:?}");
 }
@@ -250,8 +160,8 @@ fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
     [shown, wrong]
 }
 
-/// Blobs among bones of other kernels, before and behind them, and so many bones of one infinite kernel that packets share
-/// interpolants. Pictures agree with single rays traced exactly.
+/// Blobs among bones of other kernels, before and behind them, and so many bones of one infinite
+/// kernel that packets share interpolants. Pictures agree with single rays traced exactly.
 #[test]
 fn pictures_show_what_is_there() {
     let mut n = Random::new(11);
@@ -314,59 +224,4 @@ fn a_thin_bone_beside_blobs_is_not_stepped_over() {
     scene.elements = vec![of(blob, Kernel::Gauss), of(thin, Kernel::Quartic)];
     let [shown, wrong] = shown(scene, 64);
     assert!(shown > 500 && wrong * 50 <= shown, "{wrong} of {shown}");
-}
-
-/// Regressions, scenes with faults in earlier versions: rounding, or a surface along the ray, that leaves all rays in doubt; beyond
-/// the ends of Gaussian arcs; waves across a needle; beside crisp Gaussian faces and a plane with a very distant crossing; a surface
-/// along the ray between the kinks of profiles; grazing rays that negligible terms or rounding keep outside; waves beside an arc's
-/// axis; a very thin curve whose bent-away parts counted as near; crisp faces that single precision moves by more than a very fine
-/// picture's tolerance.
-#[test]
-fn earlier_faults_do_not_recur() {
-    let once = [
-        (Kernel::Gauss, Kind::Arc, 89),
-        (Kernel::Soft, Kind::Plane, 136),
-        (Kernel::Gauss, Kind::Plane, 145),
-        (Kernel::Quartic, Kind::Triangle, 121),
-        (Kernel::Cauchy, Kind::Waves, 56),
-        (Kernel::Gauss, Kind::Mixed, 127),
-        (Kernel::Soft, Kind::Restricted, 136),
-        (Kernel::Metaballs, Kind::Waves, 132),
-        (Kernel::Quartic, Kind::Restricted, 56),
-        (Kernel::Cauchy, Kind::Curve, 31),
-        (Kernel::Cauchy, Kind::Mixed, 139),
-        (Kernel::Gauss, Kind::Segment, 66),
-        (Kernel::Compact6, Kind::Point, 130),
-        (Kernel::Gauss, Kind::Waves, 5048),
-        (Kernel::Quartic, Kind::Kinks, 108),
-        (Kernel::Metaballs, Kind::Polygon, 9043),
-    ];
-    for (kernel, kind, seed) in once {
-        recheck(kernel, kind, seed, 4);
-    }
-    // Most rays miss these.
-    recheck(Kernel::Quartic, Kind::Taper, 5031, u64::MAX);
-}
-
-/// Three more, whose reference takes seconds.
-#[test]
-fn earlier_faults_that_are_hard_to_judge_do_not_recur() {
-    let once = [
-        (Kernel::Gauss, Kind::Polygon, 138),
-        (Kernel::Inverse, Kind::Mixed, 76),
-        (Kernel::Compact6, Kind::Mixed, 16),
-    ];
-    for (kernel, kind, seed) in once.into_iter().take(count(3)) {
-        recheck(kernel, kind, seed, 4);
-    }
-}
-
-/// A scene of an earlier fault has none; one of so many rays meets something.
-fn recheck(kernel: Kernel, kind: Kind, seed: u64, least: u64) {
-    let cast = |trial: &Trial, picture: &Picture| picture.cast(&trial.rays);
-    let mut told = String::new();
-    let row = check(Trial::earlier(kernel, kind, seed, 8), &cast, &mut told);
-    let name = format!("{kernel:?} {kind:?} {seed}");
-    assert!(row.faults() == 0, "{name} {row:?}\n{told}");
-    assert!(row.hits > row.rays / least, "{name} {row:?}");
 }

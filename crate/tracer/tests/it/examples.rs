@@ -4,11 +4,11 @@
 
 use crate::judged::{Range, distances, is_outside, packet, reference};
 use glam::DVec3;
+use oracle::rays::Row;
 use rats::Project;
 use scene::Scene;
 use tracer::Picture;
 use trials::Random;
-use trials::rays::Row;
 
 /// Side of the pictures, pixels.
 const SIDE: u32 = 256;

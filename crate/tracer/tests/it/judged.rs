@@ -1,10 +1,10 @@
 //! Scenes of bodies, skeletons and contacts as the reference knows them, and verdicts on rays through them.
 use contact::Bulge;
 use glam::DVec3;
+use oracle::reference::{Deformation, Near, Reference, Substance, TouchingBody};
 use scene::{Scene, Shape, Surface};
 use std::sync::Arc;
 use tracer::Picture;
-use tracer::reference::{Deformation, Near, Reference, Substance, TouchingBody};
 use trials::Random;
 
 /// The bulges written out once more.

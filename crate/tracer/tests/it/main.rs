@@ -2,7 +2,6 @@
 
 mod bodies;
 mod certified;
-mod diggers;
 mod energy;
 mod examples;
 mod folds;

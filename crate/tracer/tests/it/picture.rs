@@ -53,7 +53,7 @@ fn a_picture_does_not_depend_on_its_tiles_or_threads() {
             for side in [16, 32, 64, 11] {
                 assert!(once == whole(&scene, size, side, pass).0, "{pass:?} {side}");
             }
-            assert!(once == tracer::render(&scene, size, 3, pass, &|_| ()).0);
+            assert!(once == tracer::render(&Picture::new(&scene, size), 3, pass, &|_| ()).0);
             assert!(once.chunks_exact(4).all(|p| p[3] == 255));
         }
     }
@@ -391,7 +391,7 @@ fn a_picture_of_several_sheets_is_that_of_its_tiles() {
     let scene = mixed(1);
     for size in [[2101, 40], [40, 2101]] {
         let picture = Picture::new(&scene, size);
-        let (rgba, _) = tracer::render(&scene, size, 2, Pass::Smooth, &|_| {});
+        let (rgba, _) = tracer::render(&Picture::new(&scene, size), 2, Pass::Smooth, &|_| {});
         for tile in tiles(size[0], size[1], 256) {
             let part = picture.trace(tile, Pass::Smooth, &|| false, &mut Stats::default());
             for (y, line) in part.unwrap().chunks(4 * tile.width as usize).enumerate() {
@@ -410,7 +410,7 @@ fn no_sample_is_taken_twice_whatever_the_number_of_threads() {
     for threads in [1, 2, 5] {
         let told = std::sync::Mutex::new(Vec::new());
         let tell = |share| told.lock().unwrap().push(share);
-        let (_, stats) = tracer::render(&scene, size, threads, Pass::Smooth, &tell);
+        let (_, stats) = tracer::render(&Picture::new(&scene, size), threads, Pass::Smooth, &tell);
         assert_eq!(stats.primary_rays, once.primary_rays);
         let told = told.into_inner().unwrap();
         assert_eq!(told.len(), 2 * 9);

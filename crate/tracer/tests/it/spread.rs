@@ -4,7 +4,7 @@ use crate::looks::*;
 use core::f64::consts::PI;
 use glam::DVec3;
 use scene::{Finish, Fog, Ground, Lens, Light, LightKind, Scene, Shape, Skip, Sky};
-use tracer::{Pass, Picture, Stats, Tile, render_picture, tiles};
+use tracer::{Pass, Picture, Stats, Tile, render, tiles};
 
 fn glowing(colour: [f32; 3]) -> Finish {
     Finish {
@@ -336,10 +336,10 @@ fn tiles_and_threads_do_not_matter() {
     lamps.lens = Lens::default();
     for scene in [moving, lamps] {
         let picture = Picture::new(&scene, SIZE);
-        let (whole, _) = render_picture(&picture, 1, Pass::Smooth, &|_| ());
-        let (threads, _) = render_picture(&picture, 3, Pass::Smooth, &|_| ());
+        let (whole, _) = render(&picture, 1, Pass::Smooth, &|_| ());
+        let (threads, _) = render(&picture, 3, Pass::Smooth, &|_| ());
         assert!(whole == threads);
-        let (first, _) = render_picture(&picture, 1, Pass::Full, &|_| ());
+        let (first, _) = render(&picture, 1, Pass::Full, &|_| ());
         assert!(whole != first);
         let mut some: Vec<Tile> = tiles(SIZE[0], SIZE[1], 13);
         some.truncate(5);

@@ -4,12 +4,12 @@ use crate::judged::{Range, distances, packet, reference};
 use contact::Bulge;
 use field::Kernel;
 use glam::{DAffine3, DVec3};
+use oracle::rays::Row;
 use scene::{Body, Contact, Curves, Element, Flesh, Form, Function, Scene, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::sync::Arc;
-use tracer::Picture;
+use tracer::{Pass, Picture, Stats, Tile};
 use trials::Random;
-use trials::rays::Row;
 use trials::scenes::empty;
 
 /// Kinds of scenes.
@@ -273,4 +273,50 @@ fn faults_are_told() {
             "{kind:?} {row:?}"
         );
     }
+}
+
+/// Where something is a mirror pictures are shaded in another way, which mixes the materials of a
+/// body as the plain one does, wherever it stands.
+#[test]
+fn bodies_that_touch_keep_their_colours_beside_a_mirror() {
+    let trace = |mirror: &str| {
+        let text = format!(
+            "eyep 30 1 8\nvrp 30 0 0\nvup 0 1 0\nfov 38\nlight White, position 34 8 10\n\
+             surface Red, diffuse Red, blobbiness -2\nsurface Blue, diffuse Blue, blobbiness -2\n\
+             body LEFT\nsphere Red 1.2, 29.1 0 0\nsphere Blue 1.2, 29.1 1.2 0\nclose\n\
+             body RIGHT\nsphere Red 1.2, 30.9 0 0\nsphere Blue 1.2, 30.9 1.2 0\nclose\n\
+             contact LEFT RIGHT\n{mirror}"
+        );
+        let compiled = rats::compile(&rats::Project::single(&text));
+        let errors = compiled.diagnostics.iter();
+        assert_eq!(
+            errors
+                .filter(|d| d.severity == rats::Severity::Error)
+                .count(),
+            0
+        );
+        let picture = Picture::new(&compiled.scene, [48; 2]);
+        let whole = Tile {
+            x: 0,
+            y: 0,
+            width: 48,
+            height: 48,
+        };
+        picture
+            .trace(whole, Pass::Full, &|| false, &mut Stats::default())
+            .expect("nobody asked to stop")
+    };
+    let plain = trace("");
+    let rich = trace("surface Mirror, reflective 0.5 0.5 0.5\nsphere Mirror 0.1, 30 0 9\n");
+    let is_other = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;
+    assert_eq!(
+        plain
+            .iter()
+            .zip(&rich)
+            .filter(|&pair| is_other(pair))
+            .count(),
+        0
+    );
+    let is_blue = |p: &&[u8]| p[2] > 60 && p[2] / 2 > p[0];
+    assert!(plain.chunks(4).filter(is_blue).count() > 50);
 }

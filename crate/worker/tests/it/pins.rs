@@ -56,7 +56,7 @@ fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     PASSES.map(|pass| {
         if part.width == SIZE {
-            return tracer::render_picture(&picture, threads, pass, &|_| {}).0;
+            return tracer::render(&picture, threads, pass, &|_| {}).0;
         }
         let traced = picture.trace(part, pass, &|| false, &mut tracer::Stats::default());
         traced.expect("nobody stops it")

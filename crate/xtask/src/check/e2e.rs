@@ -3,13 +3,13 @@
 use super::Chosen;
 use super::files::{File, Watch};
 use crate::page::{self, Build};
-use crate::shell::{PORTABLE, artifacts, cargo, command, executable, root, target};
+use crate::shell::{artifacts, cargo, command, executable, root, target};
 use crate::{dist, tools};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
-/// What is tested, and with what.
-pub struct Built {
+/// The page that is tested, and the program whose pictures it is compared with.
+struct Built {
     page: PathBuf,
     program: PathBuf,
 }
@@ -35,7 +35,9 @@ impl Built {
 
 /// Runs the tests in Firefox.
 pub fn firefox(watch: &mut Watch) -> Result<String> {
-    let built = build(watch, false)?;
+    let page = build(watch, false)?;
+    let program = watch.step("program", program)?;
+    let built = Built { page, program };
     let firefox = tools::firefox()?;
     let mut command = built.tests(None, "firefox.mjs")?;
     command.env("FIREFOX", firefox);
@@ -44,8 +46,15 @@ pub fn firefox(watch: &mut Watch) -> Result<String> {
     Ok(String::from("the page works in Firefox"))
 }
 
-/// Runs this part.
-pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String> {
+/// Runs this part on a page, with a program that is built first.
+pub fn check(
+    watch: &mut Watch,
+    chosen: &Chosen,
+    page: PathBuf,
+    program: fn() -> Result<PathBuf>,
+) -> Result<String> {
+    let program = watch.step("program", program)?;
+    let built = Built { page, program };
     let folder = root().join("tests");
     let mut scripts: Vec<_> = std::fs::read_dir(&folder)?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
@@ -80,30 +89,23 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, built: Built) -> Result<String>
     ))
 }
 
-/// Builds the page and the program, and installs the packages that drive a browser: of a `release`
-/// those that are shipped, else those that are built soonest.
-pub fn build(watch: &mut Watch, release: bool) -> Result<Built> {
-    let (page, program) = if release {
-        let page = watch.step("page", dist::dist)?;
-        // The program for any processor of this kind: the page's pictures are compared with its own.
-        let program = watch.step("program", || program(cfg!(target_arch = "x86_64")))?;
-        (page, program)
+/// Builds the page, and installs the packages that drive a browser: of a `release` the page that is
+/// shipped, else the one that is built soonest.
+pub fn build(watch: &mut Watch, release: bool) -> Result<PathBuf> {
+    let page = if release {
+        watch.step("page", dist::dist)?
     } else {
         let page = page::served();
         watch.step("page", || page::build(Build::Development, &page))?;
-        (page, watch.step("program", || program(false))?)
+        page
     };
     tools::node_packages()?;
-    Ok(Built { page, program })
+    Ok(page)
 }
 
-/// Builds the program `sinew`; `portable`, for any processor of this one's kind.
-fn program(portable: bool) -> Result<PathBuf> {
+/// Builds the program `sinew`.
+pub fn program() -> Result<PathBuf> {
     let message = ["--message-format", "json-render-diagnostics"];
     let mut build = cargo(&["build", "--package", "cli", "--bin", "sinew"]);
-    build.args(message);
-    if portable {
-        build.envs(PORTABLE.settings());
-    }
-    executable(&artifacts(&mut build)?, "sinew")
+    executable(&artifacts(build.args(message))?, "sinew")
 }

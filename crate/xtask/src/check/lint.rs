@@ -1,7 +1,7 @@
 //! Formatting and lints, for this machine and for wasm.
 
-use super::Chosen;
 use super::files::Watch;
+use super::{Chosen, english};
 use crate::packages::MODULES;
 use crate::shell::{cargo, root, run};
 use crate::tools;
@@ -14,6 +14,7 @@ const DENY: [&str; 3] = ["--", "-D", "warnings"];
 pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     format()?;
     modules()?;
+    english::check()?;
     watch.step("native", || clippy(&chosen.packages()))?;
     tools::target(tools::WASM)?;
     watch.step("wasm", || {

@@ -2,6 +2,7 @@
 
 mod chosen;
 mod e2e;
+mod english;
 mod files;
 mod lint;
 mod native;
@@ -90,7 +91,7 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
 /// they want the machine for themselves.
 fn all(times: &'static str) -> Vec<Done> {
     let mut watch = Watch::default();
-    let (mut done, built) = std::thread::scope(|scope| {
+    let (mut done, page) = std::thread::scope(|scope| {
         let page = scope.spawn(|| in_lane("page", || e2e::build(&mut watch, true)));
         let code = scope.spawn(|| {
             let parts = [Part::Lint, Part::Native, Part::Wasm];
@@ -103,11 +104,12 @@ fn all(times: &'static str) -> Vec<Done> {
             .map_or_else(|_| vec![panicked(Part::Native)], Vec::from);
         (done, page.join())
     });
-    done.push(built.map_or_else(
+    done.push(page.map_or_else(
         |_| panicked(Part::E2e),
-        |built| {
+        |page| {
             attempt(Part::E2e, watch, |watch| {
-                e2e::check(watch, &Chosen::default(), built?)
+                // With the tests the program has been compiled as well.
+                e2e::check(watch, &Chosen::default(), page?, native::program)
             })
         },
     ));
@@ -144,8 +146,8 @@ fn run_times(part: Part, chosen: &Chosen, times: &str) -> Done {
         Part::Native => native::check(watch, chosen, times),
         Part::Wasm => wasm::check(watch, chosen),
         Part::E2e => {
-            let built = e2e::build(watch, chosen.is_all())?;
-            e2e::check(watch, chosen, built)
+            let page = e2e::build(watch, chosen.is_all())?;
+            e2e::check(watch, chosen, page, e2e::program)
         }
         Part::Firefox => e2e::firefox(watch),
         Part::All => bail!("all is made of the others"),

@@ -3,39 +3,71 @@
 use super::Chosen;
 use super::files::{File, Watch};
 use super::programs;
-use crate::shell::cargo;
+use crate::shell::{PORTABLE, cargo, executable};
 use anyhow::{Result, bail};
+use std::path::PathBuf;
 
 /// The crates of this program. They are compiled apart from the others, as this program was: together
 /// features of others would reach what they depend on, and have it compiled anew.
 const OURS: [&str; 2] = ["xtask", "bench"];
 
+/// Options that choose the tests of all other crates. Examples are for `clippy` to check; they are
+/// not run.
+const OTHERS: [&str; 6] = [
+    "--workspace",
+    "--exclude",
+    OURS[0],
+    "--exclude",
+    OURS[1],
+    "--tests",
+];
+
+/// Tests that a build for any processor of this one's kind passes, too: some scenes have the same bits.
+const PORTABLE_TESTS: [&str; 2] = ["bits::", "pictures_are_as_pinned_4"];
+
+/// Returns the program `sinew` that the tests of the crates use.
+pub fn program() -> Result<PathBuf> {
+    executable(&programs::made(&OTHERS, None)?, "sinew")
+}
+
 /// Runs this part, with `times` as many random inputs as the tests name.
 pub fn check(watch: &mut Watch, chosen: &Chosen, times: &str) -> Result<String> {
-    let mut packages = chosen.packages();
-    let mut selections = Vec::new();
-    if packages == ["--workspace"] {
-        packages.extend(OURS.iter().flat_map(|package| ["--exclude", package]));
-        selections.extend(OURS.map(|package| vec!["--package", package]));
+    let mut selections = vec![chosen.packages()];
+    if selections[0] == ["--workspace"] {
+        selections[0] = OTHERS.to_vec();
+        selections.extend(OURS.map(|package| vec!["--package", package, "--tests"]));
+    } else {
+        selections[0].push("--tests");
     }
-    selections.insert(0, packages.clone());
     let programs = watch.step("build", || {
-        let mut programs = Vec::new();
-        for mut selection in selections {
-            // Examples are for `clippy` to check; they are not run.
-            selection.push("--tests");
-            programs.extend(programs::compile(&selection)?);
-        }
-        Ok(programs)
+        let compiled = selections
+            .iter()
+            .map(|selection| programs::compile(selection, None));
+        Ok(compiled
+            .collect::<Result<Vec<_>>>()?
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>())
     })?;
     let mut files = Vec::new();
     if chosen.test.is_none() {
         let mut command = cargo(&["test", "--doc"]);
-        command.args(&packages);
+        command.args(selections[0].iter().filter(|option| **option != "--tests"));
         let name = String::from("examples of documentation");
         files.push(File { name, command });
     }
     files.extend(programs::files(&programs, chosen.test.as_deref(), times)?);
+    if chosen.is_all() && cfg!(target_arch = "x86_64") {
+        let options = ["--package", "worker", "--test", "it"];
+        let build = || programs::compile(&options, Some(PORTABLE));
+        let portable = watch.step("portable build", build)?;
+        for test in PORTABLE_TESTS {
+            for mut file in programs::files(&portable, Some(test), times)? {
+                file.name.insert_str(0, "portable ");
+                files.push(file);
+            }
+        }
+    }
     let count = watch.run(files)?;
     if count.passed == 0 {
         bail!("no test was run");

@@ -2,7 +2,7 @@
 //! as wasm.
 
 use super::files::File;
-use crate::shell::{artifacts, cargo, command, read, root};
+use crate::shell::{Build, artifacts, cargo, command, read, root};
 use crate::tools;
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
@@ -10,13 +10,17 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Files that take longest: begun first, so that no core is idle at the end.
-const LONGEST: [&str; 6] = [
-    "field taper",
-    "tracer certified",
+const LONGEST: [&str; 10] = [
+    "preview shapes",
+    "preview sheet",
     "worker pins",
+    "mesher sculpted",
+    "mesher scenes",
+    "mesher contact",
+    "tracer certified",
+    "field taper",
     "field chart",
-    "assist nearly_right",
-    "tracer src",
+    "studio lab",
 ];
 
 /// A crate's tests, compiled.
@@ -27,11 +31,26 @@ pub struct Program {
     path: PathBuf,
 }
 
+/// Returns what cargo makes to run the tests that some options of `cargo test` choose, perhaps in
+/// another way than is usual.
+pub fn made(options: &[&str], build: Option<Build>) -> Result<Vec<serde_json::Value>> {
+    let mut cargo = cargo(&[
+        "test",
+        "--no-run",
+        "--message-format",
+        "json-render-diagnostics",
+    ]);
+    artifacts(
+        cargo
+            .args(options)
+            .envs(build.into_iter().flat_map(Build::settings)),
+    )
+}
+
 /// Compiles the tests that some options of `cargo test` choose.
-pub fn compile(options: &[&str]) -> Result<Vec<Program>> {
-    let message = ["--message-format", "json-render-diagnostics"];
-    let made = artifacts(cargo(&["test", "--no-run"]).args(options).args(message))?;
-    made.iter()
+pub fn compile(options: &[&str], build: Option<Build>) -> Result<Vec<Program>> {
+    made(options, build)?
+        .iter()
         .filter(|made| made["profile"]["test"] == true && made["executable"].is_string())
         .map(|made| {
             let [manifest, path] = [&made["manifest_path"], &made["executable"]]

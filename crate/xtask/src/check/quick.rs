@@ -18,7 +18,7 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, times: &str) -> Result<String> 
         packages.extend(["--package", "worker"]);
     }
     packages.push("--tests");
-    let programs = watch.step("build", || programs::compile(&packages))?;
+    let programs = watch.step("build", || programs::compile(&packages, None))?;
     let count = watch.run(programs::files(&programs, chosen.test.as_deref(), times)?)?;
     if count.passed == 0 {
         bail!("no test was run");

@@ -21,7 +21,7 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
         bail!("the tests of {chosen:?} do not run as wasm");
     }
     options.extend(packages.iter().flat_map(|package| ["--package", package]));
-    let programs = watch.step("build", || programs::compile(&options))?;
+    let programs = watch.step("build", || programs::compile(&options, None))?;
     if programs.len() < packages.len() {
         bail!(
             "{} of {} test programs were compiled",

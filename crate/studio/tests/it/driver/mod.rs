@@ -76,6 +76,18 @@ impl Window {
         panic!("no picture: {:?}", self.parts.outbox.borrow().report);
     }
 
+    /// Waits until the first picture is shown, for as few frames as possible.
+    pub fn arrive(&mut self) {
+        for _ in 0..8 {
+            std::thread::sleep(std::time::Duration::from_millis(400));
+            self.steps(1);
+            if !self.image().is_empty() {
+                return;
+            }
+        }
+        panic!("no picture: {:?}", self.parts.outbox.borrow().report);
+    }
+
     pub fn place(&self, name: &str) -> Rect {
         let places = places::all(&self.harness.ctx);
         *places

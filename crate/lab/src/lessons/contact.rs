@@ -1,0 +1,477 @@
+//! Lesson 9: two drops that touch and do not melt: each is pressed onto the sheet where both fields are equal, and a bulge, a
+//! function of the other's field, keeps the surface smooth and gives back volume.
+
+use crate::bench::Bench;
+use crate::command::Command;
+use crate::contour::Grid;
+use crate::lesson::{Figure, Words};
+use crate::plot::{self, Axis, Plot};
+use crate::sample::{self, Window};
+use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
+use contact::Bulge;
+use core::f64::consts::PI;
+use egui::{Align2, Color32, CursorIcon, FontId, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use field::{Kernel, Primitive, Skeleton, Sum, THRESHOLD};
+use glam::DVec3;
+use widgets::theme;
+
+/// Samples of the fields, columns and rows.
+const SAMPLES: [usize; 2] = [141, 81];
+/// The part of the plane that is shown, from the middle.
+const HALF: [f64; 2] = [2.8, 1.6];
+/// Radius of each drop alone.
+const RADIUS: f64 = 1.0;
+/// Blobbiness of the drops.
+const BLOBBINESS: f64 = 1.5;
+/// The range of half the distance between the drops.
+const APART: [f64; 2] = [0.35, 1.5];
+
+/// Which bulge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shaped {
+    Fast,
+    Height,
+    Ripple,
+}
+
+/// Inputs of the figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    kernel: Kernel,
+    shaped: Shaped,
+    /// Half the distance between the drops.
+    apart: f64,
+    c: f64,
+    m: f64,
+    h: f64,
+    n: f64,
+}
+
+/// The words of the lesson.
+pub static WORDS: Words = Words {
+    link: "contact",
+    title: "Drops that do not melt",
+    name: "Drops that do not melt",
+    short: "Contact",
+    about: "pressed flat, with a bulge",
+    sentences: "Where two drops would overlap, what the other's field is above T is taken from \
+                each drop's own, so that both end on the sheet where their fields are equal. Just \
+                outside a small bulge is added instead, which leaves the surface smooth and gives \
+                back some of the volume. Take hold of the drops, of where the bulge begins and of \
+                its crest.",
+};
+
+/// The lesson's state.
+pub struct Contact {
+    key: Key,
+    computed: Option<(Key, Drops)>,
+}
+
+impl Default for Contact {
+    fn default() -> Self {
+        Self {
+            key: Key {
+                kernel: Kernel::Cauchy,
+                shaped: Shaped::Height,
+                apart: 0.75,
+                c: 0.2,
+                m: 0.65,
+                h: 0.25,
+                n: 2.0,
+            },
+            computed: None,
+        }
+    }
+}
+
+impl Figure for Contact {
+    fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
+        let key = self.key;
+        if self
+            .computed
+            .as_ref()
+            .is_none_or(|(known, _)| *known != key)
+        {
+            self.computed = Some((key, key.compute()));
+        }
+        let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
+        let palette = theme::palette(ui.visuals());
+        let all = stage.figure;
+        let gap = 10.0;
+        let split = all.top() + 0.6 * (all.height() - gap);
+        let upper = all.with_max_y(split);
+        let lower = all.with_min_y(split + gap);
+        if let Some((_, drops)) = &self.computed {
+            draw(ui, upper, drops);
+        }
+        let map = Map::new(upper);
+        for (name, sign) in [("left drop", -1.0), ("right drop", 1.0)] {
+            let at = map.at(sign * key.apart, 0.0);
+            let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
+            if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
+                self.key.apart = (sign * map.x(pointer)).clamp(APART[0], APART[1]);
+            }
+        }
+        self.chart(ui, lower);
+        self.controls(&mut stage.controls);
+        if let Some((_, drops)) = &self.computed {
+            let readings = &mut bench.readings;
+            readings.insert("apart", key.apart);
+            readings.insert("c", key.c);
+            readings.insert("volume", drops.volumes[0]);
+            readings.insert("cut", drops.volumes[1]);
+            readings.insert("gap", drops.gap);
+        }
+        stage.finish(ui);
+    }
+
+    fn dataset(&self) -> Command {
+        Command::open("Drops", self.text())
+    }
+}
+
+/// What is drawn and said of the drops.
+struct Drops {
+    /// Outlines of the left and the right drop, pressed and alone.
+    outlines: [Vec<Piece>; 2],
+    alone: [Vec<Piece>; 2],
+    insides: [Vec<Vec<[f32; 2]>>; 2],
+    /// Volume of a pressed drop over that of one alone: with the bulge, and only cut off.
+    volumes: [f64; 2],
+    /// Largest gap between the drops where they touch, by their fields.
+    gap: f64,
+}
+
+type Piece = [[f32; 2]; 2];
+
+impl Key {
+    fn bulge(&self) -> Bulge {
+        match self.shaped {
+            Shaped::Fast => Bulge::Fast { c: self.c },
+            Shaped::Height => Bulge::Height {
+                c: self.c,
+                m: self.m.max(self.c + 0.02),
+                h: self.h,
+            },
+            Shaped::Ripple => Bulge::Ripple {
+                c: self.c,
+                h: self.h,
+                n: self.n.round().clamp(0.0, 6.0) as u32,
+            },
+        }
+    }
+
+    /// The words of the bulge in the language.
+    fn words(&self) -> String {
+        match self.bulge() {
+            Bulge::Fast { c } => format!("fast {c:.3}"),
+            Bulge::Height { c, m, h } => format!("height {c:.3} {m:.3} {h:.3}"),
+            Bulge::Ripple { c, h, n } => format!("ripple {c:.3} {h:.3} {n}"),
+        }
+    }
+
+    fn drop(&self, x: f64) -> Sum {
+        let shaping = sample::shaping(self.kernel, RADIUS, BLOBBINESS);
+        let center = DVec3::X * x;
+        Primitive::new(Skeleton::Point { center }, &shaping, None)
+            .into_iter()
+            .collect()
+    }
+
+    fn compute(&self) -> Drops {
+        let [width, height] = SAMPLES;
+        let window = Window {
+            corner: DVec3::new(-HALF[0], -HALF[1], 0.0),
+            across: DVec3::X * (2.0 * HALF[0]),
+            up: DVec3::Y * (2.0 * HALF[1]),
+        };
+        let fields =
+            [-self.apart, self.apart].map(|x| sample::whole(&self.drop(x), &window, width, height));
+        let bulge = self.bulge();
+        let with = |own: usize, g: &dyn Fn(f64) -> f64| {
+            let both = fields[own].values.iter().zip(&fields[1 - own].values);
+            let values = both.map(|(own, other)| own + g(f64::from(*other)) as f32);
+            Grid {
+                width,
+                height,
+                values: values.collect(),
+            }
+        };
+        let deform = |f: f64| bulge.jet(f).0;
+        let cut = |f: f64| (THRESHOLD - f).min(0.0);
+        let pressed = [0, 1].map(|own| with(own, &deform));
+        let outline = |grids: &[Grid; 2]| [0, 1].map(|i: usize| grids[i].line(THRESHOLD as f32));
+        let whole = volume(&fields[0]);
+        let volumes = [&pressed[0], &with(0, &cut)].map(|grid| volume(grid) / whole.max(1e-9));
+        // Inside both pressed fields are f₁+1−f₂ and f₂+1−f₁: what one is above T the other is below.
+        let sum = pressed[0].values.iter().zip(&pressed[1].values);
+        let touching = fields[0].values.iter().zip(&fields[1].values);
+        let gap = sum
+            .zip(touching)
+            .filter(|(_, (a, b))| a.min(**b) > THRESHOLD as f32);
+        let gap = gap.map(|((a, b), _)| f64::from(a + b) - 2.0 * THRESHOLD);
+        Drops {
+            outlines: outline(&pressed),
+            alone: outline(&fields),
+            insides: [0, 1].map(|i: usize| pressed[i].inside(THRESHOLD as f32)),
+            volumes,
+            gap: gap.fold(0.0, |most, gap| gap.abs().max(most)),
+        }
+    }
+}
+
+/// The volume within the figure turned about its horizontal axis, by samples.
+fn volume(grid: &Grid) -> f64 {
+    let [across, up] = [0, 1].map(|i| 2.0 * HALF[i] / (SAMPLES[i] - 1) as f64);
+    let rows = grid.values.chunks_exact(grid.width).enumerate();
+    let ring = |(y, row): (usize, &[f32])| {
+        let radius = (y as f64 * up - HALF[1]).abs();
+        // The share of each sample's square that is inside, by how steep the field is there.
+        let share = |pair: &[f32]| {
+            let [a, b] = [pair[0], pair[1]].map(|f| f64::from(f) - THRESHOLD);
+            match (a > 0.0, b > 0.0) {
+                (true, true) => 1.0,
+                (false, false) => 0.0,
+                (true, false) => a / (a - b),
+                (false, true) => b / (b - a),
+            }
+        };
+        PI * radius * row.windows(2).map(share).sum::<f64>()
+    };
+    rows.map(ring).sum::<f64>() * across * up
+}
+
+impl Contact {
+    /// The bulge as a function of the other drop's field, with grips.
+    fn chart(&mut self, ui: &Ui, place: Rect) {
+        let palette = theme::palette(ui.visuals());
+        plot::panel(ui, place);
+        let top = 0.42;
+        let x = Axis::new([0.0, 1.4], "field of the other drop, in T");
+        let y = Axis::new([-0.4, top], "what is added to the own field");
+        let plot = Plot::new(ui, place, x, y);
+        let bulge = self.key.bulge();
+        let added = |f: f64| bulge.jet(f).0;
+        plot.fill(
+            palette.note.gamma_multiply(0.25),
+            [bulge.start(), 1.0],
+            added,
+        );
+        plot.curve(Stroke::new(2.5, palette.note), added);
+        plot.upright(THRESHOLD, Stroke::new(1.0, palette.text), "its surface");
+        let grip = |name: &str, x: f64, y: f64| {
+            let at = plot.at(x, y);
+            let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
+            let pointer = grip.interact_pointer_pos().filter(|_| grip.dragged());
+            pointer.map(|pointer| plot.value(pointer))
+        };
+        if let Some([x, _]) = grip("bulge start", self.key.c, 0.0) {
+            self.key.c = x.clamp(0.02, 0.9);
+        }
+        if self.key.shaped != Shaped::Fast {
+            let crest = bulge.crest();
+            if let Some([x, y]) = grip("bulge crest", crest, self.key.h) {
+                self.key.h = y.clamp(0.0, top);
+                if self.key.shaped == Shaped::Height {
+                    self.key.m = x.clamp(self.key.c + 0.03, 0.97);
+                }
+            }
+        }
+        self.key.m = self.key.m.max(self.key.c + 0.03);
+    }
+
+    fn controls(&mut self, ui: &mut Ui) {
+        let palette = theme::palette(ui.visuals());
+        choice(
+            ui,
+            &mut self.key.shaped,
+            &[
+                (Shaped::Fast, "fast"),
+                (Shaped::Height, "height"),
+                (Shaped::Ripple, "ripple"),
+            ],
+        );
+        let key = &mut self.key;
+        slider(ui, "Half apart", &mut key.apart, APART[0]..=APART[1], "");
+        slider(ui, "Begins at c", &mut key.c, 0.02..=0.9, " T");
+        if key.shaped == Shaped::Height {
+            slider(ui, "Highest at m", &mut key.m, key.c + 0.03..=0.97, " T");
+        }
+        if key.shaped != Shaped::Fast {
+            slider(ui, "Height h", &mut key.h, 0.0..=0.42, " T");
+        }
+        if key.shaped == Shaped::Ripple {
+            slider(ui, "Ripples n", &mut key.n, 0.0..=6.0, "");
+            key.n = key.n.round();
+        }
+        heading(ui, "Kernel");
+        if let Some(kernel) = tools::kernels(ui, |kernel| kernel == key.kernel) {
+            key.kernel = kernel;
+        }
+        if let Some((_, drops)) = &self.computed {
+            heading(ui, "Volume of a drop, against one alone");
+            let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+            let [with, without] = drops.volumes;
+            reading(ui, "with the bulge", &percent(with), palette.note);
+            reading(ui, "only cut off", &percent(without), palette.accent);
+            remark(
+                ui,
+                "Thin lines: each drop alone. Where they touch both surfaces are the same sheet, on which the fields are equal.",
+            );
+        }
+    }
+
+    /// The two drops.
+    fn text(&self) -> String {
+        let key = self.key;
+        format!(
+            "# Two drops that touch and do not melt.\n\
+             # From the lab, lesson 9. Drag how far they are apart.\n\n\
+             eyep 0 1.2 9\nvrp 0 0 0\nvup 0 1 0\nfov 32\nframesize 640 480\nsample 3\n\
+             light White point, position 4 6 8, intensity 0.9\n\
+             light SlateBlue point, position -6 -1 4, intensity 0.5, noshadow\n\n\
+             var apart = {apart:.3} hot {low} {high}\n\n\
+             surface left, diffuse SummerSky, specular 0.5 0.5 0.5, shine 40, blobbiness {blob}, kernel {kernel}\n\
+             surface right, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness {blob}, kernel {kernel}\n\n\
+             body LEFT\n  sphere left {RADIUS}, <-apart 0 0>\nclose\n\
+             body RIGHT\n  sphere right {RADIUS}, <apart 0 0>\nclose\n\
+             contact LEFT RIGHT {words}\n",
+            apart = key.apart,
+            low = APART[0],
+            high = APART[1],
+            blob = -BLOBBINESS,
+            kernel = key.kernel.name(),
+            words = key.words(),
+        )
+    }
+}
+
+/// Converts the plane to the screen.
+struct Map {
+    center: Pos2,
+    scale: f32,
+}
+
+impl Map {
+    fn new(place: Rect) -> Self {
+        let inner = place.shrink2(vec2(8.0, 6.0)).with_min_y(place.top() + 26.0);
+        let scale =
+            (inner.width() / (2.0 * HALF[0] as f32)).min(inner.height() / (2.0 * HALF[1] as f32));
+        Self {
+            center: inner.center(),
+            scale,
+        }
+    }
+
+    fn at(&self, x: f64, y: f64) -> Pos2 {
+        self.center + self.scale * vec2(x as f32, -(y as f32))
+    }
+
+    fn x(&self, at: Pos2) -> f64 {
+        f64::from((at.x - self.center.x) / self.scale.max(1e-6))
+    }
+
+    fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
+        let world = |sample: f32, axis: usize| {
+            let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;
+            HALF[axis] * (2.0 * share - 1.0)
+        };
+        self.at(world(x, 0), world(y, 1))
+    }
+}
+
+/// The drops, pressed and alone.
+fn draw(ui: &Ui, place: Rect, drops: &Drops) {
+    let palette = theme::palette(ui.visuals());
+    plot::panel(ui, place);
+    let painter = ui.painter_at(place.shrink(1.0));
+    let map = Map::new(place);
+    let colours: [Color32; 2] = [palette.note, palette.accent];
+    for (inside, colour) in drops.insides.iter().zip(colours) {
+        let mut mesh = Mesh::default();
+        for polygon in inside {
+            let base = mesh.vertices.len() as u32;
+            for corner in polygon {
+                mesh.colored_vertex(map.sample(*corner), colour.gamma_multiply(0.22));
+            }
+            for corner in 2..polygon.len() as u32 {
+                mesh.add_triangle(base, base + corner - 1, base + corner);
+            }
+        }
+        painter.add(Shape::mesh(mesh));
+    }
+    let thin = Stroke::new(1.0, palette.weak);
+    // Every other piece: dashes.
+    for piece in drops.alone.iter().flat_map(|line| line.iter().step_by(2)) {
+        painter.line_segment(piece.map(|p| map.sample(p)), thin);
+    }
+    for (line, colour) in drops.outlines.iter().zip(colours) {
+        for piece in line {
+            painter.line_segment(piece.map(|p| map.sample(p)), Stroke::new(2.5, colour));
+        }
+    }
+    let font = FontId::proportional(13.0);
+    let at = place.min + vec2(14.0, 9.0);
+    let title = "Take hold of a drop";
+    painter.text(at, Align2::LEFT_TOP, title, font, palette.text);
+    let font = FontId::proportional(12.0);
+    let at = pos2(place.right() - 14.0, place.bottom() - 8.0);
+    painter.text(
+        at,
+        Align2::RIGHT_BOTTOM,
+        "dashed: alone",
+        font,
+        palette.weak,
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drops_share_a_sheet_and_bulges_give_back_volume() {
+        for kernel in [Kernel::Cauchy, Kernel::Gauss, Kernel::Cubed] {
+            for shaped in [Shaped::Fast, Shaped::Height, Shaped::Ripple] {
+                let key = Key {
+                    kernel,
+                    shaped,
+                    ..Contact::default().key
+                };
+                let drops = key.compute();
+                let [with, without] = drops.volumes;
+                assert!(drops.gap < 1e-4, "{kernel:?} {shaped:?}: {}", drops.gap);
+                assert!(without < 0.99 && with > without + 0.003, "{with} {without}");
+            }
+        }
+        // A ball's volume, by samples.
+        let key = Contact::default().key;
+        let window = Window {
+            corner: DVec3::new(-HALF[0], -HALF[1], 0.0),
+            across: DVec3::X * (2.0 * HALF[0]),
+            up: DVec3::Y * (2.0 * HALF[1]),
+        };
+        let ball = volume(&sample::whole(
+            &key.drop(0.0),
+            &window,
+            SAMPLES[0],
+            SAMPLES[1],
+        ));
+        assert!((ball / (4.0 / 3.0 * PI) - 1.0).abs() < 0.01, "{ball}");
+    }
+
+    #[test]
+    fn the_dataset_has_the_drops_in_contact() {
+        for shaped in [Shaped::Fast, Shaped::Height, Shaped::Ripple] {
+            let mut lesson = Contact::default();
+            lesson.key.shaped = shaped;
+            let file = rats::File {
+                name: String::from("main.rat"),
+                text: lesson.text(),
+            };
+            let compiled = rats::compile(&rats::Project { files: vec![file] });
+            assert_eq!(compiled.diagnostics, [], "{shaped:?}");
+            assert_eq!(compiled.scene.contacts.len(), 1);
+        }
+    }
+}

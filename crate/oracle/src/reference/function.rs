@@ -1,0 +1,148 @@
+//! The function whose surface the reference looks for: a field, the smooth maximum of two, or the
+//! largest of those of bodies that touch.
+use super::pieces::{Magnitudes, Pieces};
+use super::range::Range;
+use super::touching::Touching;
+use super::waves::Factor;
+use field::{Kink, Primitive, THRESHOLD};
+use glam::DVec3;
+
+/// Relative error of the terms of a field, and of coordinates.
+pub(super) const FIELD_ERROR: f64 = 1e-10;
+pub(super) const ULP: f64 = 4e-16;
+
+/// The function less T at a point, its gradient, and how far rounding may have moved them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Evaluation {
+    pub excess: f64,
+    pub gradient: DVec3,
+    pub noise: f64,
+    pub slope_noise: f64,
+}
+
+/// A function of space.
+#[derive(Clone, Debug)]
+pub(super) enum Function {
+    Sum(FieldTerms),
+    /// `(a + b + √((a−b)² + k²))/2`, k > 0.
+    SmoothMaximum(Box<[FieldTerms; 2]>, f64),
+    /// The largest of the functions of bodies that touch.
+    Touching(Touching),
+}
+
+/// The terms of a field.
+#[derive(Clone, Debug)]
+pub(super) struct FieldTerms {
+    primitives: Vec<Primitive>,
+    pieces: Pieces,
+}
+
+impl Function {
+    pub fn sample(&self, point: DVec3) -> Evaluation {
+        match self {
+            Self::Sum(terms) => terms.sample(point),
+            Self::Touching(bodies) => bodies.sample(point),
+            Self::SmoothMaximum(parts, k) => {
+                let [a, b] = parts.each_ref().map(|part| part.sample(point));
+                let noise = a.noise.max(b.noise) + 4.0 * f64::EPSILON * k;
+                let (excess, share) = mixed(a.excess, b.excess, *k);
+                // The share changes by at most 1/(2k) where the difference changes by 1.
+                let turned = (a.noise + b.noise) / (2.0 * k) * a.gradient.distance(b.gradient);
+                Evaluation {
+                    excess,
+                    gradient: a.gradient * share + b.gradient * (1.0 - share),
+                    noise,
+                    slope_noise: a.slope_noise.max(b.slope_noise) + turned,
+                }
+            }
+        }
+    }
+
+    /// Bounds in a ball; of the second derivative along a unit vector, if one is given, else in any
+    /// direction.
+    pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
+        match self {
+            Self::Sum(terms) => terms.extent(center, radius, along),
+            // Of these the range alone is known.
+            Self::Touching(_) => Magnitudes {
+                above: f64::INFINITY,
+                below: f64::INFINITY,
+                slope: f64::INFINITY,
+                curvature: f64::INFINITY,
+            },
+            Self::SmoothMaximum(parts, k) => {
+                let [a, b] = parts
+                    .each_mut()
+                    .map(|part| part.extent(center, radius, along));
+                let both = a.slope + b.slope;
+                Magnitudes {
+                    // It grows with both parts, and is above each.
+                    above: mixed(a.above, b.above, *k).0,
+                    below: a.below.min(b.below),
+                    slope: a.slope.max(b.slope),
+                    // f″ = s·a″ + (1−s)·b″ + (a′−b′)²·k²/(2·√((a−b)² + k²)³), 0 < s < 1.
+                    curvature: a.curvature.max(b.curvature) + both * both / (2.0 * *k),
+                }
+            }
+        }
+    }
+
+    /// The range of values in a ball, of functions with creases; `None` of others.
+    pub fn range(&mut self, center: DVec3, radius: f64) -> Option<Range> {
+        match self {
+            Self::Touching(bodies) => Some(bodies.range(center, radius)),
+            _ => None,
+        }
+    }
+
+    /// Kinks of all terms.
+    pub fn kinks(&self) -> Vec<Kink> {
+        let parts = match self {
+            Self::Sum(terms) => core::slice::from_ref(terms),
+            Self::SmoothMaximum(parts, _) => &parts[..],
+            // They have more kinks than could be named.
+            Self::Touching(_) => &[],
+        };
+        let primitives = parts.iter().flat_map(|part| &part.primitives);
+        primitives.flat_map(|p| Factor::of(p).kinks).collect()
+    }
+}
+
+/// The smooth maximum of two values and the share of the first in its derivative. It may be taken
+/// of values less T as well.
+fn mixed(a: f64, b: f64, k: f64) -> (f64, f64) {
+    let root = libm::hypot(a - b, k);
+    (0.5 * (a + b + root), 0.5 * (1.0 + (a - b) / root))
+}
+
+impl FieldTerms {
+    pub fn new(primitives: Vec<Primitive>) -> Self {
+        Self {
+            pieces: Pieces::new(&primitives),
+            primitives,
+        }
+    }
+
+    pub fn sample(&self, point: DVec3) -> Evaluation {
+        let (mut excess, mut size) = (-THRESHOLD, THRESHOLD);
+        let (mut gradient, mut steep) = (DVec3::ZERO, 0.0);
+        for primitive in &self.primitives {
+            let jet = primitive.jet(point.to_array());
+            let slope = DVec3::from_array(jet.gradient);
+            excess += jet.value;
+            size += jet.value.abs();
+            gradient += slope;
+            steep += slope.length();
+        }
+        Evaluation {
+            excess,
+            gradient,
+            noise: FIELD_ERROR * size + ULP * point.abs().max_element() * steep,
+            slope_noise: 10.0 * FIELD_ERROR * steep,
+        }
+    }
+
+    pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
+        self.pieces.extent(&self.primitives, center, radius, along)
+    }
+}

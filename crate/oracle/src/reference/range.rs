@@ -1,0 +1,99 @@
+//! Ranges of values in a ball, and functions that bodies in contact are deformed by.
+use std::sync::Arc;
+
+/// The least and the largest value of a function in a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    pub low: f64,
+    pub high: f64,
+}
+
+impl Range {
+    /// The largest of two functions.
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            low: self.low.max(other.low),
+            high: self.high.max(other.high),
+        }
+    }
+}
+
+/// A function g of another body's field by which a body is deformed: 0 where the field is below a
+/// start, 1 − f where it is above 1, and a bulge between.
+#[derive(Clone)]
+pub struct Deformation {
+    /// From where on it is not 0.
+    pub start: f64,
+    formula: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
+    /// The largest slope in the bulge.
+    steepest: f64,
+}
+
+impl core::fmt::Debug for Deformation {
+    fn fmt(&self, f: &mut core::fmt::Formatter) -> core::fmt::Result {
+        write!(f, "Deformation from {}", self.start)
+    }
+}
+
+/// Samples of a bulge from which its slope is taken, and by how much that is enlarged.
+const SAMPLES: u32 = 4096;
+const ENLARGED: f64 = 1.05;
+/// Parts of an interval of f whose values bound those between.
+const PARTS: u32 = 16;
+
+impl Deformation {
+    /// A deformation by a formula that holds between its start and 1.
+    #[must_use]
+    pub fn new(start: f64, formula: Arc<dyn Fn(f64) -> f64 + Send + Sync>) -> Self {
+        let at = |i: u32| start + (1.0 - start) * f64::from(i) / f64::from(SAMPLES);
+        let changes = (0..SAMPLES).map(|i| (formula(at(i + 1)) - formula(at(i))).abs());
+        let step = (1.0 - start) / f64::from(SAMPLES);
+        Self {
+            start,
+            steepest: ENLARGED * changes.fold(0.0, f64::max) / step,
+            formula,
+        }
+    }
+
+    /// Its value.
+    pub(super) fn value(&self, f: f64) -> f64 {
+        match f {
+            f if f < self.start => 0.0,
+            f if f > 1.0 => 1.0 - f,
+            f => (self.formula)(f),
+        }
+    }
+
+    /// Its slope, by a difference.
+    pub(super) fn slope(&self, f: f64) -> f64 {
+        const STEP: f64 = 1e-6;
+        (self.value(f + STEP) - self.value(f - STEP)) / (2.0 * STEP)
+    }
+
+    /// Its range over an interval of f.
+    pub(super) fn range(&self, of: Range) -> Range {
+        let mut all = Range {
+            low: f64::INFINITY,
+            high: f64::NEG_INFINITY,
+        };
+        let mut add = |low: f64, high: f64| {
+            all.low = all.low.min(low);
+            all.high = all.high.max(high);
+        };
+        if of.low < self.start {
+            add(0.0, 0.0);
+        }
+        if of.high > 1.0 {
+            add(1.0 - of.high, 1.0 - of.low.max(1.0));
+        }
+        let (from, to) = (of.low.max(self.start), of.high.min(1.0));
+        if from <= to {
+            let slack = self.steepest * 0.5 * (to - from) / f64::from(PARTS) + 1e-13;
+            for i in 0..=PARTS {
+                let value = self.value(from + (to - from) * f64::from(i) / f64::from(PARTS));
+                add(value - slack, value + slack);
+            }
+        }
+        all
+    }
+}
