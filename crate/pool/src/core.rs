@@ -12,7 +12,7 @@ use worker::engine::KEPT;
 use worker::message::{pack, unpack};
 use worker::{Answer, Kind, Request};
 
-/// A pool without its workers.
+/// Manager of the tracing workers.
 pub struct Core<W> {
     pub scheduler: Scheduler,
     pub workers: W,
@@ -200,7 +200,7 @@ impl<W: Workers + 'static> Manager for Core<W> {
         &mut self.workers
     }
 
-    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
+    fn open(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.scheduler.launch(now),
             Err(trouble) => {

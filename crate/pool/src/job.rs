@@ -14,7 +14,7 @@ pub const SMALL_TILE: u32 = 56;
 /// Most workers, whatever the machine has: each holds its own copy of the scene.
 pub const MAX_WORKERS: usize = 16;
 
-/// A picture to trace.
+/// Picture to trace.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {
     /// Scene to draw. With `settings.samples` 1 there is no [`Pass::Smooth`]: it would equal
@@ -41,7 +41,7 @@ impl Job<'_> {
     }
 }
 
-/// A finished tile.
+/// Tile that is finished.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileDone {
     /// The number of the [`Job`].

@@ -31,8 +31,8 @@
 //! [`Ticket`] for the result of each.
 //!
 //! Decisions, and what happens when a worker dies or hangs, are in three state machines that are
-//! tested without workers: [`life`], the life of any worker; [`scheduler`], the tiles of the tracing
-//! workers; [`queue`], the jobs of a tools worker. `web` and `threads` carry them out.
+//! tested without workers: [`life`], the life of any worker; [`scheduler`], the tiles of the
+//! tracing workers; [`queue`], the jobs of a tools worker. `web` and `threads` carry them out.
 //! [`Assembly`] puts the tiles of a picture together as they come.
 
 pub mod assembly;

@@ -14,17 +14,17 @@ pub const DEATHS: u32 = 10;
 /// Seconds a worker may take to start.
 pub const START_LIMIT: f64 = 30.0;
 
-/// Where a worker is in its life.
+/// Stage of a worker's life.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// Not running, and not wanted at the moment.
+    /// Neither running nor wanted at the moment.
     #[default]
     Asleep,
-    /// On its way.
+    /// Called, and to come soon.
     Starting,
     /// Takes requests.
     Awake,
-    /// Not running, as it failed too often.
+    /// Abandoned, as it failed too often.
     GivenUp,
 }
 
@@ -45,7 +45,7 @@ pub struct Life {
 }
 
 impl Life {
-    /// Returns where it is in its life.
+    /// Returns the stage of its life.
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.stage

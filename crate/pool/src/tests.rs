@@ -178,7 +178,7 @@ fn taking_turns(
 ) -> (HashMap<Tile, Vec<u8>>, u64) {
     let engines = (0..workers).map(|_| Engine::default()).collect();
     let mut core = Core::new(workers, Desks(engines));
-    core.loaded(Ok(()), 0.0);
+    core.open(Ok(()), 0.0);
     let job = Job {
         scene,
         camera: None,
@@ -296,7 +296,7 @@ fn picture_shows_nothing_of_an_older_one() {
     for workers in [2, 3, 5] {
         let engines = (0..workers).map(|_| Engine::default()).collect();
         let mut core = Core::new(workers, Desks(engines));
-        core.loaded(Ok(()), 0.0);
+        core.open(Ok(()), 0.0);
         let mut late: Vec<Vec<Answer>> = vec![Vec::new(); workers];
         let mut now = 0.0;
         for picture in 0..60 {
@@ -390,7 +390,7 @@ fn samples_of_a_failed_picture_are_dropped() {
     let desks = Desks((0..2).map(|_| Engine::default()).collect());
     let tile = tracer::tiles(260, 200, TILE)[0];
     let mut core = Core::new(2, Stuck(desks, Vec::new(), tile));
-    core.loaded(Ok(()), 0.0);
+    core.open(Ok(()), 0.0);
     let job = Job {
         scene: &scene,
         camera: None,
@@ -441,7 +441,7 @@ fn samples_are_shared_only_where_useful() {
         };
         change(settings, &mut job);
         let mut core = Core::new(workers, Asked(None));
-        core.loaded(Ok(()), 0.0);
+        core.open(Ok(()), 0.0);
         core.start(
             Job {
                 scene: &scene,

@@ -66,7 +66,7 @@ struct News<T> {
     result: Option<Result<T, String>>,
 }
 
-/// A job that was handed in. When it is dropped the job is cancelled.
+/// Claim to the result of a job that was handed in. When it is dropped the job is cancelled.
 pub struct Ticket<T> {
     crew: Crew<Jobs<PlatformWorkers>>,
     id: u64,
@@ -107,7 +107,7 @@ enum Told<'a> {
     Over(Result<&'a [u8], String>),
 }
 
-/// A job that is not over.
+/// Job without a result yet.
 struct Sent {
     /// Index of its worker.
     worker: usize,
@@ -118,7 +118,7 @@ struct Sent {
 
 /// The manager of the tools workers.
 struct Jobs<W> {
-    /// One for each worker.
+    /// Jobs of each worker.
     queues: [Queue; Pace::ALL.len()],
     workers: W,
     last: u64,
@@ -155,11 +155,10 @@ impl<W: Workers> Jobs<W> {
             Ok(request) => {
                 let worker = J::PACE as usize;
                 let place = news.clone();
-                let tell = move |told: Told<'_>| note::<J>(&mut place.borrow_mut(), told);
                 let sent = Sent {
                     worker,
                     request,
-                    tell: Box::new(tell),
+                    tell: Box::new(move |told| note::<J>(&mut place.borrow_mut(), told)),
                 };
                 self.sent.insert(id, sent);
                 self.queues[worker].submit(id, now);
@@ -233,8 +232,9 @@ fn note<J: Job>(news: &mut News<J::Output>, told: Told<'_>) {
         Told::Fraction(fraction) => news.fraction = Some(fraction),
         Told::Part(bytes) => news.parts.extend(unpack(bytes)),
         Told::Over(result) => {
-            let unpacked = |bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned());
-            news.result = Some(result.and_then(unpacked));
+            news.result = Some(
+                result.and_then(|bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned())),
+            );
         }
     }
 }
@@ -246,7 +246,7 @@ impl<W: Workers + 'static> Manager for Jobs<W> {
         &mut self.workers
     }
 
-    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
+    fn open(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.all(now, |queue| queue.launch(now)),
             Err(trouble) => {

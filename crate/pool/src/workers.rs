@@ -15,12 +15,12 @@ pub trait Workers {
     fn send(&mut self, index: usize, request: &[u8]);
 }
 
-/// A message of a worker.
+/// Message of a worker.
 #[derive(Debug)]
 pub enum Message {
     /// The bytes it sent.
     Bytes(Vec<u8>),
-    /// It cannot continue, for this reason.
+    /// Reason why it cannot continue.
     Failed(String),
 }
 
@@ -33,7 +33,7 @@ pub trait Manager: 'static {
     fn workers(&mut self) -> &mut Self::Workers;
     /// Notes that workers can be started from now on, or why their program could not be loaded: a
     /// sentence to which its end, what to do, is to be added.
-    fn loaded(&mut self, outcome: Result<(), String>, now: f64);
+    fn open(&mut self, outcome: Result<(), String>, now: f64);
     /// Takes a worker's message. Returns whether the app should draw.
     fn receive(&mut self, index: usize, message: Message, now: f64) -> bool;
     /// Notes that time has passed. Returns whether the app should draw.

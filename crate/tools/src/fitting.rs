@@ -11,26 +11,26 @@ use serde::{Deserialize, Serialize};
 pub struct FitMesh {
     /// The mesh's vertices.
     pub positions: Vec<DVec3>,
-    /// Its triangles.
+    /// Triangles of the mesh.
     pub triangles: Vec<[u32; 3]>,
-    /// Its control points.
+    /// Control points of the fit.
     pub controls: Controls,
-    /// What it is fitted to.
+    /// Points and lines of sight that it is fitted to.
     pub observations: Observations,
-    /// How.
+    /// Options of the fit.
     pub options: Options,
 }
 
 /// The control points of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Controls {
-    /// These, each with the move that the fit begins with.
+    /// Places of control points, each with the move that the fit begins with.
     Given(Vec<[DVec3; 2]>),
     /// About this number of points around the mesh.
     Around(u32),
 }
 
-/// A moment of a fit.
+/// Moment of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FitStep {
     /// Iterations done.

@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 ///
 /// A job depends on nothing but its own data, so that another worker can repeat it.
 pub trait Job: Into<Work> {
-    /// Its result, and what there is of that before the end.
+    /// The result, and what there is of it before the end.
     type Output: Serialize + DeserializeOwned + 'static;
-    /// How long it takes, and so which worker does it.
+    /// Length of the job, by which its worker is chosen.
     const PACE: Pace;
 
     /// Carries it out.
@@ -25,24 +25,24 @@ pub trait Job: Into<Work> {
     fn run(self, progress: &mut Progress<'_, Self::Output>) -> Result<Self::Output, String>;
 }
 
-/// How long a job takes. Each pace has a worker of its own, as none can be interrupted.
+/// Length of a job. Each has a worker of its own, as none can be interrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// Moments, for which a hand waits.
     Quick,
-    /// Up to minutes.
+    /// Minutes at most.
     Long,
 }
 
 impl Pace {
-    /// All of them, in the order of the declaration.
+    /// Every pace, in the order of the declaration.
     pub const ALL: [Self; 2] = [Self::Quick, Self::Long];
 }
 
 /// Writes the type of a message that any of these jobs can be.
 macro_rules! jobs {
     ($($job:ident),+) => {
-        /// A job of any type, as it is sent to a worker.
+        /// Job of any type, as it is sent to a worker.
         #[derive(Debug, Serialize, Deserialize)]
         pub enum Work {
             $(
@@ -88,7 +88,7 @@ type Outlet<'a> = dyn FnMut(Vec<u8>) -> ControlFlow<()> + 'a;
 pub enum News<T> {
     /// The fraction done, 0 … 1.
     Fraction(f32),
-    /// What there is of the result.
+    /// The result so far.
     Part(T),
 }
 
@@ -143,7 +143,8 @@ pub fn serve(request: Vec<u8>, send: &mut Outlet<'_>) {
 }
 
 fn run<J: Job>(job: J, id: u64, send: &mut Outlet<'_>) {
-    // A part or a result for which there is no memory never comes, and the page replaces the worker.
+    // A part or a result for which there is no memory never comes, and the page replaces the
+    // worker.
     let mut tell = |news: News<J::Output>| match news {
         News::Fraction(fraction) => send(Answer::Progress { id, fraction }.packed()),
         News::Part(part) => {

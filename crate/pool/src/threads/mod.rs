@@ -14,13 +14,16 @@ use worker::{Answer, Engine, Request, Step};
 
 pub use workers::Threads as PlatformWorkers;
 
+/// Sender of packed answers, which returns whether anybody listens.
+pub type Outlet<'a> = dyn Fn(Vec<u8>) -> bool + 'a;
+
 /// The program that threads run.
 #[derive(Clone, Copy)]
 pub struct Program {
-    /// Serves requests until its inbox is closed, or what it sends is not taken any more. The number
-    /// is that of the work wanted from it, as the last request said; it changes when the present
+    /// Serves requests until its inbox is closed, or what it sends is not taken any more. The
+    /// number is that of the work wanted from it, as the last request said; it changes when the present
     /// work is given up.
-    pub serve: fn(&Receiver<Vec<u8>>, &AtomicU64, &dyn Fn(Vec<u8>) -> bool),
+    pub serve: fn(&Receiver<Vec<u8>>, &AtomicU64, &Outlet<'_>),
     /// Reads the number of the work that a packed request wants.
     pub number: fn(&[u8]) -> Option<u64>,
 }
@@ -49,7 +52,7 @@ fn generation(request: &[u8]) -> Option<u64> {
 }
 
 /// Runs a tracing worker's engine.
-fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &dyn Fn(Vec<u8>) -> bool) {
+fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
     let clock = Instant::now();
     let answer = |answer| pack(&[answer].as_slice()).is_ok_and(send);
     let mut engine = Engine::new(digger::prepare);
@@ -86,7 +89,7 @@ fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &dyn Fn(Vec<u8>) -
 }
 
 /// Carries out the jobs of a tools worker.
-fn run_jobs(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &dyn Fn(Vec<u8>) -> bool) {
+fn run_jobs(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
     send(tools::Answer::Started.packed());
     for request in inbox {
         run_job(request, wanted, send);
@@ -94,7 +97,7 @@ fn run_jobs(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &dyn Fn(Vec<u8>
 }
 
 /// Carries out a job of a tools worker. It is given up when the worker is ended.
-pub fn run_job(request: Vec<u8>, wanted: &AtomicU64, send: &dyn Fn(Vec<u8>) -> bool) {
+pub fn run_job(request: Vec<u8>, wanted: &AtomicU64, send: &Outlet<'_>) {
     tools::serve(request, &mut |answer| {
         if send(answer) && wanted.load(Ordering::Relaxed) != workers::NONE {
             ControlFlow::Continue(())
@@ -128,8 +131,8 @@ impl<M> Clone for Crew<M> {
 }
 
 impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
-    /// Creates a crew of `count` workers, none of which is started yet. `repaint` is called when the
-    /// app should draw, from any thread.
+    /// Creates a crew of `count` workers, none of which is started yet. `repaint` is called when
+    /// the app should draw, from any thread.
     pub fn new(
         program: Program,
         count: usize,
@@ -137,7 +140,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         manager: impl FnOnce(PlatformWorkers) -> M,
     ) -> Self {
         let mut manager = manager(PlatformWorkers::new(program, count, repaint));
-        manager.loaded(Ok(()), 0.0);
+        manager.open(Ok(()), 0.0);
         let inner = Inner {
             manager: RefCell::new(manager),
             clock: Instant::now(),
@@ -152,7 +155,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         true
     }
 
-    /// Has the workers' program loaded; a thread has it.
+    /// Loads the workers' program, which a thread has.
     pub fn load(&self) {}
 
     /// Asks the manager.

@@ -13,10 +13,10 @@ struct Thread {
     incarnation: u64,
 }
 
-/// A message with the index of its thread, and which thread of that index it was.
+/// Index of a thread, which thread of that index it was, and its message.
 type Report = (usize, u64, Message);
 
-/// No work has this number.
+/// Number of no work.
 pub const NONE: u64 = u64::MAX;
 
 /// Threads that run the same program.
@@ -83,8 +83,9 @@ impl Workers for Threads {
                     repaint();
                     sent
                 };
-                let work = || serve(&inbox, &shared, &|bytes| send(Message::Bytes(bytes)));
-                if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
+                if let Err(panic) = catch_unwind(AssertUnwindSafe(|| {
+                    serve(&inbox, &shared, &|bytes| send(Message::Bytes(bytes)));
+                })) {
                     let reason = panic
                         .downcast_ref::<String>()
                         .cloned()

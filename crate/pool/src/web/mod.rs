@@ -20,9 +20,9 @@ pub use workers::WebWorkers as PlatformWorkers;
 pub struct Program {
     /// The script of a worker, relative to the page.
     script: &'static str,
-    /// Its wasm, relative to the page.
+    /// Path of its wasm, relative to the page.
     wasm: &'static str,
-    /// Its name in messages.
+    /// Name in messages.
     name: &'static str,
 }
 
@@ -33,7 +33,7 @@ pub const TRACER: Program = Program {
     name: "The tracer",
 };
 
-/// The same with the root finders for comparison.
+/// The program of tracing workers that have the root finders for comparison.
 pub const COMPARING: Program = Program {
     script: "./digger_worker.js",
     wasm: "./digger_bg.wasm",
@@ -116,7 +116,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
             || inner.program == COMPARING && inner.manager.workers().has_module()
     }
 
-    /// Has the workers' program loaded, unless that was done.
+    /// Loads the workers' program, unless that was done.
     pub fn load(&self) {
         let inner = &mut *self.inner.borrow_mut();
         if inner.is_loading || inner.manager.workers().has_module() {
@@ -131,11 +131,11 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
             let crew = Self { inner };
             crew.ask(|manager, now| {
                 let outcome = module.map(|module| manager.workers().set_module(module));
-                let trouble = |error| {
+                let outcome = outcome.map_err(|error| {
                     let reason = describe(error);
                     format!("{name} could not be loaded: {reason}. Check the connection")
-                };
-                manager.loaded(outcome.map_err(trouble), now);
+                });
+                manager.open(outcome, now);
             });
             {
                 let inner = &mut *crew.inner.borrow_mut();
