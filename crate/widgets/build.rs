@@ -1,8 +1,8 @@
 //! Writes the two fonts of the page without their hinting programs.
 //!
-//! Half of what a font weighs are programs that move its outlines to whole pixels; the page draws its
-//! letters with a hinter that needs none (see `src/fonts.rs`). The outlines, the widths, the kerning
-//! and the notice of the font's authors stay as they are.
+//! Half of what a font weighs are programs that move its outlines to whole pixels; the page draws
+//! its letters with a hinter that needs none (see `src/fonts.rs`). The outlines, the widths, the
+//! kerning and the notice of the font's authors stay as they are.
 
 use std::path::Path;
 
@@ -81,8 +81,8 @@ fn lean(font: &[u8]) -> Option<Vec<u8>> {
     Some(assemble(&font[..4], &tables))
 }
 
-/// A glyph without its instructions. Its outline follows them (or, if it is made of other glyphs, goes
-/// before them).
+/// A glyph without its instructions. Its outline follows them (or, if it is made of other glyphs,
+/// goes before them).
 fn glyph(bytes: &[u8]) -> Option<Vec<u8>> {
     const WORDS: usize = 0x0001;
     const SCALE: usize = 0x0008;

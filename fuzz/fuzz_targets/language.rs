@@ -11,8 +11,8 @@ fuzz_target!(|bytes: &[u8]| {
     };
     let project = check::project(&text, "sphere m0 1 0 0 0\n");
     let compiled = rats::compile(&project);
-    check::compiled(&project, &compiled).expect("a sound scene");
+    check::result(&project, &compiled).expect("a sound scene");
     check::repeats(&project, &compiled).expect("the same scene");
-    check::laid_out(&project, &compiled).expect("the same meaning");
-    check::sent(&project).expect("the same project");
+    check::layout(&project, &compiled).expect("the same meaning");
+    check::sharing(&project).expect("the same project");
 });

@@ -1,4 +1,5 @@
-//! Texts of strokes: those without problems are replayed, whole and after being written again, to the same mesh.
+//! Texts of strokes: those without problems are replayed, whole and after being written again, to
+//! the same mesh.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -20,8 +20,9 @@ const fn table() -> [u32; 256] {
 
 /// CRC-32 (polynomial 0xEDB88320, reflected).
 pub fn checksum(bytes: &[u8]) -> u32 {
-    let step = |crc: u32, byte: &u8| TABLE[((crc ^ u32::from(*byte)) & 255) as usize] ^ (crc >> 8);
-    !bytes.iter().fold(u32::MAX, step)
+    !bytes.iter().fold(u32::MAX, |crc, byte| {
+        TABLE[((crc ^ u32::from(*byte)) & 255) as usize] ^ (crc >> 8)
+    })
 }
 
 #[cfg(test)]

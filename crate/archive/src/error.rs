@@ -2,18 +2,19 @@
 
 use std::fmt;
 
-/// Why an archive cannot be read or written. Shown, it is the end of a sentence such as "the file …".
+/// The reason why an archive cannot be read or written. It is displayed as the end of a sentence
+/// such as "the file …".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// There is no directory, or a member leads out of the archive.
+    /// The directory is missing, or a member leads out of the archive.
     Broken,
     /// A member needs a password.
     Encrypted,
     /// A member is packed by a method that is not read.
     Method(u16),
-    /// A member cannot be unpacked, or its content does not have the checksum that the directory tells.
+    /// A member cannot be unpacked, or its content does not have the directory's checksum.
     Damaged,
-    /// There are more members than this.
+    /// The archive has more members than this.
     Members(usize),
     /// A member is larger than this, bytes.
     Large(usize),

@@ -1,7 +1,8 @@
 //! Zip archives of files in memory.
 //!
-//! [`write()`] makes an archive, [`Archive`] reads one. Archives are untrusted: nothing is unpacked before its
-//! size is held against a limit, and no more is unpacked than that, whatever the archive tells about itself.
+//! [`write()`] makes an archive, [`Archive`] reads one. Archives are untrusted: nothing is unpacked
+//! before its size is compared with a limit, and no more is unpacked than that, whatever size the
+//! archive states.
 //!
 //! ```
 //! use archive::{Archive, Member};

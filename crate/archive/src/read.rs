@@ -5,19 +5,19 @@ use crate::checksum::checksum;
 use miniz_oxide::inflate::TINFLStatus;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 
-/// A member as the directory tells of it.
+/// A member, by its entry in the directory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Its name, with folders. Letters outside of UTF-8 are replaced.
+    /// The name, with folders. Letters outside of UTF-8 are replaced.
     pub name: String,
-    /// Its size when it is unpacked, as the archive tells it, bytes.
+    /// The size after unpacking, bytes, as the archive says.
     pub size: usize,
     encrypted: bool,
     method: u16,
     checksum: u32,
     /// Packed size.
     packed: usize,
-    /// Where the member's own heading starts.
+    /// The place in the archive at which the member's own heading starts.
     start: usize,
 }
 
@@ -73,7 +73,8 @@ impl<'a> Archive<'a> {
     /// The content of a member.
     ///
     /// # Errors
-    /// If it has more than `most` bytes, is encrypted, packed by a method other than deflating, or damaged.
+    /// If it has more than `most` bytes, is encrypted, packed by a method other than deflating, or
+    /// damaged.
     pub fn read(&self, entry: &Entry, most: usize) -> Result<Vec<u8>, Error> {
         if entry.encrypted {
             return Err(Error::Encrypted);
@@ -119,7 +120,8 @@ fn long(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from(low) | u32::from(high) << 16)
 }
 
-/// Where the directory starts: told by the record at the end, before a comment of at most 65,535 bytes.
+/// Returns the place at which the directory starts, from the record at the end, before a comment
+/// of at most 65,535 bytes.
 fn directory(bytes: &[u8]) -> Result<usize, Error> {
     let last = bytes.len().checked_sub(22).ok_or(Error::Broken)?;
     let earliest = last.saturating_sub(65_535);
@@ -136,7 +138,8 @@ fn directory(bytes: &[u8]) -> Result<usize, Error> {
     }
 }
 
-/// The entry at a place of the directory, and where the next one begins; `None` at the directory's end.
+/// The entry at a place of the directory, and where the next one begins; `None` at the directory's
+/// end.
 fn entry(bytes: &[u8], at: usize) -> Result<Option<(Entry, usize)>, Error> {
     let Some(head) = bytes
         .get(at..)

@@ -10,9 +10,9 @@ const LEVEL: u8 = 6;
 /// A file to be put into an archive.
 #[derive(Clone, Copy, Debug)]
 pub struct Member<'a> {
-    /// Its name, with folders.
+    /// The name, with folders.
     pub name: &'a str,
-    /// Its content.
+    /// The content.
     pub bytes: &'a [u8],
     /// Whether packing is not worth the time, as for a picture that is packed already.
     pub packed: bool,
@@ -68,7 +68,7 @@ pub fn write(members: &[Member<'_>]) -> Result<Vec<u8>, Error> {
 }
 
 struct Common {
-    /// What a member's heading and the directory have in common.
+    /// The bytes that a member's heading and the directory have in common.
     heading: Vec<u8>,
     /// The packed content; `None` where it is stored as it is.
     content: Option<Vec<u8>>,

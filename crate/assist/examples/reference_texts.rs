@@ -1,5 +1,5 @@
-//! Writes the texts of which the reference page shows pictures, each as NAME.rat, into a folder. `cargo xtask reference`, which draws
-//! their pictures, asks for them.
+//! Writes the texts of which the reference page shows pictures, each as NAME.rat, into a folder.
+//! `cargo xtask reference`, which draws their pictures, asks for them.
 
 use std::path::PathBuf;
 

@@ -7,9 +7,10 @@ use rats::parser::parse;
 use rats::symbol::Symbols;
 use std::ops::Range;
 
-/// The ranges of lines, from 0, that can be folded into their first: blocks, lists in braces, objects and
-/// chains up to their `close`, and comments of several lines. Each has two lines or more; they begin in
-/// different lines, come in the order of the text, and each lies within another or apart from it.
+/// The ranges of lines, from 0, that can be folded into their first: blocks, lists in braces,
+/// objects and chains up to their `close`, and comments of several lines. Each has two lines or
+/// more; they begin in different lines, come in the order of the text, and each lies within another
+/// or apart from it.
 ///
 /// ```
 /// let text = "object PAIR\n  sphere Clay 1, 0 0 0\nclose\nfor i = 1 to 3 {\n}\n";

@@ -1,10 +1,10 @@
 //! Lays a text out: indentation, space around `=` and after commas, two spaces before remarks.
 //!
-//! Lines stay lines and columns stay columns, so the writer's own grouping is kept. In this language a
-//! space can mean something (`1 -2` is two operands, `1 - 2` is one; `a ^b` is not the name `a^b`), so
-//! where there was space there is as much, and where there was none there is none, but for a few places
-//! where the parser does not look: after commas, at braces, around the `=` of an assignment and around
-//! comparisons.
+//! Lines stay lines and columns stay columns, so the writer's own grouping is kept. In this
+//! language a space can mean something (`1 -2` is two operands, `1 - 2` is one; `a ^b` is not the
+//! name `a^b`), so where there was space there is as much, and where there was none there is none,
+//! but for a few places where the parser does not look: after commas, at braces, around the `=` of
+//! an assignment and around comparisons.
 
 use crate::walk;
 use rats::commands::Bracket;
@@ -20,8 +20,8 @@ const INDENT: usize = 2;
 /// Deeper levels are not indented further.
 const MAX_LEVELS: usize = 40;
 
-/// The text, laid out. What it means does not change, nor does it when it is laid out again. A text with
-/// braces that do not match, or one that would outgrow [`MAX_TEXT`], is given back as it is.
+/// The text, laid out. What it means does not change, nor does it when it is laid out again. A text
+/// with braces that do not match, or one that would outgrow [`MAX_TEXT`], is given back as it is.
 ///
 /// ```
 /// let text = "for i=1 to 3 {\nsphere Clay 1,i 0 0\n}";
@@ -181,8 +181,8 @@ impl Marks {
 
     /// A space before item `first` and one after item `last`.
     fn breathe(&mut self, tokens: &[Token], items: &[Item], first: usize, last: usize) {
-        // Between `=` and `=` a space would part what belongs together, and before `*=` it would make a sign
-        // with space around of what is none now.
+        // Between `=` and `=` a space would part what belongs together, and before `*=` it would
+        // make a sign with space around of what is none now.
         let next_begins_pair = glued_equal(items, last + 1)
             && matches!(items[last + 1].datum, Datum::Sign(b'+' | b'*' | b'!'))
             && glued_sign(items, last + 1).is_some();

@@ -208,7 +208,8 @@ pub fn comment_before(text: &str, byte: usize) -> &str {
     &text[start..line]
 }
 
-/// A parameter's meaning, from a line of the comment that begins with its name; empty if there is none.
+/// A parameter's meaning, from a line of the comment that begins with its name; empty if there is
+/// none.
 fn meaning<'p>(comment: &'p str, name: &str) -> &'p str {
     let said = |line: &'p str| {
         let line = line.trim_start().trim_start_matches('#').trim_start();

@@ -1,10 +1,10 @@
 //! The numbers of a shape as places in the world that a hand can move.
 //!
 //! [`handles`] gives the handles of one element of a compiled scene: points, radii, angles and
-//! directions of the command that made it. [`drag`] says how the texts change when a handle is moved:
-//! only the numbers that change are replaced, everything else stays as it was written. A number that a
-//! variable stands for is moved where the variable is set; one that is computed, or that made several
-//! shapes at once, has a handle that says so and cannot be moved.
+//! directions of the command that made it. [`drag`] says how the texts change when a handle is
+//! moved: only the numbers that change are replaced, everything else stays as it was written. A
+//! number that a variable stands for is moved where the variable is set; one that is computed, or
+//! that made several shapes at once, has a handle that says so and cannot be moved.
 //!
 //! ```
 //! use assist::handles::{drag, handles};
@@ -38,11 +38,12 @@ use rats::provenance::{Operand, Provenance};
 use rats::{Asset, Compiled, Project, provenance};
 use scene::{Element, Shape};
 
-/// The handles of an element of `compiled.scene`, which came from `project` with these assets, at this
-/// frame. `view` is [`scene::Projection::world_from_view`]: knobs for radii lie across the view.
+/// The handles of an element of `compiled.scene`, which came from `project` with these assets, at
+/// this frame. `view` is [`scene::Projection::world_from_view`]: knobs for radii lie across the
+/// view.
 ///
-/// The text is run once more up to the element's command, so the cost is that of compiling. An index
-/// that is none gives no handles.
+/// The text is run once more up to the element's command, so the cost is that of compiling. An
+/// index that is none gives no handles.
 #[must_use]
 pub fn handles(
     project: &Project,

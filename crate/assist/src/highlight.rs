@@ -27,8 +27,8 @@ pub enum TokenKind {
 
 /// Cuts a text into coloured pieces, in order, without overlaps; gaps are white space.
 ///
-/// A word is judged by its place and spelling alone, nothing is run, so a variable that is called like an
-/// option may get the option's colour.
+/// A word is judged by its place and spelling alone, nothing is run, so a variable that is called
+/// like an option may get the option's colour.
 ///
 /// ```
 /// use assist::highlight::{TokenKind, highlight};

@@ -144,8 +144,8 @@ pub struct Index<'p> {
     /// All places of names, in the order of files and places.
     pub(crate) occurrences: Vec<Occurrence>,
     pub(crate) here: Option<Here<'p>>,
-    /// The first mistake of form: its file, its byte and what is wrong. What is in a block that is not
-    /// closed is not indexed.
+    /// The first mistake of form: its file, its byte and what is wrong. What is in a block that is
+    /// not closed is not indexed.
     pub(crate) mistake: Option<(usize, usize, String)>,
 }
 
@@ -196,8 +196,8 @@ impl<'p> Index<'p> {
         self.entities[occurrence.entity].name
     }
 
-    /// The definition that is in force at an occurrence: itself, else the last one before it, else the
-    /// first.
+    /// The definition that is in force at an occurrence: itself, else the last one before it, else
+    /// the first.
     pub(crate) fn definition(&self, occurrence: &Occurrence) -> Option<&Occurrence> {
         let definitions = || self.all_of(occurrence).filter(|o| o.is_definition);
         if occurrence.is_definition {
@@ -236,16 +236,16 @@ impl<'p> Index<'p> {
             .collect()
     }
 
-    /// Every place of a name: what it stands for, the name, where, and whether it is made there. In the
-    /// order of files and places.
+    /// Every place of a name: what it stands for, the name, where, and whether it is made there. In
+    /// the order of files and places.
     pub fn places(&self) -> impl Iterator<Item = (SymbolKind, &'p str, &Place, bool)> {
         self.occurrences
             .iter()
             .map(|o| (self.kind(o), self.name(o), &o.place, o.is_definition))
     }
 
-    /// The names of a kind, each once, for completions; without those that the command at the place that
-    /// is asked for makes itself.
+    /// The names of a kind, each once, for completions; without those that the command at the place
+    /// that is asked for makes itself.
     pub(crate) fn names(&self, kind: SymbolKind) -> Vec<&'p str> {
         let is_here = |o: &Occurrence| {
             let here = self.here.as_ref();
@@ -290,8 +290,8 @@ impl<'p> Index<'p> {
         self.occurrences.iter().filter(is_it).map(|o| &o.place)
     }
 
-    /// For every occurrence in order: whether it defines, and the number of its thing, counted from the
-    /// first. Two texts that name alike have the same shape.
+    /// For every occurrence in order: whether it defines, and the number of its thing, counted from
+    /// the first. Two texts that name alike have the same shape.
     pub(crate) fn shape(&self) -> Vec<(usize, bool, usize)> {
         let mut numbers = HashMap::new();
         self.occurrences

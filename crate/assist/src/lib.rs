@@ -1,10 +1,11 @@
-//! The services of an editor for the dataset language: completion, signatures, hover, definitions and renaming,
-//! layout, folding, colours, the manual, and handles that move the numbers of a shape.
+//! The services of an editor for the dataset language: completion, signatures, hover, definitions
+//! and renaming, layout, folding, colours, the manual, and handles that move the numbers of a
+//! shape.
 //!
-//! Every answer is a pure function of texts and a place in them. All but [`handles`] come from the parsed text
-//! and the table of commands alone, without running the text, so they are there while it is still wrong or
-//! unfinished. Places are byte offsets; any offset is allowed, one that is outside of the text or inside a
-//! character finds nothing.
+//! Every answer is a pure function of texts and a place in them. All but [`handles`] come from the
+//! parsed text and the table of commands alone, without running the text, so they are there while
+//! it is still wrong or unfinished. Places are byte offsets; any offset is allowed, one that is
+//! outside of the text or inside a character finds nothing.
 //!
 //! ```
 //! use rats::Project;

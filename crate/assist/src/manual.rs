@@ -30,7 +30,8 @@ pub fn drawn_examples() -> Vec<(&'static str, String)> {
     commands::all().filter_map(drawn_example).collect()
 }
 
-/// All texts of which the reference page shows pictures, each with the name of its picture's file without extension.
+/// All texts of which the reference page shows pictures, each with the name of its picture's file
+/// without extension.
 #[must_use]
 pub fn pictured() -> Vec<(String, String)> {
     let examples = drawn_examples().into_iter();
@@ -58,8 +59,8 @@ fn project_of(spec: &CommandSpec) -> Project {
     }
 }
 
-/// The reference page: an HTML document that needs nothing but the pictures in the folder `reference` beside it. Each command has
-/// its name as its anchor.
+/// The reference page: an HTML document that needs nothing but the pictures in the folder
+/// `reference` beside it. Each command has its name as its anchor.
 #[must_use]
 pub fn reference() -> String {
     let mut page = String::with_capacity(200_000);

@@ -1,11 +1,12 @@
-//! Completes the blocks of a text that is being written, so that the parser keeps the commands in them.
+//! Completes the blocks of a text that is being written, so that the parser keeps the commands in
+//! them.
 
 use rats::Project;
 use rats::lexer::{TokenKind, lex};
 
-/// The project with the blocks of a file closed: a loop or choice whose line ends at the caret without
-/// `{` gets an empty block, and blocks that are open at the end of the text end there. Bytes up to the
-/// caret stay where they are. `None` if there is nothing to mend.
+/// The project with the blocks of a file closed: a loop or choice whose line ends at the caret
+/// without `{` gets an empty block, and blocks that are open at the end of the text end there.
+/// Bytes up to the caret stay where they are. `None` if there is nothing to mend.
 pub fn mended(project: &Project, file: usize, byte: usize) -> Option<Project> {
     let text = &project.files.get(file)?.text;
     let mut mended = text.clone();

@@ -41,8 +41,8 @@ impl<'p> Here<'p> {
         self.operands.iter().rev().find(touching)
     }
 
-    /// The parameter that a byte belongs to, with its index and option: that of the operand there, else
-    /// the one that could come next.
+    /// The parameter that a byte belongs to, with its index and option: that of the operand there,
+    /// else the one that could come next.
     pub fn active(&self, byte: usize) -> Option<Active> {
         if let Some((_, slot)) = self.slot(byte)
             && slot.parameter.is_some()

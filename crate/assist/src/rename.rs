@@ -5,13 +5,13 @@ use crate::index::{Index, Occurrence, SymbolKind};
 use rats::lexer::{TokenKind, lex};
 use rats::{Project, TextEdit, colours, commands, functions};
 
-/// The changes that rename what the name at a byte stands for, through all files, in the order of files
-/// and places. Files are renamed with [`rename_file`].
+/// The changes that rename what the name at a byte stands for, through all files, in the order of
+/// files and places. Files are renamed with [`rename_file`].
 ///
 /// # Errors
-/// A sentence that says why not: if there is no name at the byte, or the new one is not allowed, is taken,
-/// or would be read as something else somewhere; or if a text has a mistake of form, such as a block that
-/// is not closed, since names could be overlooked in it.
+/// A sentence that says why not: if there is no name at the byte, or the new one is not allowed, is
+/// taken, or would be read as something else somewhere; or if a text has a mistake of form, such as
+/// a block that is not closed, since names could be overlooked in it.
 ///
 /// ```
 /// let project = rats::Project::single("var r = 1\nvar s = 2\nsurface Clay, diffuse SandyBrown\nsphere Clay r, s 0 0\n");
@@ -70,8 +70,8 @@ pub fn rename(
     Ok(edits)
 }
 
-/// The changes of all `read`s (and images) that go with a file's new name; the file itself is renamed by
-/// whoever keeps it.
+/// The changes of all `read`s (and images) that go with a file's new name; the file itself is
+/// renamed by whoever keeps it.
 ///
 /// # Errors
 /// A sentence, if there is no such file, or the new name is not allowed or taken.

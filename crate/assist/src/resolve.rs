@@ -1,10 +1,10 @@
 //! Finds what names mean as the evaluator does, but without running anything.
 //!
-//! Materials, textures, objects, commands and files have one name each for the whole project. Variables
-//! are those of the whole project, of a loop, or of a defined command. A variable belongs to whoever runs
-//! the text, so where it cannot be told which of two is meant (a command that sets a variable only
-//! sometimes, or is called in a loop whose variable it uses), the two count as one; then renaming both
-//! keeps the meaning.
+//! Materials, textures, objects, commands and files have one name each for the whole project.
+//! Variables are those of the whole project, of a loop, or of a defined command. A variable belongs
+//! to whoever runs the text, so where it cannot be told which of two is meant (a command that sets
+//! a variable only sometimes, or is called in a loop whose variable it uses), the two count as one;
+//! then renaming both keeps the meaning.
 
 mod command;
 mod here;

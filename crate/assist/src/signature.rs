@@ -10,7 +10,8 @@ use rats::Project;
 /// How a command is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
-    /// The command; with an option of it, if the caret is among the option's operands: `surface … radius`.
+    /// The command; with an option of it, if the caret is among the option's operands:
+    /// `surface … radius`.
     pub command: String,
     /// Its parameters.
     pub parameters: Vec<Part>,
@@ -27,7 +28,8 @@ pub struct Part {
     pub meaning: String,
 }
 
-/// The signature of the command that a byte is in; `None` outside of commands, and in those that are not known.
+/// The signature of the command that a byte is in; `None` outside of commands, and in those that
+/// are not known.
 ///
 /// ```
 /// let text = "sphere Clay 2, ";

@@ -1,10 +1,10 @@
 //! The use of each operand of a command, found without running anything.
 //!
-//! Parameters come from the same table as those of the language's own reader, operators from the same
-//! [`rats::operator`]. The reader itself is another: that one computes values, needs all variables for it, and
-//! stops at the first mistake; this one knows only whether something is a number or a triple, goes on after
-//! a mistake, and notes where the operands end what could come next. The tests hold the two together: in texts
-//! without errors every operand has a use here.
+//! Parameters come from the same table as those of the language's own reader, operators from the
+//! same [`rats::operator`]. The reader itself is another: that one computes values, needs all
+//! variables for it, and stops at the first mistake; this one knows only whether something is a
+//! number or a triple, goes on after a mistake, and notes where the operands end what could come
+//! next. The tests hold the two together: in texts without errors every operand has a use here.
 
 mod cursor;
 mod expression;

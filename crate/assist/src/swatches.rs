@@ -1,5 +1,5 @@
-//! Pictures of textures and lights, drawn by our own renderer: files of the folder `reference` beside the page. An editor shows them
-//! beside words, and the reference page all of them.
+//! Pictures of textures and lights, drawn by our own renderer: files of the folder `reference`
+//! beside the page. An editor shows them beside words, and the reference page all of them.
 
 #[cfg(test)]
 use rats::commands::OptionSpec;
@@ -27,8 +27,8 @@ static LIGHTS: &[(&str, &str)] = table! {
     "point" "light-point" "distant" "light-distant" "spot" "light-spot" "noshadow" "light-noshadow" "size" "light-size"
 };
 
-/// The address, relative to the page, of the picture of a word behind a command: of a method of `texture`, or of an option of
-/// `light`. `None` if it has none.
+/// The address, relative to the page, of the picture of a word behind a command: of a method of
+/// `texture`, or of an option of `light`. `None` if it has none.
 ///
 /// ```
 /// use assist::swatches::picture;
@@ -147,7 +147,8 @@ pub fn all() -> Vec<Swatch> {
     list
 }
 
-/// The section of the reference page with all of them. `link` gives the fragment that opens a text in the page.
+/// The section of the reference page with all of them. `link` gives the fragment that opens a text
+/// in the page.
 pub(crate) fn section(page: &mut String, link: impl Fn(&Swatch) -> Option<String>) {
     let parts = [
         (

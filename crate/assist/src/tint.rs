@@ -1,4 +1,5 @@
-//! Colours that are written in a command: where, and which. An editor shows them and lets them be chosen.
+//! Colours that are written in a command: where, and which. An editor shows them and lets them be
+//! chosen.
 
 use crate::index::Index;
 use crate::place;
@@ -10,13 +11,15 @@ use std::ops::Range;
 /// A colour in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tint {
-    /// Its bytes: a name, three numbers or `rgb(…)` with three numbers. Another colour can be written there.
+    /// Its bytes: a name, three numbers or `rgb(…)` with three numbers. Another colour can be
+    /// written there.
     pub span: Range<usize>,
     /// Red, green and blue.
     pub colour: [f32; 3],
 }
 
-/// The colours that the command at a byte names outright, in their order; those that are computed are left out.
+/// The colours that the command at a byte names outright, in their order; those that are computed
+/// are left out.
 ///
 /// ```
 /// let text = "surface Clay, diffuse SandyBrown, specular <0.5 0.5 0.5>, shine 40";

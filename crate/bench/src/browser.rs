@@ -15,7 +15,7 @@ const WANTED: [(&str, f64); 2] = [("coarse", 100.0), ("full", 1000.0)];
 /// The passes that are timed.
 const PASSES: [&str; 3] = ["coarse", "full", "smooth"];
 
-/// How often it is measured what programs can do.
+/// Rounds of measuring the program.
 const ROUNDS: usize = 7;
 /// The picture that two programs trace at a time.
 const PICTURE: [&str; 6] = [
@@ -42,11 +42,11 @@ pub fn measure() -> Result<Report> {
         .env("SINEW_FIGURES", &file))?;
     let figures: Value = serde_json::from_str(&std::fs::read_to_string(&file)?)?;
     let two = two_at_a_time(&sinew)?;
-    let natively = |name: &str| natively(&sinew, name);
-    tables(&figures, &natively, two)
+    tables(&figures, &|name| natively(&sinew, name), two)
 }
 
-/// Milliseconds that each pass of a model's picture takes the program, on one thread: the quickest of some runs.
+/// Measures the milliseconds of each pass of a model's picture by the program, on one thread: the
+/// quickest of some runs.
 fn natively(sinew: &Sinew, model: &str) -> Result<[f64; 3]> {
     let dataset = format!("www/examples/{model}.rat");
     let passes = in_turn(ROUNDS, |i| {
@@ -56,8 +56,8 @@ fn natively(sinew: &Sinew, model: &str) -> Result<[f64; 3]> {
     Ok(passes.map(|runs| runs.best()))
 }
 
-/// How many times as much two programs do that run at the same time and have nothing to do with each other: processors
-/// share more than they admit, and no page can be quicker than that. The quickest of runs in turn.
+/// Measures the gain of a second program at the same time, 0 … 2, by the quickest of runs in turn.
+/// Processors share more than they admit: no page can gain more.
 fn two_at_a_time(sinew: &Sinew) -> Result<f64> {
     let trace = || {
         let begun = Instant::now();

@@ -4,7 +4,7 @@ use crate::report::Report;
 use anyhow::Result;
 use xtask::shell::{Build, cargo, run_and_read, words};
 
-/// How many rays are held against the reference.
+/// The number of rays that are held to the reference.
 const RAYS: &str = "1000000";
 
 /// Runs it. It writes its own tables.
@@ -16,7 +16,8 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// Runs the certifier, perhaps built in another way, on a number of rays; returns its command and its output.
+/// Runs the certifier, perhaps built in another way, on a number of rays; returns its command and
+/// its output.
 pub fn certify(rays: &str, build: Option<Build>) -> Result<(String, String)> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let line = format!("run --release --package tracer --example certify -- {rays}");

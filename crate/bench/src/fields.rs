@@ -43,8 +43,9 @@ pub fn measure() -> Result<Report> {
         let tables = ["eight", "single", "double"].into_iter().enumerate();
         for (i, mark) in tables {
             let cells = KINDS.map(|kind| {
-                let cell = |chart: &Chart| chart.cell("speed", kernel, kind, i).to_owned();
-                format!("{} / {}", cell(&native), cell(&wasm))
+                let [native, wasm] =
+                    [&native, &wasm].map(|chart| chart.cell("speed", kernel, kind, i));
+                format!("{native} / {wasm}")
             });
             report.row(mark, format!("{kernel} | {}", cells.join(" | ")));
         }
@@ -66,7 +67,8 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// The lines `speed KERNEL KIND FIGURES…` and `error KERNEL KIND FIGURE` of the measurement, as words.
+/// The lines `speed KERNEL KIND FIGURES…` and `error KERNEL KIND FIGURE` of the measurement, as
+/// words.
 pub struct Chart(Vec<Vec<String>>);
 
 impl Chart {
@@ -83,7 +85,8 @@ impl Chart {
 
     fn new(options: &str) -> Result<Self> {
         let line = format!(
-            "test --release {options} --package field --test it chart_figures:: -- --include-ignored --nocapture"
+            "test --release {options} --package field --test it chart_figures:: -- \
+             --include-ignored --nocapture"
         );
         let output = run_and_read(&mut cargo(&words(&line)))?;
         let lines = output

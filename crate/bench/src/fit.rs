@@ -1,5 +1,5 @@
-//! Meshes fitted to points and outlines: the recovery of a known shape, the time against scipy's solver, and how the cost of
-//! tracing an implicit mesh grows with its facets.
+//! Meshes fitted to points and outlines: the recovery of a known shape, the time against scipy's
+//! solver, and how the cost of tracing an implicit mesh grows with its facets.
 
 use crate::programs::{Figures, example};
 use crate::report::{Report, Short, or_dash};
@@ -9,7 +9,7 @@ use xtask::shell::{command, read, run_and_read};
 
 /// Facets of the traced implicit meshes.
 const FACETS: [u32; 4] = [2000, 8000, 30_000, 100_000];
-/// Most that the last of them may take, in times of the first.
+/// The goal: the greatest ratio of the last mesh's time to the first's.
 const GROWTH: f64 = 3.0;
 
 /// The scene of a traced mesh, but for the mesh.

@@ -1,5 +1,6 @@
-//! The program with fused multiply-adds, an option that no picture of ours is drawn with: how much sooner it is done, by how
-//! much its pictures differ, and whether they are as near to the true surface.
+//! The program with fused multiply-adds, an option that no picture of ours is drawn with: how much
+//! sooner it is done, by how much its pictures differ, and whether they are as near to the true
+//! surface.
 
 use crate::certify::certify;
 use crate::report::Report;
@@ -12,7 +13,7 @@ use xtask::shell::{FUSED, command, run};
 
 /// Rounds of both in turn.
 const ROUNDS: usize = 5;
-/// How many rays are held against the reference.
+/// The number of rays that are held to the reference.
 const RAYS: &str = "100000";
 
 /// Measures all of it.
@@ -54,7 +55,7 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// How many pixels of four bytes differ, and by how much at most.
+/// Counts the pixels of four bytes that differ; returns their number and the largest difference.
 fn difference(a: &[u8], b: &[u8]) -> Result<(usize, u8)> {
     if a.len() != b.len() {
         bail!("the pictures are not of one size");

@@ -7,7 +7,8 @@ use crate::sinew::Sinew;
 use anyhow::Result;
 use std::fs;
 
-/// Scenes: name, title, and how many times the cost of the same with the Gaussian kernel the Cauchy one may be.
+/// Scenes: name, title, and the goal, the greatest ratio of the cost with the Cauchy kernel to that
+/// with the Gaussian.
 const CASES: [(&str, &str, f64); 3] = [
     ("flake-820", "sphereflake 820", 5.0),
     ("flake-7381", "sphereflake 7381", 6.0),
@@ -53,13 +54,14 @@ pub fn measure() -> Result<Report> {
 
 /// Writes a scene with the Cauchy kernel, and returns its dataset.
 fn goes_on(sinew: &Sinew, name: &str) -> Result<String> {
-    let change = |text: &str| text.replace("kernel gauss", "kernel cauchy");
-    sinew.variant(name, &format!("{name}-goes-on"), change)
+    sinew.variant(name, &format!("{name}-goes-on"), |text| {
+        text.replace("kernel gauss", "kernel cauchy")
+    })
 }
 
 fn against_povray(sinew: &Sinew) -> Result<Short> {
     let file = sinew.path(&format!("{PEERS}-blob.pov"));
-    fs::write(&file, povray::blob(&sinew.compiled(PEERS)?, 1)?)?;
+    fs::write(&file, povray::blob(&sinew.scene(PEERS)?, 1)?)?;
     let goes_on = goes_on(sinew, PEERS)?;
     let [other, own] = in_turn(3, |i| match i {
         0 => Ok(povray::time(&file, false)?.seconds),
@@ -68,7 +70,7 @@ fn against_povray(sinew: &Sinew) -> Result<Short> {
     Ok(own.over(&other))
 }
 
-/// Seconds and MiB that a picture of so many balls takes.
+/// Measures the seconds and MiB that a picture of balls takes.
 fn cost(sinew: &Sinew, balls: &str, kernel: &str) -> Result<[String; 2]> {
     let scene = ["--balls", balls, "--kernel", kernel, "--apart", APART];
     let arguments = [&scene[..], &["--size", SIDE, SIDE]].concat();

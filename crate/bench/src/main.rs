@@ -1,8 +1,10 @@
-//! `cargo xtask bench`: measures, and writes BENCHMARKS.md. Nothing in that file is written by hand.
+//! `cargo xtask bench`: measures, and writes BENCHMARKS.md. Nothing in that file is written by
+//! hand.
 //!
-//! Each module measures one thing; the words and the heads of its tables stand in `page/`, with marks
-//! `{…}` for what is measured. What cannot be measured here, as a program is missing, says so in its
-//! place. Each part is kept in `tests/bench/measured/`, so that parts can be measured one by one.
+//! Each module measures one thing; the words and the heads of its tables stand in `page/`, with
+//! marks `{…}` for what is measured. What cannot be measured here, as a program is missing, says so
+//! in its place. Each part is kept in `tests/bench/measured/`, so that parts can be measured one by
+//! one.
 
 mod browser;
 mod certify;

@@ -1,19 +1,21 @@
-//! How much memory very many elements take: the most that `sinew time --balls` ever had.
+//! The memory of very many elements: the most that `sinew time --balls` ever had.
 
 use crate::report::{Report, Short, or_dash};
 use crate::sinew::Sinew;
 use anyhow::{Context, Result};
 
-/// Scenes of balls: how many, of which kernel, how many radii apart, the picture's sides. Cauchy's have fields without
-/// end, so that a ray meets many more of them: they are further apart, and the pictures smaller.
+/// Scenes of balls: their number, kernel and distance in radii, and the picture's sides. A ray
+/// meets many more balls with the Cauchy kernel, whose field has no end: they are further apart,
+/// and the pictures smaller.
 const SCENES: [(&str, &str, &str, &str); 4] = [
     ("10000", "gauss", "3", "512"),
     ("100000", "gauss", "3", "512"),
     ("1000000", "gauss", "3", "512"),
     ("10000", "cauchy", "4", "64"),
 ];
-/// The one of them that has a goal, and how much it may take, GiB.
+/// The number of balls of the scene that has a goal.
 const MANY: &str = "1000000";
+/// The goal: the most memory of that scene, GiB.
 const MOST: f64 = 1.5;
 
 /// Measures.

@@ -1,5 +1,5 @@
-//! Mirrors and glass: soft scenes against POV-Ray's blobs with the same depth; and what a lens and a light with a size cost before the
-//! first complete picture.
+//! Mirrors and glass: soft scenes against POV-Ray's blobs with the same depth; and what a lens and
+//! a light with a size cost before the first complete picture.
 
 use crate::povray;
 use crate::report::{Report, or_dash};
@@ -11,7 +11,8 @@ use xtask::shell::find;
 /// Most reflections and refractions of a ray.
 const DEPTH: u32 = 5;
 
-/// A look, in both languages. `material` stands behind the options of `Flesh`, `finish` in the place of POV-Ray's finish.
+/// A look, in both languages. `material` stands behind the options of `Flesh`, `finish` in the
+/// place of POV-Ray's finish.
 struct Case {
     scene: &'static str,
     title: &'static str,
@@ -24,18 +25,20 @@ const CASES: [Case; 2] = [
         scene: "flake-820",
         title: "sphereflake 820, mirrored",
         material: "ambient 0 0 0, diffuse 0.3 0.25 0.2, reflective 0.6 0.55 0.5",
-        finish: "pigment { rgb <0.3,0.25,0.2> } finish { ambient 0 diffuse 1 reflection { rgb <0.6,0.55,0.5> } }",
+        finish: "pigment { rgb <0.3,0.25,0.2> } \
+            finish { ambient 0 diffuse 1 reflection { rgb <0.6,0.55,0.5> } }",
     },
     Case {
         scene: "coral",
         title: "coral of glass",
         material: "ambient 0 0 0, diffuse 0 0 0, transparent 90%, reflective 10%, index 1.5",
-        finish: "pigment { rgbf <0.9,0.9,0.9,1> } finish { ambient 0 diffuse 0 reflection { rgb 0.1 } } interior { ior 1.5 }",
+        finish: "pigment { rgbf <0.9,0.9,0.9,1> } \
+            finish { ambient 0 diffuse 0 reflection { rgb 0.1 } } interior { ior 1.5 }",
     },
 ];
 
-/// A scene's text with another look of its flesh.
-fn dressed(text: &str, material: &str) -> String {
+/// Gives the flesh in a scene's text another look.
+fn dress(text: &str, material: &str) -> String {
     let lines = text.lines().map(|line| {
         if line.starts_with("surface Flesh") {
             let blob = line.find("blob").map_or("", |at| &line[at..]);
@@ -55,9 +58,9 @@ pub fn measure() -> Result<Report> {
     for case in CASES {
         let (scene, title) = (case.scene, case.title);
         let variant = format!("{scene}-mirrors");
-        let dataset = sinew.variant(scene, &variant, |text| dressed(text, case.material))?;
+        let dataset = sinew.variant(scene, &variant, |text| dress(text, case.material))?;
         // The blob of the plain scene, with another finish and depth.
-        let blob = povray::blob(&sinew.compiled(scene)?, 1)?
+        let blob = povray::blob(&sinew.scene(scene)?, 1)?
             .replace("max_trace_level 1", &format!("max_trace_level {DEPTH}"));
         let at = blob.rfind("pigment {").context("a blob has a pigment")?;
         let pov = sinew.path(&format!("{variant}.pov"));
@@ -80,8 +83,9 @@ pub fn measure() -> Result<Report> {
     // The same scene with and without: one complete picture of one ray a pixel.
     let lit = |lens: &str, name: &str| {
         // A light with a size and a shadow; without penumbra the size does nothing.
-        let change = |text: &str| format!("{lens}\n{}", text.replace("noshadow", "size 1"));
-        sinew.variant("seahorse", name, change)
+        sinew.variant("seahorse", name, |text| {
+            format!("{lens}\n{}", text.replace("noshadow", "size 1"))
+        })
     };
     let plain = lit("penumbra off", "seahorse-plain")?;
     let soft = lit("penumbra on\naperture 0.2", "seahorse-lens")?;
@@ -101,8 +105,10 @@ mod tests {
 
     #[test]
     fn only_the_look_of_the_flesh_is_changed() {
-        let text = "eyep 1 2 3\nsurface Flesh { ambient 0.1 0.1 0.1, diffuse 1 1 1, blob -4, kernel gauss }\nsphere Flesh 1 0 0 0\n";
-        let want = "eyep 1 2 3\nsurface Flesh { reflective 50%, blob -4, kernel gauss }\nmaxdepth 5\nsphere Flesh 1 0 0 0\n";
-        assert_eq!(dressed(text, "reflective 50%"), want);
+        let text = "eyep 1 2 3\nsurface Flesh { ambient 0.1 0.1 0.1, diffuse 1 1 1, blob -4, \
+            kernel gauss }\nsphere Flesh 1 0 0 0\n";
+        let want = "eyep 1 2 3\nsurface Flesh { reflective 50%, blob -4, kernel gauss }\n\
+            maxdepth 5\nsphere Flesh 1 0 0 0\n";
+        assert_eq!(dress(text, "reflective 50%"), want);
     }
 }

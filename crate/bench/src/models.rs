@@ -1,5 +1,6 @@
 //! The cost of softness: the thesis's eight models (table 3.3) as convolution surfaces and as the
-//! offset surfaces of their skeletons. And the cost of bodies: many small ones against one large one.
+//! offset surfaces of their skeletons. And the cost of bodies: many small ones against one large
+//! one.
 
 use crate::report::{Report, Short};
 use crate::series::in_turn;
@@ -17,7 +18,7 @@ const MODELS: [(&str, &str, f64); 8] = [
     ("seahorse", "Seahorse", 2.19),
     ("coral-crab", "Crab", 3.29),
 ];
-/// How many bodies of three elements are compared with one body of all elements.
+/// The number of bodies of three elements that are compared with one body of all elements.
 const BODIES: &str = "5000";
 
 /// Measures all of them.
@@ -51,8 +52,8 @@ pub fn measure() -> Result<Report> {
     )?;
 
     report.set("count", BODIES);
-    let arguments = |bodies| ["--balls", BODIES, "--bodies", bodies];
-    let [one, many] = sinew.compare(5, [&arguments("triples"), &arguments("many")])?;
+    let [one, many] = ["triples", "many"].map(|bodies| ["--balls", BODIES, "--bodies", bodies]);
+    let [one, many] = sinew.compare(5, [&one, &many])?;
     let ratio = many.over(&one);
     report.row("bodies", format!("{one} | {many} | {ratio}"));
     let goal = format!("{BODIES} bodies of 3 elements ÷ one body of them | one body | ≤ 2×");

@@ -21,7 +21,7 @@ pub struct Cost {
     pub rays: f64,
 }
 
-/// Its name and version, if it is installed.
+/// Returns POV-Ray's name and version, if it is installed.
 pub fn version() -> Option<String> {
     // It says it on the standard error.
     let output = Command::new(find("povray")?).arg("--version").output();
@@ -79,20 +79,20 @@ pub fn blob(scene: &Value, pieces: u32) -> Result<String> {
             ),
             "Arc" => {
                 let (sweep, angle): (f64, f64) = (soft.read("sweep")?, soft.read("angle")?);
-                // The pieces' round ends overlap: an endless row of them has the radius R beside the
-                // middle of a piece.
+                // The pieces' round ends overlap: an endless row of them has the radius R beside
+                // the middle of a piece.
                 let length = sweep * angle / f64::from(pieces);
                 let beside = (1..).map(|i| share((f64::from(i) - 0.5) * length).powi(2));
                 let beside: f64 = beside.take_while(|field| *field > 0.0).sum();
                 let strength = 1.0 / (share(0.0).powi(2) + 2.0 * beside);
                 let center: DVec3 = soft.read("center")?;
                 let (u, v): (DVec3, DVec3) = (soft.read("u")?, soft.read("v")?);
-                let place = |i: u32| {
-                    let (s, c) = libm::sincos(angle * f64::from(i) / f64::from(pieces));
-                    center + sweep * (c * u + s * v)
-                };
                 for i in 0..pieces {
-                    add("cylinder", &[place(i), place(i + 1)], strength);
+                    let ends = [i, i + 1].map(|i| {
+                        let (s, c) = libm::sincos(angle * f64::from(i) / f64::from(pieces));
+                        center + sweep * (c * u + s * v)
+                    });
+                    add("cylinder", &ends, strength);
                 }
             }
             kind => bail!("a shape that no blob has: {kind}"),

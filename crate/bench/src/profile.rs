@@ -51,7 +51,8 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// Percents and functions; none if there is no `perf`, or this machine does not let itself be sampled.
+/// Percents and functions; none if there is no `perf`, or this machine does not let itself be
+/// sampled.
 fn sample(sinew: &Sinew, scene: &str) -> Vec<(f64, String)> {
     let (data, dataset) = (sinew.path("perf.data"), sinew.dataset(scene));
     let mut record = command("perf", &["record", "-q", "-F", "1999", "-o", &data]);

@@ -49,8 +49,8 @@ impl Report {
         *table += &row;
     }
 
-    /// Adds a row to the table of goals, given as far as its bound: `the thing | against another | ≥ 1.5×`. Where there is no
-    /// number, it says why.
+    /// Adds a row to the table of goals, given as far as its bound: `the thing | against another |
+    /// ≥ 1.5×`. Where there is no number, it says why.
     pub fn goal(&mut self, goal: &str, measured: Result<Short>) -> Result<()> {
         let (_, bound) = goal.rsplit_once("| ").context("a goal has columns")?;
         let number = bound.trim_start_matches(['≥', '≤', ' ']);

@@ -28,7 +28,8 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// Adds rows of what the program said, and the goals: the same time on a large mesh, and a share of a frame.
+/// Adds rows of what the program said, and the goals: the same time on a large mesh, and a share of
+/// a frame.
 fn add(with: &str, said: &str, frames: f64, report: &mut Report) -> Result<()> {
     let (mut times, mut share) = (0.0f64, 0.0f64);
     for line in said.lines().filter(|line| line.starts_with('{')) {

@@ -9,7 +9,7 @@ use std::fmt::{Display, Formatter};
 pub struct Runs(Vec<f64>);
 
 impl Runs {
-    /// One run more.
+    /// Adds a run.
     pub fn add(&mut self, seconds: f64) {
         self.0.push(seconds);
     }
@@ -19,7 +19,7 @@ impl Runs {
         self.0.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// How many times as long the quickest took as that of others.
+    /// Returns the quickest time as a multiple of that of others.
     pub fn over(&self, others: &Self) -> Short {
         Short(self.best() / others.best())
     }

@@ -1,4 +1,5 @@
-//! The program `sinew`, timed on one thread with nothing written, and the scenes of the comparisons, `tests/bench/*.rat`.
+//! The program `sinew`, timed on one thread with nothing written, and the scenes of the
+//! comparisons, `tests/bench/*.rat`.
 
 use crate::series::{Runs, in_turn};
 use anyhow::{Context, Result, bail};
@@ -28,11 +29,11 @@ pub struct Cost {
     pub prepare: f64,
     /// Rays from the eye.
     pub rays: f64,
-    /// How many elements the scene has.
+    /// The number of elements of the scene.
     pub elements: f64,
     /// The most memory that the program had, bytes; `None` if the system does not tell.
     pub memory: Option<f64>,
-    /// All counts of work, by name.
+    /// The counts of work, by name.
     pub counts: Vec<(String, f64)>,
 }
 
@@ -48,14 +49,14 @@ pub fn time(program: &Path, arguments: &[&str]) -> Result<Cost> {
 
 fn cost(figures: &Value) -> Option<Cost> {
     let counts = figures["stats"].as_object()?.iter();
-    let count = |(name, count): (&String, &Value)| Some((name.replace('_', " "), count.as_f64()?));
+    let counts = counts.filter_map(|(name, count)| Some((name.replace('_', " "), count.as_f64()?)));
     Some(Cost {
         seconds: figures["seconds"]["busy"].as_f64()?,
         prepare: figures["seconds"]["prepare"].as_f64()?,
         rays: figures["stats"]["primary_rays"].as_f64()?,
         elements: figures["elements"].as_f64()?,
         memory: figures["memory"].as_f64(),
-        counts: counts.filter_map(count).collect(),
+        counts: counts.collect(),
     })
 }
 
@@ -118,8 +119,8 @@ impl Sinew {
         in_turn(rounds, |i| Ok(self.time(arguments[i])?.seconds))
     }
 
-    /// The scene that a dataset describes, as `sinew scene` prints it.
-    pub fn compiled(&self, name: &str) -> Result<Value> {
+    /// Compiles a dataset; returns its scene as `sinew scene` prints it.
+    pub fn scene(&self, name: &str) -> Result<Value> {
         let path = self.dataset(name);
         let text = read(&mut command(&self.program, &["scene", &path]));
         let text = text.with_context(|| format!("{path} has errors; see: sinew check {path}"))?;

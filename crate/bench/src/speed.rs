@@ -7,7 +7,7 @@ use crate::series::{Runs, in_turn};
 use crate::sinew::{self, Sinew};
 use anyhow::{Context, Result};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use xtask::pictures;
 use xtask::shell::{PORTABLE, find};
 
@@ -16,12 +16,12 @@ const ROUNDS: usize = 7;
 /// The sphereflakes with Gaussian fields, by their number of balls.
 const FLAKES: [u32; 5] = [1, 10, 91, 820, 7381];
 
-/// Scenes: name, title, what POV-Ray makes of them, and how many times quicker we want to be.
+/// Scenes: name, title, POV-Ray's object, and the goal, the least ratio of its time to ours.
 type Case = (&'static str, &'static str, Pov, Option<f64>);
 
 #[derive(Clone, Copy, PartialEq)]
 enum Pov {
-    /// A `blob`; arcs as so many cylinders.
+    /// A `blob`, with each arc as this number of cylinders.
     Blob(u32),
     /// An `isosurface` of the exact field.
     Isosurface,
@@ -83,10 +83,9 @@ pub fn measure() -> Result<Report> {
     let mut worst = f64::INFINITY;
     for balls in FLAKES {
         let name = format!("flake-{balls}");
-        let change = |text: &str| format!("digger LG\n{text}");
         let datasets = [
             sinew.dataset(&name),
-            sinew.variant(&name, "flake-lg", change)?,
+            sinew.variant(&name, "flake-lg", |text| format!("digger LG\n{text}"))?,
         ];
         let [hermite, lg] = sinew.compare(3, [&[&datasets[0]], &[&datasets[1]]])?;
         let ratio = lg.over(&hermite);
@@ -98,8 +97,8 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
-/// Traces a scene with our programs, of which the second may be missing, and with POV-Ray, and gives the best times of the
-/// first and of POV-Ray.
+/// Traces a scene with our programs, of which the second may be missing, and with POV-Ray, and
+/// gives the best times of the first and of POV-Ray.
 fn against_povray(
     sinew: &Sinew,
     programs: &[Option<PathBuf>; 2],
@@ -107,7 +106,7 @@ fn against_povray(
     smooth: bool,
     report: &mut Report,
 ) -> Result<[f64; 2]> {
-    let compiled = sinew.compiled(scene)?;
+    let compiled = sinew.scene(scene)?;
     let (peer, text) = match pov {
         Pov::Blob(1) => ("blob".into(), povray::blob(&compiled, 1)?),
         Pov::Blob(pieces) => {
@@ -134,18 +133,17 @@ fn against_povray(
     }
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let (mut our_rays, mut pov_rays) = (f64::NAN, f64::NAN);
-    let mut trace = |program: &Path| {
-        let cost = sinew::time(program, &arguments)?;
-        our_rays = cost.rays;
-        Ok(cost.seconds)
-    };
     let rounds = if smooth || pov == Pov::Isosurface {
         3
     } else {
         ROUNDS
     };
     let [us, slow, them] = in_turn(rounds, |i| match programs.get(i) {
-        Some(Some(program)) => trace(program),
+        Some(Some(program)) => {
+            let cost = sinew::time(program, &arguments)?;
+            our_rays = cost.rays;
+            Ok(cost.seconds)
+        }
         None if installed => {
             let cost = probe.map_or_else(|| povray::time(&file, smooth), Ok)?;
             pov_rays = cost.rays;

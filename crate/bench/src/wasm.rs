@@ -1,4 +1,5 @@
-//! The worker's engine as wasm in node against the same natively on one thread: `crate/worker/tests/it/speed.rs`.
+//! The worker's engine as wasm in node against the same natively on one thread:
+//! `crate/worker/tests/it/speed.rs`.
 
 use crate::report::{Report, Short};
 use crate::series::Runs;
@@ -13,8 +14,8 @@ const ROUNDS: usize = 5;
 /// Measures all scenes.
 pub fn measure() -> Result<Report> {
     tools::target(tools::WASI)?;
-    let native = built("--profile release")?;
-    let slow = built(&format!("--profile worker --target {}", tools::WASI))?;
+    let native = build("--profile release")?;
+    let slow = build(&format!("--profile worker --target {}", tools::WASI))?;
     // Optimised like the worker of the page.
     let wasm = slow.with_file_name("speed.wasm");
     page::optimise(
@@ -50,9 +51,10 @@ pub fn measure() -> Result<Report> {
 }
 
 /// Compiles the measurement.
-fn built(options: &str) -> Result<PathBuf> {
+fn build(options: &str) -> Result<PathBuf> {
     let line = format!(
-        "test --no-run --package worker --test it --message-format json-render-diagnostics {options}"
+        "test --no-run --package worker --test it --message-format json-render-diagnostics \
+         {options}"
     );
     executable(&artifacts(&mut cargo(&words(&line)))?, "it")
 }

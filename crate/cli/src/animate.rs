@@ -9,7 +9,8 @@ use picture::limits::MAX_FRAMES;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// `sinew animate FILE -o OUT.png|OUT.gif --frames N [--fps F] [--once] [-r W H] [-s N] [--threads N]`.
+/// `sinew animate FILE -o OUT.png|OUT.gif --frames N [--fps F] [--once] [-r W H] [-s N] [--threads
+/// N]`.
 #[derive(Args)]
 pub struct Animate {
     /// The dataset; its variables change by `+=` and `*=`
@@ -32,7 +33,7 @@ pub struct Animate {
     /// Width and height in pixels, instead of the dataset's `framesize`
     #[arg(short, long, num_args = 2, value_names = ["W", "H"])]
     resolution: Option<Vec<u32>>,
-    /// At most N×N rays a pixel, instead of the dataset's `sample`
+    /// The most rays a pixel, N×N, instead of the dataset's `sample`
     #[arg(short, long, value_name = "N")]
     samples: Option<u32>,
     /// Threads; default: as many as the machine has cores
@@ -41,8 +42,8 @@ pub struct Animate {
 }
 
 impl Animate {
-    /// Traces frame by frame and writes the animation. With errors in the dataset the frames are made of
-    /// what could be understood, and the result is false.
+    /// Traces frame by frame and writes the animation. With errors in the dataset the frames are
+    /// made of what could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
         let say = |problem: picture::Problem| problem.to_string();
         let format = Format::of(&self.output);
@@ -68,7 +69,8 @@ impl Animate {
         if !loaded.compiled.animated {
             report::to_stderr(&loaded);
             return Err(format!(
-                "nothing of {} changes with the frames; let a variable grow, e.g. `var angle = 0 += 5`, or move a skeleton by `motion`",
+                "nothing of {} changes with the frames; let a variable grow, \
+                 e.g. `var angle = 0 += 5`, or move a skeleton by `motion`",
                 self.file.display()
             ));
         }

@@ -53,15 +53,16 @@ fn with_paths(loaded: &Loaded, path: &Path) -> Vec<Diagnostic> {
     diagnostics
 }
 
-/// Prints one line on a dataset: its name and the counts of its elements, materials, lights and diagnostics.
+/// Prints one line on a dataset: its name and the counts of its elements, materials, lights and
+/// diagnostics.
 fn summarize(loaded: &Loaded, path: &Path) {
     let scene = &loaded.compiled.scene;
-    let is_soft = |element: &&scene::Element| scene.is_soft(element);
+    let soft = scene.elements.iter().filter(|e| scene.is_soft(e));
     eprintln!(
         "{}: {} elements ({} soft), {} materials, {} lights, {} diagnostics",
         path.display(),
         scene.elements.len(),
-        scene.elements.iter().filter(is_soft).count(),
+        soft.count(),
         scene.finishes.len(),
         scene.lights.len(),
         loaded.compiled.diagnostics.len(),

@@ -1,7 +1,8 @@
 //! The command line of RATS: `sinew [-/+options] FILE…` runs datasets and writes their pictures.
 //!
-//! A letter after `+` turns an option on, after `-` off; options with a value take it either way. Each
-//! dataset is run by itself. Where RATS would go on reading commands from the keyboard, we stop.
+//! A letter after `+` turns an option on, after `-` off; options with a value take it either way.
+//! Each dataset is run by itself. Where RATS would go on reading commands from the keyboard, we
+//! stop.
 
 use crate::trace::{self, Wishes};
 use crate::{Outcome, files, report, tools};
@@ -48,8 +49,8 @@ struct Request {
     remarks: Vec<String>,
 }
 
-/// Whether these arguments are in the manner of RATS: a dataset or a one-letter option comes first, not
-/// one of the `subcommands`.
+/// Whether these arguments are in the manner of RATS: a dataset or a one-letter option comes first,
+/// not one of the `subcommands`.
 pub fn is_meant(arguments: &[String], subcommands: &[&str]) -> bool {
     let Some(first) = arguments.first() else {
         return false;
@@ -242,7 +243,7 @@ fn echo(text: &str) -> String {
     echoed
 }
 
-/// Where all that is said to a person goes.
+/// The destination of everything said to a person.
 struct Said {
     log: Option<(PathBuf, File)>,
 }

@@ -1,4 +1,4 @@
-//! From files on disk to a project.
+//! Makes a project of files on disk.
 //!
 //! A dataset may `read` others. The compiler only ever sees the texts of a project, so the ones it
 //! asks for are fetched here, from the folder of the first file, until it asks for no more.
@@ -26,8 +26,8 @@ pub struct Loaded {
     pub compile_seconds: f64,
 }
 
-/// Runs an action on each of several files, also where it fails on one of them. Returns the worst outcome: all
-/// sentences of failure, each in a line, else false if there was one.
+/// Runs an action on each of several files, also where it fails on one of them. Returns the worst
+/// outcome: all sentences of failure, each in a line, else false if there was one.
 pub fn each(files: &[PathBuf], mut run: impl FnMut(&Path) -> Outcome) -> Outcome {
     let mut clean = true;
     let mut failures: Vec<String> = Vec::new();
@@ -128,7 +128,7 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
 ///
 /// # Errors
 /// If it cannot be read or is too large.
-pub fn bounded(path: &Path, most: u64) -> Result<Vec<u8>, String> {
+pub fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     let size = std::fs::metadata(path)
         .map_err(|error| format!("cannot open {}: {error}", path.display()))?
         .len();

@@ -37,7 +37,7 @@ pub struct Fit {
     /// Outlines in pictures, as `sinew scan` writes them: .json
     #[arg(long, value_name = "FILE")]
     silhouettes: Option<PathBuf>,
-    /// How the mesh is seen
+    /// Implicit surface of the mesh
     #[arg(long, default_value = "triangular")]
     kind: Seen,
     /// Thickness of triangular shells, in the mesh's units; the default is a tenth of 1/k
@@ -58,8 +58,8 @@ pub struct Fit {
     /// Most iterations
     #[arg(long, default_value_t = 60, value_name = "N")]
     iterations: usize,
-    /// The file to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj, .stl, .glb, .3mf); may be
-    /// given for each
+    /// The file to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj,
+    /// .stl, .glb, .3mf); may be given for each
     #[arg(short, long, required = true, value_name = "OUT")]
     output: Vec<PathBuf>,
     /// Print numbers of the fit as JSON on the standard output
@@ -68,7 +68,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Fits, tells how it goes, and writes the result.
+    /// Fits, prints the progress, and writes the result.
     pub fn run(&self) -> Outcome {
         let outputs: Vec<Target> = self
             .output
@@ -113,7 +113,7 @@ impl Fit {
         let problem =
             Problem::new(&mesh, &cage, observations, options).map_err(|e| e.to_string())?;
         let start = Instant::now();
-        let mut tell = |progress: &fit::Progress| {
+        let fitted = fit::fit(&problem, &mut |progress| {
             if !self.json {
                 eprintln!(
                     "iteration {}: residual {:.4e}, scale {:.2e}",
@@ -121,8 +121,8 @@ impl Fit {
                 );
             }
             true
-        };
-        let fitted = fit::fit(&problem, &mut tell).map_err(|error| error.to_string())?;
+        })
+        .map_err(|error| error.to_string())?;
         let seconds = start.elapsed().as_secs_f64();
         for output in &outputs {
             match output {
@@ -138,7 +138,11 @@ impl Fit {
         if self.json {
             let (axis, angle) = fitted.rigid.axis_angle();
             let summary = json!({
-                "mesh": { "vertices": mesh.positions.len(), "triangles": mesh.triangles.len(), "mean_edge": edge },
+                "mesh": {
+                    "vertices": mesh.positions.len(),
+                    "triangles": mesh.triangles.len(),
+                    "mean_edge": edge,
+                },
                 "controls": cage.positions.len(),
                 "points": counts[0],
                 "sights": counts[1],
@@ -154,7 +158,8 @@ impl Fit {
             println!("{summary}");
         } else {
             eprintln!(
-                "{} points and {} lines of sight: residual {:.4e} after {} iterations, {:.0} % outliers, {seconds:.2} s",
+                "{} points and {} lines of sight: residual {:.4e} after {} iterations, {:.0} % \
+                 outliers, {seconds:.2} s",
                 counts[0],
                 counts[1],
                 fitted.last.residual,
@@ -212,48 +217,44 @@ impl<'a> Target<'a> {
         Format::of_name(&name)
             .map(|format| Self::Mesh(path, format))
             .ok_or_else(|| {
-                format!("{name}: the result is a dataset (.rat) or a mesh (.ply, .obj, .stl, .glb, .3mf)")
+                format!(
+                    "{name}: the result is a dataset (.rat) or a mesh \
+                     (.ply, .obj, .stl, .glb, .3mf)"
+                )
             })
     }
 }
 
 /// A file of points or outlines.
 fn read(path: &Path) -> Result<Vec<u8>, String> {
-    files::bounded(path, MAX_BYTES)
+    files::read_bounded(path, MAX_BYTES)
 }
 
 fn read_mesh(path: &Path) -> Result<TriangleMesh, String> {
-    let bytes = files::bounded(path, mesh::limits::MAX_BYTES as u64)?;
+    let bytes = files::read_bounded(path, mesh::limits::MAX_BYTES as u64)?;
     let name = path.display().to_string();
     mesh::read(&name, &bytes).map_err(|error| format!("{name}: {error}"))
 }
 
-/// The name of the mesh for a dataset, which takes files from its own folder only and names of letters, digits and `._-+`:
-/// a mesh of elsewhere or of another name is copied there.
+/// Returns the name of the mesh for a dataset, which takes files from its own folder only and names
+/// of letters, digits and `._-+`: a mesh of elsewhere or of another name is copied there.
 fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
     let folder = match dataset.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    let is_plain = |c: char| c.is_alphanumeric() || "._-+".contains(c);
-    let name: String = mesh
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .chars()
-        .map(|c| if is_plain(c) { c } else { '_' })
-        .collect();
+    let name = mesh.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.replace(|c: char| !c.is_alphanumeric() && !"._-+".contains(c), "_");
     let place = folder.join(&name);
-    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    };
-    if same(&place, mesh) {
+    if let (Ok(a), Ok(b)) = (place.canonicalize(), mesh.canonicalize())
+        && a == b
+    {
         return Ok(name);
     }
     if place.exists() {
         return Err(format!(
-            "{} names `{name}` of its own folder, and another file of this name is there already; write the dataset elsewhere",
+            "{} names `{name}` of its own folder, and another file of this name is there already; \
+             write the dataset elsewhere",
             dataset.display()
         ));
     }
@@ -267,8 +268,8 @@ fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
     Ok(name)
 }
 
-/// Camera and lights that show what was fitted: the camera of the first outline, or one that sees all of it, with its
-/// longest side upright or, if that is the x axis, across.
+/// Camera and lights that show what was fitted: the camera of the first outline, or one that sees
+/// all of it, with its longest side upright or, if that is the x axis, across.
 fn view(positions: &[DVec3], views: &[fit::Outline]) -> String {
     let bounds = Aabb::of_points(positions.iter().copied());
     let (middle, size) = (bounds.center(), bounds.size());
@@ -297,7 +298,9 @@ fn view(positions: &[DVec3], views: &[fit::Outline]) -> String {
     let lamp = eye + (up - 0.7 * right) * eye.distance(target);
     let other = right + 0.3 * up;
     format!(
-        "framesize {} {}\neyep {}\nvrp {}\nvup {}\nfov {fov}\nbackground 0.06 0.07 0.09\nlight White, position {}, intensity 0.9\nlight LightSteelBlue, distant, direction {}, intensity 0.35, noshadow\n\n",
+        "framesize {} {}\neyep {}\nvrp {}\nvup {}\nfov {fov}\nbackground 0.06 0.07 0.09\n\
+         light White, position {}, intensity 0.9\n\
+         light LightSteelBlue, distant, direction {}, intensity 0.35, noshadow\n\n",
         frame[0],
         frame[1],
         triple(eye),

@@ -1,8 +1,9 @@
 //! The program `sinew`: the same core as the page, on a command line.
 //!
-//! Each subcommand is a module of its own; without one the program takes the options of RATS. Results go to the standard output, everything said to
-//! a person goes to the standard error, and the exit status is 0 when all went well, 1 when the
-//! dataset has errors, and 2 when the command could not be carried out at all.
+//! Each subcommand is a module of its own; without one the program takes the options of RATS.
+//! Results go to the standard output, everything said to a person goes to the standard error, and
+//! the exit status is 0 when all went well, 1 when the dataset has errors, and 2 when the command
+//! could not be carried out at all.
 
 mod animate;
 mod check;
@@ -30,7 +31,8 @@ use std::process::ExitCode;
     name = "sinew",
     version,
     about = "Convolution surfaces: smooth shapes grown on a skeleton",
-    after_help = "sinew [-/+options] FILE.rat … runs datasets as RATS did; sinew -? lists its options."
+    after_help = "sinew [-/+options] FILE.rat … runs datasets as RATS did; sinew -? lists its \
+        options."
 )]
 struct Arguments {
     #[command(subcommand)]

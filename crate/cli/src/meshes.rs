@@ -26,7 +26,7 @@ pub struct Mesh {
     /// Largest distance between mesh and surface, in the dataset's unit
     #[arg(long, value_name = "E", conflicts_with = "relative")]
     tolerance: Option<f64>,
-    /// The same as a share of the diagonal of the model's box
+    /// Tolerance as a share of the diagonal of the model's box
     #[arg(long, value_name = "R", default_value_t = 1e-3)]
     relative: f64,
     /// Length of the model's longest side in the file, millimetres
@@ -41,17 +41,24 @@ pub struct Mesh {
     /// Leave out cavities, which nobody sees from outside
     #[arg(long)]
     outer: bool,
-    /// Only the body of this name
+    /// Name of the body that is meshed alone
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
-    /// Write so many coarser levels of detail beside, as NAME-1, NAME-2 …: each has a quarter of the triangles
+    /// Write so many coarser levels of detail beside, as NAME-1, NAME-2 …: each has a quarter of
+    /// the triangles
     #[arg(long, value_name = "N", default_value_t = 0)]
     lod: usize,
-    /// Instead of a mesh within a tolerance a quick coating of the soft elements' skeletons: closed shells that overlap, whose
-    /// edges are split where the field in their middle is off its threshold by more than B
-    #[arg(long, value_name = "B", conflicts_with_all = ["tolerance", "relative", "union", "outer", "body", "lod"])]
+    /// Instead of a mesh within a tolerance a quick coating of the soft elements' skeletons: closed
+    /// shells that overlap, whose edges are split where the field in their middle is off its
+    /// threshold by more than B
+    #[arg(
+        long,
+        value_name = "B",
+        conflicts_with_all = ["tolerance", "relative", "union", "outer", "body", "lod"]
+    )]
     coat: Option<f64>,
-    /// With the skeletons as joints, each vertex's shares in them as weights, and what moves as an animation: for .glb
+    /// Write the skeletons as joints, each vertex's shares in them as weights, and what moves as an
+    /// animation: for .glb
     #[arg(long, conflicts_with_all = ["union", "lod", "coat"])]
     rig: bool,
     /// Frames of the rig's animation; default: four seconds of a dataset that moves
@@ -66,8 +73,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Meshes the scene and writes the files. With errors in the dataset the mesh is made of what could be understood, and the
-    /// result is false.
+    /// Meshes the scene and writes the files. With errors in the dataset the mesh is made of what
+    /// could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
         let name = self.output.to_string_lossy();
         let format = Format::of_name(&name).ok_or_else(|| {
@@ -100,7 +107,9 @@ impl Mesh {
         if let Some(bound) = self.coat {
             return self.coat(&loaded, format, bound).map(|()| clean);
         }
-        let available = || std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = self
+            .threads
+            .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
         let wishes = Wishes {
             tolerance: self
                 .tolerance
@@ -109,7 +118,7 @@ impl Mesh {
             body: self.body.clone(),
             union: self.union,
             outer: self.outer,
-            threads: self.threads.unwrap_or_else(available).clamp(1, 256),
+            threads: threads.clamp(1, 256),
             ..Wishes::default()
         };
         let start = Instant::now();
@@ -246,12 +255,11 @@ impl Mesh {
         }
         let start = Instant::now();
         let mut bar = Bar::new();
-        let mut show = |step: Step| bar.show(step.fraction);
         let bodies = coat_scene(
             &loaded.compiled.scene,
             bound,
             &mut Vec::new(),
-            &mut Progress::new(&mut show),
+            &mut Progress::new(&mut |step| bar.show(step.fraction)),
         );
         bar.clear();
         let bodies = bodies.map_err(|error| format!("{}: {error}", self.file.display()))?;
@@ -275,7 +283,8 @@ impl Mesh {
         let evaluations: u64 = bodies.iter().map(|body| body.coat.evaluations).sum();
         for body in bodies.iter().filter(|body| body.coat.left_out > 0) {
             eprintln!(
-                "{}: {} pieces of the skeleton have no coat, as that would take too long; a larger B may help",
+                "{}: {} pieces of the skeleton have no coat, as that would take too long; \
+                 a larger B may help",
                 body.name, body.coat.left_out
             );
         }
@@ -362,8 +371,10 @@ fn whole_group(from: &TriangleMesh, to: &TriangleMesh) -> Vec<mesh::Group> {
 
 /// The names of files with their sizes.
 fn sizes(written: &[(String, usize)]) -> Vec<Value> {
-    let size = |(path, bytes): &(String, usize)| json!({ "name": path, "bytes": bytes });
-    written.iter().map(size).collect()
+    let sizes = written
+        .iter()
+        .map(|(path, bytes)| json!({ "name": path, "bytes": bytes }));
+    sizes.collect()
 }
 
 fn count(parts: &[Part]) -> usize {

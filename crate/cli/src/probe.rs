@@ -61,7 +61,8 @@ impl Probe {
         Ok(good)
     }
 
-    /// The field of every body at a point; the keys beside `bodies` tell of the body with the largest.
+    /// The field of every body at a point; the keys beside `bodies` are those of the body with the
+    /// largest field.
     fn point(&self, loaded: &Loaded, surfaces: &[Surface], point: DVec3) -> Value {
         let scene = &loaded.compiled.scene;
         let jets: Vec<Jet<f64>> = surfaces
@@ -106,8 +107,8 @@ fn jet(field: &dyn Implicit, point: DVec3, precision: Precision) -> Jet<f64> {
     }
 }
 
-/// The share of each material in the flesh at a point: its elements' shares of the function over the sum of all,
-/// as colours are blended (thesis, chapter 4). Carving primitives have no share.
+/// The share of each material in the flesh at a point: its elements' shares of the function over
+/// the sum of all, as colours are blended (thesis, chapter 4). Carving primitives have no share.
 fn weights(loaded: &Loaded, surface: &Surface, point: DVec3) -> Map<String, Value> {
     let scene = &loaded.compiled.scene;
     let mut fields = Vec::new();

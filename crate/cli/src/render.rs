@@ -25,7 +25,7 @@ pub struct Render {
     /// Width and height in pixels, instead of the dataset's `framesize`
     #[arg(short, long, num_args = 2, value_names = ["W", "H"])]
     resolution: Option<Vec<u32>>,
-    /// At most N×N rays a pixel, instead of the dataset's `sample`
+    /// The most rays a pixel, N×N, instead of the dataset's `sample`
     #[arg(short, long, value_name = "N")]
     samples: Option<u32>,
     /// Threads; default: as many as the machine has cores
@@ -72,7 +72,11 @@ impl Render {
                 "rays": { "primary": stats.primary_rays, "shadow": stats.shadow_rays },
                 "field_evaluations": stats.field_evaluations,
                 "threads": traced.threads,
-                "seconds": { "compile": loaded.compile_seconds, "trace": traced.seconds, "write": write },
+                "seconds": {
+                    "compile": loaded.compile_seconds,
+                    "trace": traced.seconds,
+                    "write": write,
+                },
             });
             println!("{summary}");
         } else {
@@ -87,7 +91,8 @@ impl Render {
         let jobs = loaded.compiled.tools.len();
         if jobs > 0 {
             eprintln!(
-                "{jobs} of the dataset's commands work on pictures and were not carried out; `sinew {}` does so",
+                "{jobs} of the dataset's commands work on pictures and were not carried out; \
+                 `sinew {}` does so",
                 self.file.display()
             );
         }

@@ -67,16 +67,17 @@ pub fn text(loaded: &Loaded, least: Severity) -> String {
             ));
         }
     }
-    shortened(&text)
+    shorten(&text)
 }
 
-/// Cuts excerpts of long source lines; places are told by line and column before them.
-fn shortened(text: &str) -> String {
-    let cut = |line: &str| match line.char_indices().nth(EXCERPT_WIDTH) {
+/// Cuts excerpts of long source lines; the line and column of a place stand before them.
+fn shorten(text: &str) -> String {
+    let lines = text.lines();
+    let lines = lines.map(|line| match line.char_indices().nth(EXCERPT_WIDTH) {
         Some((end, _)) if line.contains('│') => format!("{}…\n", line[..end].trim_end()),
         _ => format!("{line}\n"),
-    };
-    text.lines().map(cut).collect()
+    });
+    lines.collect()
 }
 
 /// Whether a dataset has no errors (warnings are fine).
@@ -96,7 +97,7 @@ mod tests {
     fn excerpts_of_long_lines_are_cut() {
         let long = "x".repeat(300);
         let text = format!("error: {long}\n1 │ é{long}\n  │ ^\n\n");
-        let lines = shortened(&text);
+        let lines = shorten(&text);
         let lines: Vec<&str> = lines.split('\n').collect();
         assert_eq!(lines[0], format!("error: {long}"));
         assert_eq!(lines[1].chars().count(), EXCERPT_WIDTH + 1);

@@ -25,13 +25,13 @@ const SPACING: f64 = 8.0;
 pub struct Scan {
     /// The dataset
     file: PathBuf,
-    /// Where to write the points: .ply or .xyz
+    /// File for the points: .ply or .xyz
     #[arg(short, long, required_unless_present = "outlines")]
     output: Option<PathBuf>,
-    /// How many points to measure, before the gap is left out
+    /// Number of points to measure, before the gap is left out
     #[arg(long, default_value_t = 5000, value_name = "N")]
     points: usize,
-    /// Where to write outlines: .json
+    /// File for the outlines: .json
     #[arg(long, value_name = "FILE")]
     outlines: Option<PathBuf>,
     /// Cameras of the outlines: the dataset's, and others around what it looks at
@@ -91,7 +91,8 @@ impl Scan {
                 view.trace(SPACING, &mut |eye, way| picker.pick(eye, way).is_some());
                 if view.lines.is_empty() {
                     return Err(format!(
-                        "view {number} has no outline: the scene is outside of the picture, or fills it; change the dataset's eyep, vrp or fov"
+                        "view {number} has no outline: the scene is outside of the picture, or \
+                         fills it; change the dataset's eyep, vrp or fov"
                     ));
                 }
                 disturb(&mut view, &disturbance, &mut numbers);
@@ -109,11 +110,11 @@ impl Scan {
     }
 
     fn check(&self) -> Result<(), String> {
-        let share = |value: f64| (0.0..1.0).contains(&value);
+        let shares = 0.0..1.0;
         if !(0.0..=MOST_NOISE).contains(&self.noise) {
             return Err(format!("--noise must be a number from 0 to {MOST_NOISE:e}"));
         }
-        if !share(self.outliers) || !share(self.gap) {
+        if !shares.contains(&self.outliers) || !shares.contains(&self.gap) {
             return Err(String::from(
                 "--outliers and --gap are shares, from 0 to less than 1",
             ));
@@ -136,8 +137,8 @@ impl Scan {
         Ok(())
     }
 
-    /// The cameras: the dataset's, turned about the direction that is up by equal parts of half a turn, as a shape has the
-    /// same outline from the other side.
+    /// The cameras: the dataset's, turned about the direction that is up by equal parts of half a
+    /// turn, as a shape has the same outline from the other side.
     fn views(&self, scene: &Scene, middle: DVec3) -> Result<Vec<Outline>, String> {
         let camera = scene.camera;
         let axis = camera
@@ -147,23 +148,25 @@ impl Scan {
         let [width, height] = scene.settings.frame.map(f64::from);
         // Sharp enough for outlines, whatever the picture's size.
         let grow = (640.0 / width.max(height)).max(1.0);
-        let turned = |i: u32| {
+        let outlines = (0..self.views).map(|i| {
             let angle = std::f64::consts::PI * f64::from(i) / f64::from(self.views);
             let (sine, cosine) = libm::sincos(angle);
-            let turn = |v: DVec3| {
-                v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine))
-            };
-            let about = |p: DVec3| (middle + turn(p - middle)).to_array();
+            let [eye, target] = [camera.eye, camera.target].map(|p| {
+                let v = p - middle;
+                let turned =
+                    v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine));
+                (middle + turned).to_array()
+            });
             Outline {
-                eye: about(camera.eye),
-                target: about(camera.target),
+                eye,
+                target,
                 up: camera.up.to_array(),
                 fov: camera.fov,
                 size: [(width * grow).round(), (height * grow).round()],
                 lines: Vec::new(),
             }
-        };
-        Ok((0..self.views).map(turned).collect())
+        });
+        Ok(outlines.collect())
     }
 }
 
@@ -172,7 +175,7 @@ fn ends_with(path: &Path, ending: &str) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case(ending))
 }
 
-/// A ball around all that has an end.
+/// The centre and radius of a ball around all that has an end.
 fn place(scene: &Scene) -> Option<(DVec3, f64)> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let mut add = |center: DVec3, radius: f64| {
@@ -192,8 +195,8 @@ fn place(scene: &Scene) -> Option<(DVec3, f64)> {
         .then(|| (0.5 * (low + high), 0.5 * size.length()))
 }
 
-/// Points where lines enter the scene: lines of all directions alike and all places alike meet each part of a surface in
-/// proportion to its area, as far as it is seen from outside.
+/// Samples points where lines enter the scene. Lines of uniformly random directions and places meet
+/// each part of a surface in proportion to its area, as far as it is seen from outside.
 fn sample(
     picker: &Picker,
     middle: DVec3,
@@ -225,8 +228,8 @@ fn sample(
     ))
 }
 
-/// Disturbs an outline: a gap on one side, noise as large as that of points in the middle of the scene, places anywhere in
-/// the picture.
+/// Disturbs an outline: a gap on one side, noise as large as that of points in the middle of the
+/// scene, places anywhere in the picture.
 fn disturb(view: &mut Outline, disturbance: &Disturbance, numbers: &mut Numbers) {
     let [width, height] = view.size;
     let away = DVec3::from_array(view.eye).distance(DVec3::from_array(view.target));
@@ -274,7 +277,8 @@ fn put(path: &Path, bytes: &[u8]) -> Result<(), String> {
 /// The points as binary PLY in double precision.
 fn ply(points: &[DVec3]) -> Vec<u8> {
     let mut bytes = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nend_header\n",
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\n\
+         property double y\nproperty double z\nend_header\n",
         points.len()
     )
     .into_bytes();
@@ -286,6 +290,6 @@ fn ply(points: &[DVec3]) -> Vec<u8> {
 
 /// The points as text, a line each.
 fn xyz(points: &[DVec3]) -> Vec<u8> {
-    let line = |p: &DVec3| format!("{} {} {}\n", p.x, p.y, p.z);
-    points.iter().map(line).collect::<String>().into_bytes()
+    let lines = points.iter().map(|p| format!("{} {} {}\n", p.x, p.y, p.z));
+    lines.collect::<String>().into_bytes()
 }

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub struct Sculpt {
     /// The strokes
     file: PathBuf,
-    /// Where to write the mesh: .ply, .obj, .stl, .glb or .3mf
+    /// File for the mesh: .ply, .obj, .stl, .glb or .3mf
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// Write a mesh for each stage, too: OUT-1.ply, OUT-2.ply …
@@ -50,8 +50,8 @@ impl Sculpt {
             stop_at(&mut script, stage)?;
         }
         let mut stages = Vec::new();
-        let mut load = |name: &str| self.load(name);
-        let replayed = replay(&script, &mut load, limits::MAX_WORK, |_, stroke, clay| {
+        let load = &mut |name: &str| self.load(name);
+        let replayed = replay(&script, load, limits::MAX_WORK, |_, stroke, clay| {
             if let Stroke::Stage(name) = stroke {
                 tell(&format!("{}. {name}", stages.len() + 1), clay);
                 let kept = self.stages.then(|| clay.to_triangles());
@@ -111,8 +111,6 @@ impl Sculpt {
 
 /// Leaves out the strokes after a stage.
 fn stop_at(script: &mut Script, stage: &str) -> Result<(), String> {
-    let is_stage = |stroke: &&Stroke| matches!(stroke, Stroke::Stage(_));
-    let count = script.strokes.iter().filter(is_stage).count();
     let wanted = stage.parse::<usize>().ok();
     let mut number = 0;
     let at = script.strokes.iter().position(|stroke| match stroke {
@@ -123,7 +121,7 @@ fn stop_at(script: &mut Script, stage: &str) -> Result<(), String> {
         _ => false,
     });
     let Some(at) = at else {
-        return Err(format!("there is no stage `{stage}`; there are {count}"));
+        return Err(format!("there is no stage `{stage}`; there are {number}"));
     };
     script.strokes.truncate(at + 1);
     Ok(())
@@ -156,7 +154,7 @@ fn longest_side(mesh: &TriangleMesh) -> f64 {
         .max(f64::MIN_POSITIVE)
 }
 
-/// Where meshes are written to.
+/// The files to which meshes are written.
 struct Output<'a> {
     path: &'a Path,
     format: Format,

@@ -29,30 +29,30 @@ fn kernel(name: &str) -> Result<Kernel, String> {
     })
 }
 
-/// How finely the picture is traced.
+/// The last pass of the picture that is traced.
 #[derive(Clone, Copy, ValueEnum)]
 enum Fineness {
-    /// One ray for every block of 8×8 pixels.
+    /// A ray for every block of 8×8 pixels.
     Coarse,
-    /// One ray a pixel.
+    /// A ray a pixel.
     Full,
-    /// More where neighbouring pixels differ.
+    /// Several rays a pixel where neighbouring pixels differ.
     Smooth,
 }
 
 /// Bodies that the balls belong to.
 #[derive(Clone, Copy, ValueEnum)]
 enum Bodies {
-    /// One body.
+    /// A single body.
     One,
-    /// One body, three smaller balls for each.
+    /// A single body, with three smaller balls in place of each.
     Triples,
-    /// The same, but each three balls are a body.
+    /// A body for each three smaller balls.
     Many,
 }
 
-/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--bodies B] [--pass P] [--size W H] [--soft on|off] [--hierarchy on|off]
-/// [--rays N]`.
+/// `sinew time FILE | --balls N [--kernel K] [--apart D] [--bodies B] [--pass P] [--size W H]
+/// [--soft on|off] [--hierarchy on|off] [--rays N]`.
 #[derive(Args)]
 pub struct Time {
     /// The dataset
@@ -61,8 +61,14 @@ pub struct Time {
     /// Instead of a dataset: so many balls spread evenly through a cube
     #[arg(long, value_name = "N", conflicts_with = "file")]
     balls: Option<u32>,
-    /// Their kernel
-    #[arg(long, value_name = "K", default_value = "gauss", value_parser = kernel, requires = "balls")]
+    /// Kernel of the balls
+    #[arg(
+        long,
+        value_name = "K",
+        default_value = "gauss",
+        value_parser = kernel,
+        requires = "balls"
+    )]
     kernel: Kernel,
     /// The mean distance of their middles, in radii: at 3 many touch and melt together
     #[arg(long, value_name = "D", default_value_t = 3.0, requires = "balls")]
@@ -70,7 +76,7 @@ pub struct Time {
     /// Bodies that they belong to
     #[arg(long, value_name = "B", default_value = "one", requires = "balls")]
     bodies: Bodies,
-    /// How finely
+    /// Pass to trace
     #[arg(long, default_value = "full")]
     pass: Fineness,
     /// Width and height in pixels, instead of the dataset's `framesize`
@@ -79,8 +85,8 @@ pub struct Time {
     /// Draw the convolution surface, or the offset surfaces of its elements
     #[arg(long)]
     soft: Option<Switch>,
-    /// Whether far primitives are judged in groups and interpolated for many rays at once, or (for comparison) each
-    /// is followed by itself
+    /// Whether far primitives are judged in groups and interpolated for many rays at once, or (for
+    /// comparison) each is followed by itself
     #[arg(long, default_value = "on")]
     hierarchy: Switch,
     /// Instead of the dataset's `contrast`, the one with which about so many rays are sent from the
@@ -155,7 +161,8 @@ impl Time {
     }
 }
 
-/// Sets the contrast with which `rays_of` the scene come nearest to `rays`: fewer with a higher one.
+/// Sets the contrast with which `rays_of` the scene come nearest to `rays`: fewer with a higher
+/// one.
 fn choose_contrast(scene: &mut Scene, rays: u64, rays_of: impl Fn(&Scene) -> u64) {
     let mut best = (u64::MAX, 0.0);
     // Exponents of two.

@@ -2,8 +2,8 @@
 //!
 //! A dataset may come from a stranger, so a job reads and writes nothing outside the folder of the
 //! dataset, not even through a link that lies in it, and never writes over a dataset. It does write
-//! over pictures of the name that the text gives, or that a result without a name gets, as a second run
-//! of the same text must.
+//! over pictures of the name that the text gives, or that a result without a name gets, as a second
+//! run of the same text must.
 
 use crate::files;
 use crate::whole::Whole;
@@ -15,8 +15,9 @@ use std::path::{Path, PathBuf};
 /// Largest file of a picture that is read, bytes.
 const MAX_FILE: u64 = 512 << 20;
 
-/// Carries out the jobs of a text in order, in the dataset's folder. Each gives a sentence that says what was
-/// done, or why it could not be; one that fails does not keep the others from being tried.
+/// Carries out the jobs of a text in order, in the dataset's folder. Each gives a sentence that
+/// says what was done, or why it could not be; one that fails does not keep the others from being
+/// tried.
 pub fn carry_out(tools: &[Tool], folder: &Path) -> Vec<Result<String, String>> {
     let mut bench = Bench::new(Folder(folder.to_path_buf()), tools.to_vec());
     let mut said = Vec::new();
@@ -31,7 +32,8 @@ pub fn carry_out(tools: &[Tool], folder: &Path) -> Vec<Result<String, String>> {
 /// Writes a picture under a name that a text gives, in the dataset's folder, and says so.
 ///
 /// # Errors
-/// If the name leads out of the folder, is that of a dataset or of no known format, or if writing fails.
+/// If the name leads out of the folder, is that of a dataset or of no known format, or if writing
+/// fails.
 pub fn save(folder: &Path, name: &str, picture: &Picture) -> Result<String, String> {
     darkroom::write(&Folder(folder.to_path_buf()), name, picture)
 }

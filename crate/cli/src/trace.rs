@@ -1,4 +1,4 @@
-//! From a scene to a picture in a file, as several subcommands need it.
+//! Traces a scene to a picture in a file, as several subcommands need it.
 
 use crate::whole;
 use picture::{Format, Picture, file};
@@ -12,7 +12,7 @@ use std::time::Instant;
 pub struct Wishes {
     /// Width and height, pixels.
     pub size: Option<[u32; 2]>,
-    /// At most n×n rays a pixel.
+    /// The most rays a pixel, n×n.
     pub samples: Option<u32>,
     /// Whether soft shapes blend.
     pub soft: Option<bool>,
@@ -33,7 +33,7 @@ pub struct Traced {
 }
 
 impl Wishes {
-    /// Changes a scene's settings to what is asked for.
+    /// Changes a scene's settings to these.
     ///
     /// # Errors
     /// If a size or a number of rays is out of its range.
@@ -46,7 +46,8 @@ impl Wishes {
         let largest = Settings::MAX_FRAME;
         if !(1..=largest).contains(&width) || !(1..=largest).contains(&height) {
             return Err(format!(
-                "a picture of {width}×{height} pixels cannot be made: each side must be 1 to {largest}"
+                "a picture of {width}×{height} pixels cannot be made: \
+                 each side must be 1 to {largest}"
             ));
         }
         if !(1..=Settings::MAX_SAMPLES).contains(&settings.samples) {
@@ -55,7 +56,8 @@ impl Wishes {
         Ok(())
     }
 
-    /// Traces a scene as asked for. `progress` is called from any thread with the share done, 0 … 1.
+    /// Traces a scene as asked for. `progress` is called from any thread with the share done, 0 …
+    /// 1.
     ///
     /// # Errors
     /// As [`Self::apply`], or if the number of threads is 0.
@@ -94,7 +96,7 @@ pub fn check_name(path: &Path) -> Result<(), String> {
     Format::of(path).map_or_else(|problem| Err(problem.to_string()), |_| Ok(()))
 }
 
-/// Writes a picture in the format that the name's ending tells.
+/// Writes a picture in the format of the name's ending.
 ///
 /// # Errors
 /// If the ending is not that of a known format, or if the file cannot be written.

@@ -2,28 +2,30 @@
 use field::{Real, THRESHOLD};
 use serde::{Deserialize, Serialize};
 
-/// The swelling beside a contact, as a function b of the other body's field f from c, where it begins, to T, the other's surface:
-/// `b(c) = b′(c) = 0`, `b(T) = 0`, `b′(T) = −1`. All values are in units of T.
+/// The swelling beside a contact, as a function b of the other body's field f from c, where it
+/// begins, to T, the other's surface: `b(c) = b′(c) = 0`, `b(T) = 0`, `b′(T) = −1`. All values are
+/// in units of T.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Bulge {
     /// `b = (1−c)·x²(1−x)`, `x = (f−c)/(1−c)`.
     Fast {
-        /// Where it begins, in (0, 1).
+        /// Field at which the bulge begins, in (0, 1).
         c: f64,
     },
-    /// A bulge of a given height at a given place: on [c, m] `b = (3−2x)x²h`, `x = (f−c)/(m−c)`; on [m, 1], with w = 1−m,
-    /// `b = h + ((w−3h) + (2h−w)x)x²`, `x = (f−m)/w`.
+    /// Bulge of a given height at a given place: on [c, m] `b = (3−2x)x²h`, `x = (f−c)/(m−c)`; on
+    /// [m, 1], with w = 1−m, `b = h + ((w−3h) + (2h−w)x)x²`, `x = (f−m)/w`.
     Height {
-        /// Where it begins, in (0, 1).
+        /// Field at which the bulge begins, in (0, 1).
         c: f64,
-        /// Where it is highest, in (c, 1).
+        /// Field at which the bulge is highest, in (c, 1).
         m: f64,
-        /// Its height, in [0, 1).
+        /// Height of the bulge, in [0, 1).
         h: f64,
     },
-    /// As [`Bulge::Height`], with `m = c+(1−c)(1−1/(4n+3))`, and the piece on [c, m] times `(cos(((2n+1)x+1)π)+1)/2`.
+    /// Bulge with ripples: [`Bulge::Height`] with `m = c+(1−c)(1−1/(4n+3))`, and the piece on [c,
+    /// m] times `(cos(((2n+1)x+1)π)+1)/2`.
     Ripple {
-        /// Where it begins, in (0, 1).
+        /// Field at which the bulge begins, in (0, 1).
         c: f64,
         /// The height of the highest ripple, in [0, 1).
         h: f64,
@@ -50,7 +52,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Bounds over both of two intervals.
+    /// Returns bounds over both of two intervals.
     fn or(self, other: Self) -> Self {
         Self {
             value: [
@@ -75,16 +77,21 @@ impl Bulge {
     /// Whether the parameters are in their ranges.
     #[must_use]
     pub fn is_usable(&self) -> bool {
-        let within = |x: f64, low: f64| x > low && x < THRESHOLD;
-        let height = |h: f64| (0.0..THRESHOLD).contains(&h);
-        match *self {
-            Self::Fast { c } => within(c, 0.0),
-            Self::Height { c, m, h } => within(c, 0.0) && within(m, c) && height(h),
-            Self::Ripple { c, h, n } => within(c, 0.0) && height(h) && n <= Self::MOST_RIPPLES,
-        }
+        let c = self.start();
+        let has_start = c > 0.0 && c < THRESHOLD;
+        has_start
+            && match *self {
+                Self::Fast { .. } => true,
+                Self::Height { m, h, .. } => {
+                    m > c && m < THRESHOLD && (0.0..THRESHOLD).contains(&h)
+                }
+                Self::Ripple { h, n, .. } => {
+                    (0.0..THRESHOLD).contains(&h) && n <= Self::MOST_RIPPLES
+                }
+            }
     }
 
-    /// Where it begins.
+    /// Field at which the bulge begins.
     #[must_use]
     pub fn start(&self) -> f64 {
         match *self {
@@ -92,7 +99,7 @@ impl Bulge {
         }
     }
 
-    /// The field at which it is highest, about.
+    /// Field at which the bulge is highest, about.
     #[must_use]
     pub fn crest(&self) -> f64 {
         match *self {
@@ -102,7 +109,7 @@ impl Bulge {
         }
     }
 
-    /// Its greatest height.
+    /// Greatest height of the bulge.
     #[must_use]
     pub fn height(&self) -> f64 {
         self.spread([self.start(), THRESHOLD]).value[1]
@@ -197,7 +204,7 @@ impl Bulge {
             }
             Self::Ripple { c, h, n } => {
                 let m = self.crest();
-                within(c, m, &|x| rippled(x, h, n, m - c));
+                within(c, m, &|x| ripples(x, h, n, m - c));
                 within(m, THRESHOLD, &|x| cubic(x, falling(m, h), THRESHOLD - m));
             }
         }
@@ -234,49 +241,49 @@ fn falling(m: f64, h: f64) -> [f64; 4] {
 
 /// Bounds on a cubic in x over an interval of x; derivatives are by f = width·x.
 fn cubic([low, high]: [f64; 2], [a, b, c, d]: [f64; 4], width: f64) -> Spread {
-    let value = |x: f64| a + x * (b + x * (c + x * d));
-    let slope = |x: f64| b + x * (2.0 * c + 3.0 * x * d);
-    let bend = |x: f64| 2.0 * c + 6.0 * d * x;
     let mut spread = Spread {
         value: [f64::INFINITY, f64::NEG_INFINITY],
         slope: 0.0,
         curvature: 0.0,
     };
-    let mut look = |x: f64| {
+    let root = (c * c - 3.0 * b * d).max(0.0).sqrt();
+    // The ends; where the slope is greatest; where it is 0.
+    for x in [
+        low,
+        high,
+        -c / (3.0 * d),
+        (-c + root) / (3.0 * d),
+        (-c - root) / (3.0 * d),
+    ] {
         if (low..=high).contains(&x) {
-            let v = value(x);
+            let value = a + x * (b + x * (c + x * d));
+            let slope = b + x * (2.0 * c + 3.0 * x * d);
+            let bend = 2.0 * c + 6.0 * d * x;
             spread = spread.or(Spread {
-                value: [v, v],
-                slope: slope(x).abs() / width,
-                curvature: bend(x).abs() / (width * width),
+                value: [value; 2],
+                slope: slope.abs() / width,
+                curvature: bend.abs() / (width * width),
             });
         }
-    };
-    look(low);
-    look(high);
-    // Where the slope is greatest, and where it is 0.
-    look(-c / (3.0 * d));
-    let root = (c * c - 3.0 * b * d).max(0.0).sqrt();
-    look((-c + root) / (3.0 * d));
-    look((-c - root) / (3.0 * d));
-    padded(spread)
+    }
+    pad(spread)
 }
 
-/// Bounds on the rippled piece over an interval of x: products of those of its two factors.
-fn rippled(x: [f64; 2], h: f64, n: u32, width: f64) -> Spread {
+/// Bounds on the piece with ripples over an interval of x: products of those of its two factors.
+fn ripples(x: [f64; 2], h: f64, n: u32, width: f64) -> Spread {
     let rise = cubic(x, [0.0, 0.0, 3.0 * h, -2.0 * h], width);
     let rate = half_waves(n) * core::f64::consts::PI / width;
     // The wave is in [0, 1], its derivatives at most rate/2 and rate²/2.
     let most = rise.value[1].max(0.0);
-    padded(Spread {
+    pad(Spread {
         value: [0.0, most],
         slope: rise.slope + 0.5 * rate * most,
         curvature: rise.curvature + rate * rise.slope + 0.5 * rate * rate * most,
     })
 }
 
-/// The same with room for rounding.
-fn padded(spread: Spread) -> Spread {
+/// Widens bounds by room for rounding.
+fn pad(spread: Spread) -> Spread {
     const ROUNDING: f64 = 1e-14;
     let [low, high] = spread.value;
     Spread {

@@ -1,4 +1,5 @@
-//! A check of bulges: one that is wide and high, where a field falls slowly, wraps the other body wholly.
+//! Check of bulges: one that is wide and high, where a field falls slowly, wraps the other body
+//! wholly.
 use crate::Bulge;
 use field::{Implicit, THRESHOLD};
 use glam::DVec3;
@@ -8,9 +9,9 @@ const DIRECTIONS: u32 = 48;
 /// Steps of each, from outside to the middle.
 const STEPS: u32 = 40;
 
-/// Whether the bulge that another body raises on a body's surface reaches round to the far side of the other: whether
-/// `f + b(f′) > T` at the crest of the bulge, on all rays into the other body from there. Functions are those without contact.
-/// `false` if a body has no known end.
+/// Whether the bulge that another body raises on a body's surface reaches round to the far side of
+/// the other: whether `f + b(f′) > T` at the crest of the bulge, on all rays into the other body
+/// from there. Functions are those without contact. `false` if a body has no known end.
 #[must_use]
 pub fn coats(own: &dyn Implicit, other: &dyn Implicit, bulge: &Bulge) -> bool {
     let (Some(here), Some(there)) = (own.support(), other.support_at(bulge.start())) else {

@@ -1,17 +1,19 @@
-//! A skeleton's local convolution whose folds press each other flat.
+//! Local convolution of a skeleton whose folds press each other flat.
 use crate::Bulge;
-use crate::squashed::bounded;
+use crate::squashed::product;
 use field::local::{Bounds, Two};
 use field::{Ball, Enclosure, Implicit, Jet, Local, Part, THRESHOLD, Variation};
 use glam::DVec3;
 use std::sync::Arc;
 use wide::f32x8;
 
-/// The function `f₁ + g(f₂)`: f₁ is the largest stretch of a skeleton at a point, f₂ the largest one more than 2D away from it along
-/// the skeleton ([`Local::two`]), and g the deformation of [`Bulge::jet`].
+/// The function `f₁ + g(f₂)`: f₁ is the largest stretch of a skeleton at a point, f₂ the largest
+/// one more than 2D away from it along the skeleton ([`Local::two`]), and g the deformation of
+/// [`Bulge::jet`].
 ///
-/// Where both are above T this is `T + f₁ − f₂`, which is T on the sheet f₁ = f₂ between two folds. As that is no surface, but the
-/// inside of one body, the value there is `(f₁+T)/2` where that is more.
+/// Where both are above T this is `T + f₁ − f₂`, which is T on the sheet f₁ = f₂ between two folds.
+/// As that is no surface, but the inside of one body, the value there is `(f₁+T)/2` where that is
+/// more.
 #[derive(Clone, Debug)]
 pub struct Folded {
     local: Arc<Local>,
@@ -20,7 +22,7 @@ pub struct Folded {
 }
 
 impl Folded {
-    /// A skeleton with the bulge beside its folds.
+    /// Makes the function of a skeleton with a bulge beside its folds.
     #[must_use]
     pub fn new(local: Arc<Local>, bulge: Bulge) -> Self {
         Self {
@@ -43,7 +45,7 @@ impl Folded {
         } else {
             low
         };
-        let slope = first.slope + bounded(spread.slope, second.slope);
+        let slope = first.slope + product(spread.slope, second.slope);
         Bounds {
             value: [
                 (low + spread.value[0]).max(lowest),
@@ -51,12 +53,12 @@ impl Folded {
             ],
             slope,
             curvature: first.curvature
-                + bounded(spread.curvature, second.slope * second.slope)
-                + bounded(spread.slope, second.curvature),
+                + product(spread.curvature, second.slope * second.slope)
+                + product(spread.slope, second.curvature),
             // Inside there is a crease beside the sheet.
             jump: match inside {
                 true => 2.0 * slope,
-                false => first.jump + bounded(spread.slope, second.jump),
+                false => first.jump + product(spread.slope, second.jump),
             },
         }
     }

@@ -1,8 +1,9 @@
 //! Surfaces that touch without blending.
 //!
-//! Where two implicit surfaces f₁ = T and f₂ = T would overlap, *precise contact modelling* (Cani 1993; Angelidis, Jepp and Cani
-//! 2002) presses both onto the sheet f₁ = f₂ and lets them bulge around it: f₁ becomes `f₁ + g(f₂)` and f₂ becomes `f₂ + g(f₁)`,
-//! where g(f) is T − f inside the other surface and a small [`Bulge`] in a shell around it. [`Squashed`] is such a function, with
+//! Where two implicit surfaces f₁ = T and f₂ = T would overlap, *precise contact modelling* (Cani
+//! 1993; Angelidis, Jepp and Cani 2002) presses both onto the sheet f₁ = f₂ and lets them bulge
+//! around it: f₁ becomes `f₁ + g(f₂)` and f₂ becomes `f₂ + g(f₁)`, where g(f) is T − f inside the
+//! other surface and a small [`Bulge`] in a shell around it. [`Squashed`] is such a function, with
 //! any number of others that it touches.
 //!
 //! ```
@@ -21,8 +22,8 @@
 //! assert!((squashed.jet(DVec3::ZERO).value - THRESHOLD).abs() < 1e-12);
 //! ```
 //!
-//! The volume that is left to a ball of radius 1 and blobbiness −1.5 beside another one at a distance of 1.5, as part of a ball's
-//! alone (`tests/it/volume.rs`, by Monte Carlo):
+//! The volume that is left to a ball of radius 1 and blobbiness −1.5 beside another one at a
+//! distance of 1.5, as part of a ball's alone (`tests/it/volume.rs`, by Monte Carlo):
 //!
 //! | kernel | only cut off | fast 0.2 | height 0.2 0.65 0.25 | ripple 0.2 0.25 2 |
 //! |---|---|---|---|---|

@@ -1,4 +1,4 @@
-//! A function deformed by those that its surface touches.
+//! Function deformed by those that its surface touches.
 use crate::Bulge;
 use field::local::Bounds;
 use field::{Ball, Enclosure, Implicit, Jet, Part, Real, Slack, THRESHOLD, Variation};
@@ -6,8 +6,9 @@ use glam::DVec3;
 use std::sync::Arc;
 use wide::f32x8;
 
-/// The function `f + g(maxⱼ fⱼ)` of a body's own function f and those fⱼ of the bodies that it touches, see [`Bulge::jet`] for g.
-/// The bulge is that of the largest fⱼ; where two are equally large, there is a crease.
+/// The function `f + g(maxⱼ fⱼ)` of a body's own function f and those fⱼ of the bodies that it
+/// touches, see [`Bulge::jet`] for g. The bulge is that of the largest fⱼ; where two are equally
+/// large, there is a crease.
 ///
 /// Its elements are those of f.
 #[derive(Clone, Debug)]
@@ -16,7 +17,7 @@ pub struct Squashed {
     partners: Vec<Partner>,
     /// The greatest height of a bulge.
     height: f64,
-    /// Where all partners are below it, nothing changes.
+    /// Least field of a partner that changes the function.
     start: f64,
 }
 
@@ -24,12 +25,13 @@ pub struct Squashed {
 struct Partner {
     function: Arc<dyn Implicit>,
     bulge: Bulge,
-    /// A ball outside which the partner changes nothing.
+    /// Ball outside which the partner changes nothing.
     reach: Option<Ball>,
 }
 
 impl Squashed {
-    /// A function and those that it touches, with the bulges that these raise. The functions are those without any contact.
+    /// Makes the function of a body from its own and those that it touches, with the bulges that
+    /// these raise. The functions given are those without any contact.
     #[must_use]
     pub fn new(own: Arc<dyn Implicit>, partners: Vec<(Arc<dyn Implicit>, Bulge)>) -> Self {
         // Where none is above the least start, all change nothing.
@@ -50,19 +52,19 @@ impl Squashed {
         }
     }
 
-    /// Value and gradient, given those of a function in the same precision.
-    fn combined<R: Real>(&self, jet: impl Fn(&dyn Implicit) -> Jet<R>) -> Jet<R> {
-        pressed(jet(&*self.own), self.partners.iter(), jet)
+    /// Computes value and gradient, given those of any function in the same precision.
+    fn combine<R: Real>(&self, jet: impl Fn(&dyn Implicit) -> Jet<R>) -> Jet<R> {
+        press(jet(&*self.own), self.partners.iter(), jet)
     }
 
     /// Bounds on the deformation in a ball; `None` if there is none.
     fn deformation(&self, ball: Ball) -> Option<Bounds> {
-        let apart = |partner: &&Partner| {
-            let is_far =
-                |reach: Ball| reach.center.distance(ball.center) > reach.radius + ball.radius;
-            partner.reach.is_some_and(is_far) || partner.function.most(ball) < self.start
-        };
-        let near = self.partners.iter().filter(|partner| !apart(partner));
+        let near = self.partners.iter().filter(|partner| {
+            let is_far = partner.reach.is_some_and(|reach| {
+                reach.center.distance(ball.center) > reach.radius + ball.radius
+            });
+            !is_far && partner.function.most(ball) >= self.start
+        });
         let near = near.map(|partner| {
             let bounds = partner.function.variation(None, ball);
             let at_center = partner.function.jet(ball.center);
@@ -80,13 +82,16 @@ impl Squashed {
             let Enclosure { value, slope, .. } = bounds.range;
             let spread = partner.bulge.spread([value[0].max(floor), value[1]]);
             let stepped = bounds.step > 0.0 && spread.slope > 0.0;
-            let unless = |not: bool, bound: f64| if not { f64::INFINITY } else { bound };
+            let [slope_bound, jump] = match stepped {
+                true => [f64::INFINITY; 2],
+                false => [slope, bounds.jump].map(|bound| product(spread.slope, bound)),
+            };
             let deformed = Bounds {
                 value: spread.value,
-                slope: unless(stepped, bounded(spread.slope, slope)),
-                curvature: bounded(spread.curvature, slope * slope)
-                    + bounded(spread.slope, bounds.curvature),
-                jump: unless(stepped, bounded(spread.slope, bounds.jump)),
+                slope: slope_bound,
+                curvature: product(spread.curvature, slope * slope)
+                    + product(spread.slope, bounds.curvature),
+                jump,
             };
             same &= *first.get_or_insert(partner.bulge) == partner.bulge;
             candidates += 1;
@@ -114,8 +119,8 @@ impl Squashed {
     }
 }
 
-/// Value and gradient of a function with the bulge of the largest of some partners.
-fn pressed<'a, R: Real>(
+/// Computes value and gradient of a function with the bulge of the largest of some partners.
+fn press<'a, R: Real>(
     own: Jet<R>,
     mut partners: impl Iterator<Item = &'a Partner>,
     jet: impl Fn(&dyn Implicit) -> Jet<R>,
@@ -145,22 +150,22 @@ fn pressed<'a, R: Real>(
     })
 }
 
-/// The product of two bounds, of which 0 stays 0 whatever the other is.
-pub(crate) fn bounded(factor: f64, bound: f64) -> f64 {
+/// Multiplies two bounds; 0 times an infinite one is 0.
+pub(crate) fn product(factor: f64, bound: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { factor * bound }
 }
 
 impl Implicit for Squashed {
     fn jet(&self, point: DVec3) -> Jet<f64> {
-        self.combined(|function| function.jet(point))
+        self.combine(|function| function.jet(point))
     }
 
     fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
-        self.combined(|function| function.jet32(point))
+        self.combine(|function| function.jet32(point))
     }
 
     fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
-        self.combined(|function| function.jet8(points))
+        self.combine(|function| function.jet8(points))
     }
 
     fn enclose(&self, ball: Ball) -> Enclosure {
@@ -187,13 +192,14 @@ impl Implicit for Squashed {
     }
 
     fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
-        // Outside the reach of all nothing changes, and partners out of reach are not the largest where something does.
-        let is_near = |partner: &&Partner| {
-            let is_far = |ball: Ball| ball.center.distance(point) > ball.radius;
-            !partner.reach.is_some_and(is_far)
-        };
-        let near = self.partners.iter().filter(is_near);
-        pressed(self.own.jet_of(part, point), near, |f| f.jet(point))
+        // Outside the reach of all nothing changes, and partners out of reach are not the largest
+        // where something does.
+        let near = self.partners.iter().filter(|partner| {
+            !partner
+                .reach
+                .is_some_and(|ball| ball.center.distance(point) > ball.radius)
+        });
+        press(self.own.jet_of(part, point), near, |f| f.jet(point))
     }
 
     fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {

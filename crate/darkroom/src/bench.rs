@@ -30,8 +30,8 @@ pub enum Step {
     Finished(Result<Done, String>),
 }
 
-/// Where the jobs of a text are done, in the order of the text. One that fails does not keep the others
-/// from being tried.
+/// A bench that does the jobs of a text in order. One that fails does not keep the others from
+/// being tried.
 pub struct Bench<S> {
     shelf: S,
     tools: Vec<Tool>,
@@ -41,7 +41,7 @@ pub struct Bench<S> {
     names: Names,
 }
 
-/// How a job goes on.
+/// The state of a job after a step.
 pub(crate) enum Turn {
     Working(Work),
     Done(Done),
@@ -64,19 +64,19 @@ impl<S: Shelf> Bench<S> {
         }
     }
 
-    /// Keeps a name from being given to a result that the text does not name, as those are that the text
-    /// gives to results.
+    /// Keeps a name from being given to a result that the text does not name, as those are that the
+    /// text gives to results.
     pub fn reserve(&mut self, name: &str) {
         self.names.take(name);
     }
 
-    /// Where the pictures lie.
+    /// The shelf on which the pictures lie.
     #[must_use]
     pub fn shelf(&self) -> &S {
         &self.shelf
     }
 
-    /// Where the pictures lie, to put another there.
+    /// The shelf on which the pictures lie, to put another there.
     pub fn shelf_mut(&mut self) -> &mut S {
         &mut self.shelf
     }
@@ -87,13 +87,13 @@ impl<S: Shelf> Bench<S> {
         self.tools.get(self.next)
     }
 
-    /// How many jobs there are.
+    /// Returns the number of jobs.
     #[must_use]
     pub fn count(&self) -> usize {
         self.tools.len()
     }
 
-    /// How many jobs are done.
+    /// Returns the number of jobs that are done.
     #[must_use]
     pub fn finished(&self) -> usize {
         self.next
@@ -105,8 +105,8 @@ impl<S: Shelf> Bench<S> {
         let turn = match self.work.take() {
             Some(work) => work.step(&self.shelf),
             None => {
-                // Files that a job reads are not overwritten by its own result or by a later one's. (What a later
-                // job reads may be this one's result.)
+                // Files that a job reads are not overwritten by its own result or by a later one's.
+                // (What a later job reads may be this one's result.)
                 tool.reads().iter().for_each(|name| self.names.take(name));
                 begin(tool, &self.shelf, &mut self.names)
             }
@@ -129,7 +129,7 @@ impl<S: Shelf> Bench<S> {
 struct Names(HashSet<String>);
 
 impl Names {
-    /// No result gets this name.
+    /// Takes a name, which no result gets then.
     fn take(&mut self, name: &str) {
         self.0.insert(name::plain(name).to_owned());
     }
@@ -198,8 +198,9 @@ pub(crate) fn check_room(shelf: &dyn Shelf, size: [u64; 2]) -> Result<(), String
     Ok(())
 }
 
-/// [`resize`] within the room that there is, also for what stands between its two passes.
-pub(crate) fn resized(
+/// Resizes a picture within the room of the shelf, which must also hold what is between the two
+/// passes.
+pub(crate) fn resize_within_room(
     shelf: &dyn Shelf,
     of: &str,
     picture: &Picture,
@@ -212,7 +213,7 @@ pub(crate) fn resized(
         .map_err(|sentence| format!("{of}: {sentence}"))
 }
 
-fn written(shelf: &dyn Shelf, to: String, picture: &Picture) -> Result<Turn, String> {
+fn finish(shelf: &dyn Shelf, to: String, picture: &Picture) -> Result<Turn, String> {
     let said = write(shelf, &to, picture)?;
     let files = vec![to];
     Ok(Turn::Done(Done { said, files }))
@@ -257,15 +258,15 @@ fn begin(tool: &Tool, shelf: &dyn Shelf, names: &mut Names) -> Result<Turn, Stri
             let collage = Collage::new(files, columns, to);
             Ok(Turn::Working(Work::Collage(collage)))
         }
-        Tool::Convert { from, to } => written(shelf, to.clone(), &read(shelf, from)?),
+        Tool::Convert { from, to } => finish(shelf, to.clone(), &read(shelf, from)?),
         Tool::Resize {
             file,
             width,
             height,
         } => {
-            let picture = resized(shelf, file, &read(shelf, file)?, [*width, *height])?;
+            let picture = resize_within_room(shelf, file, &read(shelf, file)?, [*width, *height])?;
             let (stem, ending) = name::split(file);
-            written(shelf, format!("{stem}-{width}x{height}{ending}"), &picture)
+            finish(shelf, format!("{stem}-{width}x{height}{ending}"), &picture)
         }
         Tool::Diff { a, b, save } => join(shelf, names, "diff", combine::diff, [a, b], save),
         Tool::And { a, b, save } => join(shelf, names, "and", combine::and, [a, b], save),
@@ -282,17 +283,17 @@ fn begin(tool: &Tool, shelf: &dyn Shelf, names: &mut Names) -> Result<Turn, Stri
             }
             Shown::Palette(colours) => {
                 let to = names.fresh("palette", "png");
-                written(shelf, to, &swatches(colours).map_err(say)?)
+                finish(shelf, to, &swatches(colours).map_err(say)?)
             }
         },
         Tool::Table { values } => {
             let to = names.fresh("table", "png");
-            written(shelf, to, &plot(values).map_err(say)?)
+            finish(shelf, to, &plot(values).map_err(say)?)
         }
     }
 }
 
-/// How two pictures become one.
+/// A function that makes one picture of two.
 type Join = fn(&Picture, &Picture) -> Result<Picture, Problem>;
 
 fn join(

@@ -1,8 +1,10 @@
-//! Image operations: runs the commands of the language's TOOLS group (`collage`, `resize`, `diff`, `animate` …).
+//! Image operations: runs the commands of the language's TOOLS group (`collage`, `resize`, `diff`,
+//! `animate` …).
 //!
-//! The language lists the jobs ([`rats::Tool`]), and the crate `picture` computes. A [`Bench`] reads the pictures that a job
-//! names, runs it, and writes the results. A [`Shelf`] is the store of pictures: a folder for the program, the files of the
-//! open work for the page. Both have the same results and messages.
+//! The language lists the jobs ([`rats::Tool`]), and the crate `picture` computes. A [`Bench`]
+//! reads the pictures that a job names, runs it, and writes the results. A [`Shelf`] is the store
+//! of pictures: a folder for the program, the files of the open work for the page. Both have the
+//! same results and messages.
 //!
 //! ```
 //! use darkroom::{Bench, Shelf, Step, Target};
@@ -28,8 +30,9 @@
 //! assert_eq!(failed, 1);
 //! ```
 //!
-//! A text may be untrusted: names that lead out of its own folder, and names of datasets for a result, are refused before a
-//! shelf sees them ([`name`]). A job runs in steps of at most one picture each, so that a page can draw in between.
+//! A text may be untrusted: names that lead out of its own folder, and names of datasets for a
+//! result, are refused before a shelf sees them ([`name`]). A job runs in steps of at most one
+//! picture each, so that a page can draw in between.
 
 mod bench;
 pub mod name;

@@ -1,4 +1,4 @@
-//! Where pictures lie.
+//! The shelf on which pictures lie.
 
 use picture::limits::MAX_PIXELS;
 use std::io::Write;
@@ -22,7 +22,8 @@ pub trait Shelf {
         MAX_PIXELS
     }
 
-    /// Whether results that the text does not save are written too, because here people can look at them.
+    /// Whether results that the text does not save are written too, because here people can look at
+    /// them.
     fn is_seen(&self) -> bool {
         false
     }

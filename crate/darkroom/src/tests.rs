@@ -79,7 +79,7 @@ impl Target for Sheet {
     }
 }
 
-/// All jobs, and how many steps they took.
+/// Runs tools; returns the results and the number of steps.
 fn run(shelf: Memory, tools: &[Tool]) -> (Vec<Result<Done, String>>, usize) {
     let mut bench = Bench::new(shelf, tools.to_vec());
     let (mut done, mut steps) = (Vec::new(), 0);

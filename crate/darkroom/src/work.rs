@@ -1,6 +1,6 @@
 //! Jobs of many pictures, which go on picture by picture.
 
-use crate::bench::{self, Done, Turn, create, measures, read, resized, say};
+use crate::bench::{self, Done, Turn, create, measures, read, resize_within_room, say};
 use crate::{Shelf, Target};
 use picture::animation::{self, Frames, Timing, Writer};
 use picture::{Format, Picture, collage_at_most};
@@ -62,7 +62,7 @@ impl Write for Shared {
 /// An animation that is being made.
 pub struct Film {
     files: Vec<String>,
-    /// Which of the files each frame is.
+    /// The index of each frame's file.
     order: Vec<usize>,
     done: usize,
     size: Option<[u32; 2]>,
@@ -102,7 +102,7 @@ impl Film {
             let file = &self.files[index];
             let frame = read(shelf, file)?;
             let frame = match self.size {
-                Some(size) => resized(shelf, file, &frame, size)?,
+                Some(size) => resize_within_room(shelf, file, &frame, size)?,
                 None => frame,
             };
             match &mut self.begun {
@@ -207,7 +207,8 @@ impl Collage {
             let (count, most) = (self.pictures.len(), shelf.most_pixels());
             if self.pixels > most {
                 return Err(format!(
-                    "the first {count} pictures have {} pixels together, and {most} is the limit for a sheet here; resize them first",
+                    "the first {count} pictures have {} pixels together, and {most} is the limit \
+                     for a sheet here; resize them first",
                     self.pixels
                 ));
             }

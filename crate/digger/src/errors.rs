@@ -1,4 +1,4 @@
-//! How far off the scene's digger is: for each pixel, along the ray through its middle, the
+//! Errors of the scene's digger: for each pixel, along the ray through its middle, the
 //! distance between the first hit that the digger finds and the first crossing of the field itself,
 //! found in double precision.
 //!
@@ -16,9 +16,9 @@ const TOGETHER: u32 = 8;
 pub enum Pixel {
     /// Neither hits.
     Empty,
-    /// Both hit, so far apart along the ray.
+    /// The digger and the field hit, at this distance along the ray from each other.
     Off(f32),
-    /// Only one of them hits.
+    /// Either the digger or the field hits.
     Alone,
 }
 
@@ -48,11 +48,11 @@ pub fn unpack(bytes: &[u8]) -> Vec<Pixel> {
     pixels.iter().copied().map(Pixel::unpack).collect()
 }
 
-/// A scene made ready for comparing.
+/// Scene made ready for comparing.
 pub struct Errors {
-    /// What the digger finds.
+    /// Picture by the digger.
     found: Picture,
-    /// The surface itself.
+    /// Picture by the tracer's own way.
     exact: Picture,
     projection: Projection,
     size: [u32; 2],

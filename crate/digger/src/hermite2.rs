@@ -13,11 +13,11 @@ use tracer::{Quest, roots};
 /// Most spans added up on a ray, or 64 times its primitives; crossings beyond are not found.
 const MOST_SPANS: usize = 1 << 18;
 
-/// A cubic on a part of the ray.
+/// Cubic on a part of the ray.
 struct CubicPart {
     from: f64,
     to: f64,
-    /// By powers of t − from.
+    /// Coefficients, by powers of t − from.
     powers: [f64; 4],
 }
 
@@ -42,7 +42,7 @@ impl CubicPart {
     }
 
     /// The powers of t − `start` of the same cubic.
-    fn shifted(&self, start: f64) -> [f64; 4] {
+    fn shift(&self, start: f64) -> [f64; 4] {
         let s = start - self.from;
         let [a, b, c, d] = self.powers;
         [
@@ -93,7 +93,7 @@ pub(crate) fn first(spans: u32, sight: &mut Sight<'_>, quest: Quest) -> Option<f
         left = left.checked_sub(active.len())?;
         let mut sum = [-THRESHOLD, 0.0, 0.0, 0.0];
         for &i in &active {
-            for (total, part) in sum.iter_mut().zip(pieces[i].shifted(from)) {
+            for (total, part) in sum.iter_mut().zip(pieces[i].shift(from)) {
                 *total += part;
             }
         }

@@ -21,11 +21,11 @@
 //!
 //! | digger | finds | can miss |
 //! |---|---|---|
-//! | `hermite` (the tracer's) | roots of Hermite spans with a bounded error | little: see the limits of `tracer` |
+//! | `hermite` (the tracer's) | roots of spans with a bounded error | little: see the limits of `tracer` |
 //! | `hermite2` | roots of n Hermite spans a primitive | crossings that its spans miss |
-//! | `lagrange` | roots of polynomials through five samples | parts thinner than its samples are apart |
+//! | `lagrange` | roots of polynomials through five samples | parts thinner than the samples' step |
 //! | `brent`, `ridder`, `rf` | changes of sign between steps, refined | parts thinner than a step |
-//! | `lg` | intervals where the field is monotone, by its Lipschitz constants | nothing longer than 10⁻⁷ |
+//! | `lg` | monotone intervals, by Lipschitz constants | nothing longer than 10⁻⁷ |
 //! | `sphere` | the surface, by safe steps towards it | nothing longer than 10⁻⁶ |
 //!
 //! Lengths are in units of the scene's size. What one ray may cost is limited for each of them, so
@@ -99,7 +99,7 @@ fn method(name: Digger) -> Option<Method> {
     })
 }
 
-/// A method as the tracer calls it.
+/// Adapter of a method to the tracer.
 struct Finder(Method);
 
 impl RootFinder for Finder {

@@ -12,7 +12,7 @@ const STEPS: f64 = 8.0;
 const MOST_MARCH_STEPS: usize = 4096;
 /// See [`MOST_MARCH_STEPS`].
 const MOST_MARCH_LOOKS: usize = 1 << 18;
-/// How exactly roots are refined.
+/// Accuracy of refined roots.
 pub(crate) const TOLERANCE: f64 = 1e-9;
 /// Most evaluations while refining a root.
 pub(crate) const MOST_REFINING: usize = 100;

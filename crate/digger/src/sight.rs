@@ -5,7 +5,7 @@ use tracer::Ray;
 /// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
 
-/// A primitive that a ray meets.
+/// Primitive that a ray meets.
 pub(crate) struct Term<'a> {
     pub primitive: &'a Primitive,
     pub bound: &'a Bound,
@@ -76,7 +76,7 @@ impl<'a> Sight<'a> {
         sum
     }
 
-    /// One primitive's value and slope along the ray, wherever it is.
+    /// Returns one primitive's value and slope along the ray, wherever it is.
     pub fn one(&mut self, term: usize, t: f64) -> (f64, f64) {
         self.evaluations += 1;
         self.terms[term].along.at(t)

@@ -55,7 +55,8 @@ fn reduce<R: Real>(y: R, x: R) -> Reduced<R> {
     }
 }
 
-/// Returns the angle θ and its integrals from its sine (≥ 0) and cosine, normalised to within rounding.
+/// Returns the angle θ and its integrals from its sine (≥ 0) and cosine, normalised to within
+/// rounding.
 #[inline(always)]
 pub fn angle<R: Real>(sine: R, cosine: R) -> Angle<R> {
     let reduced = reduce(sine, cosine.abs());
@@ -107,7 +108,8 @@ pub struct Sliver<R> {
     pub shortfall: R,
 }
 
-/// Returns the sliver for half the arc's angle θ (with its sine and cosine) and `e = 1 − k` in [0, 1].
+/// Returns the sliver for half the arc's angle θ (with its sine and cosine) and `e = 1 − k` in [0,
+/// 1].
 ///
 /// `V = eθ − ζ` with `tan ζ = e sin θ cos θ/(1 − e sin²θ)`; both terms lose their first powers
 /// symbolically.

@@ -5,7 +5,8 @@ use glam::DVec3;
 use std::sync::Arc;
 use wide::f32x8;
 
-/// The sum of a convolution surface's field and of other functions: their shapes blend as primitives do.
+/// The sum of a convolution surface's field and of other functions: their shapes blend as
+/// primitives do.
 ///
 /// Its elements are the sum's primitives, then those of the other functions, one after the other.
 ///
@@ -49,7 +50,7 @@ impl Blend {
         }
     }
 
-    /// The only function, if there is nothing else.
+    /// Returns the only function, if there is nothing else.
     fn single(&self) -> Option<&dyn Implicit> {
         match &self.parts[..] {
             [part] if self.sum.primitives.is_empty() => Some(&*part.function),

@@ -1,16 +1,18 @@
 //! Blobs: primitives whose field along a ray has closed-form bounds on every interval of the ray.
 //!
-//! A *blob* is a point with a compact or the Gaussian kernel, or a Gaussian segment, that adds to the field, does not taper, and
-//! has no profile other than a linear one along the segment ([`Ramp`]). For these
-//! `q(t) = q₀ + k(t−c)²`, the square of the distance from the point, or from the segment's line, in
-//! units of the kernel's width, is a parabola. A segment's field has one more factor, the fraction W of the Gaussian's integral that lies on it, which depends on the
+//! A *blob* is a point with a compact or the Gaussian kernel, or a Gaussian segment, that adds to
+//! the field, does not taper, and has no profile other than a linear one along the segment
+//! ([`Ramp`]). For these `q(t) = q₀ + k(t−c)²`, the square of the distance from the point, or from
+//! the segment's line, in units of the kernel's width, is a parabola. A segment's field has one
+//! more factor, the fraction W of the Gaussian's integral that lies on it, which depends on the
 //! position x along it, which is linear in t.
 //!
-//! On an interval of t the field is at most its value with the least q and the most central x of the
-//! interval. Its second derivative is at least `−2k·amplitude·|G′(q)|`, with the least q: for
-//! `g″ = amplitude·(2k·G′ + 4k²(t−c)²·G″)`, and all kernels G of q fall and are convex, so G″ ≥ 0 and |G′| falls.
-//! A segment is a sum of such points, and a Gaussian has |G′| = G. With a ramp r the field is `g·r`, so that −(gr)″ is at
-//! most `−g″·r + 2|g′||r′|` between the ramp's kinks; in a kink the slope falls by no more than `g·|r′|`.
+//! On an interval of t the field is at most its value with the least q and the most central x of
+//! the interval. Its second derivative is at least `−2k·amplitude·|G′(q)|`, with the least q: for
+//! `g″ = amplitude·(2k·G′ + 4k²(t−c)²·G″)`, and all kernels G of q fall and are convex, so G″ ≥ 0
+//! and |G′| falls. A segment is a sum of such points, and a Gaussian has |G′| = G. With a ramp r
+//! the field is `g·r`, so that −(gr)″ is at most `−g″·r + 2|g′||r′|` between the ramp's kinks; in a
+//! kink the slope falls by no more than `g·|r′|`.
 use crate::bone::{Bone, Segment};
 use crate::inverse::POLE2;
 use crate::ramp::Ramp;
@@ -20,35 +22,39 @@ use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
 
-/// Half the length, in kernel widths, from which a segment is a blob: at that length the difference of the two error
-/// functions keeps enough digits.
+/// Half the length, in kernel widths, from which a segment is a blob: at that length the difference
+/// of the two error functions keeps enough digits.
 const SHORT: f64 = 0.5;
 /// Amplitudes and width parameters of blobs are at most this.
 const LARGEST_BLOB: f64 = 1e9;
 /// Number of Newton steps to a compact blob's surface.
 const NEWTON: usize = 5;
-/// Half length, in kernel widths, from which the further end of a Gaussian segment contributes nothing: erfc 4 = 1.5·10⁻⁸.
+/// Half length, in kernel widths, from which the further end of a Gaussian segment contributes
+/// nothing: erfc 4 = 1.5·10⁻⁸.
 const LONG: f64 = 4.0;
 
-/// Distance inward from a segment's ends, in kernel widths, at which they hardly count …
+/// Distance inward from a segment's ends, in kernel widths, beyond which the ends hardly count:
+/// `e^(−x²)` is at most [`INNER_BELL`] there.
 const INNER_DISTANCE: f64 = 3.0;
-/// … since e^(−9) is less than this.
+/// Upper bound on e^(−9), see [`INNER_DISTANCE`].
 const INNER_BELL: f64 = 1.3e-4;
 
-/// A blob's field as a function of t on rays `origin + t·direction` with unit directions, one ray per lane.
+/// A blob's field as a function of t on rays `origin + t·direction` with unit directions, one ray
+/// per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct BlobOnRay<R: Real> {
     kernel: Kernel,
     amplitude: R,
-    /// Parameter t at which q is smallest …
+    /// Parameter t at which q is smallest.
     center: R,
-    /// … the value of q there …
+    /// The smallest q.
     least: R,
-    /// … and its growth: `q = least + pace·(t − center)²`.
+    /// Growth of q: `q = least + pace·(t − center)²`.
     pace: R,
     /// `1/√pace`, at most 10⁶.
     width: R,
-    /// For a segment: the position along it, `x = place + rate·t`, in kernel widths from its middle.
+    /// Position along a segment, `x = place + rate·t`, in kernel widths from its middle; 0 for a
+    /// point.
     place: R,
     rate: R,
     segment: Option<SegmentOnRay<R::Scalar>>,
@@ -73,7 +79,8 @@ struct SegmentOnRay<S> {
     ramp: Option<Ramp<S>>,
 }
 
-/// A blob in local form: a point or a segment whose field along rays has closed-form bounds ([module](self)).
+/// A blob in local form: a point or a segment whose field along rays has closed-form bounds
+/// ([module](self)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blob<S> {
     kernel: Kernel,
@@ -91,8 +98,8 @@ struct SegmentFrame<S> {
     ramp: Option<Ramp<S>>,
 }
 
-/// An upper bound on a blob's field by the distance from its bone, one blob per lane: `peak·G(q)` with `√q = scale·distance`;
-/// for compact kernels, which are convex in q, the chord `peak·(1−q)`.
+/// An upper bound on a blob's field by the distance from its bone, one blob per lane: `peak·G(q)`
+/// with `√q = scale·distance`; for compact kernels, which are convex in q, the chord `peak·(1−q)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Ceiling<R> {
     /// Bound on the field everywhere.
@@ -117,11 +124,11 @@ impl<R: Real> Ceiling<R> {
 }
 
 impl Primitive {
-    /// Returns the primitive as a blob about [`Primitive::blob_middle`]; `None` if it is none ([module](crate::blob)) or its width
-    /// or amplitude exceed single precision's range.
+    /// Returns the primitive as a blob about [`Primitive::blob_middle`]; `None` if it is none
+    /// ([module](crate::blob)) or its width or amplitude exceed single precision's range.
     #[must_use]
     pub fn blob<S: Scalar + Evaluate>(&self) -> Option<Blob<S>> {
-        let term = S::prepared(&self.prepared);
+        let term = S::term_of(&self.prepared);
         let ends = self.kernel == Kernel::Gauss || self.kernel.is_compact();
         let plain = ends && self.tapered.is_none();
         let amplitude = self.prepared.double.amplitude;
@@ -159,8 +166,9 @@ impl Primitive {
         })
     }
 
-    /// Returns the primitive as a blob if it is a point that adds to the field, without a profile, of a kernel that never ends. Such
-    /// blobs have no reach, but the same bounds on intervals: their kernels fall and are convex in q, too.
+    /// Returns the primitive as a blob if it is a point that adds to the field, without a profile,
+    /// of a kernel that never ends. Such blobs have no reach, but the same bounds on intervals:
+    /// their kernels fall and are convex in q, too.
     #[must_use]
     pub fn endless_point<S: Scalar + Evaluate>(&self) -> Option<Blob<S>> {
         let Prepared { double, .. } = &self.prepared;
@@ -171,7 +179,7 @@ impl Primitive {
         (plain && fits(double.amplitude) && fits(self.width)).then(|| Blob {
             kernel: self.kernel,
             scale: S::round(self.width),
-            amplitude: S::prepared(&self.prepared).amplitude,
+            amplitude: S::term_of(&self.prepared).amplitude,
             segment: None,
         })
     }
@@ -184,7 +192,8 @@ impl Primitive {
 }
 
 impl Blob<f32> {
-    /// A Gaussian point with this width parameter and this field at its centre; `None` if its derivatives would overflow.
+    /// Returns a Gaussian point with this width parameter and this field at its centre; `None` if
+    /// its derivatives would overflow.
     pub(crate) fn point(scale: f64, amplitude: f64) -> Option<Self> {
         (amplitude > 0.0 && amplitude <= LARGEST_BLOB && scale <= LARGEST_BLOB).then_some(Self {
             kernel: Kernel::Gauss,
@@ -196,7 +205,8 @@ impl Blob<f32> {
 }
 
 impl<S: Scalar> Blob<S> {
-    /// Returns the squared distance q from the bone, in kernel widths, beyond which the field is at most `level`.
+    /// Returns the squared distance q from the bone, in kernel widths, beyond which the field is at
+    /// most `level`.
     #[must_use]
     pub fn reach(&self, level: f64) -> f64 {
         if self.kernel != Kernel::Gauss {
@@ -220,8 +230,9 @@ impl<S: Scalar> Blob<S> {
         }
     }
 
-    /// Returns a bound on the field by the distance from the bone. It holds beyond the ends of a segment of half length H, too, at x
-    /// along it, because `erf(x+H) − erf(x−H) ≤ erfc(x−H) ≤ exp(−(x−H)²)`.
+    /// Returns a bound on the field by the distance from the bone. It holds beyond the ends of a
+    /// segment of half length H, too, at x along it, because
+    /// `erf(x+H) − erf(x−H) ≤ erfc(x−H) ≤ exp(−(x−H)²)`.
     #[must_use]
     pub fn ceiling(&self) -> Ceiling<f64> {
         Ceiling {
@@ -248,8 +259,9 @@ impl<S: Scalar> Blob<S> {
         (half + square.sqrt()) / self.scale.lane(0)
     }
 
-    /// Returns the q at which the blob alone would have its surface, given its [`Blob::reach`] for `level`; negative if it has
-    /// none. A point's field is at least T from there inwards; a segment's is less near its ends, and everywhere if it is short.
+    /// Returns the q at which the blob alone would have its surface, given its [`Blob::reach`] for
+    /// `level`; negative if it has none. A point's field is at least T from there inwards; a
+    /// segment's is less near its ends, and everywhere if it is short.
     #[must_use]
     pub fn core(&self, square: f64, level: f64) -> f64 {
         if self.kernel == Kernel::Gauss {
@@ -266,7 +278,8 @@ impl<S: Scalar> Blob<S> {
         })
     }
 
-    /// Returns the q at which a point of a kernel that never ends has this field alone; negative if it has not.
+    /// Returns the q at which a point of a kernel that never ends has this field alone; negative if
+    /// it has not.
     #[must_use]
     pub fn square_of(&self, field: f64) -> f64 {
         let ratio = self.amplitude.lane(0) / field;
@@ -285,9 +298,9 @@ impl<S: Scalar> Blob<S> {
         [self.scale, self.amplitude]
     }
 
-    /// Estimates the largest slope of the field where it is at most T: perpendicular to the bone, at `q = core`
-    /// ([`Blob::core`]) or further out. A compact kernel's `|G′|√q` is at most `|G′|`, which falls; a Gaussian's falls from
-    /// q = ½ on.
+    /// Estimates the largest slope of the field where it is at most T: perpendicular to the bone,
+    /// at `q = core` ([`Blob::core`]) or further out. A compact kernel's `|G′|√q` is at most
+    /// `|G′|`, which falls; a Gaussian's falls from q = ½ on.
     #[must_use]
     pub fn steepness(&self, core: f64) -> f64 {
         let scale = self.scale.lane(0);
@@ -339,7 +352,8 @@ impl<S: Scalar> Blob<S> {
         }
     }
 
-    /// The field on rays with these unit directions, given the blob's middle relative to their origins.
+    /// The field on rays with these unit directions, given the blob's middle relative to their
+    /// origins.
     #[inline(always)]
     #[must_use]
     pub fn on_ray<R: Real<Scalar = S>>(&self, middle: [R; 3], direction: [R; 3]) -> BlobOnRay<R> {
@@ -348,14 +362,13 @@ impl<S: Scalar> Blob<S> {
         let [dx, dy, dz] = direction;
         if let Some(segment) = &self.segment {
             // In the segment's frame; t = 0 at the ray's origin.
-            let axis = |i: usize| {
-                let [ax, ay, az]: [S; 3] = segment.axes[i];
-                let [ax, ay, az] = [ax, ay, az].map(R::lift);
+            let [(x, rate), (y, vy), (z, vz)] = segment.axes.map(|axis| {
+                let [ax, ay, az] = axis.map(R::lift);
                 (-(ax * ox + ay * oy + az * oz), ax * dx + ay * dy + az * dz)
-            };
-            let [(x, rate), (y, vy), (z, vz)] = [axis(0), axis(1), axis(2)];
+            });
             let pace = vy * vy + vz * vz;
-            // A ray parallel to the segment has no nearest point; without this, rounding would choose one.
+            // A ray parallel to the segment has no nearest point; without this, rounding would
+            // choose one.
             let still = R::splat(1e-12) * (pace + rate * rate);
             let zero = R::splat(0.0);
             let center = R::select(pace.lt(still), zero, -(y * vy + z * vz) / pace);
@@ -418,7 +431,8 @@ impl<R: Real> BlobOnRay<R> {
         }
     }
 
-    /// Returns value and derivative at t, and a bound on −f″ at t alone, like that of [`BlobOnRay::most`].
+    /// Returns value and derivative at t, and a bound on −f″ at t alone, like that of
+    /// [`BlobOnRay::most`].
     #[inline(always)]
     #[must_use]
     pub fn bent(&self, t: R) -> (R, R, R) {
@@ -434,8 +448,8 @@ impl<R: Real> BlobOnRay<R> {
         (self.amplitude * value, steep * (swift + swift), bend)
     }
 
-    /// Factor on the bound on −g″ at this distance or more from the parameter where q is smallest: for a Gaussian
-    /// `−g″ = g·2k(1 − 2k(t−c)²)`, which is negative beyond the inflection.
+    /// Factor on the bound on −g″ at this distance or more from the parameter where q is smallest:
+    /// for a Gaussian `−g″ = g·2k(1 − 2k(t−c)²)`, which is negative beyond the inflection.
     #[inline(always)]
     fn share_bent(&self, away: R) -> R {
         let one = R::splat(1.0);
@@ -455,7 +469,8 @@ impl<R: Real> BlobOnRay<R> {
         let square = self.least + self.pace * away * away;
         let (value, fall) = match &self.segment {
             None => self.kernel.falling_at_most(square),
-            // Segments overlap less than points do, so a cheap loose bound fails more often than it saves.
+            // Segments overlap less than points do, so a cheap loose bound fails more often than it
+            // saves.
             Some(_) => self.kernel.falling(square),
         };
         let twice = self.pace + self.pace;
@@ -471,8 +486,9 @@ impl<R: Real> BlobOnRay<R> {
                 let most = beside * share;
                 let rate = self.rate.abs();
                 let furthest = (from - self.center).abs().max((to - self.center).abs());
-                // Two bounds, of which the smaller counts: each of the segment's points separately, with the full rate of
-                // change of its distance; or the product rule for the factor e^(−q) and the fraction on the segment.
+                // Two bounds, of which the smaller counts: each of the segment's points separately,
+                // with the full rate of change of its distance; or the product rule for the factor
+                // e^(−q) and the fraction on the segment.
                 let points = most * (twice + R::splat(2.0) * rate * rate);
                 let two = R::splat(2.0);
                 let ends = two * twice * furthest * bell + two * two * rate * tail;
@@ -503,7 +519,8 @@ impl<R: Real> BlobOnRay<R> {
         self.kernel == Kernel::Gauss && self.segment.is_none()
     }
 
-    /// Copy with kernel and kind fixed, for loops over Gaussian points alone: the compiler drops all other cases.
+    /// Copy with kernel and kind fixed, for loops over Gaussian points alone: the compiler drops
+    /// all other cases.
     #[inline(always)]
     #[must_use]
     pub fn gaussian_point(self) -> Self {
@@ -524,15 +541,16 @@ impl<R: Real> BlobOnRay<R> {
             .is_some_and(|segment| segment.ramp.is_some())
     }
 
-    /// Whether the field rises up to `to` in all lanes: then [`BlobOnRay::bent`] at `to` bounds it on any interval that ends
-    /// there, as tightly as [`BlobOnRay::most`].
+    /// Whether the field rises up to `to` in all lanes: then [`BlobOnRay::bent`] at `to` bounds it
+    /// on any interval that ends there, as tightly as [`BlobOnRay::most`].
     #[inline(always)]
     #[must_use]
     pub fn rises_until(&self, to: R) -> bool {
         self.segment.is_none() && !R::any(self.center.lt(to))
     }
 
-    /// Returns the parameters between which q is at most `square`; where it never is, the first is greater than the second.
+    /// Returns the parameters between which q is at most `square`; where it never is, the first is
+    /// greater than the second.
     #[inline(always)]
     #[must_use]
     pub fn within(&self, square: R) -> [R; 2] {
@@ -577,8 +595,8 @@ impl<R: Real> BlobOnRay<R> {
         (share, change)
     }
 
-    /// Returns bounds between two parameters on the fraction of [`Self::share`], and on `e^(−y²)` and `|y|e^(−y²)`, with y the
-    /// distance along the segment from either end.
+    /// Returns bounds between two parameters on the fraction of [`Self::share`], and on `e^(−y²)`
+    /// and `|y|e^(−y²)`, with y the distance along the segment from either end.
     #[inline(always)]
     fn most_share(&self, segment: &SegmentOnRay<R::Scalar>, from: R, to: R) -> (R, [R; 2]) {
         let half = R::lift(segment.half);

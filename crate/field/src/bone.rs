@@ -1,6 +1,8 @@
-//! The skeleton's geometry in a primitive's local frame, with everything that does not depend on the point precomputed.
+//! The skeleton's geometry in a primitive's local frame, with everything that does not depend on
+//! the point precomputed.
 //!
-//! Lengths are in units of the kernel's width (metres times [`Shaping::width`](crate::Shaping::width)).
+//! Lengths are in units of the kernel's width (metres times
+//! [`Shaping::width`](crate::Shaping::width)).
 pub mod arc;
 pub mod curve;
 pub mod polygon;
@@ -13,8 +15,8 @@ pub use polygon::{Edge, Polygon};
 pub use segment::Segment;
 pub use triangle::Triangle;
 
-/// A skeletal element in its local frame. The common small kinds (points, segments, arcs) are stored inline; the larger ones
-/// are boxed, so that a scene of a million points stays small.
+/// Bone in its local frame. The common small kinds (points, segments, arcs) are
+/// stored inline; the larger ones are boxed, so that a scene of a million points stays small.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Bone<S> {
     /// The origin.

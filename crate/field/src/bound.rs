@@ -1,8 +1,9 @@
-//! Bounds on a primitive's field at a given distance or more from its skeleton: its size, its derivatives, and the error of
-//! a cubic Hermite span.
+//! Bounds on a primitive's field at a given distance or more from its skeleton: its size, its
+//! derivatives, and the error of a cubic Hermite span.
 //!
-//! A field is an integral of kernels. So a bound on the kernel at a distance ([`envelope`](crate::envelope)) bounds the field
-//! when multiplied by the skeleton's length or area, or integrated over an infinite line or plane; the smaller counts.
+//! A field is an integral of kernels. So a bound on the kernel at a distance
+//! ([`envelope`](crate::envelope)) bounds the field when multiplied by the skeleton's length or
+//! area, or integrated over an infinite line or plane; the smaller counts.
 mod place;
 
 use crate::envelope::{self, PEANO, Roughness};
@@ -16,28 +17,29 @@ use place::Place;
 #[derive(Clone, Debug)]
 pub struct Bound {
     place: Place,
-    /// For an arc or a curve, in kernel widths: how much of it fits into a ball.
+    /// Bound on the length of an arc or a curve that fits into a ball; `None` for other bones.
     crowding: Option<Box<Crowding>>,
     kernel: Kernel,
-    /// Width parameter of the kernel, an inverse length; the smallest of a tapered bone, since kernels and envelopes fall with
-    /// the width parameter times the distance.
+    /// Width parameter of the kernel, an inverse length; the smallest of a tapered bone, since
+    /// kernels and envelopes fall with the width parameter times the distance.
     width: f64,
     /// Largest width parameter, by which derivatives grow.
     finest: f64,
-    /// |height| times the skeleton's measure (1 for points, infinite for planes): times the kernel it is the field where all
-    /// of the skeleton is at one distance.
+    /// |height| times the skeleton's measure (1 for points, infinite for planes): times the kernel
+    /// it is the field where all of the skeleton is at one distance.
     whole: f64,
-    /// |height|·width^−dimension, the factor on integrals over an infinite line or plane in kernel widths. Infinite where
-    /// there is no such bound.
+    /// |height|·width^−dimension, the factor on integrals over an infinite line or plane in kernel
+    /// widths. Infinite where there is no such bound.
     endless: f64,
     /// The square of the skeleton's length, or its area, in kernel widths: 0 for points.
     size: f64,
-    /// For compact kernels: radius of a ball around `middle` that holds the skeleton.
+    /// Radius of a ball around `middle` that holds the skeleton; only compact kernels use it.
     extent: f64,
     middle: DVec3,
     dimension: u8,
-    /// Whether the term can be positive and negative.
+    /// Whether the term can be positive.
     positive: bool,
+    /// Whether the term can be negative.
     negative: bool,
     /// Depth of influence.
     pub influence: f64,
@@ -54,8 +56,8 @@ pub struct Nearness {
     pub distance: f64,
     /// Whether all of the skeleton is within a compact kernel's support of every point of the ball.
     within: bool,
-    /// Ratio of an integral over an arc to that over its tangent line at `distance`, or more; infinite where there is no such
-    /// bound.
+    /// Ratio of an integral over an arc to that over its tangent line at `distance`, or more;
+    /// infinite where there is no such bound.
     arc_factor: f64,
     /// Distance of the ball from an arc's axis, or less.
     axis_distance: f64,
@@ -79,19 +81,20 @@ impl Nearness {
 pub struct Estimate {
     /// Bound on `|f|`.
     pub magnitude: f64,
-    /// Bound on the error of the cubic Hermite interpolant on a span of the given length. With a profile: a bound where that is
-    /// smooth, an estimate in its [`kinks`](crate::kinks).
+    /// Bound on the error of the cubic Hermite interpolant on a span of the given length. With a
+    /// profile: a bound where that is smooth, an estimate in its [`kinks`](crate::kinks).
     pub error: f64,
     /// Bound on the fourth derivative of f along any line; infinite if unknown.
     pub fourth: f64,
 }
 
-/// Length h of a span as factors on derivatives: `cₘhᵐ` for the orders m = 2 to 4, with Peano's constants.
+/// Length h of a span as factors on derivatives: `cₘhᵐ` for the orders m = 2 to 4, with Peano's
+/// constants.
 #[derive(Clone, Copy, Debug)]
 pub struct SpanLength([f64; 3]);
 
 impl SpanLength {
-    /// From the length of a span on a ray with unit direction.
+    /// Prepares the length of a span on a ray with unit direction.
     #[must_use]
     pub fn new(h: f64) -> Self {
         Self([
@@ -108,7 +111,8 @@ impl SpanLength {
     }
 }
 
-/// Largest `arc_factor` for which [`Crowding`] is not evaluated: there it seldom gives a smaller bound, and costs an arctangent.
+/// Largest `arc_factor` for which [`Crowding`] is not evaluated: there it seldom gives a smaller
+/// bound, and costs an arctangent.
 const NEARLY_STRAIGHT: f64 = 1.2;
 
 impl Bound {
@@ -132,7 +136,8 @@ impl Bound {
         let mut height = primitive.height.abs() * low.abs().at_least(high.abs());
         let mut whole = height * measure;
         if let Some([mass, density, thinness]) = primitive.taper_bounds() {
-            // Bounds hold for the whole bone at its smallest width parameter; those over lines at its largest density, too.
+            // Bounds hold for the whole bone at its smallest width parameter; those over lines at
+            // its largest density, too.
             whole = height * mass;
             height *= density;
             width *= thinness.sqrt();
@@ -191,8 +196,8 @@ impl Bound {
         }
     }
 
-    /// Factor ≤ 1 on the length of a span along a direction (within `spread` of it) for its error: below 1 along an infinite
-    /// plane, where the field does not change.
+    /// Factor ≤ 1 on the length of a span along a direction (within `spread` of it) for its error:
+    /// below 1 along an infinite plane, where the field does not change.
     #[inline]
     #[must_use]
     pub fn shortened(&self, direction: DVec3, spread: f64) -> f64 {
@@ -219,7 +224,8 @@ impl Bound {
         ];
         let magnitude;
         let rough = if kernel == Kernel::Cauchy && self.size <= 1.0 + u * u {
-            // Further away than its size: the bound for an infinite line or plane would hardly be smaller.
+            // Further away than its size: the bound for an infinite line or plane would hardly be
+            // smaller.
             let (point, rough) = envelope::cauchy_point(u);
             magnitude = self.whole * point;
             self.whole * rough
@@ -237,8 +243,12 @@ impl Bound {
             let over_endless = match self.dimension {
                 1 => match &self.crowding {
                     Some(crowding) if near.arc_factor > NEARLY_STRAIGHT => {
-                        let at = |u| envelope::rough_point(kernel, u);
-                        (near.arc_factor * line).at_most(crowding.bound(u, at, |_, _| outward))
+                        let crowded = crowding.integral_bound(
+                            u,
+                            |u| envelope::rough_point(kernel, u),
+                            |_, _| outward,
+                        );
+                        (near.arc_factor * line).at_most(crowded)
                     }
                     Some(_) => near.arc_factor * line,
                     None => line,
@@ -249,7 +259,7 @@ impl Bound {
         };
         let rough = rough * by_width[order - 2];
         if let Some(ripple) = &self.ripple {
-            return self.rippled(ripple, near, magnitude, rough, length);
+            return self.estimate_with_profile(ripple, near, magnitude, rough, length);
         }
         let mut error = rough * length.0[order - 2];
         // Beyond a compact kernel's support all derivatives are 0.
@@ -270,10 +280,11 @@ impl Bound {
         }
     }
 
-    /// Returns the bounds with a profile: the smallest error over the orders of the product's derivatives. `rough` bounds the
-    /// field's derivative of its kernel's order without the profile.
+    /// Returns the bounds with a profile: the smallest error over the orders of the product's
+    /// derivatives. `rough` bounds the field's derivative of its kernel's order without the
+    /// profile.
     #[inline(never)]
-    fn rippled(
+    fn estimate_with_profile(
         &self,
         ripple: &Ripple,
         near: Nearness,
@@ -305,16 +316,17 @@ impl Bound {
         }
     }
 
-    /// Returns a bound on `|∇f|` (a Lipschitz constant of f in the ball), where the profile, if any, is smooth.
+    /// Returns a bound on `|∇f|` (a Lipschitz constant of f in the ball), where the profile, if
+    /// any, is smooth.
     #[must_use]
     pub fn slope(&self, near: Nearness) -> f64 {
         let [first, ..] = self.factor(near);
         self.derivative(near, 1) + self.magnitude(near) * first
     }
 
-    /// Estimates the largest |∇f|/|f|, for the effect of coordinates rounded to single precision: the profile's plus that of a
-    /// Gaussian three widths out (only negligible parts of a field are steeper), or, if the field falls as a power k of the
-    /// distance d, at most k/d.
+    /// Estimates the largest |∇f|/|f|, for the effect of coordinates rounded to single precision:
+    /// the profile's plus that of a Gaussian three widths out (only negligible parts of a field are
+    /// steeper), or, if the field falls as a power k of the distance d, at most k/d.
     #[inline]
     #[must_use]
     pub fn relative_slope(&self, near: Nearness) -> f64 {
@@ -322,8 +334,9 @@ impl Bound {
         steepest.at_most(self.power() / near.distance)
     }
 
-    /// Returns the size of the terms that a face's formula adds up: sums over edges cancel beside a face, and rounding is relative
-    /// to their terms, not to the field. 0 for other bones and for kernels with a pole.
+    /// Returns the size of the terms that a face's formula adds up: sums over edges cancel beside a
+    /// face, and rounding is relative to their terms, not to the field. 0 for other bones and for
+    /// kernels with a pole.
     #[inline]
     #[must_use]
     pub fn cancels(&self) -> f64 {
@@ -349,8 +362,8 @@ impl Bound {
         }
     }
 
-    /// Returns a bound on the second derivative of f along any line (a Lipschitz constant of the slope along a ray in the ball),
-    /// where the profile, if any, is smooth.
+    /// Returns a bound on the second derivative of f along any line (a Lipschitz constant of the
+    /// slope along a ray in the ball), where the profile, if any, is smooth.
     #[must_use]
     pub fn curvature(&self, near: Nearness) -> f64 {
         let [first, second, ..] = self.factor(near);
@@ -358,8 +371,8 @@ impl Bound {
         self.derivative(near, 2) + wave
     }
 
-    /// Returns a bound on the third derivative of f along any line in the ball, where the profile, if any, is smooth; infinite if
-    /// the second derivative may jump there.
+    /// Returns a bound on the third derivative of f along any line in the ball, where the profile,
+    /// if any, is smooth; infinite if the second derivative may jump there.
     #[must_use]
     pub fn third(&self, near: Nearness) -> f64 {
         let is_outside = self.kernel.is_compact() && near.distance * self.width >= 1.0;
@@ -389,34 +402,41 @@ impl Bound {
         2.0 * self.magnitude(near) * first
     }
 
-    /// Returns bounds on the first to fourth derivative of the profile's factor, over its size; 0 without a profile.
+    /// Returns bounds on the first to fourth derivative of the profile's factor, over its size; 0
+    /// without a profile.
     fn factor(&self, near: Nearness) -> [f64; 4] {
-        let of = |ripple: &Ripple| ripple.derivatives(near.axis_distance);
-        self.ripple.as_deref().map_or([0.0; 4], of)
+        match &self.ripple {
+            Some(ripple) => ripple.derivatives(near.axis_distance),
+            None => [0.0; 4],
+        }
     }
 
-    /// Returns a bound on the first, second or third derivative along any line, without the profile.
+    /// Returns a bound on the first, second or third derivative along any line, without the
+    /// profile.
     fn derivative(&self, near: Nearness, order: usize) -> f64 {
         let kernel = self.kernel;
         let u = near.distance * self.width;
-        let bounds_at = |u| envelope::derivative(kernel, order, u);
         let Roughness {
             point,
             line,
             plane,
             outward,
-        } = bounds_at(u);
+        } = envelope::derivative(kernel, order, u);
         let over_endless = match (self.dimension, &self.place) {
             (0, _) => point,
             (1, _) => match &self.crowding {
                 Some(crowding) => {
-                    let at = |u| bounds_at(u).point;
-                    (near.arc_factor * line).at_most(crowding.bound(u, at, |_, _| outward))
+                    let crowded = crowding.integral_bound(
+                        u,
+                        |u| envelope::derivative(kernel, order, u).point,
+                        |_, _| outward,
+                    );
+                    (near.arc_factor * line).at_most(crowded)
                 }
                 None => line,
             },
-            // Planes of the inverse kernel: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from above; it
-            // jumps in the plane, and has a slope of less than 1 elsewhere.
+            // Planes of the inverse kernel: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from
+            // above; it jumps in the plane, and has a slope of less than 1 elsewhere.
             (_, Place::Plane { .. }) if kernel == Kernel::Inverse => match order {
                 1 => core::f64::consts::TAU,
                 2 if u > 0.0 => core::f64::consts::TAU,
@@ -424,13 +444,7 @@ impl Bound {
             },
             _ => plane,
         };
-        let whole = self.whole * point;
-        let endless = self.endless * over_endless;
-        let least = if whole < endless || endless.is_nan() {
-            whole
-        } else {
-            endless
-        };
+        let least = smaller(self.whole * point, self.endless * over_endless);
         (0..order).fold(least, |bound, _| bound * self.finest)
     }
 
@@ -452,8 +466,8 @@ impl Bound {
             1 if let Some(crowding) = &self.crowding
                 && near.arc_factor > NEARLY_STRAIGHT =>
             {
-                let outward = |a, b| kernel.between(a, b);
-                let crowded = crowding.bound(u, |u| kernel.value(u), outward);
+                let crowded =
+                    crowding.integral_bound(u, |u| kernel.value(u), |a, b| kernel.between(a, b));
                 if near.arc_factor.is_finite() {
                     crowded.at_most(near.arc_factor * line())
                 } else {
@@ -462,8 +476,8 @@ impl Bound {
             }
             1 if self.crowding.is_some() => near.arc_factor * line(),
             1 => line(),
-            // The integral over an infinite plane diverges; that over a face is largest for a disc of its area around the foot of the
-            // perpendicular.
+            // The integral over an infinite plane diverges; that over a face is largest for a disc
+            // of its area around the foot of the perpendicular.
             _ if self.whole.is_finite() && !kernel.falls_fast() => {
                 let near = u * u;
                 let far = near + self.size / core::f64::consts::PI;
@@ -471,14 +485,13 @@ impl Bound {
             }
             _ => plane::jet(kernel, [0.0, 0.0, u]).value,
         };
-        // Infinity times 0 is NaN: no bound.
-        let least = |a: f64, b: f64| if a < b || b.is_nan() { a } else { b };
-        least(self.whole * point, self.endless * endless)
+        smaller(self.whole * point, self.endless * endless)
     }
 
-    /// Returns a bound from below on f in a ball, ≥ 0: 0 but for kernels with a pole on a point or a curve, near which the field
-    /// is much larger than its slope tells. Kernels fall with distance, so that the part of a curve within a length l of the
-    /// nearest point gives l·h(d + l) or more.
+    /// Returns a bound from below on f in a ball, ≥ 0: 0 but for kernels with a pole on a point or
+    /// a curve, near which the field is much larger than its slope tells. Kernels fall with
+    /// distance, so that the part of a curve within a length l of the nearest point gives l·h(d +
+    /// l) or more.
     #[must_use]
     pub fn least(&self, center: DVec3, radius: f64) -> f64 {
         let is_plain = self.width == self.finest && self.ripple.is_none() && !self.negative;
@@ -534,7 +547,8 @@ impl Bound {
         self.ripple.is_some()
     }
 
-    /// A factor m and a width parameter w such that `|f| ≤ m·h(w·d)` at a distance d from the skeleton, for the kernel h.
+    /// Returns a factor m and a width parameter w such that `|f| ≤ m·h(w·d)` at a distance d from
+    /// the skeleton, for the kernel h.
     #[must_use]
     pub fn far(&self) -> [f64; 2] {
         [self.whole, self.width]
@@ -551,6 +565,13 @@ impl Bound {
     pub fn carves(&self) -> bool {
         self.negative
     }
+}
+
+/// Returns the smaller of two bounds. The second may be NaN, from infinity times 0, and is none
+/// then.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b || b.is_nan() { a } else { b }
 }
 
 /// Upper bound on the kernel's value, cheap to compute.

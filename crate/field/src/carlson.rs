@@ -1,29 +1,32 @@
 //! Carlson's symmetric elliptic integrals
 //!
-//! `R_F(x,y,z) = ½·∫₀^∞ dt/√((t+x)(t+y)(t+z))`, `R_D(x,y,z) = (3/2)·∫₀^∞ dt/((t+z)·√((t+x)(t+y)(t+z)))`.
+//! `R_F(x,y,z) = ½·∫₀^∞ dt/√((t+x)(t+y)(t+z))`,
+//! `R_D(x,y,z) = (3/2)·∫₀^∞ dt/((t+z)·√((t+x)(t+y)(t+z)))`.
 //!
 //! Legendre's integrals are special cases, but these have no branches, their arguments may be
-//! exchanged (in R_D the first two), and everything in their computation is positive, so that nothing
-//! cancels. They are what remains of the inverse and the cubed kernel along an arc.
+//! exchanged (in R_D the first two), and everything in their computation is positive, so that
+//! nothing cancels. They are what remains of the inverse and the cubed kernel along an arc.
 //!
 //! Duplication: with `λ = √x√y + √x√z + √y√z` the integrals keep their values (but for a simple
 //! term) when each argument a becomes (a+λ)/4. The arguments' square roots approach each other at
 //! every step, first their ratios quadratically, then their differences by fours. When they are
 //! nearly equal the Taylor series around equal arguments ends the work, here to seventh order (DLMF
-//! 19.36). The number of steps is fixed for a type, [`Real::DUPLICATIONS`], so that all lanes go in step:
-//! 5 in single precision leave an error below 3·10⁻⁸ of the value as long as the two smaller arguments,
-//! or all but one that is 0, are above 10⁻¹⁴ of the largest (3·10⁻⁶ at 10⁻²⁰); 8 in double leave 2·10⁻¹⁵
-//! down to 10⁻⁴⁰.
+//! 19.36). The number of steps is fixed for a type, [`Real::DUPLICATIONS`], so that all lanes go in
+//! step: 5 in single precision leave an error below 3·10⁻⁸ of the value as long as the two smaller
+//! arguments, or all but one that is 0, are above 10⁻¹⁴ of the largest (3·10⁻⁶ at 10⁻²⁰); 8 in
+//! double leave 2·10⁻¹⁵ down to 10⁻⁴⁰.
 //!
-//! At most one argument may be 0, and not the last of R_D. R_F is homogeneous of degree −½, R_D of −3/2;
-//! `∂R_F/∂z = −R_D(x,y,z)/6`. Second derivatives follow from differentiating the step of duplication:
-//! with F_yy and F_yz those of R_F, a, b, c the roots of x, y, z and `w = (a+b)(b+c) = y+λ`
+//! At most one argument may be 0, and not the last of R_D. R_F is homogeneous of degree −½, R_D of
+//! −3/2; `∂R_F/∂z = −R_D(x,y,z)/6`. Second derivatives follow from differentiating the step of
+//! duplication: with F_yy and F_yz those of R_F, a, b, c the roots of x, y, z and
+//! `w = (a+b)(b+c) = y+λ`
 //!
 //! `F_yy = F_yy(next)/16 + (4b² + 2b(a+c) + ac)/(4b³w²)`,
 //! `F_yz = F_yz(next)/16 + (a+b+c)/(4bc(a+b)(a+c)(b+c)²)`.
 //!
-//! Again everything is positive. What is left after the last step has a series like the others', which are all of
-//! Carlson's `R_{−k}(b; x)`: `F_yy = (3/20)R_{−5/2}(½, 5/2, ½)`, `F_yz = (1/20)R_{−5/2}(½, 3/2, 3/2)`.
+//! Again everything is positive. What is left after the last step has a series like the others',
+//! which are all of Carlson's `R_{−k}(b; x)`: `F_yy = (3/20)R_{−5/2}(½, 5/2, ½)`,
+//! `F_yz = (1/20)R_{−5/2}(½, 3/2, 3/2)`.
 use crate::Real;
 
 /// R_F and two of its derivatives, of one computation.
@@ -84,8 +87,9 @@ fn series_d<R: Real>([x, y, z]: [R; 3]) -> R {
     (one + e2 * by_e2 + e3 * by_e3 + e4 * by_e4 + e5 * by_e5) * inverse * inverse.sqrt()
 }
 
-/// `R_{−5/2}(b; x)` of nearly equal arguments, where the three b add up to 7/2: `A^{−5/2}·Σ T_n·5/(5+2n)` with
-/// `A = (2/7)Σ bᵢxᵢ`, `Zᵢ = 1−xᵢ/A`, `p_k = Σ bᵢZᵢᵏ` and `n·T_n = p₁T_{n−1} + … + p_n`.
+/// `R_{−5/2}(b; x)` of nearly equal arguments, where the three b add up to 7/2:
+/// `A^{−5/2}·Σ T_n·5/(5+2n)` with `A = (2/7)Σ bᵢxᵢ`, `Zᵢ = 1−xᵢ/A`, `p_k = Σ bᵢZᵢᵏ` and
+/// `n·T_n = p₁T_{n−1} + … + p_n`.
 #[inline(always)]
 fn series_second<R: Real>(b: [f64; 3], x: [R; 3]) -> R {
     let one = R::splat(1.0);
@@ -114,7 +118,8 @@ fn series_second<R: Real>(b: [f64; 3], x: [R; 3]) -> R {
     (one + sum) * inverse * inverse * inverse.sqrt()
 }
 
-/// `R_F(x, y, z)`, its derivatives by the last two arguments, and sums of its second derivatives by those.
+/// `R_F(x, y, z)`, its derivatives by the last two arguments, and sums of its second derivatives by
+/// those.
 #[inline(always)]
 pub fn elliptic_second<R: Real>(x: R, y: R, z: R) -> Second<R> {
     let quarter = R::splat(0.25);
@@ -276,10 +281,10 @@ mod tests {
         }
     }
 
-    /// Carlson's own examples (Numerical computation of real or complex elliptic integrals, 1995), in
-    /// the 14 digits that are printed.
+    /// Carlson's own examples (Numerical computation of real or complex elliptic integrals, 1995),
+    /// in the 14 digits that are printed.
     #[test]
-    fn published_values() {
+    fn values_are_carlsons() {
         let first = elliptic(0.0, 2.0, 1.0);
         close(first.f, 1.311_028_777_146_1, 1e-13, "R_F(1, 2, 0)");
         close(first.d_z, 1.797_210_352_103_4, 1e-13, "R_D(0, 2, 1)");

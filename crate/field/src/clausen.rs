@@ -1,10 +1,11 @@
-//! The dilogarithm's imaginary part in the unit disc, `Im Li₂(β·e^{2iψ}) = Σ βⁿ sin(2nψ)/n²`, for β and ψ
-//! with 0 ≤ β ≤ 1 and 0 ≤ ψ ≤ π/2. For β = 1 it is Clausen's function `Cl₂(2ψ)`.
+//! The dilogarithm's imaginary part in the unit disc, `Im Li₂(β·e^{2iψ}) = Σ βⁿ sin(2nψ)/n²`, for β
+//! and ψ with 0 ≤ β ≤ 1 and 0 ≤ ψ ≤ π/2. For β = 1 it is Clausen's function `Cl₂(2ψ)`.
 //!
-//! `Li₂(z) = S(−ln(1−z))` with `S(u) = u − u²/4 + Σ B₂ₙu²ⁿ⁺¹/(2n+1)!`, Bernoulli's numbers, which converges for
-//! |u| < 2π. Where Re z > ½ this comes from `Li₂(z) = π²/6 − ln z·ln(1−z) − Li₂(1−z)`. Then |u| ≤ π/3 in
-//! the whole disc, and each term is at most 1/36 of the one before: 4 of them do in single precision,
-//! 10 in double.
+//! `Li₂(z) = S(−ln(1−z))` with `S(u) = u − u²/4 + Σ B₂ₙu²ⁿ⁺¹/(2n+1)!`, Bernoulli's numbers, which
+//! converges for
+//! |u| < 2π. Where Re z > ½ this comes from `Li₂(z) = π²/6 − ln z·ln(1−z) − Li₂(1−z)`. Then |u| ≤
+//! π/3 in the whole disc, and each term is at most 1/36 of the one before: 4 of them do in single
+//! precision, 10 in double.
 use crate::Real;
 
 /// B₂ₙ/(2n+1)! from n = 0 on.
@@ -25,9 +26,9 @@ const COEFFICIENTS: [f64; 11] = [
 /// A complex number z of the unit disc, in the quantities that the formulas use.
 #[derive(Clone, Copy)]
 pub struct InDisc<R> {
-    /// Half its argument, ψ.
+    /// Half the argument, ψ.
     pub half_argument: R,
-    /// Its real part.
+    /// Real part.
     pub real: R,
     /// ln |z|. Counts only where the real part is above ½.
     pub ln_modulus: R,
@@ -49,8 +50,8 @@ pub fn imaginary_dilogarithm<R: Real>(z: &InDisc<R>) -> R {
     reflected + imaginary_series(real, imaginary)
 }
 
-/// Im S(a+ib). Horner's scheme for a real polynomial of a complex number v = u²: division by the real
-/// quadratic whose roots are v and its conjugate.
+/// Im S(a+ib). Horner's scheme for a real polynomial of a complex number v = u²: division by the
+/// real quadratic whose roots are v and its conjugate.
 #[inline(always)]
 fn imaginary_series<R: Real>(a: R, b: R) -> R {
     let terms = if R::DOUBLE { COEFFICIENTS.len() } else { 5 };

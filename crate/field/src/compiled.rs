@@ -5,7 +5,7 @@ use wide::f32x8;
 
 impl Evaluate for f64 {
     #[inline(always)]
-    fn prepared(term: &Prepared) -> &Term<f64> {
+    fn term_of(term: &Prepared) -> &Term<f64> {
         &term.double
     }
 
@@ -22,7 +22,7 @@ impl Evaluate for f64 {
 
 impl Evaluate for f32 {
     #[inline(always)]
-    fn prepared(term: &Prepared) -> &Term<f32> {
+    fn term_of(term: &Prepared) -> &Term<f32> {
         &term.single
     }
 
@@ -38,8 +38,8 @@ impl Evaluate for f32 {
         term.point_jet_inline(position)
     }
 
-    // A visitor waits for each formula that is compiled, and in the page nothing is traced by one lane of single precision: it is
-    // the first of eight, which has the same bits.
+    // A visitor waits for each formula that is compiled, and in the page nothing is traced by one
+    // lane of single precision: it is the first of eight, which has the same bits.
     #[cfg(target_arch = "wasm32")]
     fn evaluate(term: &Term<f32>, local: [Self; 3]) -> Jet<Self> {
         first(f32x8::evaluate(term, local.map(f32x8::splat)))
@@ -62,7 +62,7 @@ fn first(jet: Jet<f32x8>) -> Jet<f32> {
 
 impl Evaluate for f32x8 {
     #[inline(always)]
-    fn prepared(term: &Prepared) -> &Term<f32> {
+    fn term_of(term: &Prepared) -> &Term<f32> {
         &term.single
     }
 

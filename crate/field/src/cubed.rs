@@ -1,7 +1,7 @@
 //! The cubed kernel, `h(r) = (r²+ε²)^{−3/2}`.
 //!
-//! ε rounds the pole off as it does the [inverse](crate::inverse) kernel's: in every formula z² becomes z²+ε².
-//! All work in the primitive's own frame, in units of its radius.
+//! ε rounds the pole off as it does the [inverse](crate::inverse) kernel's: in every formula z²
+//! becomes z²+ε². All work in the primitive's own frame, in units of its radius.
 use crate::Real;
 
 pub mod arc;
@@ -9,8 +9,8 @@ pub mod cone;
 pub mod polygon;
 pub mod segment;
 
-/// A segment as seen from a point at distance k beside its line. Its ends are at t₀ and t₁ ≥ t₀ from the foot of
-/// the perpendicular, `ρᵢ² = k²+tᵢ²`.
+/// A segment as seen from a point at distance k beside its line. Its ends are at t₀ and t₁ ≥ t₀
+/// from the foot of the perpendicular, `ρᵢ² = k²+tᵢ²`.
 struct Ends<R> {
     /// ρ₀ρ₁.
     product: R,
@@ -29,8 +29,9 @@ struct Ends<R> {
 }
 
 impl<R: Real> Ends<R> {
-    /// From k², t₀, t₁ and `length = t₁−t₀`. Where two terms would cancel, their product with their sum over their
-    /// sum stands for their difference: `N = k²(t₁²−t₀²)/(t₁ρ₀+t₀ρ₁)`, `k²(k²+t₀²+t₁²)/(ρ₀ρ₁±t₀t₁)`.
+    /// Computes the quantities from k², t₀, t₁ and `length = t₁−t₀`. A difference that would cancel
+    /// is computed as a difference of squares over the sum: `N = k²(t₁²−t₀²)/(t₁ρ₀+t₀ρ₁)`, and the
+    /// smaller of `ρ₀ρ₁±t₀t₁` as `k²(k²+t₀²+t₁²)/(ρ₀ρ₁∓t₀t₁)`.
     #[inline(always)]
     fn of(k2: R, t0: R, t1: R, length: R) -> Self {
         let zero = R::splat(0.0);

@@ -1,36 +1,38 @@
-//! Any kernel along a cubic curve, or along anything whose width varies: `∫ α G(ωg) |q′| dt` with
-//! `g(t) = |p − q(t)|²`, by Gauss–Legendre quadrature on the spans of [`bone::curve`](crate::bone::curve).
+//! Fields of any kernel along a cubic curve, or along any bone whose width varies:
+//! `∫ α G(ωg) |q′| dt` with `g(t) = |p − q(t)|²`, by Gauss–Legendre quadrature on the spans of
+//! [`bone::curve`](crate::bone::curve).
 //!
 //! - Smooth kernels (Cauchy, Gauss): nodes are prepared with their weights, and the field is a sum
 //!   over them.
 //! - Other kernels: a span is first written around the place t* of the extremum of g (of ωg for
 //!   compact kernels), in powers of s = t − t*: positions relative to p, and with them g and |q′|²,
 //!   so that nothing cancels near the curve.
-//! - Compact kernels: on either side of t* the function ωg is monotonic, so it passes 1 at most once:
-//!   where, is found by Newton's method from the root of a parabola (exact on straight spans without
-//!   taper). The rule is applied to what lies inside. Outside the support the field is exactly 0.
-//!   Metaballs' inner piece, ωg < 1/9, is found in the same way and integrated by itself.
+//! - Compact kernels: on either side of t* the function ωg is monotonic, so it passes 1 at most
+//!   once: where, is found by Newton's method from the root of a parabola (exact on straight spans
+//!   without taper). The rule is applied to what lies inside. Outside the support the field is
+//!   exactly 0. Metaballs' inner piece, ωg < 1/9, is found in the same way and integrated by
+//!   itself.
 //! - Kernels with a pole (inverse, squared, cubed): the integrand has a peak of the width
-//!   `b = √((g* + ε²/ω)/|q′|²)` around t*. With `s = b·sinh x` this becomes smooth: `ds/√(s²+b²)` is
-//!   `dx`, and `ds/(s²+b²)` is `dx/(b·cosh x)`, which is as wide as 1 however long the interval of x
-//!   (the cubed kernel's is `dx/(b·cosh x)²`).
-//!   So `x = (π/2)·sinh y` on top: it takes the singularities of the secant from ±iπ/2 to where
-//!   those of y are, and the interval from ±12 (for points on the curve itself) to ±2.8.
+//!   `b = √((g* + ε²/ω)/|q′|²)` around t*. With `s = b·sinh x` this becomes smooth: `ds/√(s²+b²)`
+//!   is `dx`, and `ds/(s²+b²)` is `dx/(b·cosh x)`, which is as wide as 1 however long the interval
+//!   of x (the cubed kernel's is `dx/(b·cosh x)²`). So `x = (π/2)·sinh y` on top: it takes the
+//!   singularities of the secant from ±iπ/2 to where those of y are, and the interval from ±12 (for
+//!   points on the curve itself) to ±2.8.
 //!
 //! The gradient `2∫ αωG′|q′|·(p−q) dt` comes from the same nodes: with `q − p = Σ eₖsᵏ` it is
 //! `−2Σ eₖ ∫αωG′|q′|sᵏ`. Ends of the support do not move it, since kernels are continuous.
 //!
-//! Accuracy (tests/it/chart.rs and tests/it/taper.rs): double precision 10⁻⁹ of the value, single 10⁻⁵. Within
-//! 10⁻³ widths of a bone whose kernel has a pole single precision is right to 3·10⁻⁴ (cubed: 10⁻³),
-//! since there it counts that the ends of spans are rounded: by 10⁻⁸, where the squared kernel is 10¹⁰ high and the
-//! cubed one 10¹⁵.
+//! Accuracy (tests/it/chart.rs and tests/it/taper.rs): double precision 10⁻⁹ of the value, single
+//! 10⁻⁵. Within 10⁻³ widths of a bone whose kernel has a pole single precision is right to 3·10⁻⁴
+//! (cubed: 10⁻³), since there it counts that the ends of spans are rounded: by 10⁻⁸, where the
+//! squared kernel is 10¹⁰ high and the cubed one 10¹⁵.
 use crate::bone::Curve;
 use crate::bone::curve::{SINGLE_TERMS, Span, TERMS};
 use crate::inverse::POLE2;
 use crate::metaballs::INNER2;
 use crate::{Jet, Kernel, Real, cubed};
 
-/// In `x = STEEP·sinh y` (see the module).
+/// Factor in `x = STEEP·sinh y` (see the module).
 const STEEP: f64 = core::f64::consts::FRAC_PI_2;
 
 /// Value and gradient at a local position.
@@ -112,11 +114,10 @@ fn with_pole<R: Real>(
             .min(R::splat(8.0));
         let inverse = one / b;
         let steep = R::splat(STEEP);
-        let place = |end: R| {
+        let [low, high] = [-one, one].map(|end| {
             let x = ((end - t) * inverse).asinh();
             if twice { (x / steep).asinh() } else { x }
-        };
-        let (low, high) = (place(-one), place(one));
+        });
         let (middle, reach) = (half * (high + low), half * (high - low));
         let (half_b, half_steep) = (half * b, half * steep);
         let mut sums = Sums::zero();
@@ -157,7 +158,7 @@ fn compact<R: Real>(
         let slope = Slope::new(span, p);
         let t = if bone.tapered {
             slope.extremum(|slope, t| {
-                let (thinness, rate) = prepared(&span.thinness, t);
+                let (thinness, rate) = polynomial(&span.thinness, t);
                 // Half the derivative of ωg.
                 thinness * slope.at(t) + R::splat(0.5) * rate * slope.square(t)
             })
@@ -236,8 +237,8 @@ impl<R: Real> Slope<R> {
         self.middle + t * horner(&c, t)
     }
 
-    /// Returns the zero in [−1, 1] of a function that is nearly linear in t, by the Illinois method; without a
-    /// zero, the end at which its integral is smaller.
+    /// Returns the zero in [−1, 1] of a function that is nearly linear in t, by the Illinois
+    /// method; without a zero, the end at which its integral is smaller.
     #[inline(always)]
     fn extremum(&self, f: impl Fn(&Self, R) -> R) -> R {
         let (zero, one, half) = (R::splat(0.0), R::splat(1.0), R::splat(0.5));
@@ -314,7 +315,7 @@ impl<'a, R: Real> Around<'a, R> {
     /// ω and its derivative.
     #[inline(always)]
     fn thinness(&self, s: R) -> (R, R) {
-        prepared(&self.span.thinness, self.t + s)
+        polynomial(&self.span.thinness, self.t + s)
     }
 
     /// ωg and its derivative.
@@ -412,7 +413,7 @@ impl<R: Real> Sums<R> {
         }
     }
 
-    /// A node's contribution.
+    /// Adds a node's contribution.
     #[inline(always)]
     fn add(&mut self, around: &Around<'_, R>, s: R, weight: R, pair: impl Fn(R) -> (R, R)) {
         let zero = R::splat(0.0);
@@ -421,7 +422,7 @@ impl<R: Real> Sums<R> {
         let mut moment;
         if around.tapered {
             let (thinness, _) = around.thinness(s);
-            weight = weight * prepared(&around.span.density, around.t + s).0;
+            weight = weight * polynomial(&around.span.density, around.t + s).0;
             let (value, rate) = pair(thinness * square);
             self.value = self.value + weight * value;
             moment = weight * thinness * rate;
@@ -462,9 +463,9 @@ fn relative<R: Real>(span: &Span<R::Scalar>, t: R, p: [R; 3]) -> [[R; 3]; 4] {
     ]
 }
 
-/// A polynomial of a span and its derivative, of as many terms as spans of this type have.
+/// Computes a span's polynomial and its derivative, with as many terms as spans of this type have.
 #[inline(always)]
-fn prepared<R: Real>(coefficients: &[R::Scalar; TERMS], t: R) -> (R, R) {
+fn polynomial<R: Real>(coefficients: &[R::Scalar; TERMS], t: R) -> (R, R) {
     let count = if R::DOUBLE { TERMS } else { SINGLE_TERMS };
     let mut value = R::lift(coefficients[count - 1]);
     let mut slope = R::splat(0.0);

@@ -1,7 +1,7 @@
 //! Minimum and maximum of two numbers that are fast in wasm, too.
 //!
-//! `f64::min` and `f64::max` ignore NaN. Wasm has no instruction for that and calls a function of the C library for each:
-//! 5 % of the time of the bounds, of which a picture evaluates millions.
+//! `f64::min` and `f64::max` ignore NaN. Wasm has no instruction for that and calls a function of
+//! the C library for each: 5 % of the time of the bounds, of which a picture evaluates millions.
 
 /// Numbers that can be limited. Of two zeros of different signs either may be returned.
 pub trait Cut: Copy {

@@ -1,5 +1,5 @@
-//! Fields of infinite lines, by which segments, arcs and curves are normalised (fields.md, section 3.4), at
-//! a distance x, in kernel widths.
+//! Fields of infinite lines, by which segments, arcs and curves are normalised (fields.md, section
+//! 3.4), at a distance x, in kernel widths.
 use crate::plane::WINDOW;
 use crate::{Kernel, inverse};
 use core::f64::consts::PI;

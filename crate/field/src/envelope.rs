@@ -1,5 +1,5 @@
-//! Envelopes of a kernel's derivatives: the largest derivative along any straight line at a distance u or more, and the
-//! integrals of that bound over a line and a plane at that distance.
+//! Envelopes of a kernel's derivatives: the largest derivative along any straight line at a
+//! distance u or more, and the integrals of that bound over a line and a plane at that distance.
 //!
 //! The order of the derivative is the highest that exists everywhere: 4 for smooth kernels; 2
 //! for those whose slope has kinks (metaballs, soft, quartic), 3 for compact6. The cubic Hermite
@@ -18,13 +18,13 @@ pub const PEANO: [f64; 3] = [1.0 / 16.0, 1.0 / 96.0, 1.0 / 384.0];
 /// Bounds on a derivative at some distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness {
-    /// At one point.
+    /// Bound at any one point.
     pub point: f64,
-    /// Integrated over a straight line at that distance.
+    /// Integral of the bound over a straight line at that distance.
     pub line: f64,
-    /// Integrated over a plane at that distance.
+    /// Integral of the bound over a plane at that distance.
     pub plane: f64,
-    /// Integrated over the distance from there on.
+    /// Integral of the bound over the distance from there on.
     pub outward: f64,
 }
 
@@ -44,9 +44,9 @@ pub fn order(kernel: Kernel) -> usize {
     kernel.smoothness().saturating_add(1).min(4)
 }
 
-/// Bounds on the third and the fourth derivative along any line inside a compact kernel's support, if all of the
-/// line is inside (for metaballs: the outer piece's, at its inner end, or none within reach of the
-/// kink at ⅓, so infinite).
+/// Bounds on the third and the fourth derivative along any line inside a compact kernel's support,
+/// if all of the line is inside (for metaballs: the outer piece's, at its inner end, or none within
+/// reach of the kink at ⅓, so infinite).
 #[must_use]
 pub fn inside(kernel: Kernel) -> [f64; 2] {
     match kernel {
@@ -82,7 +82,8 @@ pub fn rough_point(kernel: Kernel, u: f64) -> f64 {
     roughness(kernel, u).point
 }
 
-/// Bounds on the derivative of an order (1 to 3) along any line, at a distance of `u ≥ 0` or more, wherever the kernel has one.
+/// Bounds on the derivative of an order (1 to 3) along any line, at a distance of `u ≥ 0` or more,
+/// wherever the kernel has one.
 #[must_use]
 pub fn derivative(kernel: Kernel, order: usize, u: f64) -> Roughness {
     static TABLES: [[OnceLock<Vec<Roughness>>; Kernel::ALL.len()]; 3] =
@@ -93,9 +94,9 @@ pub fn derivative(kernel: Kernel, order: usize, u: f64) -> Roughness {
     TABLES[order - 1][kernel as usize].get_or_init(|| tabulate(kernel, order))[index(u)]
 }
 
-/// With x = 1+u², the Cauchy kernel along any ray, `k(t) = (P²+t²)⁻²`, has
-/// `|k⁗| = 24·|35w⁴−42w²+3|/(1+w²)²·X⁻⁴`, w = t/P, where X = P²(1+w²) is the value of x at t. The constants
-/// are upper envelopes of its integrals, checked numerically in this file's tests.
+/// Returns the Cauchy kernel's bounds. With x = 1+u², along any ray `k(t) = (P²+t²)⁻²` it has
+/// `|k⁗| = 24·|35w⁴−42w²+3|/(1+w²)²·X⁻⁴`, w = t/P, where X = P²(1+w²) is the value of x at t. The
+/// constants are upper envelopes of its integrals, checked numerically in this file's tests.
 #[inline]
 fn cauchy(u: f64) -> Roughness {
     let x = 1.0 + u * u;
@@ -111,7 +112,7 @@ fn cauchy(u: f64) -> Roughness {
     }
 }
 
-/// The Cauchy kernel's value at a distance of u, and the bound on its fourth derivative.
+/// Returns the Cauchy kernel's value at a distance of u, and the bound on its fourth derivative.
 #[inline(always)]
 #[must_use]
 pub fn cauchy_point(u: f64) -> (f64, f64) {
@@ -148,11 +149,11 @@ fn table(kernel: Kernel) -> &'static [Roughness] {
 
 /// Fine steps in one step of the table.
 const FINE: usize = 2;
-/// Distance in kernel widths below which a kernel without a pole is treated as constant: integrals over a line from there on
-/// differ from those from the middle by less than 1 %.
+/// Distance in kernel widths below which a kernel without a pole is treated as constant: integrals
+/// over a line from there on differ from those from the middle by less than 1 %.
 const FLAT: f64 = 1.0 / 256.0;
-/// Largest ratio of a derivative within a fine step (1/64 octave) to its larger end. Near a zero of the derivative the envelope
-/// of larger distances counts.
+/// Largest ratio of a derivative within a fine step (1/64 octave) to its larger end. Near a zero of
+/// the derivative the envelope of larger distances counts.
 const SLACK: f64 = 1.03;
 
 fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
@@ -184,55 +185,63 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
     // The step from 0 on may hold a peak of its own near a pole.
     rough[0] = largest.max(SLACK * along_any_line(kernel, order, 0.0));
     let last = places.len() - 1;
-    let entry = |start: usize| {
-        let near = places[start] * places[start];
-        let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
-        let mut before = 0.0;
-        for i in start..last {
-            // Beyond the kernel's support, or where it underflows.
-            if rough[i] == 0.0 {
-                break;
-            }
-            let far = places[i + 1] * places[i + 1];
-            let t = (far - near).max(0.0).sqrt();
-            line += 2.0 * rough[i] * (t - before);
-            plane += TAU / 2.0 * rough[i] * (far - places[i] * places[i]);
-            outward += rough[i] * (places[i + 1] - places[i]);
-            before = t;
-        }
-        // Beyond the last place derivatives fall as r⁻⁴ or faster (slopes of the inverse kernel as r⁻², whose integral over a
-        // plane diverges).
-        line += 2.0 * rough[last] * places[last];
-        plane += TAU * rough[last] * places[last] * places[last];
-        if order == 1 && kernel == Kernel::Inverse {
-            plane = f64::INFINITY;
-        }
-        outward += rough[last] * places[last];
-        Roughness {
-            point: rough[start],
-            line,
-            plane,
-            outward,
-        }
-    };
+    let plane_diverges = order == 1 && kernel == Kernel::Inverse;
     // Entry 0 stands for all below the first place.
-    let mut table = vec![entry(0)];
+    let mut table = vec![integrate(&places, &rough, 0, plane_diverges)];
     let mut octave = 0;
     for step in 0..=OCTAVES * STEPS {
         let start = (1 + step * FINE).min(last);
         if step % STEPS == 0 {
             octave = start;
         }
-        // A bound at a smaller distance holds here, too; without a pole it is hardly larger, and saves a sum.
+        // A bound at a smaller distance holds here, too; without a pole it is hardly larger, and
+        // saves a sum.
         let same = start > octave && places[start] < FLAT && rough[octave] <= 1.0001 * rough[start];
         let here = if same { table.last().copied() } else { None };
-        table.push(here.unwrap_or_else(|| entry(start)));
+        table.push(here.unwrap_or_else(|| integrate(&places, &rough, start, plane_diverges)));
     }
     table
 }
 
-/// The largest derivative of this order over all directions at a distance u. With y the square of the
-/// direction's share of the distance: `2√y·G′`, `2G′+4yG″`, `√y(12G″+8yG‴)`, `12G″+48yG‴+16y²G⁗`.
+/// Returns the bound at a place of the table, and its integrals from there on. `rough[i]` bounds
+/// the derivative from `places[i]` on; where `plane_diverges` the integral over a plane is
+/// infinite.
+fn integrate(places: &[f64], rough: &[f64], start: usize, plane_diverges: bool) -> Roughness {
+    let last = places.len() - 1;
+    let near = places[start] * places[start];
+    let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
+    let mut before = 0.0;
+    for i in start..last {
+        // Beyond the kernel's support, or where it underflows.
+        if rough[i] == 0.0 {
+            break;
+        }
+        let far = places[i + 1] * places[i + 1];
+        let t = (far - near).max(0.0).sqrt();
+        line += 2.0 * rough[i] * (t - before);
+        plane += TAU / 2.0 * rough[i] * (far - places[i] * places[i]);
+        outward += rough[i] * (places[i + 1] - places[i]);
+        before = t;
+    }
+    // Beyond the last place derivatives fall as r⁻⁴ or faster (slopes of the inverse kernel as
+    // r⁻², whose integral over a plane diverges).
+    line += 2.0 * rough[last] * places[last];
+    plane += TAU * rough[last] * places[last] * places[last];
+    if plane_diverges {
+        plane = f64::INFINITY;
+    }
+    outward += rough[last] * places[last];
+    Roughness {
+        point: rough[start],
+        line,
+        plane,
+        outward,
+    }
+}
+
+/// The largest derivative of this order over all directions at a distance u. With y the square of
+/// the direction's share of the distance: `2√y·G′`, `2G′+4yG″`, `√y(12G″+8yG‴)`,
+/// `12G″+48yG‴+16y²G⁗`.
 fn along_any_line(kernel: Kernel, order: usize, u: f64) -> f64 {
     let q = u * u;
     let Derivatives([_, g1, g2, g3, g4]) = kernel.derivatives(q);

@@ -3,7 +3,8 @@ use crate::{Ball, Enclosure, Implicit, Jet, Real};
 use glam::DVec3;
 use wide::f32x8;
 
-/// The function `F(p) = Σ exp(−k(|p − cᵢ| − ρᵢ))` of some balls with centres cᵢ and radii ρᵢ, one element.
+/// The function `F(p) = Σ exp(−k(|p − cᵢ| − ρᵢ))` of some balls with centres cᵢ and radii ρᵢ, one
+/// element.
 ///
 /// Alone, a ball is its own surface. The gradient jumps at the centres.
 ///
@@ -16,7 +17,7 @@ use wide::f32x8;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exponentials {
-    /// How fast they fall, k > 0; an inverse length.
+    /// Rate k > 0 at which the function falls with the distance; an inverse length.
     hardness: f64,
     balls: Vec<(DVec3, f64)>,
 }
@@ -25,15 +26,16 @@ pub struct Exponentials {
 const LARGEST: f64 = 60.0;
 
 impl Exponentials {
-    /// The function of balls given by centres and radii ≥ 0. `None` if there is none, if a number is not finite, the hardness not
-    /// positive, or a radius times the hardness above 60.
+    /// The function of balls given by centres and radii ≥ 0. `None` if there is none, if a number
+    /// is not finite, the hardness not positive, or a radius times the hardness above 60.
     #[must_use]
     pub fn new(hardness: f64, balls: Vec<(DVec3, f64)>) -> Option<Self> {
-        let usable = |&(center, radius): &(DVec3, f64)| {
-            center.is_finite() && radius >= 0.0 && hardness * radius <= LARGEST
-        };
-        let good = hardness.is_normal() && hardness > 0.0 && balls.iter().all(usable);
-        (good && !balls.is_empty()).then_some(Self { hardness, balls })
+        let usable = hardness.is_normal()
+            && hardness > 0.0
+            && balls.iter().all(|&(center, radius)| {
+                center.is_finite() && radius >= 0.0 && hardness * radius <= LARGEST
+            });
+        (usable && !balls.is_empty()).then_some(Self { hardness, balls })
     }
 
     /// Value and gradient in any precision.
@@ -99,11 +101,10 @@ impl Implicit for Exponentials {
         // Beyond this distance from each ball none has more than its share of the level.
         let count = self.balls.len() as f64;
         let beyond = libm::log(count / level).max(0.0) / self.hardness;
-        let ball = |&(center, radius): &(DVec3, f64)| Ball {
+        let balls = self.balls.iter().map(|&(center, radius)| Ball {
             center,
             radius: radius + beyond,
-        };
-        let all = self.balls.iter().map(ball);
-        all.reduce(|all, ball| all.around(&ball))
+        });
+        balls.reduce(|all, ball| all.around(&ball))
     }
 }

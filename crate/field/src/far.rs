@@ -1,13 +1,15 @@
 //! Triangles and polygons seen from afar: a cubature.
 //!
-//! Sums over a polygon's edges lose their digits outside it, like d/size or (d/size)² at a distance d,
-//! because the edges' large terms leave a small rest. From afar the kernel hardly varies over a triangle,
-//! so that a rule with 16 nodes that is exact for polynomials of degree 8 (Dunavant 1985) gives its
-//! integral. All weights are positive: nothing is lost however far the point or thin the triangle.
+//! Sums over a polygon's edges lose their digits outside it, like d/size or (d/size)² at a distance
+//! d, because the edges' large terms leave a small rest. From afar the kernel hardly varies over a
+//! triangle, so that a rule with 16 nodes that is exact for polynomials of degree 8 (Dunavant 1985)
+//! gives its integral. All weights are positive: nothing is lost however far the point or thin the
+//! triangle.
 //!
 //! With r the greatest distance of a corner from the local origin, the rule's relative error at
-//! distance κr falls as κ⁻⁹. Measured on random triangles with 1/r²: value and gradient 1.3·10⁻⁷ and
-//! 2.4·10⁻⁶ at κ = 3, 2·10⁻¹⁰ and 3·10⁻⁹ at κ = 6, below 10⁻¹³ from κ = 16 on; with 1/r a tenth of it.
+//! distance κr falls as κ⁻⁹. Measured on random triangles with 1/r²: value and gradient 1.3·10⁻⁷
+//! and 2.4·10⁻⁶ at κ = 3, 2·10⁻¹⁰ and 3·10⁻⁹ at κ = 6, below 10⁻¹³ from κ = 16 on; with 1/r a tenth
+//! of it.
 use crate::bone::{Edge, Triangle};
 use crate::{Jet, Kernel, Real, inverse};
 
@@ -46,11 +48,11 @@ fn reach2<S: Real>(edges: &[Edge<S>]) -> S {
     })
 }
 
-/// Returns `near`, or the cubature over `parts` where the point is far away compared to the edges' reach. (The
-/// poles' ε counts as a distance, for bones that are smaller than it.)
+/// Returns `near`, or the cubature over `parts` where the point is far away compared to the edges'
+/// reach. (The poles' ε counts as a distance, for bones that are smaller than it.)
 ///
-/// Single precision uses the cubature only for bones whose reach is at most 2: a larger one's field at that
-/// distance is so much smaller than its largest that the lost digits do not count.
+/// Single precision uses the cubature only for bones whose reach is at most 2: a larger one's field
+/// at that distance is so much smaller than its largest that the lost digits do not count.
 #[inline(always)]
 pub fn or_near<'a, R: Real>(
     kernel: Kernel,
@@ -140,8 +142,8 @@ mod tests {
         .map(Triangle::new)
     }
 
-    /// Returns the rule's largest relative errors of value and gradient, against the closed forms, at `ratio` times the
-    /// reach.
+    /// Returns the rule's largest relative errors of value and gradient, against the closed forms,
+    /// at `ratio` times the reach.
     fn error(ratio: f64) -> [f64; 2] {
         let mut worst = [0.0_f64; 2];
         for bone in needle_and_others() {

@@ -8,14 +8,14 @@ use wide::f32x8;
 /// A ball of space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Its centre.
+    /// Centre.
     pub center: DVec3,
-    /// Its radius, ≥ 0.
+    /// Radius, ≥ 0.
     pub radius: f64,
 }
 
 impl Ball {
-    /// A ball that holds both, the smallest up to rounding.
+    /// Returns a ball that holds both, the smallest up to rounding.
     #[must_use]
     pub fn around(&self, other: &Self) -> Self {
         let apart = self.center.distance(other.center);
@@ -36,8 +36,8 @@ impl Ball {
 
 /// Proven bounds on a function in a ball.
 ///
-/// Where the function is not smooth in the ball the bounds that do not exist are infinite: `curvature` where its
-/// gradient jumps, `slope`, too, where its value does.
+/// Where the function is not smooth in the ball the bounds that do not exist are infinite:
+/// `curvature` where its gradient jumps, `slope`, too, where its value does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     /// The least and the largest value.
@@ -66,14 +66,23 @@ impl Enclosure {
         }
     }
 
-    /// The enclosure with its range of values narrowed by Taylor's theorem about the centre of the ball, where the function has
-    /// this value and gradient: `|f(c+x) − f(c)| ≤ min(S·r, |∇f(c)|·r + C·r²/2)` for `|x| ≤ r`.
+    /// Returns the enclosure with its range of values narrowed by Taylor's theorem about the centre
+    /// of the ball, where the function has this value and gradient:
+    /// `|f(c+x) − f(c)| ≤ min(S·r, |∇f(c)|·r + C·r²/2)` for `|x| ≤ r`.
     #[must_use]
     pub fn about(self, at_center: &Jet<f64>, radius: f64) -> Self {
         let steep = DVec3::from_array(at_center.gradient).length();
-        let change = |bound: f64| if bound.is_nan() { f64::INFINITY } else { bound };
-        let first = change(self.slope * radius);
-        let second = change(steep * radius + 0.5 * self.curvature * radius * radius);
+        let [first, second] = [
+            self.slope * radius,
+            steep * radius + 0.5 * self.curvature * radius * radius,
+        ]
+        .map(|change| {
+            if change.is_nan() {
+                f64::INFINITY
+            } else {
+                change
+            }
+        });
         // Rounding of the value itself, which sums of many terms have.
         let reach = first.min(second) + 1e-12 * (1.0 + at_center.value.abs());
         let [low, high] = self.value;
@@ -87,7 +96,8 @@ impl Enclosure {
     }
 }
 
-/// The terms of a function that matter in a ball, and bounds on all others there; made by [`Implicit::narrow`].
+/// The terms of a function that matter in a ball, and bounds on all others there; made by
+/// [`Implicit::narrow`].
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The ball.
@@ -104,8 +114,10 @@ impl Part {
     /// Bounds on the error of the polynomial, and on that of its gradient.
     #[must_use]
     pub fn error(&self) -> [f64; 2] {
-        let of = |cell: &Arc<Cell>| [cell.error, cell.smooth.slope_error];
-        self.far.as_ref().map_or([0.0; 2], of)
+        match &self.far {
+            Some(cell) => [cell.error, cell.smooth.slope_error],
+            None => [0.0; 2],
+        }
     }
 }
 
@@ -125,13 +137,15 @@ pub struct Variation {
     pub range: Enclosure,
     /// The largest size of the second derivative along any line, between kinks.
     pub curvature: f64,
-    /// The largest size of the third derivative along any line, of the terms whose second derivative is continuous in the ball.
+    /// The largest size of the third derivative along any line, of the terms whose second
+    /// derivative is continuous in the ball.
     pub third: f64,
     /// The largest size of the second derivative along any line, of all other terms, between kinks.
     pub rough: f64,
     /// The sum of the jumps of the gradient at kinks in the ball.
     pub jump: f64,
-    /// The sum of the jumps of the value in the ball; the derivatives are then those on either side.
+    /// The sum of the jumps of the value in the ball; the derivatives are then those on either
+    /// side.
     pub step: f64,
 }
 
@@ -149,8 +163,9 @@ impl Variation {
         }
     }
 
-    /// Bounds with the range of values narrowed by Taylor's theorem about the centre of the ball, as [`Enclosure::about`] does; where
-    /// there are kinks the slope may change by their jumps besides.
+    /// Bounds with the range of values narrowed by Taylor's theorem about the centre of the ball,
+    /// as [`Enclosure::about`] does; where there are kinks the slope may change by their jumps
+    /// besides.
     #[must_use]
     pub fn about(mut self, at_center: &Jet<f64>, radius: f64) -> Self {
         if self.step > 0.0 {
@@ -170,8 +185,8 @@ impl Variation {
         self
     }
 
-    /// Bounds on a function of which no more is known than this: its second derivative may jump, and its gradient too if it has
-    /// no curvature.
+    /// Bounds on a function of which no more is known than this: its second derivative may jump,
+    /// and its gradient too if it has no curvature.
     #[must_use]
     pub fn rough(range: Enclosure) -> Self {
         let is_smooth = range.curvature.is_finite();
@@ -193,15 +208,16 @@ impl Variation {
 pub struct Clearance {
     /// The ball's radius, ≥ 0.
     pub radius: f64,
-    /// Length over which the function changes by a factor or so: where the radius is much less, the surface is near.
+    /// Length over which the function changes by a factor or so: where the radius is much less, the
+    /// surface is near.
     pub scale: f64,
 }
 
-/// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is where it is larger, and the
-/// outward normal is `−∇f/|∇f|`.
+/// A function of space. Its surface is where it equals [`THRESHOLD`](crate::THRESHOLD), inside is
+/// where it is larger, and the outward normal is `−∇f/|∇f|`.
 ///
-/// [`Sum`](crate::Sum) is the convolution surface. Other implementations may compose functions; code that traces or meshes
-/// surfaces needs nothing but this trait.
+/// [`Sum`](crate::Sum) is the convolution surface. Other implementations may compose functions;
+/// code that traces or meshes surfaces needs nothing but this trait.
 pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// Value and gradient in double precision.
     fn jet(&self, point: DVec3) -> Jet<f64>;
@@ -215,27 +231,30 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
     /// Proven bounds on the function in a ball.
     fn enclose(&self, ball: Ball) -> Enclosure;
 
-    /// A bound on the largest value in a ball that costs less than [`Implicit::enclose`], or infinity.
+    /// Returns a bound on the largest value in a ball that costs less than [`Implicit::enclose`],
+    /// or infinity.
     fn most(&self, _ball: Ball) -> f64 {
         f64::INFINITY
     }
 
-    /// A ball around a point in which the function does not cross the threshold; `None` if the function knows none. It costs as
-    /// much as a value does, and lets a ray go on by large steps where [`Implicit::enclose`] would need many small balls.
+    /// Returns a ball around a point in which the function does not cross the threshold; `None` if
+    /// the function knows none. It costs as much as a value does, and lets a ray go on by large
+    /// steps where [`Implicit::enclose`] would need many small balls.
     fn clearance(&self, _point: DVec3) -> Option<Clearance> {
         None
     }
 
-    /// Appends each element's share of the value at a point, as pairs of an element's number and its positive part of the
-    /// value, in the order of the elements: the weights by which their colours are mixed. An element whose part is 0 or
-    /// negative may be left out.
+    /// Appends each element's share of the value at a point, as pairs of an element's number and
+    /// its positive part of the value, in the order of the elements: the weights by which their
+    /// colours are mixed. An element whose part is 0 or negative may be left out.
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>);
 
-    /// A ball outside of which the function is below the threshold; `None` if there is none or none is known.
+    /// Returns a ball outside of which the function is below the threshold; `None` if there is none
+    /// or none is known.
     fn support(&self) -> Option<Ball>;
 
-    /// A ball outside of which the function is at most `level` > 0; `None` if there is none or none is known. Sums of functions ask
-    /// for levels below the threshold.
+    /// Returns a ball outside of which the function is at most `level` > 0; `None` if there is none
+    /// or none is known. Sums of functions ask for levels below the threshold.
     fn support_at(&self, level: f64) -> Option<Ball> {
         if level < crate::THRESHOLD {
             return None;
@@ -243,10 +262,11 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         self.support()
     }
 
-    /// The terms that matter in a ball, chosen among those of a part whose ball contains it, or of all. What is left out is at most
-    /// as large as the slack tells, and so are its slope and curvature times the ball's radius and its square. A polynomial may
-    /// stand for others, with an error of its own ([`Part::error`]). `None` if the function has no such terms, or hardly any can be
-    /// left out.
+    /// Returns the terms that matter in a ball, chosen among those of a part whose ball contains
+    /// it, or of all. The sum of the terms that are left out is bounded by the slack, and so are
+    /// its slope times the ball's radius and its curvature times the radius squared. A polynomial
+    /// may stand for other terms, with an error of its own ([`Part::error`]). `None` if the
+    /// function has no such terms, or hardly any can be left out.
     fn narrow(&self, _ball: Ball, _among: Option<&Part>, _slack: Slack) -> Option<Part> {
         None
     }
@@ -256,20 +276,20 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         self.jet(point)
     }
 
-    /// Bounds on the whole function in a ball, which must be within that of the part, if there is one: then only the terms of
-    /// the part are looked at.
+    /// Bounds on the whole function in a ball, which must be within that of the part, if there is
+    /// one: then only the terms of the part are looked at.
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
         Variation::rough(self.enclose(ball))
     }
 
-    /// The function's logarithm, where bounds on it are much sharper than those on the function itself; `None` if they are not, or not
-    /// known.
+    /// The function's logarithm, where bounds on it are much sharper than those on the function
+    /// itself; `None` if they are not, or not known.
     fn logarithm(&self) -> Option<crate::Logarithm<'_>> {
         None
     }
 
-    /// Bounds on the function in a ball as [`Implicit::variation`] gives them, and value and gradient at its centre, where finding
-    /// the bounds finds these, too.
+    /// Bounds on the function in a ball as [`Implicit::variation`] gives them, and value and
+    /// gradient at its centre, where finding the bounds finds these, too.
     fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
         (self.variation(None, ball), None)
     }

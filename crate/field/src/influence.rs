@@ -7,9 +7,9 @@ use crate::{Cut, Kernel, Skeleton, plane, skeleton};
 use core::f64::consts::PI;
 use glam::DVec3;
 
-/// An upper bound on the form's field at all points at distance `d ≥ 0` or more from the skeleton.
-/// It does not grow with d.
-pub(crate) fn bound_at(form: &Form<f64>, d: f64) -> f64 {
+/// Returns an upper bound on the form's field at all points at distance `d ≥ 0` or more from the
+/// skeleton. It does not grow with d.
+pub(crate) fn most_beyond(form: &Form<f64>, d: f64) -> f64 {
     let kernel = form.kernel;
     match &form.bone {
         Bone::Point => kernel.value(d),
@@ -29,13 +29,14 @@ pub(crate) fn bound_at(form: &Form<f64>, d: f64) -> f64 {
         }
         Bone::Polygon(polygon) => disc(kernel, polygon.area.abs(), d),
         Bone::Plane => plane::jet(kernel, [0.0, 0.0, d]).value,
-        Bone::Curve(curve) => curve.bound_at(kernel, d),
+        Bone::Curve(curve) => curve.most_beyond(kernel, d),
     }
 }
 
-/// A segment's field at distance d beside its middle. That is its largest at distance d: beside
-/// it, the field falls away from the middle; beyond an end, by Pythagoras' inequality each point of
-/// the segment is at least as far as it would be from a point at distance d beside that end.
+/// Computes a segment's field at distance d beside its middle. That is its largest at distance d:
+/// beside it, the field falls away from the middle; beyond an end, by Pythagoras' inequality each
+/// point of the segment is at least as far as it would be from a point at distance d beside that
+/// end.
 fn abreast(kernel: Kernel, length: f64, d: f64) -> f64 {
     let segment = crate::bone::Segment { half: length / 2.0 };
     let form = Form {
@@ -45,9 +46,10 @@ fn abreast(kernel: Kernel, length: f64, d: f64) -> f64 {
     form.jet([0.0, d, 0.0]).value
 }
 
-/// Bound on the field of any planar region of this area at distance d: the field of a disc of the same area around the foot of
-/// a perpendicular of length d. The part of the region within a distance r of the point lies within a disc of radius √(r²−d²),
-/// or, if the foot lies outside, within a ring of that area.
+/// Bound on the field of any planar region of this area at distance d: the field of a disc of the
+/// same area around the foot of a perpendicular of length d. The part of the region within a
+/// distance r of the point lies within a disc of radius √(r²−d²), or, if the foot lies outside,
+/// within a ring of that area.
 fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     let q = d * d;
     // The difference of two integrals, unless it would have lost its digits.
@@ -60,14 +62,15 @@ fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     }
 }
 
-/// A bound on the field of an arc. The Cauchy kernel has a sharp one; for others see [`Crowding`].
+/// Returns a bound on the field of an arc. The Cauchy kernel has a sharp one; for others see
+/// [`Crowding`].
 fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
     let most = length * kernel.value(d);
     if kernel == Kernel::Cauchy {
         return most.at_most(circle(radius, d));
     }
-    let outward = |a: f64, b: f64| kernel.between(a, b);
-    most.at_most(Crowding::arc(length, radius).bound(d, |u| kernel.value(u), outward))
+    let crowding = Crowding::arc(length, radius);
+    most.at_most(crowding.integral_bound(d, |u| kernel.value(u), |a, b| kernel.between(a, b)))
 }
 
 /// Bound on the length of a bone within a ball: `gathers·δ` for a radius δ.
@@ -82,7 +85,8 @@ pub(crate) struct Crowding {
 }
 
 impl Crowding {
-    /// The bound for an arc or a curve of length `measure`, in kernel widths; `None` for other skeletons and without a length.
+    /// The bound for an arc or a curve of length `measure`, in kernel widths; `None` for other
+    /// skeletons and without a length.
     pub fn of(skeleton: &Skeleton, measure: f64, width: f64) -> Option<Self> {
         let length = measure * width;
         let [radius, gathers] = match skeleton {
@@ -106,13 +110,19 @@ impl Crowding {
         }
     }
 
-    /// Returns a bound on the integral over the bone of a decreasing function g of the distance, at distance d or more.
+    /// Returns a bound on the integral over the bone of a decreasing function g of the distance, at
+    /// distance d or more.
     ///
-    /// A ball of radius δ ≤ r holds at most the length κδ of the bone: for a circle κ = π and r is its radius; for a curve see
-    /// [`gathers`]. So with l the bone's length the integral is at most
+    /// A ball of radius δ ≤ r holds at most the length κδ of the bone: for a circle κ = π and r is
+    /// its radius; for a curve see [`gathers`]. So with l the bone's length the integral is at most
     /// `κd·g(d) + κ∫g + (l−κr)·g(r)`, the integral from d to the smaller of r and l/κ.
     /// `outward(a, b)` is the integral of g from a to b, or more.
-    pub fn bound(&self, d: f64, g: impl Fn(f64) -> f64, outward: impl Fn(f64, f64) -> f64) -> f64 {
+    pub fn integral_bound(
+        &self,
+        d: f64,
+        g: impl Fn(f64) -> f64,
+        outward: impl Fn(f64, f64) -> f64,
+    ) -> f64 {
         let Self {
             length,
             radius,
@@ -129,29 +139,28 @@ impl Crowding {
 
 /// Returns κ such that a ball of any radius δ holds at most the length κδ of a Bézier curve.
 ///
-/// A piece whose directions are within φ of a mean direction has at most 2δ/cos φ in the ball, since along the mean direction
-/// the ball is 2δ wide; its directions are within the cone of the control polygon's sides. Any cubic has at most 18δ: each of
-/// its three coordinates has at most three monotonic pieces, each within 2δ, and a curve is no longer than the sum of its
+/// A piece whose directions are within φ of a mean direction has at most 2δ/cos φ in the ball,
+/// since along the mean direction the ball is 2δ wide; its directions are within the cone of the
+/// control polygon's sides. Any cubic has at most 18δ: each of its three coordinates has at most
+/// three monotonic pieces, each within 2δ, and a curve is no longer than the sum of its
 /// coordinates' variations.
 fn gathers(control: [DVec3; 4]) -> f64 {
     const ANY: f64 = 18.0;
-    let of_piece = |[a, b, c, d]: [DVec3; 4]| {
-        let mean = (d - a).normalize_or_zero();
-        let along = [b - a, c - b, d - c].map(|side| match side.try_normalize() {
-            Some(way) => way.dot(mean),
-            // A control polygon without a direction has no length.
-            None => 1.0,
-        });
-        let least = along.into_iter().fold(1.0, f64::min);
-        if least * ANY > 2.0 { 2.0 / least } else { ANY }
-    };
     let mut best = ANY;
     for pieces in 1..=6u32 {
         let mut sum = 0.0;
         let mut rest = control;
         for i in 0..pieces {
             let (piece, next) = skeleton::halves(rest, 1.0 / f64::from(pieces - i));
-            sum += of_piece(piece);
+            let [a, b, c, d] = piece;
+            let mean = (d - a).normalize_or_zero();
+            let along = [b - a, c - b, d - c].map(|side| match side.try_normalize() {
+                Some(way) => way.dot(mean),
+                // A control polygon without a direction has no length.
+                None => 1.0,
+            });
+            let least = along.into_iter().fold(1.0, f64::min);
+            sum += if least * ANY > 2.0 { 2.0 / least } else { ANY };
             rest = next;
         }
         best = best.min(sum);
@@ -163,7 +172,7 @@ fn gathers(control: [DVec3; 4]) -> f64 {
     best
 }
 
-/// A bound on the Cauchy field of any arc of a circle at distance d or more from the arc.
+/// Returns a bound on the Cauchy field of any arc of a circle at distance d or more from the arc.
 ///
 /// Let the point's distance from the arc be δ ≥ d and ρ its distance from the axis. Along the arc,
 /// on either side of the antipode of the point, the squared distance to the point at angle v from
@@ -184,10 +193,10 @@ fn circle(r: f64, d: f64) -> f64 {
     PI * r * (2.0 + k - 2.0 * p) / (product * product.sqrt())
 }
 
-/// The distance beyond which `factor·bound_at` is below `level`, or 0 if it is everywhere; a compact
-/// kernel's support at most.
+/// The distance beyond which `factor·most_beyond` is below `level`, or 0 if it is everywhere; a
+/// compact kernel's support at most.
 pub(crate) fn depth(form: &Form<f64>, factor: f64, level: f64) -> f64 {
-    let below = |d: f64| factor * bound_at(form, d) < level;
+    let below = |d: f64| factor * most_beyond(form, d) < level;
     if below(0.0) {
         return 0.0;
     }

@@ -37,7 +37,8 @@ pub fn integral(f: &mut impl FnMut(f64) -> f64, breaks: &[f64], tolerance: f64) 
     integral_within(f, breaks, tolerance, 0.0)
 }
 
-/// The same of an f that is known within `rounding`: panels whose error is no larger than that times their width are not bisected.
+/// Computes the integral of a function that is known within `rounding`: panels whose error is no
+/// larger than that times their width are not bisected.
 pub(crate) fn integral_within(
     f: &mut impl FnMut(f64) -> f64,
     breaks: &[f64],
@@ -58,7 +59,7 @@ pub(crate) fn integral_within(
         .sum()
 }
 
-/// The integral from `low` to `high`, which as a rule one panel tells.
+/// Computes the integral from `low` to `high`, for which one panel is mostly enough.
 pub fn of_one_panel(f: &mut impl FnMut(f64) -> f64, low: f64, high: f64, tolerance: f64) -> f64 {
     let whole = panel(f, low, high);
     let tolerance = tolerance * whole.size;

@@ -7,7 +7,8 @@ use crate::{Real, inverse, metaballs};
 use core::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
-/// A kernel: a decreasing function of distance (thesis, section 2.3; `compact6` and `cubed` are ours).
+/// A kernel: a decreasing function of distance (thesis, section 2.3; `compact6` and `cubed` are
+/// ours).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Kernel {
     /// `1/(1+u²)²`: infinite, falls as u⁻⁴.
@@ -37,7 +38,7 @@ pub enum Kernel {
 pub struct Derivatives(pub [f64; 5]);
 
 impl Kernel {
-    /// All kernels, in the order of the chart.
+    /// The kernels in the order of the chart.
     pub const ALL: [Self; 9] = [
         Self::Cauchy,
         Self::Gauss,
@@ -81,14 +82,14 @@ impl Kernel {
         )
     }
 
-    /// Whether it has a pole, rounded off, at u = 0. Such kernels have no width: their unit of length is the
-    /// radius.
+    /// Whether the kernel has a pole, rounded off, at u = 0. Such kernels have no width: their unit
+    /// of length is the radius.
     #[must_use]
     pub fn has_pole(self) -> bool {
         matches!(self, Self::Inverse | Self::Squared | Self::Cubed)
     }
 
-    /// Whether its integral over an infinite plane is finite.
+    /// Whether the kernel's integral over an infinite plane is finite.
     #[must_use]
     pub fn falls_fast(self) -> bool {
         !matches!(self, Self::Inverse | Self::Squared)
@@ -104,8 +105,8 @@ impl Kernel {
         }
     }
 
-    /// How many derivatives of `h` along a line are continuous everywhere; `usize::MAX` for smooth
-    /// kernels.
+    /// Number of derivatives of `h` along a line that are continuous everywhere; `usize::MAX` for
+    /// smooth kernels.
     #[must_use]
     pub fn smoothness(self) -> usize {
         match self {
@@ -311,18 +312,19 @@ impl Kernel {
     #[must_use]
     pub fn between(self, a: f64, b: f64) -> f64 {
         if self == Self::Cubed {
-            // The integral from u on: the difference of two integrals from 0 would be lost beside the pole's part.
-            let beyond = |u: f64| {
+            // Integrals from a and from b on: the difference of two integrals from 0 would be lost
+            // beside the pole's part.
+            let [from_a, from_b] = [a, b].map(|u| {
                 let root = (u * u + inverse::POLE2).sqrt();
                 1.0 / (root * (root + u))
-            };
-            return beyond(a) - beyond(b);
+            });
+            return from_a - from_b;
         }
         self.along(b) - self.along(a)
     }
 
-    /// `∫ G` from p to q, 0 ≤ p ≤ q: over a ring around the point, of area π(q−p), the kernel's integral
-    /// is π times this.
+    /// `∫ G` from p to q, 0 ≤ p ≤ q: over a ring around the point, of area π(q−p), the kernel's
+    /// integral is π times this.
     #[must_use]
     pub fn over_ring(self, p: f64, q: f64) -> f64 {
         // Differences of large numbers would lose the digits of a small ring far away.

@@ -1,19 +1,20 @@
-//! Kinks of profiles: where a wave has a kink or a jump and where a parameter is clamped to [0, 1]. They lie on planes,
-//! across a segment or a triangle, or through the axis of an arc: a ray meets each plane at one parameter, and between
-//! those the field is smooth.
+//! Kinks of profiles: where a wave has a kink or a jump and where a parameter is clamped to [0, 1].
+//! They lie on planes, across a segment or a triangle, or through the axis of an arc: a ray meets
+//! each plane at one parameter, and between those the field is smooth.
 use crate::{Primitive, Skeleton, Wave};
 use glam::DVec3;
 
 /// A plane on which a profile is not smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kink {
-    /// A point of the plane.
+    /// Point of the plane.
     pub point: DVec3,
-    /// Its unit normal.
+    /// Unit normal.
     pub normal: DVec3,
     /// Whether the profile itself may jump there, not only its slope.
     pub jumps: bool,
-    /// Of an arc, the direction in which the half of the plane lies, seen from the point, that has the kink; else 0.
+    /// Direction, seen from the point, of that half of an arc's plane which has the kink; 0 for
+    /// other skeletons.
     toward: DVec3,
 }
 
@@ -30,7 +31,7 @@ impl Kink {
         }
     }
 
-    /// Whether a ball meets the plane, or of an arc that half of it which has the kink.
+    /// Whether a ball meets the plane, or for an arc that half of it which has the kink.
     #[must_use]
     pub fn cuts(&self, center: DVec3, radius: f64) -> bool {
         let from = center - self.point;
@@ -133,9 +134,10 @@ mod tests {
     use crate::{BlobScale, Kernel, Profile, Shaping};
     use trials::Random;
 
-    /// A step along a ray.
+    /// Length of a step along a ray.
     const STEP: f64 = 1e-4;
-    /// Second difference over the step's square that separates smooth places from kinks and jumps, mostly.
+    /// Second difference over the step's square that separates smooth places from kinks and jumps,
+    /// mostly.
     const SHARP: f64 = 1e3;
 
     fn wavy(which: usize, random: &mut Random) -> Primitive {
@@ -199,8 +201,8 @@ mod tests {
                 if bend > SHARP {
                     sharp += 1;
                     let t = STEP * f64::from(i - 1);
-                    let near = |place: &f64| (place - t).abs() <= 1.5 * STEP;
-                    assert!(places.iter().any(near), "{which} {t}: {bend} {places:?}");
+                    let is_listed = places.iter().any(|place| (place - t).abs() <= 1.5 * STEP);
+                    assert!(is_listed, "{which} {t}: {bend} {places:?}");
                 }
             }
         }

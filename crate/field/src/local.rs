@@ -1,28 +1,38 @@
-//! Local convolution: of a skeleton only the stretch near a point counts, so that its folds do not blend.
+//! Local convolution: of a skeleton only the stretch near a point counts, so that its folds do not
+//! blend.
 //!
-//! Along each segment of the skeleton planes sweep from one end to the other, see [`planes`](self::planes). A point lies in some of
-//! them; each is a *place* on the skeleton. The field of a place is that of the skeleton within an arc length D of it, which runs
-//! through branches into every curve that meets there, and fades towards its ends, see [`window`](self::window). The field at the
-//! point is the largest of those of its places, of the skeleton's free ends and of its branches:
+//! Along each segment of the skeleton planes sweep from one end to the other, see
+//! [`planes`](self::planes). A point lies in some of them; each is a *place* on the skeleton. The
+//! field of a place is that of the skeleton within an arc length D of it, which runs through
+//! branches into every curve that meets there, and fades towards its ends, see
+//! [`window`](self::window). The field at the point is the largest of those of its places, of the
+//! skeleton's free ends and of its branches:
 //!
-//! `F(p) = max W(s, p)`, `W(s, p) = Σᵢ wᵢ(s)·fᵢ(p)`, wᵢ(s) the window's mean over the piece i, fᵢ the piece's field.
+//! `F(p) = max W(s, p)`, `W(s, p) = Σᵢ wᵢ(s)·fᵢ(p)`, wᵢ(s) the window's mean over the piece i, fᵢ
+//! the piece's field.
 //!
-//! So each piece keeps its closed form, its taper and its bounds. Pieces are to be short compared with D.
+//! So each piece keeps its closed form, its taper and its bounds. Pieces are to be short compared
+//! with D.
 //!
-//! **Continuity.** While one place leads, F has a continuous gradient `∇F = W_p + W_s∇s` within the planes of a segment. Where two
-//! places tie, and where planes change from one segment to the next (or at a branch), the gradient jumps: by `W_s` times the jump of
-//! ∇s there, as W_s counts only what is in the fading parts of the window. The value is continuous but where a place vanishes that
-//! leads: where planes of a bend meet, at its centre of curvature or beyond it. [`Local::enclose`] knows all of these: bounds that
-//! do not hold are infinite.
+//! **Continuity.** While one place leads, F has a continuous gradient `∇F = W_p + W_s∇s` within the
+//! planes of a segment. Where two places tie, and where planes change from one segment to the next
+//! (or at a branch), the gradient jumps: by `W_s` times the jump of ∇s there, as W_s counts only
+//! what is in the fading parts of the window. The value is continuous but where a place vanishes
+//! that leads: where planes of a bend meet, at its centre of curvature or beyond it.
+//! [`Local::enclose`] knows all of these: bounds that do not hold are infinite.
 //!
-//! Bounds, in a ball of radius r for the places `s₀ ≤ s ≤ s₁` whose planes meet it: with `d·(p−r(u)) = 0` we have
-//! `∇u = −d/g`, `g = ∂(d·(p−r))/∂u`, and `|∇²u| ≤ (|g_u||∇u|² + 2|d_u||∇u|)/|g|`; wᵢ changes by at most `1.5/δ`, and its
-//! derivative by `6/δ²`, and only where a piece is in a fading part.
+//! Bounds, in a ball of radius r for the places `s₀ ≤ s ≤ s₁` whose planes meet it: with
+//! `d·(p−r(u)) = 0` we have `∇u = −d/g`, `g = ∂(d·(p−r))/∂u`, and
+//! `|∇²u| ≤ (|g_u||∇u|² + 2|d_u||∇u|)/|g|`; wᵢ changes by at most `1.5/δ`, and its derivative by
+//! `6/δ²`, and only where a piece is in a fading part.
 //!
 //! - `build.rs`: making it; [`graph`]: distances along a skeleton;
-//! - [`planes`]: the places whose planes hold a point; [`window`]: weights of pieces; `stretch.rs`: the field;
-//! - `survey.rs`: bounds on the fields of the places of a ball; `leaders.rs`: on the largest of them; `groups.rs`: on the sum of all;
-//! - `cells.rs`: an octree that knows which places may lead where; `near.rs`: pieces, each evaluated once for all places.
+//! - [`planes`]: the places whose planes hold a point; [`window`]: weights of pieces;
+//!   `stretch.rs`: the field;
+//! - `survey.rs`: bounds on the fields of the places of a ball; `leaders.rs`: on the largest of
+//!   them; `groups.rs`: on the sum of all;
+//! - `cells.rs`: an octree that knows which places may lead where; `near.rs`: pieces, each
+//!   evaluated once for all places.
 mod build;
 mod cells;
 pub mod graph;
@@ -58,9 +68,10 @@ pub struct Local {
     links: Vec<Link>,
     /// Ends and branches: a segment, and which of its ends.
     nodes: Vec<(u32, usize)>,
-    /// For each point of the skeleton those within twice the reach, in order, and their distances.
+    /// Points within twice the reach of each point of the skeleton, in order, with their distances.
     near: Vec<Vec<(u32, f64)>>,
-    /// All pieces, halved again and again: after a group its first half, and where its second one starts.
+    /// Tree of all pieces, halved again and again: a group is followed by its first half, and knows
+    /// where its second one starts.
     tree: Vec<(Group, Node)>,
     /// Numbers of all terms: segments, whose places sweep along them, then ends and branches.
     terms: Vec<u32>,
@@ -86,13 +97,13 @@ struct Segment {
     group: Group,
 }
 
-/// From a segment to a piece.
+/// Link from a segment to a piece.
 #[derive(Clone, Copy, Debug)]
 struct Link {
     piece: u32,
     length: f64,
-    /// For both ends of the piece their distances from both ends of the segment. A piece of the segment itself: its ends' distances
-    /// from the segment's start.
+    /// Distances of both ends of the piece from both ends of the segment; for a piece of the
+    /// segment itself, distances of its ends from the segment's start.
     distances: [[f64; 2]; 2],
     own: bool,
 }
@@ -118,7 +129,7 @@ impl Local {
 }
 
 impl Bounds {
-    /// An enclosure that knows no jumps of the gradient, but that there is no curvature where it has some.
+    /// Returns the bounds as an enclosure, whose curvature is infinite where the gradient jumps.
     #[must_use]
     pub fn enclosure(&self) -> Enclosure {
         Enclosure {
@@ -132,7 +143,7 @@ impl Bounds {
         }
     }
 
-    /// The same bounds for mesher and tracer.
+    /// Returns the bounds as mesher and tracer read them.
     #[must_use]
     pub fn variation(&self) -> Variation {
         // Where the value jumps, nothing is known of derivatives.
@@ -188,7 +199,8 @@ impl Implicit for Local {
     }
 
     fn support_at(&self, level: f64) -> Option<Ball> {
-        // Where no piece has more than its share of the level; a stretch has as many as a segment has links.
+        // Where no piece has more than its share of the level; a stretch has as many as a segment
+        // has links.
         let most = self.segments.iter().map(|s| s.links.len()).max()?;
         let share = level / most as f64;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -204,7 +216,7 @@ impl Implicit for Local {
     }
 }
 
-/// A jet in single precision.
+/// Converts a jet to single precision.
 #[must_use]
 pub fn narrow(jet: Jet<f64>) -> Jet<f32> {
     Jet {
@@ -213,12 +225,11 @@ pub fn narrow(jet: Jet<f64>) -> Jet<f32> {
     }
 }
 
-/// Jets at eight points, one after the other.
+/// Computes jets at eight points, one after the other.
 #[must_use]
 pub fn lanes(points: [f32x8; 3], jet: impl Fn([f32; 3]) -> Jet<f32>) -> Jet<f32x8> {
     let points = points.map(|x| x.to_array());
-    let at = |i: usize| jet(core::array::from_fn(|k| points[k][i]));
-    let jets: [Jet<f32>; 8] = core::array::from_fn(at);
+    let jets: [Jet<f32>; 8] = core::array::from_fn(|i| jet(core::array::from_fn(|k| points[k][i])));
     Jet {
         value: f32x8::from_lanes(|i| f64::from(jets[i].value)),
         gradient: core::array::from_fn(|k| f32x8::from_lanes(|i| f64::from(jets[i].gradient[k]))),

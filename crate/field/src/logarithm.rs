@@ -1,16 +1,21 @@
 //! Bounds on the logarithm of a sum of Gaussians.
 //!
-//! A Gaussian falls so fast that its third derivative changes by a factor within a small part of its width, and bounds that hold in a ball
-//! are far from what is at its centre. Its logarithm −a·|x−y|² is a polynomial. Let fᵢ = h·∫ e^(−a|x−y|²) dy over a point or a
-//! segment. Its logarithm has the gradient −2a·(x − E[y]), the second derivative −2a + 4a²·Var[y] and the third −8a³·κ₃[y], with the
-//! moments of y under the normalised integrand. That is a normal distribution of variance 1/(2a), cut off at the ends of the segment, so that its variance is no larger,
-//! and its third cumulant is at most twice the cube of its deviation, as that of any density with a concave logarithm.
+//! A Gaussian falls so fast that its third derivative changes by a factor within a small part of
+//! its width, and bounds that hold in a ball are far from what is at its centre. Its logarithm
+//! −a·|x−y|² is a polynomial. Let fᵢ = h·∫ e^(−a|x−y|²) dy over a point or a segment. Its logarithm
+//! has the gradient −2a·(x − E[y]), the second derivative −2a + 4a²·Var[y] and the third
+//! −8a³·κ₃[y], with the moments of y under the normalised integrand. That is a normal distribution
+//! of variance 1/(2a), cut off at the ends of the segment, so that its variance is no larger, and
+//! its third cumulant is at most twice the cube of its deviation, as that of any density with a
+//! concave logarithm.
 //!
-//! With wᵢ = fᵢ/(F+δ) the logarithm of F+δ = δ + Σ fᵢ has as derivatives the means and cumulants of those of the terms:
-//! the gradient is E[vᵢ], with vᵢ that of ln fᵢ; the second derivative is E[Hᵢ] + Var[v]; the third is E[Tᵢ] + 3·Cov[v, H] + κ₃[v]. Where
-//! one term is much larger than the others, hardly anything is added to its own. The constant δ keeps the logarithm finite where F vanishes.
+//! With wᵢ = fᵢ/(F+δ) the logarithm of F+δ = δ + Σ fᵢ has as derivatives the means and cumulants of
+//! those of the terms: the gradient is E[vᵢ], with vᵢ that of ln fᵢ; the second derivative is
+//! `E[Hᵢ] + Var[v]`; the third is `E[Tᵢ] + 3·Cov[v, H] + κ₃[v]`. Where one term is much larger than
+//! the others, hardly anything is added to its own. The constant δ keeps the logarithm finite where
+//! F vanishes.
 
-use crate::sum::Known;
+use crate::sum::TermBounds;
 use crate::{Ball, Enclosure, Jet, Kernel, Part, Primitive, Skeleton, THRESHOLD, Variation};
 use glam::DVec3;
 
@@ -23,16 +28,17 @@ const TINY: f64 = 1e-200;
 /// Exponents above which the share of a term is 1.
 const LARGE: f64 = 40.0;
 
-/// The function T + (T+δ)·ln((F+δ)/(T+δ)) of a sum F of Gaussians: it is T where F is, with the same gradient, and grows with F.
+/// The function T + (T+δ)·ln((F+δ)/(T+δ)) of a sum F of Gaussians: it is T where F is, with the
+/// same gradient, and grows with F.
 #[derive(Clone, Debug)]
 pub struct Logarithm<'a> {
     primitives: &'a [Primitive],
-    known: &'a [Known],
+    terms: &'a [TermBounds],
 }
 
 /// Value, gradient and bounds of a term's logarithm in a ball.
 struct Term {
-    /// At the centre: the value, and the gradient.
+    /// Value and gradient at the centre.
     value: f64,
     gradient: DVec3,
     /// Bound on the error of that gradient.
@@ -55,20 +61,18 @@ impl<'a> Logarithm<'a> {
         0.25 * FLOOR / SCALE * error
     }
 
-    /// `None` unless all terms are Gaussians of points and segments that add.
-    pub(crate) fn new(primitives: &'a [Primitive], known: &'a [Known]) -> Option<Self> {
-        let is_fit = |p: &Primitive| {
+    /// Prepares the logarithm; `None` unless all terms are Gaussians of points and segments that
+    /// add.
+    pub(crate) fn new(primitives: &'a [Primitive], terms: &'a [TermBounds]) -> Option<Self> {
+        let fits = primitives.iter().all(|p| {
             let is_simple = matches!(
                 p.skeleton,
                 Skeleton::Point { .. } | Skeleton::Segment { .. }
             );
             let is_plain = p.profile.is_none() && p.tapered.is_none();
             is_simple && is_plain && p.kernel == Kernel::Gauss && p.height > 0.0
-        };
-        primitives
-            .iter()
-            .all(is_fit)
-            .then_some(Self { primitives, known })
+        });
+        fits.then_some(Self { primitives, terms })
     }
 
     /// The logarithm's value and gradient where F has these.
@@ -77,12 +81,12 @@ impl<'a> Logarithm<'a> {
         let sum = jet.value.max(0.0) + FLOOR;
         let factor = SCALE / sum;
         Jet {
-            value: scaled(libm::log(sum)),
+            value: rescale(libm::log(sum)),
             gradient: jet.gradient.map(|slope| slope * factor),
         }
     }
 
-    /// Bounds on the logarithm in a ball, within that of the part if there is one.
+    /// Computes bounds on the logarithm in a ball, within that of the part if there is one.
     #[must_use]
     pub fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
         let mut terms = vec![Term {
@@ -114,8 +118,8 @@ impl<'a> Logarithm<'a> {
         Variation {
             range: Enclosure {
                 value: [
-                    scaled(all.value[0]) - SCALE * more[0],
-                    scaled(all.value[1]) + SCALE * more[0],
+                    rescale(all.value[0]) - SCALE * more[0],
+                    rescale(all.value[1]) + SCALE * more[0],
                 ],
                 slope: SCALE * (slope + more[1]),
                 curvature,
@@ -129,7 +133,7 @@ impl<'a> Logarithm<'a> {
     }
 
     fn term(&self, i: usize, Ball { center, radius }: Ball) -> Term {
-        let (primitive, bound) = (&self.primitives[i], &self.known[i].bound);
+        let (primitive, bound) = (&self.primitives[i], &self.terms[i].bound);
         let rate = primitive.width * primitive.width;
         let (middle, half) = match primitive.skeleton {
             Skeleton::Segment { base, apex } => (0.5 * (base + apex), 0.5 * base.distance(apex)),
@@ -169,11 +173,12 @@ impl<'a> Logarithm<'a> {
     }
 }
 
-/// Bound on the third derivative of a segment's logarithm, in units of a to the power of 3/2: 8·2/2^(3/2).
+/// Bound on the third derivative of a segment's logarithm, in units of a to the power of 3/2:
+/// 8·2/2^(3/2).
 const THIRD: f64 = 5.66;
 
-/// The value for a logarithm of F+δ.
-fn scaled(logarithm: f64) -> f64 {
+/// Returns the function's value, given the logarithm of F+δ.
+fn rescale(logarithm: f64) -> f64 {
     THRESHOLD + SCALE * (logarithm - libm::log(SCALE))
 }
 
@@ -185,7 +190,8 @@ struct Bounds {
     third: f64,
 }
 
-/// Bounds by the moments about the gradient and the second derivative of the term that is largest at the centre. Shares of others are bounded by their ratio to it.
+/// Bounds by the moments about the gradient and the second derivative of the term that is largest
+/// at the centre. Shares of others are bounded by their ratio to it.
 fn bounds(terms: &[Term], radius: f64) -> Bounds {
     let mut largest = &terms[0];
     for term in terms {
@@ -197,7 +203,8 @@ fn bounds(terms: &[Term], radius: f64) -> Bounds {
     let mut steepest = 0.0_f64;
     // At the centre: the sum, and the gradient times it, over the largest term.
     let (mut whole, mut gradient) = (0.0, DVec3::ZERO);
-    // Bounds on the means of |v|, |v|², |v|³, |H| and |v|·|H|, less those of the largest term, and on the greatest |v|.
+    // Bounds on the means of |v|, |v|², |v|³, |H| and |v|·|H|, less those of the largest term, and
+    // on the greatest |v|.
     let [mut first, mut second, mut third, mut bend, mut both] = [0.0; 5];
     let mut widest = 0.0_f64;
     let (mut rate, mut own_third) = (largest.rate, largest.third);

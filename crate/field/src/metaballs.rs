@@ -2,10 +2,10 @@
 //!
 //! A bone is clipped to both balls. The inner piece is a polynomial like those of
 //! [`polynomial`](crate::polynomial). On the outer pieces the distance u is a square root: along a
-//! segment that gives elementary functions, and these are used; over a polygon and along an arc it gives so
-//! many terms, and at the axis so many that cancel (on an arc elliptic integrals), that the
-//! Gauss–Legendre rule serves better. The outer pieces stay ⅓ away from the root's branch points, so that it
-//! converges like a geometric series; each file states its error.
+//! segment that gives elementary functions, and these are used; over a polygon and along an arc it
+//! gives so many terms, and at the axis so many that cancel (on an arc elliptic integrals), that
+//! the Gauss–Legendre rule serves better. The outer pieces stay ⅓ away from the root's branch
+//! points, so that it converges like a geometric series; each file states its error.
 
 use crate::Real;
 use crate::polynomial::GAUSS4;
@@ -14,9 +14,9 @@ pub mod arc;
 pub mod polygon;
 pub mod segment;
 
-/// Where the inner piece ends.
+/// Distance u at which the inner piece ends.
 pub const INNER: f64 = 1.0 / 3.0;
-/// Its square.
+/// Square of [`INNER`].
 pub const INNER2: f64 = 1.0 / 9.0;
 
 /// Positive nodes and weights on [−1, 1] for the outer pieces.
@@ -25,8 +25,8 @@ fn rule<R: Real>() -> &'static [[f64; 2]] {
     if R::DOUBLE { &GAUSS20 } else { &GAUSS6 }
 }
 
-/// Nodes and weights for inner pieces of a polygon's edges: integrands are polynomials, or such over the squared distance from a
-/// far pole.
+/// Nodes and weights for inner pieces of a polygon's edges: integrands are polynomials, or such
+/// over the squared distance from a far pole.
 #[inline(always)]
 fn rule_inside<R: Real>() -> &'static [[f64; 2]] {
     if R::DOUBLE { &GAUSS20 } else { &GAUSS4 }

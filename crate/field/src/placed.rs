@@ -16,7 +16,8 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// The function placed by a map from its own coordinates to the world's. `None` if the map has no finite inverse.
+    /// The function placed by a map from its own coordinates to the world's. `None` if the map has
+    /// no finite inverse.
     #[must_use]
     pub fn new(function: Arc<dyn Implicit>, to_world: DAffine3) -> Option<Self> {
         let to_own = to_world.inverse();
@@ -51,24 +52,23 @@ impl Placed {
     fn world<R: Real>(&self, jet: Jet<R>) -> Jet<R> {
         let columns = self.to_own.matrix3.to_cols_array_2d();
         let [x, y, z] = jet.gradient;
-        let along = |c: [f64; 3]| R::splat(c[0]) * x + R::splat(c[1]) * y + R::splat(c[2]) * z;
         Jet {
             value: jet.value,
-            gradient: columns.map(along),
+            gradient: columns.map(|c| R::splat(c[0]) * x + R::splat(c[1]) * y + R::splat(c[2]) * z),
         }
     }
 }
 
-/// An upper bound on how much a map stretches lengths, which is exact for a similarity: by Gershgorin's theorem, the root of the
-/// greatest sum of a row of |MᵀM|.
+/// Returns an upper bound on how much a map stretches lengths, which is exact for a similarity: by
+/// Gershgorin's theorem, the root of the greatest sum of a row of |MᵀM|.
 fn stretch(map: &DMat3) -> f64 {
     let square = map.transpose() * *map;
-    let row = |i: usize| square.row(i).abs().element_sum();
-    libm::sqrt(row(0).max(row(1)).max(row(2))) * (1.0 + 1e-12)
+    let [a, b, c] = [0, 1, 2].map(|i| square.row(i).abs().element_sum());
+    libm::sqrt(a.max(b).max(c)) * (1.0 + 1e-12)
 }
 
-/// Bounds on a function after its space has been shrunk by a factor of 1/k.
-fn scaled(own: Enclosure, k: f64) -> Enclosure {
+/// Returns the bounds on a function after its space has been shrunk by a factor of 1/k.
+fn shrink(own: Enclosure, k: f64) -> Enclosure {
     Enclosure {
         value: own.value,
         slope: own.slope * k,
@@ -96,7 +96,7 @@ impl Implicit for Placed {
             center: self.to_own.transform_point3(ball.center),
             radius: ball.radius * k,
         });
-        scaled(own, k)
+        shrink(own, k)
     }
 
     fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
@@ -106,7 +106,7 @@ impl Implicit for Placed {
             radius: ball.radius * k,
         });
         let variation = Variation {
-            range: scaled(own.range, k),
+            range: shrink(own.range, k),
             curvature: own.curvature * k * k,
             third: own.third * k * k * k,
             rough: own.rough * k * k,

@@ -1,8 +1,8 @@
 //! An infinite plane (thesis 2.24): a function of the height z above it alone.
 //!
-//! `f(z) = π·∫_{z²}^∞ G(q) dq`, and so `f′ = −2πz·G(z²)`: Cauchy `π/(1+z²)`; Gauss `π·exp(−z²)`; cubed
-//! `2π/√(z²+ε²)`; with v = 1−z² quartic `πv³/3`, compact6 `πv⁴/4`, soft `π(20v³ + 12v⁴)/108`; metaballs from
-//! `P(z) = (π/6)(1−z)³(1+3z)` as `1.5·P(z) − P(3z)/18` (see `metaballs`).
+//! `f(z) = π·∫_{z²}^∞ G(q) dq`, and so `f′ = −2πz·G(z²)`: Cauchy `π/(1+z²)`; Gauss `π·exp(−z²)`;
+//! cubed `2π/√(z²+ε²)`; with v = 1−z² quartic `πv³/3`, compact6 `πv⁴/4`, soft `π(20v³ + 12v⁴)/108`;
+//! metaballs from `P(z) = (π/6)(1−z)³(1+3z)` as `1.5·P(z) − P(3z)/18` (see `metaballs`).
 //!
 //! The integrals of the inverse and the squared kernel diverge. There the plane counts only up to
 //! [`WINDOW`] = 10 radii around the foot of the perpendicular, so that it is still the same
@@ -10,8 +10,8 @@
 use crate::{Jet, Kernel, Real, inverse};
 use core::f64::consts::PI;
 
-/// Half-length, in radii, of the finite lines and planes that stand for infinite ones where those have
-/// no finite field.
+/// Half-length, in radii, of the finite lines and planes that stand for infinite ones where those
+/// have no finite field.
 pub const WINDOW: f64 = 10.0;
 
 /// Value and gradient at a local position.

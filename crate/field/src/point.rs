@@ -1,4 +1,4 @@
-//! A point: the kernel itself (thesis 2.20), `f = G(|p|²)`, `∇f = 2G′·p`.
+//! Points: the kernel itself (thesis 2.20), `f = G(|p|²)`, `∇f = 2G′·p`.
 use crate::{Jet, Kernel, Real};
 
 /// Value and gradient at a local position.

@@ -1,9 +1,9 @@
 //! The soft, quartic and compact6 kernels: `g(v) = c₂v² + c₃v³` of v = 1−r² ≥ 0, and 0 beyond.
 //!
-//! Along a line and an arc v is a polynomial of the place and of the azimuth's sine and cosine; over a
-//! polygon Green's theorem leaves polynomials along the edges. So every cell is exact once the bone
-//! is clipped to the ball v ≥ 0. Nothing is subtracted: outside, the field is 0 to the last
-//! bit, and short pieces keep their digits.
+//! Along a line and an arc v is a polynomial of the place and of the azimuth's sine and cosine;
+//! over a polygon Green's theorem leaves polynomials along the edges. So every cell is exact once
+//! the bone is clipped to the ball v ≥ 0. Nothing is subtracted: outside, the field is 0 to the
+//! last bit, and short pieces keep their digits.
 
 pub mod arc;
 pub mod polygon;

@@ -1,7 +1,7 @@
-//! A skeletal element with its kernel: one term of the field.
+//! Primitives: bones with kernels, each of them a term of the field.
 use crate::bone::Bone;
 use crate::real::Scalar;
-use crate::term::{Evaluate, Prepared, Term, place, tapered_curve};
+use crate::term::{Evaluate, Prepared, Term, curve_with_taper, place};
 use crate::waves::Waves;
 use crate::{AlongRay, Kernel, Profile, Real, Shaping, Skeleton, THRESHOLD};
 use crate::{influence, reach};
@@ -12,7 +12,7 @@ use glam::DVec3;
 pub struct Jet<R> {
     /// The value.
     pub value: R,
-    /// Its derivatives along x, y and z.
+    /// Derivatives along x, y and z.
     pub gradient: [R; 3],
 }
 
@@ -48,7 +48,7 @@ impl<R: Real> Jet<R> {
     }
 }
 
-/// One term of the field: a skeleton convolved with a kernel.
+/// Term of the field: a skeleton convolved with a kernel.
 ///
 /// `f(p) = height · ∫ h(|p−q|) dq` over the skeleton (for a point: `height·h`), times the profile.
 /// With a [`Taper`](crate::Taper) height and width depend on q.
@@ -75,12 +75,13 @@ pub struct Primitive {
 /// them are numbers of single precision.
 const LARGEST_SIZE: f64 = 1e8;
 
-/// Largest size, in kernel widths, of curves and bones that taper, which are integrated numerically.
+/// Largest size, in kernel widths, of curves and bones that taper, which are integrated
+/// numerically.
 pub const LONGEST: f64 = 1e4;
 
-/// Returns the largest width parameter along a tapered bone: at an end, unless radius and blobbiness change it in
-/// opposite directions; then the largest sample is near enough, as it is smooth. `None` if the shaping is invalid
-/// somewhere.
+/// Returns the largest width parameter along a tapered bone: at an end, unless radius and
+/// blobbiness change it in opposite directions; then the largest sample is near enough, as it is
+/// smooth. `None` if the shaping is invalid somewhere.
 fn largest_width(shaping: &Shaping) -> Option<f64> {
     (0..=64).try_fold(0.0, |largest: f64, i| {
         Some(largest.max(shaping.at(f64::from(i) / 64.0).width()?))
@@ -88,9 +89,9 @@ fn largest_width(shaping: &Shaping) -> Option<f64> {
 }
 
 impl Primitive {
-    /// Prepares a primitive. `None` if the shaping gives no surface: radius, blobbiness or strength zero or not finite, the
-    /// radius negative, the skeleton not finite, or larger than 10⁸ kernel widths
-    /// ([`LONGEST`], if it is a curve or tapers).
+    /// Prepares a primitive. `None` if the shaping gives no surface: radius, blobbiness or strength
+    /// zero or not finite, the radius negative, the skeleton not finite, or larger than 10⁸ kernel
+    /// widths ([`LONGEST`], if it is a curve or tapers).
     #[must_use]
     pub fn new(skeleton: Skeleton, shaping: &Shaping, profile: Option<Profile>) -> Option<Self> {
         let tapered = shaping.varies_along(&skeleton).then_some(*shaping);
@@ -128,14 +129,12 @@ impl Primitive {
         // A profile's parameters come from the untapered form, also for tapered bones.
         let waves = profile.map(|profile| Box::new(Waves::new(&profile, &form.bone)));
         if let Some(shaping) = tapered {
-            let law = |fraction: f64| {
+            let curve = curve_with_taper(&skeleton, &frame, shaping.kernel, &|fraction| {
                 let here = shaping.at(fraction);
                 let (s, h) = (here.width(), here.height(&skeleton));
                 let thin = s.unwrap_or(width) / width;
                 [h.unwrap_or(height) / height, thin * thin]
-            };
-            let kernel = shaping.kernel;
-            let curve = tapered_curve(&skeleton, &frame, kernel, &law);
+            });
             form.bone = Bone::Curve(Box::new(curve));
         }
         let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);
@@ -161,7 +160,7 @@ impl Primitive {
     #[inline]
     #[must_use]
     pub fn jet<R: Evaluate>(&self, point: [R; 3]) -> Jet<R> {
-        R::prepared(&self.prepared).jet(point)
+        R::term_of(&self.prepared).jet(point)
     }
 
     /// Value alone.
@@ -171,7 +170,7 @@ impl Primitive {
         self.jet(point).value
     }
 
-    /// The ray interval outside which the primitive is beyond its depth of influence:
+    /// Returns the ray interval outside which the primitive is beyond its depth of influence:
     /// parameters t of `origin + t·direction`, conservative. `None` if the ray misses it.
     ///
     /// The direction need not have unit length.
@@ -186,24 +185,26 @@ impl Primitive {
         )
     }
 
-    /// A sphere (centre, radius) holding all points within the depth of influence; `None` for a plane.
+    /// Returns a sphere (centre, radius) that holds all points within the depth of influence;
+    /// `None` for a plane.
     #[must_use]
     pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
         let (center, radius) = self.skeleton.bounding_sphere()?;
         Some((center, radius + self.influence))
     }
 
-    /// An upper bound on |f| anywhere at `distance` or more from the skeleton.
+    /// Returns an upper bound on |f| anywhere at `distance` or more from the skeleton.
     #[must_use]
-    pub fn bound_at(&self, distance: f64) -> f64 {
+    pub fn most_beyond(&self, distance: f64) -> f64 {
         let term = &self.prepared.double;
         let peak = self.profile.as_ref().map_or(1.0, |p| p.largest());
         let distance = (distance * self.width).max(0.0);
-        term.amplitude.abs() * peak * influence::bound_at(&term.form, distance)
+        term.amplitude.abs() * peak * influence::most_beyond(&term.form, distance)
     }
 
-    /// Bounds on a tapered bone, `None` for others: an upper bound on its length weighted with the height over
-    /// `height`; one on that relative height; and a lower bound on the squared width parameter over `width²`.
+    /// Bounds on a tapered bone, `None` for others: an upper bound on its length weighted with the
+    /// height over `height`; one on that relative height; and a lower bound on the squared width
+    /// parameter over `width²`.
     pub(crate) fn taper_bounds(&self) -> Option<[f64; 3]> {
         self.tapered.as_ref()?;
         let Bone::Curve(curve) = &self.prepared.double.form.bone else {

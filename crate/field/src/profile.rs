@@ -1,5 +1,5 @@
-//! Profiles: functions along a primitive that multiply its field (thesis, section 3.3.4). Along an arc
-//! the wave gives way to its mean towards the circle's axis, where the angle has no meaning.
+//! Profiles: functions along a primitive that multiply its field (thesis, section 3.3.4). Along an
+//! arc the wave gives way to its mean towards the circle's axis, where the angle has no meaning.
 use serde::{Deserialize, Serialize};
 
 /// A wave of one parameter, with values in [0, 1].
@@ -25,11 +25,11 @@ pub enum Wave {
     Step,
 }
 
-/// `times · (low + (high−low)·fu(scale_u·u)·fv(scale_v·v))` with u, v in [0, 1] along the primitive;
-/// on a triangle also times `1 − restriction·(1−b)`, where `b = 27·λ₀λ₁λ₂` of the barycentric
-/// coordinates is 1 in the middle and 0 on and beyond the edges. So a restricted triangle blends less
-/// with its neighbours, and a mesh of them shows creases, up to the full wrinkle at 1 (thesis, figures
-/// 3.18 and 3.19; the shape of b is ours).
+/// `times · (low + (high−low)·fu(scale_u·u)·fv(scale_v·v))` with u, v in [0, 1] along the
+/// primitive; on a triangle also times `1 − restriction·(1−b)`, where `b = 27·λ₀λ₁λ₂` of the
+/// barycentric coordinates is 1 in the middle and 0 on and beyond the edges. So a restricted
+/// triangle blends less with its neighbours, and a mesh of them shows creases, up to the full
+/// wrinkle at 1 (thesis, figures 3.18 and 3.19; the shape of b is ours).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// Waves of u and v.
@@ -38,9 +38,9 @@ pub struct Profile {
     pub scale: [f64; 2],
     /// The value where the waves' product is 0 and where it is 1.
     pub bounds: [f64; 2],
-    /// A factor on the whole.
+    /// Factor on the whole.
     pub times: f64,
-    /// How much of a triangle's field is taken away at its edges, 0 to 1.
+    /// Part of a triangle's field that is taken away at its edges, 0 to 1.
     pub restriction: f64,
 }
 

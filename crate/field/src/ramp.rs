@@ -1,8 +1,9 @@
 //! Ramps: profiles that are linear along a segment.
 //!
 //! At x along the segment, in kernel widths from its middle, the factor on the field is
-//! `low + rise·min(max(start + rate·x, 0), top)`: linear beside the segment and constant beyond its ends. Along a ray x is
-//! linear in t, so the factor is piecewise linear with at most two kinks, for which [`BlobOnRay`](crate::BlobOnRay) has bounds.
+//! `low + rise·min(max(start + rate·x, 0), top)`: linear beside the segment and constant beyond its
+//! ends. Along a ray x is linear in t, so the factor is piecewise linear with at most two kinks,
+//! for which [`BlobOnRay`](crate::BlobOnRay) has bounds.
 use crate::waves::Waves;
 use crate::{Real, Wave};
 
@@ -17,7 +18,8 @@ pub struct Ramp<S> {
 }
 
 impl Ramp<f64> {
-    /// Returns the profile of a segment of this half length in kernel widths; `None` if it is no ramp, negative somewhere or 0.
+    /// Returns the profile of a segment of this half length in kernel widths; `None` if it is no
+    /// ramp, negative somewhere or 0.
     pub(crate) fn of(waves: &Waves<f64>, half: f64) -> Option<Self> {
         let ([Wave::X, Wave::One], [scale, _]) = (waves.waves, waves.scale) else {
             return None;
@@ -77,8 +79,8 @@ impl<S: Copy> Ramp<S> {
         )
     }
 
-    /// Returns upper bounds between two positions: on the factor, on the size of its derivative by x, and on that derivative's
-    /// drop in a kink.
+    /// Returns upper bounds between two positions: on the factor, on the size of its derivative by
+    /// x, and on that derivative's drop in a kink.
     #[inline(always)]
     pub fn most<R: Real<Scalar = S>>(&self, a: R, b: R) -> [R; 3] {
         let zero = R::splat(0.0);

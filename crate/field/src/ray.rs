@@ -1,4 +1,4 @@
-//! A primitive's field along a ray.
+//! Fields of primitives along rays.
 use crate::real::Scalar;
 use crate::term::{Evaluate, Prepared, Term};
 use glam::DVec3;
@@ -21,7 +21,7 @@ impl<'a, S: Scalar + Evaluate> AlongRay<'a, S> {
         let frame = &prepared.double.frame;
         let round = |v: DVec3| v.to_array().map(S::round);
         Self {
-            term: S::prepared(prepared),
+            term: S::term_of(prepared),
             origin: round(frame.local_point(origin)),
             direction: round(frame.local_vector(direction)),
         }

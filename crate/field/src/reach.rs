@@ -1,5 +1,5 @@
-//! Ray intervals within a skeleton's depth of influence: the bounding volumes of the thesis's section 4.2, in
-//! the primitive's local frame.
+//! Ray intervals within a skeleton's depth of influence: the bounding volumes of the thesis's
+//! section 4.2, in the primitive's local frame.
 //!
 //! Each volume holds all points within distance d of the skeleton. Intervals are conservative: a
 //! point of the ray outside its interval is outside the volume.
@@ -169,7 +169,8 @@ impl Ray {
     }
 }
 
-/// Interval on which `|o + t·d| ≤ radius`, solved from the ray's nearest point, which keeps the digits for far origins.
+/// Interval on which `|o + t·d| ≤ radius`, solved from the ray's nearest point, which keeps the
+/// digits for far origins.
 fn round(o: DVec3, d: DVec3, radius: f64) -> Interval {
     let square = d.length_squared();
     if square == 0.0 {

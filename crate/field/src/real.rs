@@ -36,13 +36,13 @@ pub trait Real:
     /// Whether this is double precision.
     const DOUBLE: bool = core::mem::size_of::<Self::Scalar>() == 8;
 
-    /// The same constant in every lane, rounded to the type.
+    /// Returns the same constant in every lane, rounded to the type.
     fn splat(value: f64) -> Self;
-    /// The same prepared constant in every lane.
+    /// Returns the same prepared constant in every lane.
     fn lift(value: Self::Scalar) -> Self;
-    /// Lane by lane from a function of the lane's number.
+    /// Makes lanes from a function of the lane's number.
     fn from_lanes(lane: impl FnMut(usize) -> f64) -> Self;
-    /// One lane.
+    /// Returns a lane.
     ///
     /// # Panics
     /// If `index ≥ LANES`.
@@ -58,14 +58,14 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// The larger of two numbers.
     fn max(self, other: Self) -> Self;
-    /// Where `self < other`.
+    /// Compares: the mask holds where `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `yes` where the mask holds, else `no`.
+    /// Selects `yes` where the mask holds, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// Where both masks hold.
+    /// Returns the mask that holds where both masks hold.
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// Whether the mask holds in any lane. To be used only to skip work that would not change any bit of the
-    /// result: else lanes would differ from `f32`.
+    /// Whether the mask holds in any lane. To be used only to skip work that would not change any
+    /// bit of the result: else lanes would differ from `f32`.
     fn any(mask: Self::Mask) -> bool;
 
     /// `Q(y)` of `arctan x = x − x³/3 + x⁵·Q(x²)`, for 0 ≤ y ≤ tan²(π/8), to the type's precision.
@@ -81,8 +81,8 @@ pub trait Real:
 
     /// e^(−x), x ≥ −88. In single precision 0 for x from 87.69 on, and meaningless below −88.
     fn decay(self) -> Self;
-    /// Upper bound on e^(−x), x ≥ 0, at most 7 % above it; in single precision at least 10⁻³⁸ and at a fifth of the cost. x must
-    /// not be NaN.
+    /// Upper bound on e^(−x), x ≥ 0, at most 7 % above it; in single precision at least 10⁻³⁸ and
+    /// at a fifth of the cost. x must not be NaN.
     #[inline(always)]
     fn decay_at_most(self) -> Self {
         self.decay()
@@ -134,8 +134,8 @@ pub trait Scalar: Real<Scalar = Self> + PartialEq + core::fmt::Debug {
 
 /// `c₀ + c₁x + c₂x² + …`
 ///
-/// Longer ones as a polynomial of x² for even powers and one for odd: processors follow both at a time, where in one row
-/// each step would wait for the one before.
+/// Longer ones as a polynomial of x² for even powers and one for odd: processors follow both at a
+/// time, where in one row each step would wait for the one before.
 #[inline(always)]
 pub(crate) fn polynomial<R: Real, const N: usize>(x: R, coefficients: [f64; N]) -> R {
     let every = |step: usize, last: usize, x: R| {

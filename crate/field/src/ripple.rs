@@ -1,15 +1,17 @@
-//! Bounds on a profile's derivatives along a line between its [kinks](crate::kinks). With the bounds on a field without its
-//! profile they bound the derivatives of the product (Leibniz).
+//! Bounds on a profile's derivatives along a line between its [kinks](crate::kinks). With the
+//! bounds on a field without its profile they bound the derivatives of the product (Leibniz).
 //!
-//! Along a segment or a triangle the waves are functions of linear parameters, whose rates are known. Around an arc they
-//! are functions of the angle θ = Im log z, whose derivatives along a line are at most `(k−1)!/ρᵏ` at a distance ρ from the
-//! circle's axis; by Faà di Bruno's formula so are those of a wave S of it,
+//! Along a segment or a triangle the waves are functions of linear parameters, whose rates are
+//! known. Around an arc they are functions of the angle θ = Im log z, whose derivatives along a
+//! line are at most `(k−1)!/ρᵏ` at a distance ρ from the circle's axis; by Faà di Bruno's formula
+//! so are those of a wave S of it,
 //!
 //! `S₁/ρ, (S₂+S₁)/ρ², (S₃+3S₂+2S₁)/ρ³, (S₄+6S₃+11S₂+6S₁)/ρ⁴`.
 //!
-//! There they count as `g·S` with `g = (2q/(1+q²))²`, `q = ρ/radius` (see [`waves`](crate::waves)). With
-//! `y = 1/(1+q²)` it is `g = 4q²y²`, `|g′| ≤ 8qy²`, and `|g⁽ʲ⁾| ≤ 4(j+1)!·y^(1+j/2)`. So towards the axis the first two
-//! derivatives of the product stay finite, and the third and fourth do not.
+//! There they count as `g·S` with `g = (2q/(1+q²))²`, `q = ρ/radius` (see [`waves`](crate::waves)).
+//! With `y = 1/(1+q²)` it is `g = 4q²y²`, `|g′| ≤ 8qy²`, and `|g⁽ʲ⁾| ≤ 4(j+1)!·y^(1+j/2)`. So
+//! towards the axis the first two derivatives of the product stay finite, and the third and fourth
+//! do not.
 use crate::{Profile, Skeleton, Wave};
 use core::f64::consts::TAU;
 
@@ -18,13 +20,14 @@ use core::f64::consts::TAU;
 pub struct Ripple {
     /// First to fourth derivative along any line; for an arc, of the wave by the angle.
     by: [f64; 4],
-    /// For an arc: its radius, and the waves' largest contribution to the factor.
+    /// Radius of an arc, and the waves' largest contribution to the factor; `None` for other
+    /// skeletons.
     arc: Option<[f64; 2]>,
 }
 
-/// `4(j+1)!`, see the module, …
+/// Factors `4(j+1)!` of the bounds on the derivatives of g, see the module.
 const FADE: [f64; 5] = [4.0, 8.0, 24.0, 96.0, 480.0];
-/// … and the largest values of the derivatives of g.
+/// Largest values of the derivatives of g.
 const FADE_MOST: [f64; 5] = [1.0, 1.74, 8.0, 30.0, 192.0];
 /// Binomial coefficients of the orders 2 to 4.
 const BINOMIAL: [[f64; 5]; 3] = [
@@ -97,7 +100,8 @@ impl Ripple {
         changes.then_some(Self { by, arc })
     }
 
-    /// Returns bounds on the first to fourth derivative along any line, at a distance of `axis_distance` or more from an arc's axis.
+    /// Returns bounds on the first to fourth derivative along any line, at a distance of
+    /// `axis_distance` or more from an arc's axis.
     #[must_use]
     pub fn derivatives(&self, axis_distance: f64) -> [f64; 4] {
         let Some([radius, rise]) = self.arc else {
@@ -132,8 +136,8 @@ impl Ripple {
         })
     }
 
-    /// Returns bounds on the derivatives of orders 2 to 4 of the field times the factor, from those of the field (orders 0 to 4)
-    /// and of the factor (orders 1 to 4).
+    /// Returns bounds on the derivatives of orders 2 to 4 of the field times the factor, from those
+    /// of the field (orders 0 to 4) and of the factor (orders 1 to 4).
     #[must_use]
     pub fn of_product(field: &[f64; 5], factor: &[f64; 4]) -> [f64; 3] {
         let [_, rest @ ..] = product(field, &with_value(1.0, *factor));
@@ -141,8 +145,8 @@ impl Ripple {
     }
 }
 
-/// Returns bounds on a wave's derivatives between its kinks. Waves with kinks get those of a sine, for callers that ignore
-/// kinks.
+/// Returns bounds on a wave's derivatives between its kinks. Waves with kinks get those of a sine,
+/// for callers that ignore kinks.
 fn derivatives(wave: Wave) -> [f64; 4] {
     match wave {
         Wave::One => [0.0; 4],
@@ -161,14 +165,15 @@ fn with_value(value: f64, [a, b, c, d]: [f64; 4]) -> [f64; 5] {
 fn product(a: &[f64; 5], b: &[f64; 5]) -> [f64; 4] {
     let first = times(a[1], b[0]) + times(a[0], b[1]);
     let [second, third, fourth] = [2, 3, 4].map(|m: usize| {
-        let term = |k: usize| BINOMIAL[m - 2][k] * times(a[m - k], b[k]);
-        (0..=m).map(term).sum::<f64>()
+        (0..=m)
+            .map(|k| BINOMIAL[m - 2][k] * times(a[m - k], b[k]))
+            .sum::<f64>()
     });
     [first, second, third, fourth]
 }
 
 /// Product of two bounds, with 0·∞ = 0.
-fn times(a: f64, b: f64) -> f64 {
+pub(crate) fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
@@ -179,8 +184,8 @@ mod tests {
     use glam::DVec3;
     use trials::{Random, count};
 
-    /// The factor along random lines near arcs, segments and triangles, at five places close to each other: its derivatives by
-    /// differences are within the bounds, and come near to them.
+    /// The factor along random lines near arcs, segments and triangles, at five places close to
+    /// each other: its derivatives by differences are within the bounds, and come near to them.
     #[test]
     fn factors_change_no_faster_than_told() {
         const SMOOTH: [Wave; 5] = [Wave::X, Wave::Sin, Wave::Cos, Wave::Sin2, Wave::Cos2];
@@ -270,7 +275,8 @@ mod tests {
                 let found = found.abs() - lost;
                 assert!(
                     found <= most * 1.01,
-                    "{case}, order {}: {found} > {most} at {axis_distance:?} of {skeleton:?} {profile:?}",
+                    "{case}, order {}: {found} > {most} at {axis_distance:?} of {skeleton:?} \
+                     {profile:?}",
                     order + 1
                 );
                 let near = &mut nearest[case % 3][order];
@@ -282,12 +288,13 @@ mod tests {
         }
     }
 
-    /// At 0 the derivatives of `e^t·e^(2t)` are the powers of 3.
+    /// The derivatives of `e^t·e^(2t)` at 0 are the powers of 3.
     #[test]
     fn a_product_has_all_of_its_terms() {
         let bounds = Ripple::of_product(&[1.0; 5], &[2.0, 4.0, 8.0, 16.0]);
         assert_eq!(bounds, [9.0, 27.0, 81.0]);
-        // An unbounded derivative of the field counts only if the factor is not constant in that order.
+        // An unbounded derivative of the field counts only if the factor is not constant in that
+        // order.
         let field = [1.0, 1.0, 1.0, f64::INFINITY, f64::INFINITY];
         assert_eq!(Ripple::of_product(&field, &[0.0; 4])[0], 1.0);
     }

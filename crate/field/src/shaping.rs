@@ -1,8 +1,8 @@
-//! From the user's radius, blobbiness and strength to a kernel's width and height.
+//! Kernels' widths and heights from the user's radius, blobbiness and strength.
 use crate::{Kernel, Skeleton, THRESHOLD, endless, metaballs, plane};
 use serde::{Deserialize, Serialize};
 
-/// How a blobbiness B is read (`blobscale`).
+/// Ways to read a blobbiness B (`blobscale`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BlobScale {
     /// Blinn's dimensionless B: `s² = |B|/R²`.
@@ -12,12 +12,12 @@ pub enum BlobScale {
     Absolute,
 }
 
-/// Radius and blobbiness at the far end of a segment, an arc or a curve. Along it radius R and blobbiness B vary
-/// linearly with length; other skeletons ignore it.
+/// Radius and blobbiness at the far end of a segment, an arc or a curve. Along it radius R and
+/// blobbiness B vary linearly with length; other skeletons ignore it.
 ///
-/// At every place q of the bone the kernel has the width s and the height that a uniform bone of that
-/// R and B has (thesis, section 3.3.2): `f(p) = ∫ height·h(s·|p−q|) dq`. For a constant B both go
-/// with 1/R, which is the scale-invariant integral of SCALIS (Zanni et al. 2013): of a figure
+/// At every place q of the bone the kernel has the width s and the height that a uniform bone of
+/// that R and B has (thesis, section 3.3.2): `f(p) = ∫ height·h(s·|p−q|) dq`. For a constant B both
+/// go with 1/R, which is the scale-invariant integral of SCALIS (Zanni et al. 2013): of a figure
 /// magnified with its radii, the field at magnified places is the same. A slender cone so has the
 /// radius R(q) all along.
 ///
@@ -44,7 +44,7 @@ pub struct Shaping {
     pub radius: f64,
     /// Blobbiness B; only its magnitude counts.
     pub blobbiness: f64,
-    /// How `blobbiness` is read.
+    /// Way to read `blobbiness`.
     pub blob_scale: BlobScale,
     /// Multiplies the field.
     pub strength: f64,
@@ -87,15 +87,16 @@ impl Shaping {
         }
     }
 
-    /// Estimates a bone's length in kernel widths, by the geometric mean of the width parameters at its ends, as
-    /// most of a taper is thicker than its tip.
+    /// Estimates a bone's length in kernel widths, by the geometric mean of the width parameters at
+    /// its ends, as most of a taper is thicker than its tip.
     #[must_use]
     pub fn widths_along(&self, length: f64) -> f64 {
         let [start, end] = [0.0, 1.0].map(|at| self.at(at).width().unwrap_or(0.0));
         length * (start * end).sqrt()
     }
 
-    /// The blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given absolutely.
+    /// Returns the blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given
+    /// absolutely.
     fn relative(&self) -> f64 {
         let b = self.blobbiness.abs();
         match self.blob_scale {
@@ -109,10 +110,10 @@ impl Shaping {
     /// not finite.
     ///
     /// Cauchy and Gauss `√|B|/R`. For compact kernels 1/D, with the depth D at which their
-    /// logarithmic slope at R is Blinn's, `−2|B|`: quartic `D = R√(1+2/|B|)`, compact6 `R√(1+3/|B|)`,
-    /// metaballs `R/u` with `u = |B|/(1+|B|)` if that is over ⅓, else `u² = |B|/(3(1+|B|))`; soft: v = 1−u²
-    /// solves `(12+4|B|)v² + (5|B|−2)v = 10`. The inverse, the squared and the cubed kernel have no
-    /// width: 1/R, whatever B is.
+    /// logarithmic slope at R is Blinn's, `−2|B|`: quartic `D = R√(1+2/|B|)`, compact6
+    /// `R√(1+3/|B|)`, metaballs `R/u` with `u = |B|/(1+|B|)` if that is over ⅓, else
+    /// `u² = |B|/(3(1+|B|))`; soft: v = 1−u² solves `(12+4|B|)v² + (5|B|−2)v = 10`. The inverse,
+    /// the squared and the cubed kernel have no width: 1/R, whatever B is.
     #[must_use]
     pub fn width(&self) -> Option<f64> {
         let b = self.relative();
@@ -151,7 +152,8 @@ impl Shaping {
     /// distance R, times the strength. Where infinite ones have no finite field (inverse lines,
     /// inverse and squared planes), finite ones of half-length 10·R stand for them.
     ///
-    /// Of the cubed kernel 1/d³ that is R³ for points, R²/2 for lines and R/2π for planes, in units of length.
+    /// Of the cubed kernel 1/d³ that is R³ for points, R²/2 for lines and R/2π for planes, in units
+    /// of length.
     ///
     /// It depends on the skeleton's dimension only, not on its size. So cutting a segment, an arc
     /// or a triangle in two changes nothing, so that joints are free of bulges.
@@ -168,9 +170,9 @@ impl Shaping {
         height.is_finite().then_some(height)
     }
 
-    /// The radius R at which a point, an infinite line or an infinite plane (`dimension` 0, 1, 2) with
-    /// this blobbiness has the depth of influence `depth`: a compact kernel's support, or where the
-    /// field of an infinite kernel has fallen to `influence·T`. `None` if there is none.
+    /// The radius R at which a point, an infinite line or an infinite plane (`dimension` 0, 1, 2)
+    /// with this blobbiness has the depth of influence `depth`: a compact kernel's support, or
+    /// where the field of an infinite kernel has fallen to `influence·T`. `None` if there is none.
     #[must_use]
     pub fn radius_of_depth(&self, depth: f64, dimension: u8) -> Option<f64> {
         let kernel = self.kernel;

@@ -2,7 +2,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A skeletal element.
+/// Bone: a piece of skeleton.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Skeleton {
     /// A point.
@@ -12,9 +12,9 @@ pub enum Skeleton {
     },
     /// A line segment.
     Segment {
-        /// One end.
+        /// Start.
         base: DVec3,
-        /// The other end.
+        /// End.
         apex: DVec3,
     },
     /// A circular arc `center + radius·(cos t·u + sin t·v)`, `0 ≤ t ≤ angle`.
@@ -32,31 +32,31 @@ pub enum Skeleton {
     },
     /// A triangle.
     Triangle {
-        /// Its corners.
+        /// Corners.
         corners: [DVec3; 3],
     },
     /// A planar polygon.
     Polygon {
-        /// Its corners: the outer ring, then any holes, which lie inside it. No two edges may cross, else
-        /// [bounds](crate::Bound) on its field are wrong.
+        /// Corners: the outer ring, then any holes, which lie inside it. No two edges may cross,
+        /// else [bounds](crate::Bound) on its field are wrong.
         rings: Vec<Vec<DVec3>>,
     },
     /// A cubic Bézier curve.
     Curve {
-        /// Its control points.
+        /// Control points.
         control: [DVec3; 4],
     },
     /// An infinite plane.
     Plane {
-        /// A point of it.
+        /// Point of the plane.
         point: DVec3,
-        /// Its unit normal.
+        /// Unit normal.
         normal: DVec3,
     },
 }
 
 impl Skeleton {
-    /// 0 for points, 1 for segments, arcs and curves, 2 for triangles, polygons and planes.
+    /// Returns 0 for points, 1 for segments, arcs and curves, 2 for triangles, polygons and planes.
     #[must_use]
     pub fn dimension(&self) -> u8 {
         match self {
@@ -78,8 +78,11 @@ impl Skeleton {
             Self::Curve { control } => {
                 let c = cubic(control);
                 let breaks: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0).collect();
-                let mut speed = |t: f64| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
-                crate::integral::integral(&mut speed, &breaks, 1e-12)
+                crate::integral::integral(
+                    &mut |t| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length(),
+                    &breaks,
+                    1e-12,
+                )
             }
             Self::Plane { .. } => f64::INFINITY,
         }
@@ -156,7 +159,7 @@ impl Skeleton {
         }
     }
 
-    /// A sphere (centre, radius) that holds the skeleton; `None` for a plane.
+    /// Returns a sphere (centre, radius) that holds the skeleton; `None` for a plane.
     #[must_use]
     pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
         match *self {
@@ -247,16 +250,12 @@ fn edges(rings: &[Vec<DVec3>]) -> impl Iterator<Item = (DVec3, DVec3)> {
 /// may run either way round.
 #[must_use]
 pub fn area_vector(rings: &[Vec<DVec3>]) -> DVec3 {
-    let of = |ring: &[DVec3]| -> DVec3 {
-        let o = ring.first().copied().unwrap_or_default();
-        ring.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum()
-    };
     let Some((outer, holes)) = rings.split_first() else {
         return DVec3::ZERO;
     };
-    let whole = of(outer);
+    let whole = ring_vector(outer);
     holes.iter().fold(whole, |sum, hole| {
-        let hole = of(hole);
+        let hole = ring_vector(hole);
         if hole.dot(whole) > 0.0 {
             sum - hole
         } else {
@@ -265,7 +264,14 @@ pub fn area_vector(rings: &[Vec<DVec3>]) -> DVec3 {
     })
 }
 
-/// Whether a point of the polygon's plane lies inside: an odd number of edges crosses a line from it.
+/// Normal of a ring, twice as long as its area is large.
+fn ring_vector(ring: &[DVec3]) -> DVec3 {
+    let o = ring.first().copied().unwrap_or_default();
+    ring.windows(2).map(|w| (w[0] - o).cross(w[1] - o)).sum()
+}
+
+/// Whether a point of the polygon's plane lies inside: an odd number of edges crosses a line from
+/// it.
 fn is_inside(rings: &[Vec<DVec3>], normal: DVec3, point: DVec3) -> bool {
     let x = normal.any_orthonormal_vector();
     let y = normal.cross(x);
@@ -291,7 +297,7 @@ fn ball_around<'a>(points: impl Iterator<Item = &'a DVec3> + Clone) -> (DVec3, f
     (center, radius * (1.0 + 1e-12))
 }
 
-/// A Bézier curve's coefficients in powers of t.
+/// Computes a Bézier curve's coefficients in powers of t.
 #[must_use]
 pub fn cubic([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     [
@@ -302,7 +308,7 @@ pub fn cubic([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     ]
 }
 
-/// A Bézier curve cut at t (de Casteljau).
+/// Cuts a Bézier curve at t (de Casteljau).
 #[must_use]
 pub fn halves([a, b, c, d]: [DVec3; 4], t: f64) -> ([DVec3; 4], [DVec3; 4]) {
     let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
@@ -314,8 +320,8 @@ pub fn halves([a, b, c, d]: [DVec3; 4], t: f64) -> ([DVec3; 4], [DVec3; 4]) {
 /// Steps of the parameter between which the nearest point of a curve is looked for.
 const SAMPLES: i32 = 128;
 
-/// The point of a Bézier curve nearest to `point`: the best of samples, improved by bisection of the
-/// steps to either side.
+/// The point of a Bézier curve nearest to `point`: the best of samples, improved by bisection of
+/// the steps to either side.
 fn nearest_on_cubic(point: DVec3, control: [DVec3; 4]) -> DVec3 {
     let c = cubic(control);
     let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));

@@ -1,7 +1,8 @@
-//! A sort of little code, for lists that no ray waits for.
+//! Sorting with little code, for lists that no ray waits for.
 
-/// Sorts by heaps, in place; items of which neither is less than the other may change places. As wasm each of the standard
-/// library's sorts takes up to 13 kB, and there is one for each kind of item.
+/// Sorts by heaps, in place; items of which neither is less than the other may change places. As
+/// wasm each of the standard library's sorts takes up to 13 kB, and there is one for each kind of
+/// item.
 ///
 /// ```
 /// let mut numbers = [3.0, -1.0, 2.0_f64];
@@ -10,7 +11,8 @@
 /// ```
 pub fn heap_sort<T>(items: &mut [T], mut less: impl FnMut(&T, &T) -> bool) {
     let count = items.len();
-    // First each part becomes a heap, from the last; then the largest item goes behind what is left of it.
+    // First each part becomes a heap, from the last; then the largest item goes behind what is left
+    // of it.
     for step in (0..count + count / 2).rev() {
         let (mut root, end) = match step.checked_sub(count) {
             Some(root) => (root, count),

@@ -1,5 +1,5 @@
 //! The sum of primitives: the field of a convolution surface.
-use crate::far_field::{Cell, FarField};
+use crate::far_field::{Cell, FarField, power};
 use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
 use crate::{Ball, Bound, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD};
@@ -33,7 +33,7 @@ pub struct Sum {
     /// The terms.
     pub primitives: Vec<Primitive>,
     /// Bounds of each term for enclosures, made at first use.
-    bounds: OnceLock<Vec<Known>>,
+    bounds: OnceLock<Vec<TermBounds>>,
     /// The hierarchy for those who bear its error, made at first use; `None` if it would not pay.
     far: OnceLock<Option<Box<FarField>>>,
 }
@@ -43,14 +43,14 @@ const MANY: usize = 64;
 /// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
 const ROOM: f64 = 1.25;
 
-/// A primitive's bounds, and where its profile is not smooth.
+/// Bounds on a primitive, and where its profile is not smooth.
 #[derive(Debug)]
-pub(crate) struct Known {
+pub(crate) struct TermBounds {
     pub(crate) bound: Bound,
     kinks: Vec<Kink>,
 }
 
-impl Known {
+impl TermBounds {
     /// Bounds in a ball.
     fn enclose(&self, Ball { center, radius }: Ball) -> Enclosure {
         let Self { bound, kinks } = self;
@@ -60,7 +60,6 @@ impl Known {
         let [kinked, jumps] = cut.fold([false, false], |[_, jumps], kink| {
             [true, jumps | kink.jumps]
         });
-        let unless = |broken: bool, bound: f64| if broken { f64::INFINITY } else { bound };
         Enclosure {
             value: [
                 if bound.carves() {
@@ -70,8 +69,16 @@ impl Known {
                 },
                 if bound.adds() { magnitude } else { 0.0 },
             ],
-            slope: unless(jumps, bound.slope(near)),
-            curvature: unless(kinked, bound.curvature(near)),
+            slope: if jumps {
+                f64::INFINITY
+            } else {
+                bound.slope(near)
+            },
+            curvature: if kinked {
+                f64::INFINITY
+            } else {
+                bound.curvature(near)
+            },
         }
     }
 }
@@ -99,7 +106,7 @@ impl Sum {
         sum(&self.primitives, point)
     }
 
-    /// Each term's value.
+    /// Computes each term's value.
     #[must_use]
     pub fn weights(&self, point: DVec3) -> Vec<f64> {
         let point = point.to_array();
@@ -107,20 +114,20 @@ impl Sum {
     }
 
     fn far(&self) -> Option<&FarField> {
-        let make = || {
-            let endless = |p: &&Primitive| crate::far_field::power(p.kernel).is_some();
-            if self.primitives.iter().filter(endless).count() < MANY {
+        let far = self.far.get_or_init(|| {
+            let endless = self.primitives.iter().filter(|p| power(p.kernel).is_some());
+            if endless.count() < MANY {
                 return None;
             }
             let Ball { center, radius } = self.support()?;
             let field = FarField::new(&self.primitives, center, ROOM * radius);
-            let pays = field.expanded() >= MANY && radius.is_finite();
+            let pays = field.count_expansions() >= MANY && radius.is_finite();
             pays.then(|| Box::new(field.with_derivatives()))
-        };
-        self.far.get_or_init(make).as_deref()
+        });
+        far.as_deref()
     }
 
-    /// The hierarchy's cell around a ball, if its error is at most this.
+    /// Returns the hierarchy's cell around a ball, if its error is at most `error`.
     fn cell(&self, ball: Ball, error: f64) -> Option<&Arc<Cell>> {
         if error <= 0.0 {
             return None;
@@ -132,19 +139,19 @@ impl Sum {
         (cell.error <= error && cell.near.len() < self.primitives.len()).then_some(cell)
     }
 
-    /// The sum of some terms.
-    fn listed(&self, terms: &[u32], point: DVec3) -> Jet<f64> {
+    /// Computes the sum of some terms.
+    fn sum_of(&self, terms: &[u32], point: DVec3) -> Jet<f64> {
         let terms = terms.iter().map(|i| &self.primitives[*i as usize]);
         sum(terms, point.to_array())
     }
 
-    fn known(&self) -> &[Known] {
+    fn bounds(&self) -> &[TermBounds] {
         self.bounds.get_or_init(|| {
-            let known = |p| Known {
+            let bounds = self.primitives.iter().map(|p| TermBounds {
                 bound: Bound::new(p),
                 kinks: kinks::of(p),
-            };
-            self.primitives.iter().map(known).collect()
+            });
+            bounds.collect()
         })
     }
 }
@@ -186,15 +193,15 @@ impl Implicit for Sum {
     }
 
     fn enclose(&self, ball: Ball) -> Enclosure {
-        let known = self.known().iter();
-        let all = known.fold(Enclosure::ZERO, |all, known| all.plus(known.enclose(ball)));
+        let terms = self.bounds().iter();
+        let all = terms.fold(Enclosure::ZERO, |all, term| all.plus(term.enclose(ball)));
         all.about(&self.jet(ball.center), ball.radius)
     }
 
     fn narrow(&self, ball: Ball, among: Option<&Part>, slack: Slack) -> Option<Part> {
-        let known = self.known();
-        let each = slack.left_out / known.len() as f64;
-        let before = among.map_or(known.len(), |among| among.terms.len());
+        let terms = self.bounds();
+        let each = slack.left_out / terms.len() as f64;
+        let before = among.map_or(terms.len(), |among| among.terms.len());
         let inherited = among.and_then(|among| among.far.as_ref());
         let far = self.cell(ball, slack.far).or(inherited);
         // The terms that are left out, and those of the list, are those of the same cell.
@@ -209,7 +216,7 @@ impl Implicit for Sum {
             far: far.cloned(),
         };
         let mut choose = |i: u32| {
-            let bounds = known[i as usize].enclose(ball);
+            let bounds = terms[i as usize].enclose(ball);
             let size = bounds.value[1].max(-bounds.value[0]);
             let changes = [
                 size,
@@ -226,13 +233,13 @@ impl Implicit for Sum {
         match (among, far) {
             (Some(among), _) => among.terms.iter().copied().for_each(&mut choose),
             (None, Some(cell)) => cell.near.iter().copied().for_each(&mut choose),
-            (None, None) => (0..known.len() as u32).for_each(&mut choose),
+            (None, None) => (0..terms.len() as u32).for_each(&mut choose),
         }
         (4 * part.terms.len() <= 3 * before).then_some(part)
     }
 
     fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
-        let jet = self.listed(&part.terms, point);
+        let jet = self.sum_of(&part.terms, point);
         match &part.far {
             Some(cell) => jet.plus(cell.jet(point)),
             None => jet,
@@ -240,7 +247,7 @@ impl Implicit for Sum {
     }
 
     fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
-        let known = self.known();
+        let terms = self.bounds();
         let mut all = Variation {
             range: part.map_or(Enclosure::ZERO, |part| part.rest),
             curvature: part.map_or(0.0, |part| part.rest.curvature),
@@ -259,12 +266,12 @@ impl Implicit for Sum {
             all.curvature += curvature;
             all.third += third;
         }
-        let mut add = |known: &Known| {
-            let range = known.enclose(ball);
+        let mut add = |term: &TermBounds| {
+            let range = term.enclose(ball);
             all.range = all.range.plus(range);
-            let near = known.bound.nearness(ball.center, ball.radius);
+            let near = term.bound.nearness(ball.center, ball.radius);
             if range.curvature.is_finite() {
-                let third = known.bound.third(near);
+                let third = term.bound.third(near);
                 all.curvature += range.curvature;
                 if third.is_finite() {
                     all.third += third;
@@ -272,24 +279,24 @@ impl Implicit for Sum {
                     all.rough += range.curvature;
                 }
             } else {
-                let curvature = known.bound.curvature(near);
+                let curvature = term.bound.curvature(near);
                 all.curvature += curvature;
                 all.rough += curvature;
-                all.jump += known.bound.jump(near).min(2.0 * range.slope);
+                all.jump += term.bound.jump(near).min(2.0 * range.slope);
                 if !range.slope.is_finite() {
                     all.step += range.value[1] - range.value[0];
                 }
             }
         };
         match part {
-            Some(part) => part.terms.iter().for_each(|i| add(&known[*i as usize])),
-            None => known.iter().for_each(add),
+            Some(part) => part.terms.iter().for_each(|i| add(&terms[*i as usize])),
+            None => terms.iter().for_each(add),
         }
         all
     }
 
     fn logarithm(&self) -> Option<Logarithm<'_>> {
-        Logarithm::new(&self.primitives, self.known())
+        Logarithm::new(&self.primitives, self.bounds())
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
@@ -309,7 +316,7 @@ impl Implicit for Sum {
     fn support_at(&self, level: f64) -> Option<Ball> {
         let share = level / self.primitives.len().max(1) as f64;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for (p, Known { bound, .. }) in self.primitives.iter().zip(self.known()) {
+        for (p, TermBounds { bound, .. }) in self.primitives.iter().zip(self.bounds()) {
             if !bound.adds() {
                 continue;
             }

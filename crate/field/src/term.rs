@@ -1,4 +1,4 @@
-//! A primitive made ready for evaluation: its closed form and the frame in which that is written.
+//! Primitives made ready for evaluation: a closed form, and the frame in which it is written.
 use crate::bone::curve::Law;
 use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
 use crate::cubed::cone::Cone;
@@ -56,13 +56,14 @@ impl Frame<f64> {
     }
 }
 
-/// A number type in which fields are evaluated: `f64`, `f32` or `f32x8`. The chart's formulas are too long to be compiled again
-/// wherever one is used, so they are compiled once for each of these, in this crate.
+/// A number type in which fields are evaluated: `f64`, `f32` or `f32x8`. The chart's formulas are
+/// too long to be compiled again wherever one is used, so they are compiled once for each of these,
+/// in this crate.
 pub trait Evaluate: Real {
     /// Selects the precision of a term prepared in both.
     #[doc(hidden)]
-    fn prepared(term: &Prepared) -> &Term<Self::Scalar>;
-    /// A term's value and local gradient at a local position.
+    fn term_of(term: &Prepared) -> &Term<Self::Scalar>;
+    /// Computes a term's value and local gradient at a local position.
     #[doc(hidden)]
     fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
     /// Value and gradient of a point primitive at a position in world coordinates, see [`Term`].
@@ -77,7 +78,8 @@ pub struct Term<S> {
     pub(crate) form: Form<S>,
     /// Factor on the form.
     pub(crate) amplitude: S,
-    /// The profile, if any; boxed, since few primitives have one and it would be most of a primitive's size.
+    /// The profile, if any; boxed, since few primitives have one and it would be most of a
+    /// primitive's size.
     pub(crate) waves: Option<Box<Waves<S>>>,
 }
 
@@ -110,16 +112,18 @@ impl<S: Copy> Term<S> {
         }
     }
 
-    /// Value and gradient of a point without a profile, whose frame is a mere scale, at a position in world
-    /// coordinates.
+    /// Value and gradient of a point without a profile, whose frame is a mere scale, at a position
+    /// in world coordinates.
     #[inline(always)]
     pub(crate) fn point_jet_inline<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
         let scale = R::lift(self.frame.axes[0][0]);
         let origin = self.frame.origin.map(R::lift);
         let horizon = R::splat(R::HORIZON);
-        let [x, y, z] = core::array::from_fn(|i| (p[i] - origin[i]) * scale);
-        let cut = |x: R| x.min(horizon).max(-horizon);
-        let jet = point::jet(self.form.kernel, [cut(x), cut(y), cut(z)]);
+        let local = core::array::from_fn(|i| {
+            let x = (p[i] - origin[i]) * scale;
+            x.min(horizon).max(-horizon)
+        });
+        let jet = point::jet(self.form.kernel, local);
         let amplitude = R::lift(self.amplitude);
         let steep = amplitude * scale;
         Jet {
@@ -142,7 +146,7 @@ impl<S: Copy> Term<S> {
     }
 }
 
-/// One term in both precisions.
+/// Term in both precisions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
     pub(crate) double: Term<f64>,
@@ -265,8 +269,9 @@ fn place_bone(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<
     }
 }
 
-/// A segment, an arc or a curve in its local frame, with a width and a height that vary along it.
-pub(crate) fn tapered_curve(
+/// Prepares a segment, an arc or a curve in its local frame, with a width and a height that vary
+/// along it.
+pub(crate) fn curve_with_taper(
     skeleton: &Skeleton,
     frame: &Frame<f64>,
     kernel: Kernel,

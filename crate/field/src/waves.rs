@@ -3,7 +3,7 @@ use crate::angle::direction;
 use crate::bone::Bone;
 use crate::{Jet, Profile, Real, Wave};
 
-/// Where the natural parameters u, v of a primitive are read from.
+/// Source of the natural parameters u, v of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Parameters<S> {
     /// Nowhere: both are 0 (points and planes).
@@ -13,10 +13,10 @@ pub(crate) enum Parameters<S> {
         gradient: [[S; 2]; 2],
         start: [S; 2],
     },
-    /// u is the angle from an arc's start over the arc's angle, clamped to [0, 1]. On the circle's axis the
-    /// angle is undefined: with q the distance from the axis over
-    /// the circle's radius, the waves count as `g = (2q/(1+q²))²`, which is 1 and flat at the circle
-    /// and 0 on the axis, and their `mean` over the arc counts as `1 − g`.
+    /// u is the angle from an arc's start over the arc's angle, clamped to [0, 1]. On the circle's
+    /// axis the angle is undefined: with q the distance from the axis over the circle's radius, the
+    /// waves count as `g = (2q/(1+q²))²`, which is 1 and flat at the circle and 0 on the axis, and
+    /// their `mean` over the arc counts as `1 − g`.
     Angle {
         radius: S,
         side: S,
@@ -26,14 +26,14 @@ pub(crate) enum Parameters<S> {
     },
 }
 
-/// A profile, prepared.
+/// Profile prepared for evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Waves<S> {
     pub waves: [Wave; 2],
     pub scale: [S; 2],
     pub low: S,
     pub rise: S,
-    /// See [`Profile`]; 0 but on triangles.
+    /// Restriction of a [`Profile`]; 0 but on triangles.
     restriction: S,
     parameters: Parameters<S>,
 }
@@ -222,10 +222,11 @@ impl<S: Copy> Waves<S> {
         let factor = one - restriction + steep(u * v * w);
         let (by_u, by_v) = (steep(v * (w - u)), steep(u * (w - v)));
         let [gu, gv] = gradients;
-        let of = |i: usize| factor * gradient[i] + value * (by_u * gu[i] + by_v * gv[i]);
+        let [along_x, along_y] =
+            [0, 1].map(|i| factor * gradient[i] + value * (by_u * gu[i] + by_v * gv[i]));
         Jet {
             value: value * factor,
-            gradient: [of(0), of(1), zero],
+            gradient: [along_x, along_y, zero],
         }
     }
 }
@@ -237,7 +238,7 @@ struct Fade<R> {
     mean: R,
 }
 
-/// A wave and its derivative.
+/// Computes a wave and its derivative.
 #[inline(always)]
 fn wave<R: Real>(wave: Wave, x: R) -> (R, R) {
     let zero = R::splat(0.0);

@@ -1,4 +1,5 @@
-//! Writes the trial head as an OBJ file, simplified to uneven facets or, with `even`, as it is made.
+//! Writes the trial head as an OBJ file, simplified to uneven facets or, with `even`, as it is
+//! made.
 //!
 //! `cargo run -p fit --example head -- 420 www/examples/head.obj`
 

@@ -1,7 +1,8 @@
-//! Fits the trial head to points without outliers by plain squares, and writes the problem for another program to solve.
+//! Fits the trial head to points without outliers by plain squares, and writes the problem for
+//! another program to solve.
 //!
-//! `cargo run --release -p fit --example peer -- problem.json` prints the seconds that the fit took; the comparison is
-//! `tests/bench/fit_scipy.py`.
+//! `cargo run --release -p fit --example peer -- problem.json` prints the seconds that the fit
+//! took; the comparison is `tests/bench/fit_scipy.py`.
 
 use fit::recovery::{Trial, Way};
 use fit::{Deformation, Kind, trial};

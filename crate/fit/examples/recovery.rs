@@ -1,4 +1,5 @@
-//! Recovers a head from points and outlines whose true shape is known, seen in several ways: the table of BENCHMARKS.md.
+//! Recovers a head from points and outlines whose true shape is known, seen in several ways: the
+//! table of BENCHMARKS.md.
 //!
 //! `cargo run --release -p fit --example recovery`; with `json` as JSON.
 
@@ -61,7 +62,10 @@ fn main() -> Result<(), fit::Error> {
     if as_json {
         println!(
             "{}",
-            json!({ "controls": controls, "points": points, "sights": sights, "noise": NOISE, "rows": rows })
+            json!({
+                "controls": controls, "points": points, "sights": sights, "noise": NOISE,
+                "rows": rows
+            })
         );
         return Ok(());
     }

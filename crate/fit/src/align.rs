@@ -10,17 +10,17 @@ const POINTS: usize = 600;
 /// Share of the points, the nearest ones, that count: the rest may be outliers.
 const TRUSTED: f64 = 0.8;
 
-/// A turn and then a shift.
+/// Rigid motion: a rotation about the origin, then a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rigid {
-    /// A rotation.
+    /// Rotation.
     pub turn: DMat3,
     /// The shift.
     pub shift: DVec3,
 }
 
 impl Rigid {
-    /// Leaves all in its place.
+    /// The motion that leaves everything in its place.
     pub const IDENTITY: Self = Self {
         turn: DMat3::IDENTITY,
         shift: DVec3::ZERO,
@@ -64,7 +64,7 @@ impl Rigid {
         (axis.normalize_or(DVec3::Z), angle.to_degrees())
     }
 
-    /// This after another.
+    /// Returns the motion that applies another first, then this.
     fn after(&self, other: &Self) -> Self {
         Self {
             turn: self.turn * other.turn,
@@ -81,8 +81,9 @@ impl Rigid {
     }
 }
 
-/// Returns how to turn and move a mesh onto points: iterated closest points, from where it is and from the 24 turns of a
-/// cube about the middles, the best of all by the mean distance of four fifths of the points.
+/// Returns how to turn and move a mesh onto points: iterated closest points, from where it is and
+/// from the 24 turns of a cube about the middles, the best of all by the mean distance of four
+/// fifths of the points.
 pub(crate) fn align(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3]) -> Rigid {
     if points.len() < 4 {
         return Rigid::IDENTITY;
@@ -93,15 +94,14 @@ pub(crate) fn align(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3
     // The points are moved onto the mesh, whose hierarchy so stays.
     let bounds = Aabb::of_points(positions.iter().copied());
     let to_middle = bounds.center() - median(&points);
-    let shifted = |turn: DMat3| {
+    let mut starts = vec![Rigid::IDENTITY];
+    starts.extend(cube_turns().into_iter().map(|turn| {
         let about = median(&points);
         Rigid {
             turn,
             shift: about + to_middle - turn * about,
         }
-    };
-    let mut starts = vec![Rigid::IDENTITY];
-    starts.extend(cube_turns().into_iter().map(shifted));
+    }));
     let mut coarse: Vec<(f64, Rigid)> = starts
         .into_iter()
         .map(|start| target.iterate(&points, start, 8))
@@ -117,12 +117,11 @@ pub(crate) fn align(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3
 
 /// The median of each coordinate.
 fn median(points: &[DVec3]) -> DVec3 {
-    let middle = |axis: usize| {
+    DVec3::from_array([0, 1, 2].map(|axis| {
         let mut values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
         values.sort_by(f64::total_cmp);
         values[values.len() / 2]
-    };
-    DVec3::new(middle(0), middle(1), middle(2))
+    }))
 }
 
 /// The turns that map a cube to itself.
@@ -144,7 +143,7 @@ fn cube_turns() -> Vec<DMat3> {
     turns
 }
 
-/// The mesh as what points are moved to.
+/// Mesh to which points are moved.
 struct Target {
     facets: Vec<[DVec3; 3]>,
     bvh: Bvh,
@@ -176,12 +175,14 @@ impl Target {
         (at(facet), (b - a).cross(c - a).normalize_or_zero())
     }
 
-    /// Iterated closest points. Returns the mean distance of the trusted points, and how they are moved.
+    /// Iterated closest points. Returns the mean distance of the trusted points, and how they are
+    /// moved.
     fn iterate(&self, points: &[DVec3], start: Rigid, most: usize) -> (f64, Rigid) {
         let (mut pairs, mut mean) = self.pairs(points, &start);
         let mut rigid = start;
         for _ in 0..most {
-            // Onto the planes of the facets is the quicker way where it leads nearer: points slide along the surface.
+            // Onto the planes of the facets is the quicker way where it leads nearer: points slide
+            // along the surface.
             let steps = [onto_planes(&pairs), Some(onto(&pairs))];
             let better = steps.into_iter().flatten().find_map(|step| {
                 let next = step.after(&rigid);
@@ -196,19 +197,22 @@ impl Target {
         (mean, rigid)
     }
 
-    /// The points as they are moved, each with the nearest of the mesh, of which the trusted ones; and their mean distance.
+    /// Moves the points and pairs each with the nearest of the mesh. Returns the pairs that are
+    /// trusted, and their mean distance.
     fn pairs(&self, points: &[DVec3], rigid: &Rigid) -> (Vec<Pair>, f64) {
-        let pair = |p: &DVec3| {
-            let moved = rigid.apply(*p);
-            let (near, normal) = self.nearest(moved);
-            Pair {
-                distance: near.distance(moved),
-                moved,
-                near,
-                normal,
-            }
-        };
-        let mut pairs: Vec<Pair> = points.iter().map(pair).collect();
+        let mut pairs: Vec<Pair> = points
+            .iter()
+            .map(|p| {
+                let moved = rigid.apply(*p);
+                let (near, normal) = self.nearest(moved);
+                Pair {
+                    distance: near.distance(moved),
+                    moved,
+                    near,
+                    normal,
+                }
+            })
+            .collect();
         pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         pairs.truncate(((TRUSTED * points.len() as f64) as usize).max(3));
         let sum: f64 = pairs.iter().map(|pair| pair.distance).sum();
@@ -217,7 +221,7 @@ impl Target {
     }
 }
 
-/// A point and the nearest of the mesh.
+/// Point and the nearest of the mesh.
 struct Pair {
     distance: f64,
     moved: DVec3,
@@ -226,8 +230,8 @@ struct Pair {
     normal: DVec3,
 }
 
-/// The rigid motion that brings points nearest to the planes of their facets, to the first order of the turn. `None` if it
-/// is not determined.
+/// The rigid motion that brings points nearest to the planes of their facets, to the first order of
+/// the turn. `None` if it is not determined.
 fn onto_planes(pairs: &[Pair]) -> Option<Rigid> {
     let count = pairs.len().max(1) as f64;
     let middle = pairs.iter().map(|pair| pair.moved).sum::<DVec3>() / count;
@@ -244,16 +248,18 @@ fn onto_planes(pairs: &[Pair]) -> Option<Rigid> {
     let angle = turn.length().min(0.5);
     let (sine, cosine) = libm::sincos(angle);
     let axis = turn.normalize_or_zero();
-    let turned =
-        |v: DVec3| v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine));
-    let turn = DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z));
+    // Rodrigues' formula.
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z]
+        .map(|v| v * cosine + axis.cross(v) * sine + axis * (axis.dot(v) * (1.0 - cosine)));
+    let turn = DMat3::from_cols(x, y, z);
     (found.iter().all(|v| v.is_finite())).then(|| Rigid {
         turn,
         shift: middle + shift - turn * middle,
     })
 }
 
-/// The rigid motion that brings the points of pairs nearest to those of the mesh, by Horn's quaternion.
+/// The rigid motion that brings the points of pairs nearest to those of the mesh, by Horn's
+/// quaternion.
 fn onto(pairs: &[Pair]) -> Rigid {
     let count = pairs.len() as f64;
     let from = pairs.iter().map(|pair| pair.moved).sum::<DVec3>() / count;
@@ -351,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn turned_points_are_turned_back() {
+    fn points_that_are_turned_are_turned_back() {
         let (s, c) = (libm::sin(0.4), libm::cos(0.4));
         let turn = DMat3::from_cols(DVec3::new(c, s, 0.0), DVec3::new(-s, c, 0.0), DVec3::Z);
         let exact = Rigid {

@@ -1,16 +1,18 @@
 //! Control points around a mesh, and triangles between control points.
 
+use core::cmp::Ordering;
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
 use std::collections::BTreeSet;
 
-/// How far control points stand outside of the mesh, of the diagonal of its box.
+/// Distance of control points from the mesh, outwards, as a share of the diagonal of its box.
 const OUTSIDE: f64 = 0.03;
 /// Neighbours of a control point that are looked at for triangles.
 const NEAR: usize = 14;
 
-/// Returns a control mesh around a mesh: of its vertices about `count` that are far from each other, a little outside, with
-/// triangles where their parts of the surface meet. At most a third of the vertices are taken.
+/// Returns a control mesh around a mesh: of its vertices about `count` that are far from each
+/// other, a little outside, with triangles where their parts of the surface meet. At most a third
+/// of the vertices are taken.
 ///
 /// ```
 /// use fit::{cage, trial};
@@ -59,8 +61,10 @@ pub fn cage(positions: &[DVec3], triangles: &[[u32; 3]], count: usize) -> Triang
         chosen.push(used[furthest]);
     }
     let shift = OUTSIDE * bounds.size().length();
-    let outside = |i: &u32| place(*i) + normals[*i as usize] * shift;
-    let controls: Vec<DVec3> = chosen.iter().map(outside).collect();
+    let controls: Vec<DVec3> = chosen
+        .iter()
+        .map(|i| place(*i) + normals[*i as usize] * shift)
+        .collect();
     let mut seen = BTreeSet::new();
     let between = triangles.iter().filter_map(|triangle| {
         let corners = triangle.map(|i| owner[i as usize]);
@@ -93,8 +97,9 @@ fn normals(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     normals
 }
 
-/// Returns triangles between control points that stand anywhere: those of near neighbours whose circumcircle's ball holds
-/// no other (Gabriel's), and, for a point without any, one with its two nearest. None for fewer than three points.
+/// Returns triangles between control points that stand anywhere: those of near neighbours whose
+/// circumcircle's ball holds no other (Gabriel's), and, for a point without any, one with its two
+/// nearest. None for fewer than three points.
 ///
 /// ```
 /// use glam::DVec3;
@@ -115,12 +120,11 @@ pub fn web(controls: &[DVec3]) -> Vec<[u32; 3]> {
             .filter(|(j, _)| *j as usize != i)
             .map(|(j, p)| (p.distance_squared(controls[i]), j))
             .collect();
-        let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         if near.len() > NEAR {
-            near.select_nth_unstable_by(NEAR, order);
+            near.select_nth_unstable_by(NEAR, by_distance);
             near.truncate(NEAR);
         }
-        near.sort_by(order);
+        near.sort_by(by_distance);
         near
     };
     for i in 0..controls.len() {
@@ -156,6 +160,11 @@ pub fn web(controls: &[DVec3]) -> Vec<[u32; 3]> {
         }
     }
     found.into_iter().collect()
+}
+
+/// Compares numbered things by their distance, then by their number.
+pub(crate) fn by_distance(a: &(f64, u32), b: &(f64, u32)) -> Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
 }
 
 /// The circumcentre of a triangle and the square of its circumradius; `None` without area.
@@ -206,8 +215,7 @@ mod tests {
         let line: Vec<DVec3> = (0..9).map(|i| DVec3::X * f64::from(i)).collect();
         for points in [&ball[..], &line[..], &[DVec3::ZERO, DVec3::X, DVec3::Y][..]] {
             let web = super::web(points);
-            let has = |i: u32| web.iter().flatten().any(|j| *j == i);
-            assert!((0..points.len() as u32).all(has));
+            assert!((0..points.len() as u32).all(|i| web.iter().flatten().any(|j| *j == i)));
         }
         assert!(super::web(&line[..2]).is_empty());
     }

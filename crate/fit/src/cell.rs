@@ -1,12 +1,13 @@
 //! Convex polyhedra, cut by planes.
 //!
-//! A face is a list of directed edges in no particular order: cutting needs no more, as a convex face has one edge in and
-//! one out of what is cut off, and volumes are sums over edges. So no case of several vertices or planes in one place is
-//! special: degenerate edges and faces stay in the lists and add nothing.
+//! A face is a list of directed edges in no particular order: cutting needs no more, as a convex
+//! face has one edge in and one out of what is cut off, and volumes are sums over edges. So no case
+//! of several vertices or planes in one place is special: degenerate edges and faces stay in the
+//! lists and add nothing.
 
 use glam::DVec3;
 
-/// A convex polyhedron.
+/// Convex polyhedron.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
     pub vertices: Vec<DVec3>,
@@ -15,7 +16,7 @@ pub(crate) struct Cell {
     edges: Vec<[u32; 2]>,
 }
 
-/// A face: its label, and the end of its edges in the list.
+/// Face: its label, and the end of its edges in the list.
 #[derive(Clone, Copy, Debug)]
 struct Face {
     label: u32,
@@ -43,10 +44,11 @@ impl Cell {
             [0, 2, 3, 1],
             [4, 5, 7, 6],
         ];
-        let side = |bit: u32| if bit == 0 { -half } else { half };
         self.vertices.clear();
-        self.vertices
-            .extend((0..8).map(|i| DVec3::new(side(i & 1), side(i & 2), side(i & 4))));
+        self.vertices.extend((0..8).map(|i| {
+            let sides = [1, 2, 4].map(|bit| if i & bit == 0 { -half } else { half });
+            DVec3::from_array(sides)
+        }));
         self.faces.clear();
         self.edges.clear();
         for corners in FACES {
@@ -70,7 +72,8 @@ impl Cell {
         self.edges.clear();
     }
 
-    /// Keeps the points x with `normal·x ≤ offset`; the new face gets the label. Returns whether something was cut off.
+    /// Keeps the points x with `normal·x ≤ offset`; the new face gets the label. Returns whether
+    /// something was cut off.
     pub fn cut(&mut self, normal: DVec3, offset: f64, label: u32, scratch: &mut Scratch) -> bool {
         let heights = &mut scratch.heights;
         heights.clear();
@@ -176,7 +179,7 @@ impl Cell {
         })
     }
 
-    /// A corner of a face and twice its area along the normal; `None` without edges.
+    /// Returns a corner of a face and twice its area along the normal; `None` without edges.
     fn apex_and_area(&self, edges: &[[u32; 2]]) -> Option<(DVec3, DVec3)> {
         let apex = self.vertices[edges.first()?[0] as usize];
         let mut area = DVec3::ZERO;
@@ -222,8 +225,8 @@ mod tests {
         cell.set_cube(1.0, 9);
         assert!((cell.volume() - 8.0).abs() < 1e-15);
         for i in 0..8 {
-            let side = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
-            let normal = DVec3::new(side(1), side(2), side(4));
+            let sides = [1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 });
+            let normal = DVec3::from_array(sides);
             assert!(cell.cut(normal, 1.0, i, &mut scratch));
         }
         // The volume within |x| + |y| + |z| ≤ 1.

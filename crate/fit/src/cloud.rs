@@ -4,8 +4,8 @@ use crate::error::{Error, fail};
 use crate::problem::MAX_OBSERVATIONS;
 use glam::DVec3;
 
-/// Reads the points of a PLY file, or of a text with three numbers first in each line (`.xyz`): what follows in a line is
-/// passed over, as are empty lines and those that begin with `#`.
+/// Reads the points of a PLY file, or of a text with three numbers first in each line (`.xyz`):
+/// what follows in a line is passed over, as are empty lines and those that begin with `#`.
 ///
 /// # Errors
 /// Says what cannot be read, and in which line.
@@ -42,8 +42,9 @@ fn xyz(bytes: &[u8]) -> Result<Vec<DVec3>, Error> {
         if line.is_empty() || line.starts_with('#') {
             continue;
         }
-        let separators = |c: char| c.is_ascii_whitespace() || c == ',' || c == ';';
-        let words = line.split(separators).filter(|word| !word.is_empty());
+        let words = line
+            .split(|c: char| c.is_ascii_whitespace() || c == ',' || c == ';')
+            .filter(|word| !word.is_empty());
         let mut values = words.take(3).map(|word| word.parse::<f64>().ok());
         let mut next = || values.next().flatten().filter(|v| v.is_finite());
         let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {

@@ -11,8 +11,8 @@ const HALVINGS: u32 = 12;
 type Crossing = (u32, u32, bool);
 
 impl Outline {
-    /// Sets the lines to the border of what is seen, at places where it crosses a grid of this many pixels. `is_seen` says
-    /// whether a ray from a point in a direction meets anything.
+    /// Sets the lines to the border of what is seen, at places where it crosses a grid of this many
+    /// pixels. `is_seen` says whether a ray from a point in a direction meets anything.
     pub fn trace(&mut self, spacing: f64, is_seen: &mut dyn FnMut(DVec3, DVec3) -> bool) {
         self.lines.clear();
         let [columns, rows] = self.size.map(|s| (s / spacing).floor().max(1.0) as u32);

@@ -7,11 +7,12 @@ use mesh::Aabb;
 
 /// The coordinates of a mesh's vertices, computed once: vertices follow any moves of the controls.
 ///
-/// A vertex moves by `Σ uₖ·Δₖ` over the controls that are its natural neighbours; the far corners of [`Sibson`] stay.
+/// A vertex moves by `Σ uₖ·Δₖ` over the controls that are its natural neighbours; the far corners
+/// of [`Sibson`] stay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deformation {
     controls: usize,
-    /// Where each vertex's weights end.
+    /// End of each vertex's weights in `weights`.
     ends: Vec<u32>,
     weights: Vec<(u32, f64)>,
 }
@@ -71,10 +72,17 @@ impl Deformation {
     pub fn apply(&self, vertices: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
         assert_eq!(vertices.len(), self.ends.len(), "the vertices of before");
         assert_eq!(moves.len(), self.controls, "a move for each control");
-        let shift = |(k, weight): &(u32, f64)| moves[*k as usize] * *weight;
-        let moved = |(i, vertex): (usize, &DVec3)| {
-            *vertex + self.weights(i).iter().map(shift).sum::<DVec3>()
-        };
-        vertices.iter().enumerate().map(moved).collect()
+        vertices
+            .iter()
+            .enumerate()
+            .map(|(i, vertex)| {
+                *vertex
+                    + self
+                        .weights(i)
+                        .iter()
+                        .map(|(k, weight)| moves[*k as usize] * *weight)
+                        .sum::<DVec3>()
+            })
+            .collect()
     }
 }

@@ -42,7 +42,7 @@ impl Numbers {
     }
 }
 
-/// How measurements are disturbed.
+/// Disturbance of measurements.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Disturbance {
     /// Standard deviation of each coordinate.
@@ -110,15 +110,15 @@ mod tests {
         let disturbed = disturbance.apply(&points);
         assert_eq!(disturbed.len(), 3000);
         assert_eq!(disturbed, disturbance.apply(&points));
-        let off = |p: &&DVec3| (p.length() - 1.0).abs() > 0.05;
-        let outliers = disturbed.iter().filter(off).count();
-        assert!((240..330).contains(&outliers), "{outliers}");
-        let inliers = disturbed.iter().filter(|p| !off(p));
-        let radial: Vec<f64> = inliers.map(|p| p.length() - 1.0).collect();
+        let (outliers, inliers): (Vec<DVec3>, Vec<DVec3>) = disturbed
+            .iter()
+            .partition(|p| (p.length() - 1.0).abs() > 0.05);
+        assert!((240..330).contains(&outliers.len()), "{}", outliers.len());
+        let radial: Vec<f64> = inliers.iter().map(|p| p.length() - 1.0).collect();
         let variance = radial.iter().map(|r| r * r).sum::<f64>() / radial.len() as f64;
         assert!((variance.sqrt() - 0.01).abs() < 0.001);
         let toward = disturbance.toward();
-        let in_gap = disturbed.iter().filter(|p| !off(p) && p.dot(toward) > 0.55);
+        let in_gap = inliers.iter().filter(|p| p.dot(toward) > 0.55);
         assert!(in_gap.count() < 5);
         let same = Disturbance {
             seed: 5,

@@ -5,24 +5,24 @@ use core::cell::Cell;
 use field::Real;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Bvh};
-use metaballs::{Metaballs, circumscribed, nearest, profile};
+use metaballs::{Metaballs, circumcircle, nearest, profile};
 use serde::{Deserialize, Serialize};
 
-/// How a mesh is seen by a fit.
+/// Surface that stands for a mesh in a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Kind {
-    /// By its nearest facet.
+    /// The facets themselves.
     Explicit,
-    /// As the implicit surface of balls around its facets.
+    /// The implicit surface of balls around the facets.
     Spherical,
-    /// As the implicit surface of shells of a thickness around its facets.
+    /// The implicit surface of shells of a thickness around the facets.
     Triangular {
         /// The thickness, ≥ 0.
         thickness: f64,
     },
 }
 
-/// A mesh at one moment of a fit.
+/// Mesh at one moment of a fit.
 #[derive(Debug)]
 pub(crate) struct Field<'a> {
     pub positions: &'a [DVec3],
@@ -54,10 +54,9 @@ impl<'a> Field<'a> {
         };
         let form = match kind {
             Kind::Explicit => {
-                let corners = |t: &[u32; 3]| t.map(|i| positions[i as usize]);
                 let boxes: Vec<Aabb> = triangles
                     .iter()
-                    .map(|t| Aabb::of_points(corners(t)))
+                    .map(|t| Aabb::of_points(t.map(|i| positions[i as usize])))
                     .collect();
                 Form::Explicit(Bvh::new(&boxes))
             }
@@ -75,15 +74,16 @@ impl<'a> Field<'a> {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
 
-    /// Returns the distance of a point from the surface and sets its derivative: of an explicit mesh the distance from the
-    /// nearest facet, of an implicit one `−ln F/k`, which is d − ρ where a single facet counts. Infinite, without a
-    /// derivative, where no facet acts.
+    /// Returns the distance of a point from the surface and sets its derivative: of an explicit
+    /// mesh the distance from the nearest facet, of an implicit one `−ln F/k`, which is d − ρ where
+    /// a single facet counts. Infinite, without a derivative, where no facet acts.
     pub fn distance(&self, point: DVec3, gradient: &mut Gradient) -> f64 {
         self.distance_near(point, &Cell::new(u32::MAX), gradient)
     }
 
-    /// Returns the distance of a point as [`Self::distance`] does. `facet` holds the number of a facet that was nearest before,
-    /// or another number, and gets the present one: with it a search among the facets need not go farther than that one.
+    /// Returns the distance of a point as [`Self::distance`] does. `facet` holds the number of a
+    /// facet that was nearest before, or another number, and gets the present one: with it a search
+    /// among the facets need not go farther than that one.
     pub fn distance_near(&self, point: DVec3, facet: &Cell<u32>, gradient: &mut Gradient) -> f64 {
         gradient.clear();
         match &self.form {
@@ -125,7 +125,7 @@ impl<'a> Field<'a> {
                 }
                 metaballs::Kind::Spherical => {
                     let corners = self.corners(facet);
-                    let (center, radius) = circumscribed(&corners);
+                    let (center, radius) = circumcircle(&corners);
                     let (value, slope) = profile(k * (point.distance(center) - radius));
                     sum += value;
                     let ways = by_circle(&corners, center, radius, point);
@@ -161,10 +161,12 @@ impl<'a> Field<'a> {
     }
 }
 
-/// The derivatives of `|p − c| − ρ` by the corners of a triangle with the circumcentre c and circumradius ρ.
+/// The derivatives of `|p − c| − ρ` by the corners of a triangle with the circumcentre c and
+/// circumradius ρ.
 ///
-/// With y = c − a the centre solves `y·B = B²/2`, `y·C = C²/2`, `y·(B×C) = 0` for the sides B = b − a and C = c − a.
-/// Where the circle is not the circumcircle (an angle above 150°) its direction from the longest side is taken as fixed.
+/// With y = c − a the centre solves `y·B = B²/2`, `y·C = C²/2`, `y·(B×C) = 0` for the sides B = b −
+/// a and C = c − a. Where the circle is not the circumcircle (an angle above 150°) its direction
+/// from the longest side is taken as fixed.
 fn by_circle(corners: &[DVec3; 3], center: DVec3, radius: f64, point: DVec3) -> [DVec3; 3] {
     let [a, b, c] = *corners;
     let away = (point - center).normalize_or_zero();
@@ -233,12 +235,12 @@ mod tests {
                 }
                 for vertex in 0..4 {
                     for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
-                        let mut moved = |by: f64| {
+                        let [ahead, back] = [h, -h].map(|by| {
                             let mut positions = CORNERS;
                             positions[vertex] += axis * by;
                             distance(&positions, &mut other)
-                        };
-                        let difference = (moved(h) - moved(-h)) / (2.0 * h);
+                        });
+                        let difference = (ahead - back) / (2.0 * h);
                         let own = gradient.iter().filter(|(v, _)| *v as usize == vertex);
                         let exact: f64 = own.map(|(_, way)| way.dot(axis)).sum();
                         assert!((difference - exact).abs() < 1e-5, "{kind:?} {point}");

@@ -1,12 +1,12 @@
 //! Deformation of meshes by control points, and meshes fitted to measured points and outlines.
 //!
-//! - [`Sibson`] gives the natural-neighbour coordinates of points in space with respect to control points that lie
-//!   anywhere; [`Deformation`] moves the vertices of a mesh with them: Dirichlet free-form deformation, after Moccozet and
-//!   Magnenat-Thalmann.
-//! - [`fit()`] finds the moves of control points that bring a mesh, or the implicit surface around it, onto
-//!   [`Observations`]: points, and lines of sight that graze it. After Ilić and Fua.
-//! - [`cloud()`] and [`outlines()`] read those from files; [`Disturbance`] makes measurements of perfect ones; [`trial`]
-//!   has a head to try all this on.
+//! - [`Sibson`] gives the natural-neighbour coordinates of points in space with respect to control
+//!   points that lie anywhere; [`Deformation`] moves the vertices of a mesh with them: Dirichlet
+//!   free-form deformation, after Moccozet and Magnenat-Thalmann.
+//! - [`fit()`] finds the moves of control points that bring a mesh, or the implicit surface around
+//!   it, onto [`Observations`]: points, and lines of sight that graze it. After Ilić and Fua.
+//! - [`cloud()`] and [`outlines()`] read those from files; [`Disturbance`] makes measurements of
+//!   perfect ones; [`trial`] has a head to try all this on.
 //!
 //! Knows meshes and fields, no scenes and no pages.
 //!

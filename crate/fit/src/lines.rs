@@ -7,9 +7,10 @@ use glam::DVec3;
 /// Digits after the first one of a number that is as large as the controls' box.
 const DIGITS: f64 = 1e6;
 
-/// Returns the lines that carry out a fit on the last object, or on one of a name: the turn and the shift of the whole
-/// mesh, if any, then `deform { control <x y z> move <dx dy dz> … }` with a line for each control. `controls` are as they
-/// were before the turn. Numbers are rounded to a millionth of the size of the controls' box.
+/// Returns the lines that carry out a fit on the last object, or on one of a name: the turn and the
+/// shift of the whole mesh, if any, then `deform { control <x y z> move <dx dy dz> … }` with a line
+/// for each control. `controls` are as they were before the turn. Numbers are rounded to a
+/// millionth of the size of the controls' box.
 ///
 /// ```
 /// use fit::{Rigid, deform_lines};
@@ -48,9 +49,9 @@ pub fn deform_lines(
     }
     let _ = writeln!(text, "deform{operand} {{");
     for (control, way) in controls.iter().zip(moves) {
-        let triple = |v: DVec3| v.to_array().map(|v| number(v, grain)).join(" ");
-        let place = triple(rigid.apply(*control));
-        let _ = writeln!(text, "  control <{place}> move <{}>", triple(*way));
+        let [place, way] =
+            [rigid.apply(*control), *way].map(|v| v.to_array().map(|x| number(x, grain)).join(" "));
+        let _ = writeln!(text, "  control <{place}> move <{way}>");
     }
     text.push_str("}\n");
     text
@@ -68,7 +69,7 @@ fn power_of_ten(value: f64) -> f64 {
     unit
 }
 
-/// A number in decimals, rounded to multiples of a power of ten.
+/// Returns a number in decimals, rounded to multiples of a power of ten.
 fn number(value: f64, grain: f64) -> String {
     let mut places = 0;
     let mut unit = 1.0;

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-/// A symmetric matrix, of which the rows of the lower triangle are kept, and a right side: `A·x = −g`.
+/// Symmetric matrix, of which the rows of the lower triangle are kept, and a right side:
+/// `A·x = −g`.
 #[derive(Clone, Debug)]
 pub(crate) struct Normal {
     size: usize,
@@ -54,12 +55,13 @@ impl Normal {
 
     /// The decrease of `½·xᵀ·A·x + gᵀ·x` from 0 to x.
     pub fn decrease(&self, x: &[f64]) -> f64 {
-        let row = |i: usize| {
-            let entries = &self.matrix[Self::start(i)..=Self::start(i) + i];
-            let half: f64 = dot(&entries[..i], &x[..i]) + 0.5 * entries[i] * x[i];
-            x[i] * (half + self.gradient[i])
-        };
-        -(0..self.size).map(row).sum::<f64>()
+        -(0..self.size)
+            .map(|i| {
+                let entries = &self.matrix[Self::start(i)..=Self::start(i) + i];
+                let half: f64 = dot(&entries[..i], &x[..i]) + 0.5 * entries[i] * x[i];
+                x[i] * (half + self.gradient[i])
+            })
+            .sum::<f64>()
     }
 
     /// The sum of the diagonal.
@@ -69,8 +71,8 @@ impl Normal {
             .sum()
     }
 
-    /// Solves `(A + μ·D)·x = −g` by Cholesky's method, D being A's diagonal and a little of its mean. `None` if the matrix
-    /// is not positive definite.
+    /// Solves `(A + μ·D)·x = −g` by Cholesky's method, D being A's diagonal and a little of its
+    /// mean. `None` if the matrix is not positive definite.
     pub fn solve(&self, damping: f64) -> Option<Vec<f64>> {
         let size = self.size;
         let mut factor = self.matrix.clone();
@@ -113,7 +115,7 @@ impl Normal {
     }
 }
 
-/// A sum of products, in four partial sums.
+/// Returns a sum of products, in four partial sums.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (four_a, four_b) = (a.chunks_exact(4), b.chunks_exact(4));

@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outline {
-    /// Where the camera is.
+    /// Place of the camera.
     pub eye: [f64; 3],
-    /// What it looks at: the middle of the picture.
+    /// Point in the middle of the picture.
     pub target: [f64; 3],
-    /// What is up.
+    /// Direction that is up in the picture.
     pub up: [f64; 3],
     /// The angle between the left and the right edge, degrees.
     pub fov: f64,
@@ -25,7 +25,8 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Returns the direction in which a place of the picture is seen, a unit vector; `None` if the camera looks nowhere.
+    /// Returns the direction in which a place of the picture is seen, a unit vector; `None` if the
+    /// camera looks nowhere.
     #[must_use]
     pub fn direction(&self, pixel: [f64; 2]) -> Option<DVec3> {
         let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from_array);
@@ -43,11 +44,12 @@ impl Outline {
 /// Reads outlines: a JSON list of [`Outline`]s.
 ///
 /// # Errors
-/// Says what is wrong: no JSON of that form, a camera that looks nowhere, places outside the picture, no lines at all.
+/// Says what is wrong: no JSON of that form, a camera that looks nowhere, places outside the
+/// picture, no lines at all.
 ///
 /// ```
-/// let text = r#"[{"eye": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1], "fov": 40, "size": [100, 100],
-///                 "lines": [[[20, 50], [50, 20]]]}]"#;
+/// let text = r#"[{"eye": [0, -5, 0], "target": [0, 0, 0], "up": [0, 0, 1],
+///                 "fov": 40, "size": [100, 100], "lines": [[[20, 50], [50, 20]]]}]"#;
 /// let outlines = fit::outlines(text.as_bytes())?;
 /// assert_eq!(outlines[0].direction([50.0, 50.0]), Some(glam::DVec3::Y));
 /// # Ok::<(), fit::Error>(())
@@ -72,7 +74,8 @@ pub fn outlines(bytes: &[u8]) -> Result<Vec<Outline>, Error> {
             let on_screen = (0.0..=width).contains(x) && (0.0..=height).contains(y);
             if !on_screen {
                 return fail(format!(
-                    "outline {number}: the place {x} {y} is outside its picture of {width} × {height} pixels"
+                    "outline {number}: the place {x} {y} is outside its picture of {width} × \
+                     {height} pixels"
                 ));
             }
             count += 1;
@@ -90,15 +93,18 @@ pub fn outlines(bytes: &[u8]) -> Result<Vec<Outline>, Error> {
 /// Returns the lines of sight through all places of outlines.
 #[must_use]
 pub fn sights(outlines: &[Outline]) -> Vec<Sight> {
-    let through = |outline: &Outline| {
-        let places = outline.lines.iter().flatten();
-        let sight = |pixel: &[f64; 2]| {
-            Some(Sight {
-                origin: DVec3::from_array(outline.eye),
-                direction: outline.direction(*pixel)?,
-            })
-        };
-        places.filter_map(sight).collect::<Vec<_>>()
-    };
-    outlines.iter().flat_map(through).collect()
+    outlines
+        .iter()
+        .flat_map(|outline| {
+            let places = outline.lines.iter().flatten();
+            places
+                .filter_map(|pixel| {
+                    Some(Sight {
+                        origin: DVec3::from_array(outline.eye),
+                        direction: outline.direction(*pixel)?,
+                    })
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect()
 }

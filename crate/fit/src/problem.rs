@@ -1,4 +1,4 @@
-//! What is fitted: a mesh, its control mesh, the observations.
+//! Input of a fit: a mesh, its control mesh, the observations.
 
 use crate::deformation::Deformation;
 use crate::error::{Error, fail};
@@ -23,19 +23,20 @@ pub struct Observations {
     pub sights: Vec<Sight>,
 }
 
-/// How to fit.
+/// Options of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Options {
-    /// How the mesh is seen.
+    /// Surface that stands for the mesh.
     pub kind: Kind,
     /// k of the implicit surface at the end of the fit; `None` for 20 over the mean edge.
     pub slope: Option<f64>,
-    /// Weight of the smoothness of the moves, ≥ 0; at 1 it counts as much as the observations do together.
+    /// Weight of the smoothness of the moves, ≥ 0; at 1 it counts as much as the observations do
+    /// together.
     pub smooth: f64,
     /// Weight of the outlines beside the points, ≥ 0; at 1 they count alike.
     pub outlines: f64,
-    /// Whether distances count no more beyond the scale of the fit; otherwise squares of distances are summed, as if
-    /// there were no outliers.
+    /// Whether distances count no more beyond the scale of the fit; otherwise squares of distances
+    /// are summed, as if there were no outliers.
     pub saturates: bool,
     /// Whether the mesh is first turned and moved as a whole.
     pub align: bool,
@@ -57,7 +58,7 @@ impl Default for Options {
     }
 }
 
-/// A mesh to fit with its control points.
+/// Mesh to fit with its control points.
 #[derive(Clone, Debug)]
 pub struct Problem {
     pub(crate) positions: Vec<DVec3>,
@@ -72,11 +73,12 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Prepares a fit. The vertices of `cage` are the control points, its triangles say which are neighbours.
+    /// Prepares a fit. The vertices of `cage` are the control points, its triangles say which are
+    /// neighbours.
     ///
     /// # Errors
-    /// Says which input cannot be used: a mesh without triangles, too many controls, no or too few observations, numbers out
-    /// of range.
+    /// Says which input cannot be used: a mesh without triangles, too many controls, no or too few
+    /// observations, numbers out of range.
     pub fn new(
         mesh: &TriangleMesh,
         cage: &TriangleMesh,
@@ -122,8 +124,8 @@ impl Problem {
         Ok(self)
     }
 
-    /// Entries (i, j, value) with i ≥ j of the control mesh's stiffness matrix; one with i > j stands for both of its places,
-    /// and places may come several times, which add up.
+    /// Entries (i, j, value) with i ≥ j of the control mesh's stiffness matrix; one with i > j
+    /// stands for both of its places, and places may come several times, which add up.
     #[must_use]
     pub fn stiffness(&self) -> Vec<(u32, u32, f64)> {
         stiffness(&self.controls, &self.cage)
@@ -139,12 +141,13 @@ impl Problem {
 /// The mean length of the edges of triangles; 0 without any.
 #[must_use]
 pub fn mean_edge(positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
-    let place = |i: u32| positions[i as usize];
-    let around = |[a, b, c]: &[u32; 3]| {
-        let [a, b, c] = [*a, *b, *c].map(place);
-        a.distance(b) + b.distance(c) + c.distance(a)
-    };
-    let sum: f64 = triangles.iter().map(around).sum();
+    let sum: f64 = triangles
+        .iter()
+        .map(|[a, b, c]| {
+            let [a, b, c] = [*a, *b, *c].map(|i| positions[i as usize]);
+            a.distance(b) + b.distance(c) + c.distance(a)
+        })
+        .sum();
     sum / (3 * triangles.len()).max(1) as f64
 }
 
@@ -159,7 +162,8 @@ fn check(
     }
     if cage.positions.len() > MAX_FITTED_CONTROLS {
         return fail(format!(
-            "the control mesh has {} vertices, more than the {MAX_FITTED_CONTROLS} that a fit takes",
+            "the control mesh has {} vertices, more than the {MAX_FITTED_CONTROLS} that a fit \
+             takes",
             cage.positions.len()
         ));
     }
@@ -193,8 +197,8 @@ fn check(
     {
         return fail("a line of sight has no direction");
     }
-    let in_range = |value: f64| value.is_finite() && value >= 0.0;
-    if !in_range(options.smooth) || !in_range(options.outlines) {
+    let weights = [options.smooth, options.outlines];
+    if weights.iter().any(|w| !(w.is_finite() && *w >= 0.0)) {
         return fail("weights must be numbers from 0 on");
     }
     if let Some(k) = options.slope
@@ -203,7 +207,7 @@ fn check(
         return fail("the slope must be a number above 0");
     }
     if let Kind::Triangular { thickness } = options.kind
-        && !in_range(thickness)
+        && !(thickness.is_finite() && thickness >= 0.0)
     {
         return fail("the thickness must be a number from 0 on");
     }

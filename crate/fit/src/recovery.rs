@@ -1,5 +1,5 @@
-//! The trial that tells how well a known shape is found again: a head, deformed, measured with noise, outliers, a gap and
-//! outlines, and fitted in several ways.
+//! The trial that tells how well a known shape is found again: a head, deformed, measured with
+//! noise, outliers, a gap and outlines, and fitted in several ways.
 
 use crate::disturb::Disturbance;
 use crate::error::Error;
@@ -14,14 +14,14 @@ use mesh::{Aabb, Bvh, HalfEdgeMesh, Ray, TriangleMesh, closest_point, simplify};
 /// Standard deviation of each coordinate of the measured points; the head is 3.5 high.
 pub const NOISE: f64 = 0.01;
 
-/// How one fit of a trial is done.
+/// Way to fit in a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
-    /// How the mesh is seen.
+    /// Surface that stands for the mesh.
     pub kind: Kind,
     /// k times the mean edge.
     pub sharpness: f64,
-    /// As [`Options::saturates`].
+    /// Value of [`Options::saturates`].
     pub saturates: bool,
     /// Whether outlines are used beside the points.
     pub outlines: bool,
@@ -30,17 +30,19 @@ pub struct Way {
 /// Result of a fit, in units of [`NOISE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Root of the mean square of the distances of the truth's points from the fitted mesh, away from the gap.
+    /// Root of the mean square of the distances of the truth's points from the fitted mesh, away
+    /// from the gap.
     pub mesh: f64,
-    /// The same in the gap.
+    /// Root of the mean square of those distances in the gap.
     pub gap: f64,
-    /// As `mesh`, of the distances from the surface that was fitted: the implicit one, `|ln F|/k`.
+    /// Root of the mean square of the distances from the surface that was fitted, away from the
+    /// gap: the implicit one, `|ln F|/k`.
     pub surface: f64,
     /// Iterations.
     pub iterations: usize,
 }
 
-/// A true shape with its measurements.
+/// True shape with its measurements.
 #[derive(Debug)]
 pub struct Trial {
     cage: TriangleMesh,
@@ -50,8 +52,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Measures the head of `facets` triangles, deformed by its cage: `points` points before a quarter of them is left out,
-    /// a share of outliers, six outlines.
+    /// Measures the head of `facets` triangles, deformed by its cage: `points` points before a
+    /// quarter of them is left out, a share of outliers, six outlines.
     ///
     /// # Errors
     /// If there are too few facets.
@@ -104,14 +106,14 @@ impl Trial {
         &self.observations.points
     }
 
-    /// The errors of a mesh that is not fitted.
+    /// Computes the errors of a mesh that is not fitted, away from the gap and in it.
     #[must_use]
     pub fn start(&self, model: &TriangleMesh) -> [f64; 2] {
         let surface = Surface::new(model);
         [0, 1].map(|i| root_mean_square(&self.probes[i], |p| surface.distance(p)) / NOISE)
     }
 
-    /// The problem of a fit.
+    /// Makes the problem of a fit.
     ///
     /// # Errors
     /// As [`Problem::new`].
@@ -130,7 +132,7 @@ impl Trial {
         Problem::new(model, &self.cage, observations, options)
     }
 
-    /// Fits a mesh and measures what came out.
+    /// Fits a mesh and measures the result.
     ///
     /// # Errors
     /// As [`Problem::new`] and [`fit()`].
@@ -143,8 +145,9 @@ impl Trial {
         let field = Field::new(&mesh.positions, &mesh.triangles, way.kind, slope)?;
         let mut gradient = Gradient::new();
         // Where no facet acts the surface is further away than that.
-        let mut apart = |p| field.distance(p, &mut gradient).min(1.0);
-        let surface = root_mean_square(&self.probes[0], &mut apart) / NOISE;
+        let surface = root_mean_square(&self.probes[0], |p| {
+            field.distance(p, &mut gradient).min(1.0)
+        }) / NOISE;
         Ok(Outcome {
             mesh: near,
             gap,
@@ -159,8 +162,8 @@ impl Trial {
 /// # Errors
 /// If the head is no manifold, which it is.
 pub fn coarse(facets: usize) -> Result<TriangleMesh, Error> {
-    let told = |error: mesh::Error| Error(error.to_string());
-    let mut polygons = HalfEdgeMesh::from_triangles(&trial::head(4000)).map_err(told)?;
+    let mut polygons = HalfEdgeMesh::from_triangles(&trial::head(4000))
+        .map_err(|error| Error(error.to_string()))?;
     simplify(&mut polygons, facets);
     polygons
         .to_triangles()
@@ -172,25 +175,26 @@ fn root_mean_square(points: &[DVec3], mut value: impl FnMut(DVec3) -> f64) -> f6
     (sum / points.len().max(1) as f64).sqrt()
 }
 
-/// Six outlines from around.
+/// Returns six outlines of the truth, seen from around.
 fn outlines(truth: &Surface) -> Vec<Outline> {
-    let view = |i: u32| {
-        let angle = core::f64::consts::PI / 6.0 * f64::from(i);
-        let mut outline = Outline {
-            eye: [9.0 * libm::sin(angle), -9.0 * libm::cos(angle), 0.4],
-            target: [0.0, 0.0, -0.1],
-            up: [0.0, 0.0, 1.0],
-            fov: 32.0,
-            size: [640.0, 640.0],
-            lines: Vec::new(),
-        };
-        outline.trace(16.0, &mut |eye, way| truth.is_met(eye, way));
-        outline
-    };
-    (0..6).map(view).collect()
+    (0..6)
+        .map(|i| {
+            let angle = core::f64::consts::PI / 6.0 * f64::from(i);
+            let mut outline = Outline {
+                eye: [9.0 * libm::sin(angle), -9.0 * libm::cos(angle), 0.4],
+                target: [0.0, 0.0, -0.1],
+                up: [0.0, 0.0, 1.0],
+                fov: 32.0,
+                size: [640.0, 640.0],
+                lines: Vec::new(),
+            };
+            outline.trace(16.0, &mut |eye, way| truth.is_met(eye, way));
+            outline
+        })
+        .collect()
 }
 
-/// A mesh to measure distances from.
+/// Mesh to measure distances from.
 struct Surface {
     facets: Vec<[DVec3; 3]>,
     bvh: Bvh,
@@ -207,8 +211,9 @@ impl Surface {
     }
 
     fn distance(&self, p: DVec3) -> f64 {
-        let square = |i: u32| closest_point(&self.facets[i as usize], p).distance_squared(p);
-        let found = self.bvh.nearest(p, f64::INFINITY, square);
+        let found = self.bvh.nearest(p, f64::INFINITY, |i| {
+            closest_point(&self.facets[i as usize], p).distance_squared(p)
+        });
         found.map_or(f64::INFINITY, |(_, square)| square.sqrt())
     }
 

@@ -6,8 +6,8 @@ use mesh::{Topology, TriangleMesh, self_intersections};
 /// Pairs of triangles that are counted.
 const MOST_PAIRS: usize = 1000;
 
-/// Returns what is unusual about a mesh that is to be fitted, a sentence each: open, no manifold, cutting itself. None of
-/// this keeps a fit from running; the sentences say what comes of it.
+/// Returns what is unusual about a mesh that is to be fitted, a sentence each: open, no manifold,
+/// cutting itself. None of this keeps a fit from running; the sentences say what comes of it.
 ///
 /// # Errors
 /// If there are no triangles, or a corner is no finite point.
@@ -28,7 +28,8 @@ pub fn remarks(mesh: &TriangleMesh) -> Result<Vec<String>, Error> {
     if edges > 0 {
         let loops = topology.boundary_loops;
         remarks.push(format!(
-            "the mesh is open: {edges} edges in {loops} {} have one facet only; outlines count those rims as a border, too",
+            "the mesh is open: {edges} edges in {loops} {} have one facet only; outlines count \
+             those rims as a border, too",
             if loops == 1 { "loop" } else { "loops" }
         ));
     }
@@ -43,7 +44,8 @@ pub fn remarks(mesh: &TriangleMesh) -> Result<Vec<String>, Error> {
     if count > 0 {
         let or_more = if crossed.is_complete { "" } else { " or more" };
         remarks.push(format!(
-            "the mesh cuts itself: {count}{or_more} pairs of facets, the first {} and {}; points near there may hold either sheet",
+            "the mesh cuts itself: {count}{or_more} pairs of facets, the first {} and {}; points \
+             near there may hold either sheet",
             crossed.pairs[0][0] + 1,
             crossed.pairs[0][1] + 1
         ));

@@ -1,9 +1,11 @@
 //! Sibson's natural-neighbour coordinates in space.
 //!
-//! The coordinate uₖ of a point v is the part of v's Voronoi cell that would be control point k's were v not there. The
-//! cell is cut out of a cube by the planes halfway to the controls, nearest first; of it, the part nearer to k than to the
-//! other neighbours is cut in the same way. That needs no triangulation, and equal distances are no special case.
+//! The coordinate uₖ of a point v is the part of v's Voronoi cell that would be control point k's
+//! were v not there. The cell is cut out of a cube by the planes halfway to the controls, nearest
+//! first; of it, the part nearer to k than to the other neighbours is cut in the same way. That
+//! needs no triangulation, and equal distances are no special case.
 
+use crate::cage::by_distance;
 use crate::cell::{Cell, Scratch};
 use crate::error::{Error, fail};
 use glam::DVec3;
@@ -15,20 +17,21 @@ pub const MAX_CONTROLS: usize = 4096;
 const FAR: f64 = 4.0;
 /// The smallest half size along an axis, of the largest: flat meshes have a box with a volume, too.
 const FLAT: f64 = 0.25;
-/// Half the cube that holds the cell of any point, of the largest half size of the box. With corners at ±H from the middle
-/// a point x of the cell of v has `|xᵢ − vᵢ| ≤ 1.04·|H|²/Hᵢ`, which is 50 at most.
+/// Half the cube that holds the cell of any point, of the largest half size of the box. With
+/// corners at ±H from the middle a point x of the cell of v has `|xᵢ − vᵢ| ≤ 1.04·|H|²/Hᵢ`, which
+/// is 50 at most.
 const CUBE: f64 = 64.0;
 /// Distance within which a point is on a control, of the box's size.
 const EQUAL: f64 = 1e-12;
 /// Least distance of two controls, of the box's size.
 const APART: f64 = 1e-9;
-/// A face of less area, of the square of its cell's radius, counts as none.
+/// Face of less area, of the square of its cell's radius, counts as none.
 const NO_AREA: f64 = 1e-13;
 /// Controls that are looked at together.
 const BATCH: usize = 32;
 
-/// Control points in and around a box, with eight far corners that are always added: points of the box so have
-/// coordinates wherever the controls lie.
+/// Control points in and around a box, with eight far corners that are always added: points of the
+/// box so have coordinates wherever the controls lie.
 ///
 /// ```
 /// use fit::Sibson;
@@ -69,7 +72,8 @@ impl Sibson {
     /// Prepares control points for points of a box.
     ///
     /// # Errors
-    /// If there are none or too many, two are in one place, one is no finite point, or the box is empty or infinite.
+    /// If there are none or too many, two are in one place, one is no finite point, or the box is
+    /// empty or infinite.
     pub fn new(controls: &[DVec3], bounds: &Aabb) -> Result<Self, Error> {
         if controls.is_empty() {
             return fail("there are no control points");
@@ -93,8 +97,8 @@ impl Sibson {
         let center = bounds.center();
         let mut sites = controls.to_vec();
         for i in 0..8 {
-            let side = |bit: u32| if i & bit == 0 { -FAR } else { FAR };
-            let corner = center + half * DVec3::new(side(1), side(2), side(4));
+            let sides = [1, 2, 4].map(|bit| if i & bit == 0 { -FAR } else { FAR });
+            let corner = center + half * DVec3::from_array(sides);
             // A control that stands there takes its place.
             if controls.iter().all(|c| c.distance(corner) > APART * size) {
                 sites.push(corner);
@@ -116,7 +120,7 @@ impl Sibson {
         }
     }
 
-    /// The first two controls in one place.
+    /// Returns the first two controls that are in one place.
     fn coincident(&self) -> Option<[usize; 2]> {
         let apart = APART * self.size;
         let controls = &self.sites[..self.controls];
@@ -145,9 +149,9 @@ impl Sibson {
         self.controls
     }
 
-    /// Returns the coordinates of a point that are not 0, as pairs of a number in [`Sibson::sites`] and a weight > 0, by
-    /// number. The weights' sum is 1, and the weighted mean of the sites is the point. `None` if the point is outside the
-    /// box.
+    /// Returns the coordinates of a point that are not 0, as pairs of a number in [`Sibson::sites`]
+    /// and a weight > 0, by number. The weights' sum is 1, and the weighted mean of the sites is
+    /// the point. `None` if the point is outside the box.
     #[must_use]
     pub fn coordinates(&self, point: DVec3) -> Option<Vec<(u32, f64)>> {
         let mut row = Vec::new();
@@ -186,9 +190,11 @@ impl Sibson {
             ..
         } = work;
         near.clear();
-        let distance = |(k, site): (u32, &DVec3)| (site.distance_squared(point), k);
-        near.extend((0..).zip(&self.sites).map(distance));
-        let by_distance = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        near.extend(
+            (0..)
+                .zip(&self.sites)
+                .map(|(k, site)| (site.distance_squared(point), k)),
+        );
         let outside = u32::MAX;
         cell.set_cube(CUBE * self.size, outside);
         let (mut sorted, mut used) = (0, 0);
@@ -212,7 +218,8 @@ impl Sibson {
             cell.cut(way, 0.5 * square, k, scratch);
             used += 1;
         }
-        // Again from a cube of the cell's size: the first vertices have roundings of the large cube's size.
+        // Again from a cube of the cell's size: the first vertices have roundings of the large
+        // cube's size.
         let radius = cell.radius();
         cell.set_cube(radius * (1.0 + 1e-9), outside);
         for (square, k) in &near[..used] {
@@ -233,7 +240,8 @@ impl Sibson {
             ..
         } = work;
         neighbors.clear();
-        // A control that touches the cell in a point or an edge has no part of it. In a grid of controls most do.
+        // A control that touches the cell in a point or an edge has no part of it. In a grid of
+        // controls most do.
         let least = NO_AREA * cell.radius().powi(2);
         neighbors.extend(cell.labels(least).filter(|k| *k != u32::MAX));
         let mut total = 0.0;
@@ -244,7 +252,7 @@ impl Sibson {
                 let other = self.sites[*j as usize] - point;
                 (other.distance_squared(own), *j)
             }));
-            others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            others.sort_unstable_by(by_distance);
             part.copy(cell);
             for (_, j) in others.iter() {
                 let other = self.sites[*j as usize] - point;

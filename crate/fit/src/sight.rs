@@ -5,7 +5,7 @@ use glam::DVec3;
 use mesh::{Bvh, Ray};
 use serde::{Deserialize, Serialize};
 
-/// A line of sight through a point of an outline.
+/// Line of sight through a point of an outline.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sight {
     /// The eye.
@@ -22,9 +22,10 @@ impl Sight {
         self.origin + self.direction * t
     }
 
-    /// Returns the point of the line at which the surface should touch it: where the line passes the mesh by, the
-    /// point with the largest field; where it goes through, the one with the smallest within the shortest piece inside. There
-    /// the field's gradient is perpendicular to the line. `None` if the mesh is nowhere near the line's front.
+    /// Returns the point of the line at which the surface should touch it: where the line passes
+    /// the mesh by, the point with the largest field; where it goes through, the one with the
+    /// smallest within the shortest piece inside. There the field's gradient is perpendicular to
+    /// the line. `None` if the mesh is nowhere near the line's front.
     pub(crate) fn touch(&self, field: &Field<'_>, bvh: &Bvh) -> Option<DVec3> {
         let mut crossings = Vec::new();
         let ray = Ray::new(self.origin, self.direction);
@@ -65,7 +66,8 @@ impl Sight {
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
     }
 
-    /// The parameter > 0 at which the line comes nearest to an edge of the mesh, and their distance.
+    /// The parameter > 0 at which the line comes nearest to an edge of the mesh, and their
+    /// distance.
     fn nearest(&self, field: &Field<'_>, bvh: &Bvh) -> Option<(f64, f64)> {
         let mut best: Option<(f64, f64)> = None;
         bvh.descend(|_, bounds, facets| {
@@ -91,8 +93,8 @@ impl Sight {
 
     /// The parameter at which the line is nearest to a segment, and their distance.
     fn beside(&self, from: DVec3, to: DVec3) -> (f64, f64) {
-        let across = |v: DVec3| v - self.direction * v.dot(self.direction);
-        let (start, way) = (across(from - self.origin), across(to - from));
+        let [start, way] =
+            [from - self.origin, to - from].map(|v| v - self.direction * v.dot(self.direction));
         let square = way.length_squared();
         let s = if square > 0.0 {
             (-start.dot(way) / square).clamp(0.0, 1.0)
@@ -104,7 +106,8 @@ impl Sight {
     }
 }
 
-/// The least value's place by golden sections: a local one where there are several.
+/// Returns the place of the least value between two places, by golden sections: a local one where
+/// there are several.
 fn section(mut low: f64, mut high: f64, mut value: impl FnMut(f64) -> f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];

@@ -1,8 +1,9 @@
 //! Levenberg and Marquardt's method on the control points' moves.
 //!
-//! The residual of an observation is `w·s·tanh(h/s)` with the distance h of [`Field::distance`]: a length that does not
-//! grow beyond s, so that outliers pull little. s falls in steps from the mesh's distance at the start to three times the
-//! spread of the observations, and the implicit surface's k rises with it to its last value: coarse to fine.
+//! The residual of an observation is `w·s·tanh(h/s)` with the distance h of [`Field::distance`]: a
+//! length that does not grow beyond s, so that outliers pull little. s falls in steps from the
+//! mesh's distance at the start to three times the spread of the observations, and the implicit
+//! surface's k rises with it to its last value: coarse to fine.
 
 use crate::align::{Rigid, align};
 use crate::deformation::Deformation;
@@ -15,11 +16,11 @@ use core::cell::Cell;
 use glam::DVec3;
 use mesh::{Aabb, Bvh};
 
-/// Iterations of one step at most.
+/// Most iterations of a level.
 const PER_LEVEL: usize = 12;
-/// Steps at most.
+/// Most levels.
 const MOST_LEVELS: usize = 12;
-/// Relative decrease of the sum below which a step is done.
+/// Relative decrease of the sum below which a level is done.
 const SETTLED: f64 = 1e-4;
 /// Steps tried from one place, each more damped.
 const MOST_TRIES: usize = 8;
@@ -29,18 +30,19 @@ const LEAST_DAMPING: f64 = 1e-7;
 /// The distance that the implicit surface's field reaches, in s.
 const REACH: f64 = 8.0;
 
-/// A moment of a fit.
+/// State of a fit after an iteration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
     /// Iterations done.
     pub iteration: usize,
-    /// Root of the mean square of the distances of the points that are no outliers; of outlines where there are no points.
+    /// Root of the mean square of the distances of the points that are no outliers; of outlines
+    /// where there are no points.
     pub residual: f64,
     /// The share of observations further than three times that.
     pub outliers: f64,
     /// s, beyond which distances count no more.
     pub scale: f64,
-    /// How the mesh was turned and moved first.
+    /// Rigid motion of the mesh before the fit.
     pub rigid: Rigid,
     /// The control points' moves.
     pub moves: Vec<DVec3>,
@@ -49,17 +51,17 @@ pub struct Progress {
 /// The result of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitted {
-    /// How the mesh and its controls were turned and moved first.
+    /// Rigid motion of the mesh and its controls before the fit.
     pub rigid: Rigid,
     /// The control points' moves after that, in the directions of the data.
     pub moves: Vec<DVec3>,
     /// The mesh's vertices.
     pub positions: Vec<DVec3>,
-    /// The last moment.
+    /// The state after the last iteration.
     pub last: Progress,
     /// The factor of the moves' energy `½ Σ XᵀKX` in the sum that was made small last.
     pub smooth: f64,
-    /// Whether it was stopped before it had settled.
+    /// Whether the fit was stopped before it had settled.
     pub stopped: bool,
 }
 
@@ -107,9 +109,10 @@ struct Run<'a> {
     stiffness: Vec<(u32, u32, f64)>,
     moves: Vec<DVec3>,
     positions: Vec<DVec3>,
-    /// For each point the facet that was nearest last.
+    /// Facet that was last found nearest to each point.
     facets: Vec<Cell<u32>>,
-    /// For each point its distance from the nearest facet at the present positions, where the last sum has left them.
+    /// Distance of each point from the nearest facet at the present positions, if the last sum has
+    /// left these.
     apart: Option<Vec<f64>>,
     /// k at the end.
     slope: f64,
@@ -162,7 +165,7 @@ impl<'a> Run<'a> {
         )
     }
 
-    /// All steps, coarse to fine. Returns whether it went to the end.
+    /// Runs all levels, coarse to fine. Returns whether it came to the end.
     fn all(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
         let apart = self.distances()?;
         let size = Aabb::of_points(self.positions.iter().copied())
@@ -187,7 +190,8 @@ impl<'a> Run<'a> {
         Ok(true)
     }
 
-    /// Whether the scale changes what is summed: distances that saturate, or an implicit surface that sharpens with it.
+    /// Whether the scale changes what is summed: distances that saturate, or an implicit surface
+    /// that sharpens with it.
     fn has_scale(&self) -> bool {
         self.options.saturates || self.options.kind != Kind::Explicit
     }
@@ -252,7 +256,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Iterations with one scale. Returns whether to go on.
+    /// Iterates with one scale. Returns whether to go on.
     fn level(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
         self.damping = DAMPING;
         let most = if self.has_scale() {
@@ -282,8 +286,8 @@ impl<'a> Run<'a> {
         Ok(true)
     }
 
-    /// Weights that make the classes, and the smoothness, count as the options say: by the sums of the squares of their
-    /// derivatives.
+    /// Weights that make the classes, and the smoothness, count as the options say: by the sums of
+    /// the squares of their derivatives.
     fn balance(&self, field: &Field<'_>, places: &[Place]) -> ([f64; 2], f64) {
         let mut sums = [0.0; 2];
         let mut row = Row::new(self.moves.len());
@@ -314,8 +318,8 @@ impl<'a> Run<'a> {
         (weights, smooth)
     }
 
-    /// Sets the derivative of an observation's distance by the moves. Returns its residual and the factor between the
-    /// residual's derivative and the distance's; `None` if nothing acts there.
+    /// Sets the derivative of an observation's distance by the moves. Returns its residual and the
+    /// factor between the residual's derivative and the distance's; `None` if nothing acts there.
     fn residual(
         &self,
         field: &Field<'_>,
@@ -328,11 +332,11 @@ impl<'a> Run<'a> {
             return None;
         }
         row.chain(self.problem);
-        Some(self.saturated(distance))
+        Some(self.saturate(distance))
     }
 
-    /// The residual of a distance, and its derivative.
-    fn saturated(&self, distance: f64) -> (f64, f64) {
+    /// Returns the residual s·tanh(h/s) of a distance h, and its derivative.
+    fn saturate(&self, distance: f64) -> (f64, f64) {
         if !self.options.saturates {
             return (distance, 1.0);
         }
@@ -384,16 +388,19 @@ impl<'a> Run<'a> {
         let distances: Vec<f64> = numbered
             .map(|(i, (place, _))| self.distance(&field, i, *place, &mut gradient))
             .collect();
-        let term = |((_, class), distance): (&Place, &f64)| {
-            let distance = *distance;
-            let residual = if distance.is_finite() {
-                self.saturated(distance).0
-            } else {
-                self.scale
-            };
-            0.5 * self.weights[*class] * residual.powi(2)
-        };
-        let sum: f64 = places.iter().zip(&distances).map(term).sum();
+        let sum: f64 = places
+            .iter()
+            .zip(&distances)
+            .map(|((_, class), distance)| {
+                let distance = *distance;
+                let residual = if distance.is_finite() {
+                    self.saturate(distance).0
+                } else {
+                    self.scale
+                };
+                0.5 * self.weights[*class] * residual.powi(2)
+            })
+            .sum();
         Ok((
             sum + self.smooth * energy(&self.stiffness, moves),
             distances,
@@ -402,8 +409,8 @@ impl<'a> Run<'a> {
 
     /// Moves the controls to where the sum is less. Returns whether it has settled.
     ///
-    /// The damping falls by how well the equations foretold the new sum, and grows twice as quickly with each failure (Nielsen
-    /// 1999).
+    /// The damping falls by how well the equations foretold the new sum, and grows twice as quickly
+    /// with each failure (Nielsen 1999).
     fn step(&mut self, normal: &Normal, before: f64, places: &[Place]) -> Result<bool, Error> {
         let mut growth = 2.0;
         for _ in 0..MOST_TRIES {
@@ -417,7 +424,8 @@ impl<'a> Run<'a> {
                 let (after, distances) = self.sum(&moves, &positions, places)?;
                 if after < before {
                     (self.moves, self.positions) = (moves, positions);
-                    // Where lines of sight touch, and what is fitted to, may be other than what is told.
+                    // Where lines of sight touch, and what is fitted to, may be other than what is
+                    // told.
                     let is_told =
                         self.options.kind == Kind::Explicit && distances.len() == self.facets.len();
                     self.apart = is_told.then_some(distances);
@@ -435,11 +443,11 @@ impl<'a> Run<'a> {
     }
 }
 
-/// A row of derivatives by the control points.
+/// Row of derivatives by the control points.
 struct Row {
     gradient: Gradient,
     entries: Vec<(u32, DVec3)>,
-    /// For each control the place of its entry and one more; 0 for none.
+    /// Number of each control's entry, from 1; 0 for none.
     places: Vec<u32>,
 }
 
@@ -452,7 +460,7 @@ impl Row {
         }
     }
 
-    /// From derivatives by vertices to those by control points.
+    /// Computes the derivatives by control points from those by vertices (the chain rule).
     fn chain(&mut self, problem: &Problem) {
         self.entries.clear();
         for (vertex, way) in &self.gradient {
@@ -472,7 +480,7 @@ impl Row {
     }
 }
 
-/// A quantile of sorted numbers; 0 without any.
+/// Returns a quantile of sorted numbers; 0 without any.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let last = sorted.len().saturating_sub(1);
     sorted

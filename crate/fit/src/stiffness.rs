@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-/// Entries of the matrix K with `XᵀKX = ∫ |∇X|²` over the triangles, for X linear on each: linear finite elements.
-/// Each pair (i, j) with i ≥ j stands for both of its places. Degenerate triangles add nothing.
+/// Entries of the matrix K with `XᵀKX = ∫ |∇X|²` over the triangles, for X linear on each: linear
+/// finite elements. Each pair (i, j) with i ≥ j stands for both of its places. Degenerate triangles
+/// add nothing.
 pub(crate) fn stiffness(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<(u32, u32, f64)> {
     let mut entries = Vec::new();
     for triangle in triangles {
@@ -19,11 +20,12 @@ pub(crate) fn stiffness(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<(u32
         if area <= 1e-3 * longest {
             continue;
         }
-        // The gradient of a corner's hat function is the opposite side, turned, over twice the area.
-        let side = |i: usize| corners[(i + 2) % 3] - corners[(i + 1) % 3];
+        // The gradient of a corner's hat function is the opposite side, turned, over twice the
+        // area.
+        let sides = [0, 1, 2].map(|i| corners[(i + 2) % 3] - corners[(i + 1) % 3]);
         for i in 0..3 {
             for j in 0..=i {
-                let value = side(i).dot(side(j)) / (4.0 * area);
+                let value = sides[i].dot(sides[j]) / (4.0 * area);
                 let (a, b) = (triangle[i].max(triangle[j]), triangle[i].min(triangle[j]));
                 entries.push((a, b, value));
             }
@@ -34,11 +36,13 @@ pub(crate) fn stiffness(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<(u32
 
 /// `½ Σ XᵀKX` over the three axes.
 pub(crate) fn energy(entries: &[(u32, u32, f64)], moves: &[DVec3]) -> f64 {
-    let term = |(i, j, value): &(u32, u32, f64)| {
-        let product = moves[*i as usize].dot(moves[*j as usize]) * value;
-        if i == j { 0.5 * product } else { product }
-    };
-    entries.iter().map(term).sum()
+    entries
+        .iter()
+        .map(|(i, j, value)| {
+            let product = moves[*i as usize].dot(moves[*j as usize]) * value;
+            if i == j { 0.5 * product } else { product }
+        })
+        .sum()
 }
 
 #[cfg(test)]
@@ -47,7 +51,8 @@ mod tests {
 
     #[test]
     fn energy_is_the_integral_of_the_gradient() {
-        // A square of side 2 in two triangles; a linear field with the gradient (3, −1): ½ ∫ |∇X|² = ½·10·4.
+        // A square of side 2 in two triangles; a linear field with the gradient (3, −1): ½ ∫ |∇X|²
+        // = ½·10·4.
         let positions = [
             DVec3::ZERO,
             DVec3::new(2.0, 0.0, 0.0),

@@ -1,10 +1,11 @@
-//! A head with neck and shoulders, made by a formula: something to fit whose true shape is known.
+//! Head with neck and shoulders, made by a formula: something to fit whose true shape is known.
 
 use crate::disturb::Numbers;
 use glam::DVec3;
 use mesh::TriangleMesh;
 
-/// Rows of the profile from the crown down: height, half width, half depth, and the middle's place from front to back.
+/// Rows of the profile from the crown down: height, half width, half depth, and the middle's place
+/// from front to back.
 const PROFILE: [[f64; 4]; 15] = [
     [1.62, 0.10, 0.12, 0.06],
     [1.52, 0.38, 0.46, 0.06],
@@ -33,7 +34,8 @@ const FRONT: [[f64; 5]; 6] = [
     [0.00, -0.16, 0.18, 0.10, 0.09],
 ];
 
-/// Returns a closed mesh of about `facets` triangles of a head, about 3.5 units high; it looks along −y, z is up.
+/// Returns a closed mesh of about `facets` triangles of a head, about 3.5 units high; it looks
+/// along −y, z is up.
 #[must_use]
 pub fn head(facets: usize) -> TriangleMesh {
     let rings = ((facets as f64 / 2.0).sqrt().round() as u32).max(6);
@@ -94,7 +96,8 @@ fn row(v: f64) -> [f64; 4] {
     })
 }
 
-/// Returns a control mesh of about 60 vertices around the head: the head itself with few facets, a little larger.
+/// Returns a control mesh of about 60 vertices around the head: the head itself with few facets, a
+/// little larger.
 #[must_use]
 pub fn cage() -> TriangleMesh {
     let mut cage = head(128);
@@ -108,7 +111,8 @@ pub fn cage() -> TriangleMesh {
     cage
 }
 
-/// Returns moves of control points that bend a head and make it uneven: smooth, with a part for each control by itself.
+/// Returns moves of control points that bend a head and make it uneven: smooth, with a part for
+/// each control by itself.
 #[must_use]
 pub fn moves(controls: &[DVec3], size: f64, seed: u64) -> Vec<DVec3> {
     let mut numbers = Numbers::new(seed);
@@ -129,9 +133,8 @@ pub fn moves(controls: &[DVec3], size: f64, seed: u64) -> Vec<DVec3> {
 pub fn sample(positions: &[DVec3], triangles: &[[u32; 3]], count: usize, seed: u64) -> Vec<DVec3> {
     let mut sums = Vec::with_capacity(triangles.len());
     let mut total = 0.0;
-    let corners = |t: &[u32; 3]| t.map(|i| positions[i as usize]);
     for triangle in triangles {
-        let [a, b, c] = corners(triangle);
+        let [a, b, c] = triangle.map(|i| positions[i as usize]);
         total += (b - a).cross(c - a).length();
         sums.push(total);
     }
@@ -147,7 +150,7 @@ pub fn sample(positions: &[DVec3], triangles: &[[u32; 3]], count: usize, seed: u
             (u, v) = (1.0 - u, 1.0 - v);
         }
         if let Some(triangle) = triangles.get(i) {
-            let [a, b, c] = corners(triangle);
+            let [a, b, c] = triangle.map(|i| positions[i as usize]);
             points.push(a + (b - a) * u + (c - a) * v);
         }
     }

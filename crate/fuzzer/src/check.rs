@@ -3,19 +3,20 @@
 use assist::{format, highlight};
 use rats::link::{self, Shared};
 use rats::{Compiled, File, Project, Severity, compile};
-use scene::{Element, Origin};
+use scene::Origin;
 
-/// Elements of the largest scene that is looked through for numbers that are none, which takes long.
+/// Elements of the largest scene that is looked through for numbers that are none, which takes
+/// long.
 const LOOKED_THROUGH: usize = 5000;
 
 /// A project of two files; the second is there to be read.
 pub fn project(text: &str, other: &str) -> Project {
-    let file = |name: &str, text: &str| File {
+    let files = [("main.rat", text), ("other.rat", other)].map(|(name, text)| File {
         name: name.to_owned(),
         text: text.to_owned(),
-    };
+    });
     Project {
-        files: vec![file("main.rat", text), file("other.rat", other)],
+        files: files.into(),
     }
 }
 
@@ -23,7 +24,7 @@ pub fn project(text: &str, other: &str) -> Project {
 ///
 /// # Errors
 /// Says what does not hold.
-pub fn compiled(project: &Project, compiled: &Compiled) -> Result<(), String> {
+pub fn result(project: &Project, compiled: &Compiled) -> Result<(), String> {
     let text = |file: usize| project.files.get(file).map(|file| file.text.as_str());
     if compiled.diagnostics.len() > rats::limits::MAX_DIAGNOSTICS {
         return Err(format!("{} messages", compiled.diagnostics.len()));
@@ -81,11 +82,11 @@ fn not_a_number(printed: &str) -> Option<&str> {
                 let rest = &printed[index..];
                 let before = printed[..index].chars().next_back();
                 let begins = before.is_some_and(|c| !c.is_alphanumeric() && c != '_');
-                let is_number = |word| {
+                let is_none = ["NaN", "inf"].into_iter().any(|word| {
                     rest.strip_prefix(word)
                         .is_some_and(|rest| rest.starts_with([',', ')', ']', ' ', '}']))
-                };
-                if begins && (is_number("NaN") || is_number("inf")) {
+                });
+                if begins && is_none {
                     let start = printed.floor_char_boundary(index.saturating_sub(120));
                     let end = printed.floor_char_boundary(index + 20);
                     return Some(&printed[start..end]);
@@ -132,7 +133,7 @@ pub fn repeats(project: &Project, first: &Compiled) -> Result<(), String> {
 ///
 /// # Errors
 /// Says what does not hold.
-pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
+pub fn layout(project: &Project, first: &Compiled) -> Result<(), String> {
     let mut project = project.clone();
     for file in &mut project.files {
         let once = format(&file.text);
@@ -142,36 +143,33 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
         file.text = once;
     }
     let again = compile(&project);
-    // Places move, and hints tell of them.
-    let scene = |compiled: &Compiled| {
+    // Places move, also those in hints.
+    let scenes = [&again, first].map(|compiled| {
         let mut scene = scene::Scene::clone(&compiled.scene);
-        let forget = |elements: &mut [Element]| {
-            for element in elements {
-                element.origin = Origin::default();
-            }
-        };
-        forget(&mut scene.elements);
-        for moment in &mut scene.moments {
-            forget(&mut moment.elements);
+        let moments = scene
+            .moments
+            .iter_mut()
+            .flat_map(|moment| &mut moment.elements);
+        for element in scene.elements.iter_mut().chain(moments) {
+            element.origin = Origin::default();
         }
         scene
-    };
-    let said = |compiled: &Compiled| -> Vec<_> {
+    });
+    let messages = [&again, first].map(|compiled| {
         let messages = compiled.diagnostics.iter();
-        messages
-            .map(|message| (message.severity, message.message.clone()))
-            .collect()
-    };
-    let moves = |compiled: &Compiled| -> Vec<_> {
+        let messages = messages.map(|message| (message.severity, message.message.clone()));
+        messages.collect::<Vec<_>>()
+    });
+    let sliders = [&again, first].map(|compiled| {
         let hot = compiled.hot.iter();
         hot.map(|hot| (hot.name.clone(), hot.value.clone()))
-            .collect()
-    };
-    let differs = if scene(&again) != scene(first) {
+            .collect::<Vec<_>>()
+    });
+    let differs = if scenes[0] != scenes[1] {
         "another scene"
-    } else if moves(&again) != moves(first) {
+    } else if sliders[0] != sliders[1] {
         "other sliders"
-    } else if said(&again) != said(first) {
+    } else if messages[0] != messages[1] {
         "other messages"
     } else if again.tools != first.tools || again.output != first.output {
         "other work"
@@ -186,7 +184,7 @@ pub fn laid_out(project: &Project, first: &Compiled) -> Result<(), String> {
 ///
 /// # Errors
 /// Says what does not hold.
-pub fn helped(project: &Project, first: &Compiled, byte: usize) -> Result<(), String> {
+pub fn help(project: &Project, first: &Compiled, byte: usize) -> Result<(), String> {
     let _ = assist::complete(project, 0, byte);
     let _ = assist::hover(project, 0, byte);
     let _ = assist::signature(project, 0, byte);
@@ -213,16 +211,15 @@ pub fn helped(project: &Project, first: &Compiled, byte: usize) -> Result<(), St
         return Ok(());
     };
     let again = compile(&project.apply(&edits));
-    let shapes = |compiled: &Compiled| -> Vec<_> {
-        let elements = compiled.scene.elements.iter();
-        elements
-            .map(|element| (element.shape.clone(), element.finish, element.body))
-            .collect()
-    };
     if has_errors(&again) {
         return Err(String::from("renamed, the text has mistakes"));
     }
-    if shapes(&again) != shapes(first) {
+    let shapes = [&again, first].map(|compiled| {
+        let elements = compiled.scene.elements.iter();
+        let shapes = elements.map(|element| (element.shape.clone(), element.finish, element.body));
+        shapes.collect::<Vec<_>>()
+    });
+    if shapes[0] != shapes[1] {
         return Err(String::from("renamed, the text gives another scene"));
     }
     Ok(())
@@ -259,7 +256,7 @@ pub fn link_content(json: &[u8]) -> Result<(), String> {
 ///
 /// # Errors
 /// Says that it does not.
-pub fn sent(project: &Project) -> Result<(), String> {
+pub fn sharing(project: &Project) -> Result<(), String> {
     let shared = Shared {
         project: project.clone(),
         camera: None,

@@ -1,11 +1,13 @@
-//! Random datasets that are nearly right: commands of the table with operands of the kinds that it names,
-//! now and then one too many, one too few or of another kind. They reach much deeper than random bytes.
+//! Random datasets that are nearly right: commands of the table with operands of the kinds that it
+//! names, now and then one too many, one too few or of another kind. They reach much deeper than
+//! random bytes.
 
 use rats::commands::{self, Arity, CommandSpec, Kind, Names, Parameter};
 use rats::library;
 use trials::arbitrary::{Result, Unstructured};
 
-/// Deepest blocks and expressions. Deeper ones are a matter of counting, which the tests of limits do.
+/// Deepest blocks and expressions. Deeper ones are a matter of counting, which the tests of limits
+/// do.
 const DEPTH: usize = 5;
 /// Longest text, bytes.
 const LENGTH: usize = 20_000;
@@ -33,7 +35,8 @@ pub fn dataset(u: &mut Unstructured<'_>) -> Result<String> {
     };
     if u.ratio(7, 8)? {
         // Names that commands can use.
-        writer.text += "surface m0 diff Red blob -2 rad .3\nsurface m1 spec White\ntexture t0 { pigment Red, scale 2 2 1 }\n\
+        writer.text += "surface m0 diff Red blob -2 rad .3\nsurface m1 spec White\n\
+            texture t0 { pigment Red, scale 2 2 1 }\n\
             var v0 = 1\nvar V1 = 1 2 3\nvar c2 = Gold\nobject o0\nsphere m0 1 0 0 0\nclose\n";
     }
     writer.block(u)?;
@@ -77,15 +80,15 @@ impl Writer {
                     self.text += "step ";
                     self.expression(u, 0)?;
                 }
-                self.braced(u)?;
+                self.braces(u)?;
             }
             1 if self.depth < DEPTH => {
                 self.text += "if ";
                 self.condition(u)?;
-                self.braced(u)?;
+                self.braces(u)?;
                 if u.ratio(1, 2)? {
                     self.text += "else ";
-                    self.braced(u)?;
+                    self.braces(u)?;
                 }
             }
             2 if self.depth < DEPTH => {
@@ -95,7 +98,7 @@ impl Writer {
                     self.choose(u, &["a", "b", "P", "surface s", "r = 1", "k = a*2", ","])?;
                 }
                 self.text += ")";
-                self.braced(u)?;
+                self.braces(u)?;
             }
             3 => {
                 self.choose(u, &["f0", "f1", "f2", "f3"])?;
@@ -130,7 +133,7 @@ impl Writer {
         Ok(())
     }
 
-    fn braced(&mut self, u: &mut Unstructured<'_>) -> Result<()> {
+    fn braces(&mut self, u: &mut Unstructured<'_>) -> Result<()> {
         self.depth += 1;
         self.text += "{\n";
         for _ in 0..u.int_in_range(0..=3)? {
@@ -265,7 +268,7 @@ impl Writer {
                 }
                 Ok(())
             }
-            Kind::Block => self.braced(u),
+            Kind::Block => self.braces(u),
         }
     }
 
@@ -293,7 +296,7 @@ impl Writer {
         }
     }
 
-    /// Mostly a number of the range, at times one at or beyond its ends.
+    /// Writes a number, mostly of the range, at times at or beyond its ends.
     fn number_in(&mut self, u: &mut Unstructured<'_>, low: f64, high: f64) -> Result<()> {
         let (near_low, near_high) = (low.max(-5.0), high.min(5.0).max(low.max(-5.0)));
         match u.int_in_range(0..=11)? {

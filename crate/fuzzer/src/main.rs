@@ -1,15 +1,16 @@
-//! Runs random texts and links through the compiler for a given time, and tells what was found.
+//! Runs random texts and links through the compiler for a given time, and reports findings.
 //!
 //! `cargo run --profile fuzz -p fuzzer -- [SECONDS [SEED] | FILE.rat]`
 //!
-//! SECONDS are of processor time; a FILE is a finding to be run again. What is checked stands in [`check`];
-//! besides, no compile may take more than [`SLOW`] three times in a row or need more than [`MEMORY`], and none
-//! may panic or overflow the stack of a browser's worker. A finding is made smaller and written to a file. The
-//! text that is being run always stands in `sinew-fuzz-case.rat` in the folder for temporary files, for the case
-//! that the program is killed.
+//! SECONDS are of processor time; a FILE is a finding to be run again. What is checked stands in
+//! [`check`]; besides, no compile may take more than [`SLOW`] three times in a row or need more
+//! than [`MEMORY`], and none may panic or overflow the stack of a browser's worker. A finding is
+//! made smaller and written to a file. The text that is being run always stands in
+//! `sinew-fuzz-case.rat` in the folder for temporary files, for the case that the program is
+//! killed.
 //!
-//! The folder `fuzz/` at the top holds the same checks for cargo-fuzz, which is guided by what the code
-//! does but needs a nightly compiler.
+//! The folder `fuzz/` at the top holds the same checks for cargo-fuzz, which is guided by what the
+//! code does but needs a nightly compiler.
 
 use fuzzer::{check, generate};
 use rats::{Project, compile};
@@ -24,9 +25,9 @@ use trials::arbitrary::Unstructured;
 const SLOW: Duration = Duration::from_millis(100);
 /// Name of findings whose compile took longer than [`SLOW`].
 const SLOWNESS: &str = "slow";
-/// How many slow texts are made smaller.
+/// The most slow texts that are made smaller.
 const MAX_SLOW: usize = 5;
-/// How long a finding is made smaller.
+/// The longest time in which a finding is made smaller.
 const PATIENCE: Duration = Duration::from_secs(15);
 /// Most memory for one compile, kilobytes, over what the program needs anyway.
 const MEMORY: u64 = 256 * 1024;
@@ -97,10 +98,12 @@ impl Fuzzer {
             .filter(|path| path.extension().is_some_and(|ending| ending == "rat"))
             .collect();
         paths.sort();
-        let read = |path| std::fs::read_to_string(path).expect("a text");
+        let examples = paths
+            .iter()
+            .map(|path| std::fs::read_to_string(path).expect("a text"));
         Self {
             random: Random::fixed(seed),
-            examples: paths.iter().map(read).collect(),
+            examples: examples.collect(),
             case: std::env::temp_dir().join("sinew-fuzz-case.rat"),
             found: BTreeMap::new(),
             slow: 0,
@@ -133,7 +136,8 @@ impl Fuzzer {
                 _ => {
                     let length = 20 << self.random.below(9);
                     let bytes = bytes(&mut self.random, length);
-                    // A generator that runs out of bytes leaves its text unfinished, which is fine too.
+                    // A generator that runs out of bytes leaves its text unfinished, which is fine
+                    // too.
                     if let Ok(text) = generate::dataset(&mut Unstructured::new(&bytes)) {
                         self.text(&text);
                     }
@@ -275,16 +279,16 @@ fn try_text(text: &str, thorough: bool) -> (Result<(), String>, Duration) {
         let begun = processor_time();
         let compiled = compile(&project);
         took = processor_time() - begun;
-        check::compiled(&project, &compiled)?;
+        check::result(&project, &compiled)?;
         check::unrun(text)?;
         if thorough {
-            check::laid_out(&project, &compiled)?;
+            check::layout(&project, &compiled)?;
             // Places all over the text, the same ones when the text is run again.
             for part in 0..8 {
-                check::helped(&project, &compiled, text.len() * part / 7 + 2 * (part / 7))?;
+                check::help(&project, &compiled, text.len() * part / 7 + 2 * (part / 7))?;
             }
             check::repeats(&project, &compiled)?;
-            check::sent(&project)?;
+            check::sharing(&project)?;
         }
         Ok(())
     }));

@@ -38,8 +38,9 @@ impl Grid {
         pieces
     }
 
-    /// The pieces of the sheets on which two bodies in contact touch: where the leading body changes, and both their fields are
-    /// `level`. `leading` says which body leads at each sample and by how much.
+    /// The pieces of the sheets on which two bodies in contact touch: where the leading body
+    /// changes, and both their fields are `level`. `leading` says which body leads at each sample
+    /// and by how much.
     #[must_use]
     pub fn border(&self, leading: &[(u32, f32)], level: f32) -> Vec<[[f32; 2]; 2]> {
         let mut pieces = Vec::new();

@@ -87,8 +87,8 @@ impl Lesson {
         format!("{PREFIX}={}", self.words().link)
     }
 
-    /// The lesson a fragment leads to; the first one if it names an unknown lesson, `None` if it does not
-    /// lead to the lab.
+    /// The lesson a fragment leads to; the first one if it names an unknown lesson, `None` if it
+    /// does not lead to the lab.
     #[must_use]
     pub fn of_hash(hash: &str) -> Option<Self> {
         let rest = hash.strip_prefix(PREFIX)?;

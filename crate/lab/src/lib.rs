@@ -2,9 +2,10 @@
 //! surface comes about. Each has its own link (`#lab=kernels`), and opening one leaves the open
 //! work alone.
 //!
-//! A lesson keeps its own numbers, draws its figure with [`plot`] and can write a dataset that shows
-//! the same thing in the editor. Small traced pictures come from [`pictures`], which lends the
-//! workers from the main picture while that rests. The page around the lab carries out its [`Command`]s.
+//! A lesson keeps its own numbers, draws its figure with [`plot`] and can write a dataset that
+//! shows the same thing in the editor. Small traced pictures come from [`pictures`], which lends
+//! the workers from the main picture while that rests. The page around the lab carries out its
+//! [`Command`]s.
 //!
 //! ```
 //! # #[cfg(not(target_arch = "wasm32"))] {

@@ -1,10 +1,10 @@
 //! Small traced pictures for the lessons.
 //!
 //! They are traced one after the other by the same workers as the main picture, while that rests.
-//! Each has a *slot*, the place on the page that shows it, and is kept by its text and size, so that
-//! what was drawn once is there at once the next time. While a slider moves, a slot goes on showing
-//! its last picture; the one being traced is finished even if the slider has gone on, as otherwise
-//! nothing would ever be seen while it moves.
+//! Each has a *slot*, the place on the page that shows it, and is kept by its text and size, so
+//! that what was drawn once is there at once the next time. While a slider moves, a slot goes on
+//! showing its last picture; the one being traced is finished even if the slider has gone on, as
+//! otherwise nothing would ever be seen while it moves.
 
 use digger::errors::{Pixel, unpack};
 use egui::{
@@ -323,8 +323,8 @@ impl Pictures {
         Shown::Nothing
     }
 
-    /// How far off a text's digger is, in a square of so many pixels. What is not there yet is asked for, and
-    /// meanwhile that of the text before it stands in.
+    /// How far off a text's digger is, in a square of so many pixels. What is not there yet is
+    /// asked for, and meanwhile that of the text before it stands in.
     pub fn errors(
         &mut self,
         slot: impl Hash,

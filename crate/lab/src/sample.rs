@@ -38,7 +38,8 @@ impl Window {
     }
 }
 
-/// The largest of the fields of some bodies at eight points: inside any of them it is above T. Without bodies it is 0.
+/// The largest of the fields of some bodies at eight points: inside any of them it is above T.
+/// Without bodies it is 0.
 #[must_use]
 pub fn eight(bodies: &[&dyn Implicit], points: [DVec3; 8]) -> [f32; 8] {
     let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
@@ -54,7 +55,8 @@ pub fn one(bodies: &[&dyn Implicit], point: DVec3) -> f64 {
     f64::from(eight(bodies, [point; 8])[0])
 }
 
-/// For each of eight points the body whose field is the largest there, and by how much it is larger than the next one's.
+/// For each of eight points the body whose field is the largest there, and by how much it is larger
+/// than the next one's.
 #[must_use]
 pub fn leading(bodies: &[&dyn Implicit], points: [DVec3; 8]) -> [(u32, f32); 8] {
     let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
@@ -104,8 +106,8 @@ impl Filling {
         self.grid.values.len() >= self.grid.width * self.grid.height
     }
 
-    /// Goes on until the grid is full or `enough` says so, which it is asked now and then: the more often, the more elements the
-    /// bodies have. Gives whether the grid is full.
+    /// Goes on until the grid is full or `enough` says so, which it is asked now and then: the more
+    /// often, the more elements the bodies have. Gives whether the grid is full.
     pub fn go_on(
         &mut self,
         bodies: &[&dyn Implicit],

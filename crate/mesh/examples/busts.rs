@@ -1,18 +1,20 @@
-//! Writes the meshes of two busts, after figures 3.18 and 3.19 of Sherstyuk's thesis, whose own meshes are lost: a queen with a tall
-//! crown, of 1,242 triangles, and an elder with large ears, of 3,422.
+//! Writes the meshes of two busts, after figures 3.18 and 3.19 of Sherstyuk's thesis, whose own
+//! meshes are lost: a queen with a tall crown, of 1,242 triangles, and an elder with large ears, of
+//! 3,422.
 //!
-//! `cargo run -p mesh --example busts FOLDER` writes FOLDER/queen.obj and FOLDER/elder.obj. A bust is a stack of ovals, lofted
-//! smoothly, with bumps and dents that make a face of it. It looks along −y; z is up.
+//! `cargo run -p mesh --example busts FOLDER` writes FOLDER/queen.obj and FOLDER/elder.obj. A bust
+//! is a stack of ovals, lofted smoothly, with bumps and dents that make a face of it. It looks
+//! along −y; z is up.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
-/// An oval of the stack: height and y of its middle, its radii to the side, to the front and to the back, and how much higher
-/// than the middle its front is, as a slope.
+/// An oval of the stack: height and y of its middle, its radii to the side, to the front and to the
+/// back, and how much higher than the middle its front is, as a slope.
 type Oval = [f64; 6];
 
-/// A bump (or, if its height is negative, a dent) that looks outward: angle from the front (both sides get one), height above the
-/// ground, half widths of both, and how far it stands out.
+/// Bump (or, if its height is negative, a dent) that looks outward: angle from the front (both
+/// sides get one), height above the ground, half widths of both, and how far it stands out.
 type Bump = [f64; 5];
 
 struct Bust {
@@ -23,7 +25,7 @@ struct Bust {
     around: usize,
     /// Rings of vertices between the lowest point and the highest.
     rings: usize,
-    /// How much denser vertices stand in front than behind, below 1.
+    /// Strength, below 1, by which vertices are denser in front than behind.
     dense: f64,
     /// Heights at which vertices stand densest: middle, half width, factor.
     face: [f64; 3],
@@ -124,7 +126,8 @@ const ELDER: Bust = Bust {
 };
 
 impl Bust {
-    /// Position on the side of the stack: `up` from 0 at the lowest oval to 1 at the highest, `angle` from the front.
+    /// Position on the side of the stack: `up` from 0 at the lowest oval to 1 at the highest,
+    /// `angle` from the front.
     fn point(&self, up: f64, angle: f64) -> [f64; 3] {
         let [z, y, side, front, back, slope] = oval(self.ovals, up);
         let (sin, cos) = libm::sincos(angle);
@@ -157,7 +160,8 @@ impl Bust {
     /// The mesh as the text of an OBJ file.
     fn obj(&self) -> String {
         let mut text = format!(
-            "# {}: {} triangles. It looks along -y, z is up. Made by crate/mesh/examples/busts.rs\n",
+            "# {}: {} triangles. It looks along -y, z is up. \
+             Made by crate/mesh/examples/busts.rs\n",
             self.name,
             2 * self.around * self.rings
         );

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// A closed box with faces parallel to the axes.
+/// Closed box with faces parallel to the axes.
 ///
 /// ```
 /// use glam::DVec3;

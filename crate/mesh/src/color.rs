@@ -1,7 +1,7 @@
 //! Colours and gloss, as files write them.
 
-/// An 8-bit sRGB channel for a linear one (IEC 61966-2-1), rounded to nearest. Values outside 0 … 1 are
-/// cut off; NaN becomes 0.
+/// An 8-bit sRGB channel for a linear one (IEC 61966-2-1), rounded to nearest. Values outside 0 … 1
+/// are cut off; NaN becomes 0.
 ///
 /// ```
 /// assert_eq!(mesh::srgb_from_linear(0.2158605), 128);

@@ -5,7 +5,7 @@ use crate::limits::{MAX_BYTES, MAX_PIXELS};
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 use std::io::Cursor;
 
-/// A grid of heights.
+/// Grid of heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heights {
     width: usize,
@@ -13,8 +13,8 @@ pub struct Heights {
 }
 
 impl Heights {
-    /// A grid of values, row by row from the top, each 0 … 1. `None` if they do not fill rows of
-    /// this width, if there are none, or if one is not within 0 … 1.
+    /// Returns a grid of values, row by row from the top, each 0 … 1. `None` if they do not fill
+    /// rows of this width, if there are none, or if one is not within 0 … 1.
     #[must_use]
     pub fn new(width: usize, values: Vec<f32>) -> Option<Self> {
         let is_full = width > 0 && !values.is_empty() && values.len().is_multiple_of(width);
@@ -47,7 +47,6 @@ impl Heights {
 /// # Errors
 /// If it is no PNG, is broken, or is over one of the [`crate::limits`].
 pub fn heights(bytes: &[u8]) -> Result<Heights, Error> {
-    let broken = |error: png::DecodingError| Error(format!("this PNG cannot be read: {error}"));
     if !bytes.starts_with(b"\x89PNG") {
         return fail("heights are read from PNG pictures, and this is none");
     }
@@ -62,7 +61,7 @@ pub fn heights(bytes: &[u8]) -> Result<Heights, Error> {
     decoder.set_transformations(Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    let mut reader = decoder.read_info().map_err(broken)?;
+    let mut reader = decoder.read_info().map_err(unread)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     if width.saturating_mul(height) > MAX_PIXELS {
         return fail(format!(
@@ -80,19 +79,9 @@ pub fn heights(bytes: &[u8]) -> Result<Heights, Error> {
     };
     let size = if depth == BitDepth::Sixteen { 2 } else { 1 };
     let mut values = Vec::with_capacity(width * height);
-    let mut pixel = |pixel: &[u8]| {
-        let channel = |i: usize| {
-            if size == 2 {
-                f32::from(u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]])) / 65535.0
-            } else {
-                f32::from(pixel[i]) / 255.0
-            }
-        };
-        values.push(if channels < 3 {
-            channel(0)
-        } else {
-            (0.2126 * channel(0) + 0.7152 * channel(1) + 0.0722 * channel(2)).min(1.0)
-        });
+    let mut add = |row: &[u8]| {
+        let pixels = row.chunks_exact(channels * size);
+        values.extend(pixels.map(|pixel| luminance(pixel, size, channels >= 3)));
     };
     if reader.info().interlaced {
         // Rows come in no order.
@@ -101,14 +90,32 @@ pub fn heights(bytes: &[u8]) -> Result<Heights, Error> {
             return fail("this PNG is too large");
         }
         let mut buffer = vec![0; whole];
-        reader.next_frame(&mut buffer).map_err(broken)?;
-        buffer.chunks_exact(channels * size).for_each(&mut pixel);
+        reader.next_frame(&mut buffer).map_err(unread)?;
+        add(&buffer);
     } else {
-        while let Some(row) = reader.next_row().map_err(broken)? {
-            row.data()
-                .chunks_exact(channels * size)
-                .for_each(&mut pixel);
+        while let Some(row) = reader.next_row().map_err(unread)? {
+            add(row.data());
         }
     }
     Heights::new(width, values).ok_or_else(|| Error("this PNG is cut off".into()))
+}
+
+/// Returns the luminance of a pixel, 0 … 1, whose channels have `size` bytes.
+fn luminance(pixel: &[u8], size: usize, is_colored: bool) -> f32 {
+    let channel = |i: usize| {
+        if size == 2 {
+            f32::from(u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]])) / 65535.0
+        } else {
+            f32::from(pixel[i]) / 255.0
+        }
+    };
+    if is_colored {
+        (0.2126 * channel(0) + 0.7152 * channel(1) + 0.0722 * channel(2)).min(1.0)
+    } else {
+        channel(0)
+    }
+}
+
+fn unread(error: png::DecodingError) -> Error {
+    Error(format!("this PNG cannot be read: {error}"))
 }

@@ -19,8 +19,8 @@ const RANGE: [f64; 2] = [5.5e-76, 1.8e75];
 /// Result of [`self_intersections`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Intersections {
-    /// Pairs of triangles with a common point that is no common vertex or edge; the lower number first,
-    /// in ascending order.
+    /// Pairs of triangles with a common point that is no common vertex or edge; the lower number
+    /// first, in ascending order.
     pub pairs: Vec<[u32; 2]>,
     /// Triangles whose corners are on one line; they are in no pair.
     pub flat: Vec<u32>,
@@ -37,9 +37,9 @@ impl Intersections {
     }
 }
 
-/// Finds triangles that cut, touch or overlap each other. Triangles that share vertices by index may
-/// meet in those and in the edge between them, nowhere else. Stops when `most` pairs are found, or
-/// 400 million pairs have overlapping boxes.
+/// Finds triangles that cut, touch or overlap each other. Triangles that share vertices by index
+/// may meet in those and in the edge between them, nowhere else. Stops when `most` pairs are found,
+/// or 400 million pairs have overlapping boxes.
 ///
 /// ```
 /// use glam::DVec3;
@@ -61,16 +61,18 @@ impl Intersections {
 /// ```
 ///
 /// # Errors
-/// If a triangle has a vertex that does not exist, or a coordinate is not finite, or neither 0 nor within
-/// 5.5e-76 … 1.8e75 in size.
+/// If a triangle has a vertex that does not exist, or a coordinate is not finite, or neither 0 nor
+/// within 5.5e-76 … 1.8e75 in size.
 pub fn self_intersections(mesh: &TriangleMesh, most: usize) -> Result<Intersections, Error> {
     search(mesh, most, MAX_CANDIDATES)
 }
 
 fn search(mesh: &TriangleMesh, most: usize, candidates: u64) -> Result<Intersections, Error> {
-    let is_exact = |x: &f64| *x == 0.0 || (RANGE[0]..=RANGE[1]).contains(&x.abs());
-    let unfit = |p: &DVec3| !p.to_array().iter().all(is_exact);
-    if let Some(i) = mesh.positions.iter().position(unfit) {
+    if let Some(i) = mesh.positions.iter().position(|p| {
+        !p.to_array()
+            .iter()
+            .all(|x| *x == 0.0 || (RANGE[0]..=RANGE[1]).contains(&x.abs()))
+    }) {
         return fail(format!(
             "vertex {i} (from 0) is at {}, where exact arithmetic has no room",
             mesh.positions[i]
@@ -114,7 +116,7 @@ fn search(mesh: &TriangleMesh, most: usize, candidates: u64) -> Result<Intersect
     Ok(found)
 }
 
-/// A plane of coordinates onto which a triangle has an image with an area: the axis left out.
+/// Plane of coordinates onto which a triangle has an image with an area: the axis left out.
 #[derive(Clone, Copy)]
 struct Plane(usize);
 
@@ -178,7 +180,7 @@ fn side([a, b, c]: [DVec3; 3], p: DVec3) -> i8 {
     sign(robust::orient3d(a, b, c, p))
 }
 
-/// A triangle with an area.
+/// Triangle with an area.
 struct Facet {
     vertices: [u32; 3],
     corners: [DVec3; 3],
@@ -194,24 +196,26 @@ impl Facet {
         })
     }
 
-    /// `true` if the triangles have a common point beside the vertices and the edge that they share.
+    /// `true` if the triangles have a common point beside the vertices and the edge that they
+    /// share.
     fn meets(&self, other: &Self) -> bool {
-        let is_shared = |v: u32| other.vertices.contains(&v);
-        let shared: Vec<usize> = (0..3).filter(|i| is_shared(self.vertices[*i])).collect();
+        let shared: Vec<usize> = (0..3)
+            .filter(|i| other.vertices.contains(&self.vertices[*i]))
+            .collect();
         match shared[..] {
             [] => (0..3).any(|i| {
-                let edge = |t: &Self| [t.corners[i], t.corners[(i + 1) % 3]];
-                self.meets_segment(edge(other)) || other.meets_segment(edge(self))
+                let [own, others] = [self, other].map(|t| [t.corners[i], t.corners[(i + 1) % 3]]);
+                self.meets_segment(others) || other.meets_segment(own)
             }),
-            // From the shared vertex the way to any other common point goes on to one of the opposite
-            // sides, within the other triangle.
+            // From the shared vertex the way to any other common point goes on to one of the
+            // opposite sides, within the other triangle.
             [i] => {
                 let vertex = self.vertices[i];
-                let opposite = |t: &Self| {
+                let [own, others] = [self, other].map(|t| {
                     let at = t.vertices.iter().position(|v| *v == vertex).unwrap_or(0);
                     [t.corners[(at + 1) % 3], t.corners[(at + 2) % 3]]
-                };
-                self.meets_segment(opposite(other)) || other.meets_segment(opposite(self))
+                });
+                self.meets_segment(others) || other.meets_segment(own)
             }
             // Two triangles at an edge overlap only if they lie in one plane, on one side of it.
             [i, j] => {
@@ -256,12 +260,13 @@ mod tests {
     #[test]
     fn the_search_says_when_it_gives_up() {
         // Triangles that all cut each other.
-        let turned = |i: u32| {
-            let angle = f64::from(i);
-            let across = DVec3::new(libm::cos(angle), libm::sin(angle), 0.0);
-            [across - DVec3::Z, across * -1.0 - DVec3::Z, DVec3::Z * 2.0]
-        };
-        let positions: Vec<DVec3> = (0..30).flat_map(turned).collect();
+        let positions: Vec<DVec3> = (0..30)
+            .flat_map(|i| {
+                let angle = f64::from(i);
+                let across = DVec3::new(libm::cos(angle), libm::sin(angle), 0.0);
+                [across - DVec3::Z, across * -1.0 - DVec3::Z, DVec3::Z * 2.0]
+            })
+            .collect();
         let triangles = (0..30).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mesh = TriangleMesh::new(positions, triangles);
         let all = search(&mesh, 1000, u64::MAX).unwrap();

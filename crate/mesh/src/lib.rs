@@ -1,10 +1,11 @@
 //! Meshes, and files of meshes and heights. Knows neither scenes nor fields.
 //!
-//! - [`TriangleMesh`]: triangles that share vertices, with sizes and angles; [`Topology`] says whether one is
-//!   a closed manifold, [`self_intersections`] whether it cuts itself, with proof.
+//! - [`TriangleMesh`]: triangles that share vertices, with sizes and angles; [`Topology`] says
+//!   whether one is a closed manifold, [`self_intersections`] whether it cuts itself, with proof.
 //! - [`HalfEdgeMesh`]: polygons that know their neighbours, for edits; made of a [`PolygonSoup`].
 //! - [`Bvh`]: search among boxes.
-//! - [`read`] makes a mesh of the bytes of an OBJ, PLY, STL, GLB or 3MF file, [`Export`] writes these.
+//! - [`read`] makes a mesh of the bytes of an OBJ, PLY, STL, GLB or 3MF file, [`Export`] writes
+//!   these.
 //! - [`heights`] makes [`Heights`] of a PNG picture, and [`terra`] makes a smooth mesh of those.
 //!
 //! ```
@@ -14,10 +15,10 @@
 //! # Ok::<(), mesh::Error>(())
 //! ```
 //!
-//! Files are untrusted: every count is checked against the bytes that are there and against [`limits`]
-//! before memory is allocated for it, and errors are sentences with a position. The readers know the parts of each format that say where triangles and
-//! normals are, and of colours and materials what the formats have in common; textures and animations
-//! are passed over.
+//! Files are untrusted: every count is checked against the bytes that are there and against
+//! [`limits`] before memory is allocated for it, and errors are sentences with a position. The
+//! readers know the parts of each format that say where triangles and normals are, and of colours
+//! and materials what the formats have in common; textures and animations are passed over.
 
 mod aabb;
 mod bvh;

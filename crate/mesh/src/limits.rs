@@ -6,9 +6,11 @@ pub const MAX_BYTES: usize = 32 * 1024 * 1024;
 pub const MAX_TRIANGLES: usize = 200_000;
 /// Corners of a mesh, and positions or normals in a file: three for each triangle.
 pub const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
-/// Largest coordinate of a corner, of either sign. A mesh farther from everything would come out as nothing.
+/// Largest coordinate of a corner, of either sign. A mesh farther from everything would come out as
+/// nothing.
 pub const MAX_COORDINATE: f64 = 1e12;
-/// Millimetres of the longest side of a mesh that is written: from a thousandth of a millimetre to a thousand kilometres.
+/// Millimetres of the longest side of a mesh that is written: from a thousandth of a millimetre to
+/// a thousand kilometres.
 pub const MILLIMETRES: core::ops::RangeInclusive<f64> = 1e-3..=1e9;
 /// Bytes of a GLB file's description (the rest is numbers).
 pub const MAX_JSON: usize = 4 * 1024 * 1024;

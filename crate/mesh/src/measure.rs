@@ -19,19 +19,20 @@ impl TriangleMesh {
         boxes.collect()
     }
 
-    /// Sum of the triangles' areas.
+    /// Sum of the areas of all triangles.
     #[must_use]
     pub fn area(&self) -> f64 {
-        let area = |i| {
-            let [a, b, c] = self.corners(i);
-            0.5 * (b - a).cross(c - a).length()
-        };
-        (0..self.triangles.len()).map(area).sum()
+        (0..self.triangles.len())
+            .map(|i| {
+                let [a, b, c] = self.corners(i);
+                0.5 * (b - a).cross(c - a).length()
+            })
+            .sum()
     }
 
-    /// Volume that a closed mesh encloses: Σ (a − o) · (b − o) × (c − o) / 6 over its triangles, with o
-    /// the middle of its box. Negative if the triangles are turned inside out; without a meaning if the
-    /// mesh is open.
+    /// Volume that a closed mesh encloses: Σ (a − o) · (b − o) × (c − o) / 6 over its triangles,
+    /// with o the middle of its box. Negative if the triangles are turned inside out; without a
+    /// meaning if the mesh is open.
     ///
     /// ```
     /// use glam::DVec3;
@@ -47,14 +48,16 @@ impl TriangleMesh {
     #[must_use]
     pub fn signed_volume(&self) -> f64 {
         let origin = self.bounds().center();
-        let volume = |i| {
-            let [a, b, c] = self.corners(i).map(|p| p - origin);
-            a.dot(b.cross(c)) / 6.0
-        };
-        (0..self.triangles.len()).map(volume).sum()
+        (0..self.triangles.len())
+            .map(|i| {
+                let [a, b, c] = self.corners(i).map(|p| p - origin);
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum()
     }
 
-    /// The smallest angle of all triangles, radians: 0 if one has no area. `None` without triangles.
+    /// The smallest angle of all triangles, radians: 0 if one has no area. `None` without
+    /// triangles.
     #[must_use]
     pub fn smallest_angle(&self) -> Option<f64> {
         (0..self.triangles.len())
@@ -66,13 +69,12 @@ impl TriangleMesh {
 /// The smallest angle of a triangle, radians.
 #[must_use]
 pub fn smallest_angle([a, b, c]: &[DVec3; 3]) -> f64 {
-    let angle = |p: DVec3, q: DVec3, r: DVec3| {
-        let (one, other) = (q - p, r - p);
+    let [at_a, at_b, at_c] = [[a, b, c], [b, c, a], [c, a, b]].map(|[p, q, r]| {
+        let (one, other) = (*q - *p, *r - *p);
         // 0 for sides of length 0.
         libm::atan2(one.cross(other).length(), one.dot(other))
-    };
-    let [a, b, c] = [*a, *b, *c];
-    angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b))
+    });
+    at_a.min(at_b).min(at_c)
 }
 
 /// The point of a triangle (its inside, sides and corners) that is nearest to a point. Also of a
@@ -124,8 +126,9 @@ fn closest_on_segment(from: DVec3, to: DVec3, point: DVec3) -> DVec3 {
 }
 
 impl HalfEdgeMesh {
-    /// The angle between the normals of the two faces at an edge, radians: 0 where the mesh is flat,
-    /// positive where it is convex, negative where it is concave, −π … π. `None` on the boundary.
+    /// The angle between the normals of the two faces at an edge, radians: 0 where the mesh is
+    /// flat, positive where it is convex, negative where it is concave, −π … π. `None` on the
+    /// boundary.
     #[must_use]
     pub fn dihedral_angle(&self, h: HalfEdgeId) -> Option<f64> {
         let [one, other] = [self.face(h)?, self.face(self.twin(h))?].map(|f| self.face_normal(f));

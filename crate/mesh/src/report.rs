@@ -36,7 +36,8 @@ pub struct Topology {
     pub boundary_loops: usize,
     /// Changes that would make it a manifold.
     pub repairs: Repairs,
-    /// The genus of each connected component, in the order of its lowest triangle; after the repairs.
+    /// The genus of each connected component, in the order of its lowest triangle; after the
+    /// repairs.
     pub genera: Vec<u64>,
 }
 
@@ -44,9 +45,9 @@ impl Topology {
     /// Examines a mesh.
     ///
     /// # Errors
-    /// As [`HalfEdgeMesh::repaired`].
+    /// As [`HalfEdgeMesh::repair`].
     pub fn of(mesh: &TriangleMesh) -> Result<Self, Error> {
-        let built = HalfEdgeMesh::repaired(&PolygonSoup::from(mesh))?;
+        let built = HalfEdgeMesh::repair(&PolygonSoup::from(mesh))?;
         let mesh = &built.mesh;
         let boundary = mesh.edges().filter(|h| mesh.is_boundary_edge(*h));
         Ok(Self {
@@ -58,17 +59,21 @@ impl Topology {
         })
     }
 
-    /// `true` if every edge has two triangles that agree on what is outside, and the triangles at each
-    /// vertex form one fan.
+    /// `true` if every edge has two triangles that agree on what is outside, and the triangles at
+    /// each vertex form one fan.
     #[must_use]
     pub fn is_closed_manifold(&self) -> bool {
         self.boundary_edges == 0 && self.repairs.is_none() && !self.genera.is_empty()
     }
 }
 
+/// Returns the ending of a noun after a count.
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
 impl fmt::Display for Topology {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let plural = |count: usize| if count == 1 { "" } else { "s" };
         let (edges, loops) = (self.boundary_edges, self.boundary_loops);
         match edges {
             0 => f.write_str("closed; ")?,

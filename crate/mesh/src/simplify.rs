@@ -10,19 +10,20 @@ use core::cmp::Ordering;
 use glam::{DMat3, DVec3};
 use std::collections::BinaryHeap;
 
-/// A simplified mesh with its distance from the one it was made of.
+/// Simplified mesh with its distance from the one it was made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     /// The mesh, with normals and colours if the first has them; without groups.
     pub mesh: TriangleMesh,
-    /// The largest distance found from vertices, middles of edges and middles of triangles of either
-    /// mesh to the other, in the mesh's unit. Measured at these points, not proved between them.
+    /// The largest distance found from vertices, middles of edges and middles of triangles of
+    /// either mesh to the other, in the mesh's unit. Measured at these points, not proved between
+    /// them.
     pub error: f64,
 }
 
-/// Levels of detail of a manifold mesh: each has a quarter of the triangles of the one before, down to
-/// `least` triangles or as few as a simple mesh of the same topology allows. The mesh itself is not
-/// among them.
+/// Levels of detail of a manifold mesh: each has a quarter of the triangles of the one before, down
+/// to `least` triangles or as few as a simple mesh of the same topology allows. The mesh itself is
+/// not among them.
 ///
 /// ```
 /// use mesh::{Format, levels_of_detail};
@@ -68,14 +69,14 @@ pub fn levels_of_detail(mesh: &TriangleMesh, least: usize) -> Result<Vec<Level>,
     }
 }
 
-/// Collapses edges of a triangle mesh, the cheapest first, until `target` faces or fewer are left, or no
-/// edge can be collapsed: the topology stays, and no triangle turns by more than 78° at once.
+/// Collapses edges of a triangle mesh, the cheapest first, until `target` faces or fewer are left,
+/// or no edge can be collapsed: the topology stays, and no triangle turns by more than 78° at once.
 pub fn simplify(mesh: &mut HalfEdgeMesh, target: usize) {
     simplify_part(mesh, target, |_| true, |_, _| ());
 }
 
-/// Like [`simplify`], but only edges are collapsed both of whose ends are free. `merged` is told of each collapse:
-/// the vertex that is removed, then the one that stays.
+/// Like [`simplify`], but only edges are collapsed both of whose ends are free. `merged` is told of
+/// each collapse: the vertex that is removed, then the one that stays.
 pub fn simplify_part(
     mesh: &mut HalfEdgeMesh,
     target: usize,
@@ -130,7 +131,7 @@ struct Candidate {
     cost: f64,
     edge: HalfEdgeId,
     ends: [VertexId; 2],
-    /// How often the ends had changed.
+    /// Numbers of changes that the ends had seen when the cost was computed.
     ages: [u32; 2],
     position: DVec3,
 }
@@ -184,7 +185,7 @@ impl PartialEq for Candidate {
 
 impl Eq for Candidate {}
 
-/// A weighted sum of squared distances from planes, about an origin near them.
+/// Weighted sum of squared distances from planes, about an origin near them.
 #[derive(Clone, Copy)]
 struct Quadric {
     origin: DVec3,
@@ -234,7 +235,8 @@ impl Quadric {
         p.dot(self.squares * p) - 2.0 * self.linear.dot(p) + self.constant
     }
 
-    /// Where it is least; `None` if that is no single, well-defined point.
+    /// Returns the point where the quadric is least; `None` if that is no single, well-defined
+    /// point.
     fn minimum(&self) -> Option<DVec3> {
         let scale = self.weight / 3.0;
         let is_sound = self.squares.determinant() > 1e-6 * scale * scale * scale;
@@ -243,7 +245,8 @@ impl Quadric {
     }
 }
 
-/// The planes of the faces around each vertex, by area; along a boundary also the planes across it.
+/// Computes the quadric of each vertex: the squared distances from the planes of the faces around
+/// it, weighted by area; along a boundary also from the planes across it.
 fn vertex_quadrics(mesh: &HalfEdgeMesh) -> Vec<Quadric> {
     let mut quadrics = vec![Quadric::zero(DVec3::ZERO); mesh.vertex_slots()];
     for v in mesh.vertices() {
@@ -286,7 +289,7 @@ fn turns_over(mesh: &HalfEdgeMesh, h: HalfEdgeId, position: DVec3) -> bool {
     })
 }
 
-/// A mesh in which the nearest point is searched.
+/// Mesh in which the nearest point is searched.
 struct Surface<'a> {
     mesh: &'a TriangleMesh,
     bvh: Bvh,
@@ -302,11 +305,11 @@ impl<'a> Surface<'a> {
 
     /// The nearest triangle and the nearest point of it.
     fn nearest(&self, point: DVec3) -> Option<(usize, DVec3)> {
-        let closest = |i: u32| closest_point(&self.mesh.corners(i as usize), point);
-        let (i, _) = self
-            .bvh
-            .nearest(point, f64::INFINITY, |i| closest(i).distance_squared(point))?;
-        Some((i as usize, closest(i)))
+        let (i, _) = self.bvh.nearest(point, f64::INFINITY, |i| {
+            closest_point(&self.mesh.corners(i as usize), point).distance_squared(point)
+        })?;
+        let i = i as usize;
+        Some((i, closest_point(&self.mesh.corners(i), point)))
     }
 
     /// The largest distance of another mesh's vertices, edges' and triangles' middles.
@@ -323,11 +326,12 @@ impl<'a> Surface<'a> {
                 (a + b + c) / 3.0,
             ]
         });
-        let distance = |p: DVec3| {
-            let nearest = self.nearest(p);
-            nearest.map_or(f64::INFINITY, |(_, q)| q.distance(p))
-        };
-        samples.map(distance).fold(0.0, f64::max)
+        samples
+            .map(|p| {
+                let nearest = self.nearest(p);
+                nearest.map_or(f64::INFINITY, |(_, q)| q.distance(p))
+            })
+            .fold(0.0, f64::max)
     }
 
     /// Gives another mesh's vertices the normals and colours of the nearest points.
@@ -341,21 +345,26 @@ impl<'a> Surface<'a> {
             })
             .collect();
         other.normals = self.mesh.normals.as_ref().map(|normals| {
-            let mixed = |(i, w): &(usize, [f64; 3])| {
-                let own = self.mesh.triangles[*i].map(|v| normals[v as usize].normalize_or_zero());
-                (own[0] * w[0] + own[1] * w[1] + own[2] * w[2]).normalize_or_zero()
-            };
-            places.iter().map(mixed).collect()
+            places
+                .iter()
+                .map(|(i, w)| {
+                    let own =
+                        self.mesh.triangles[*i].map(|v| normals[v as usize].normalize_or_zero());
+                    (own[0] * w[0] + own[1] * w[1] + own[2] * w[2]).normalize_or_zero()
+                })
+                .collect()
         });
         other.colors = self.mesh.colors.as_ref().map(|colors| {
-            let mixed = |(i, w): &(usize, [f64; 3])| {
-                let own = self.mesh.triangles[*i].map(|v| colors[v as usize]);
-                [0, 1, 2].map(|k| {
-                    let parts = own.iter().zip(w).map(|(c, w)| f64::from(c[k]) * w);
-                    parts.sum::<f64>() as f32
+            places
+                .iter()
+                .map(|(i, w)| {
+                    let own = self.mesh.triangles[*i].map(|v| colors[v as usize]);
+                    [0, 1, 2].map(|k| {
+                        let parts = own.iter().zip(w).map(|(c, w)| f64::from(c[k]) * w);
+                        parts.sum::<f64>() as f32
+                    })
                 })
-            };
-            places.iter().map(mixed).collect()
+                .collect()
         });
     }
 }
@@ -367,8 +376,10 @@ fn weights([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
     if area == 0.0 {
         return [1.0, 0.0, 0.0];
     }
-    let part = |p: DVec3, q: DVec3| ((p - point).cross(q - point).dot(normal) / area).max(0.0);
-    let all = [part(*b, *c), part(*c, *a), part(*a, *b)];
+    let all = [(b, c), (c, a), (a, b)].map(|(p, q)| {
+        let part = (*p - point).cross(*q - point).dot(normal);
+        (part / area).max(0.0)
+    });
     let sum: f64 = all.iter().sum();
     all.map(|w| w / sum)
 }

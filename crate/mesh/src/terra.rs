@@ -1,4 +1,4 @@
-//! A height field: a grid of heights as a smooth surface.
+//! Height field: a grid of heights as a smooth surface.
 
 use crate::error::{Error, fail};
 use crate::heights::Heights;
@@ -28,7 +28,7 @@ pub fn terra(heights: &Heights, size: DVec3) -> Result<TriangleMesh, Error> {
         across,
         down,
         size,
-        values: averaged(heights, across, down),
+        values: average(heights, across, down),
     };
     let mut mesh = TriangleMesh::default();
     let mut normals = Vec::with_capacity(grid.values.len());
@@ -64,8 +64,9 @@ fn cells(columns: usize, rows: usize) -> [usize; 2] {
     [across, down.min(most / across)]
 }
 
-/// The heights at the corners of a grid: the mean of the pixels nearer to a corner than to the next.
-fn averaged(heights: &Heights, across: usize, down: usize) -> Vec<f64> {
+/// The heights at the corners of a grid: the mean of the pixels nearer to a corner than to the
+/// next.
+fn average(heights: &Heights, across: usize, down: usize) -> Vec<f64> {
     let range = |i: usize, cells: usize, pixels: usize| {
         // Pixels lie at the corners of as many cells as there are steps between them.
         let step = (pixels - 1) as f64 / cells as f64;
@@ -94,7 +95,7 @@ struct Grid {
     across: usize,
     down: usize,
     size: DVec3,
-    /// At the corners, row by row from the top.
+    /// Heights at the corners of the cells, 0 … 1, row by row from the top.
     values: Vec<f64>,
 }
 
@@ -105,7 +106,8 @@ impl Grid {
         self.size * DVec3::new(x, y, self.values[j * (self.across + 1) + i])
     }
 
-    /// Across the lines to the neighbours on both sides; at an edge, to the one that is there.
+    /// Returns the unit vector across the lines between the neighbours on both sides; at an edge of
+    /// the grid the corner itself stands for the missing neighbour.
     fn normal(&self, i: usize, j: usize) -> DVec3 {
         let [left, right] = [i.saturating_sub(1), (i + 1).min(self.across)];
         let [above, below] = [j.saturating_sub(1), (j + 1).min(self.down)];

@@ -27,14 +27,14 @@ pub struct TriangleMesh {
     pub normals: Option<Vec<DVec3>>,
     /// Vertex colours, one for each position: linear RGB with Rec. 709's primaries, 0 … 1.
     pub colors: Option<Vec<[f32; 3]>>,
-    /// Three indices into `positions` each, counter-clockwise seen from outside.
+    /// Indices into `positions`, three for each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Ranges of triangles that belong together, in ascending order and without overlap. Triangles
     /// outside all of them belong to no group.
     pub groups: Vec<Group>,
 }
 
-/// A named range of a mesh's triangles.
+/// Named range of a mesh's triangles.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Group {
     /// Name; may be empty.
@@ -45,7 +45,7 @@ pub struct Group {
     pub triangles: Range<u32>,
 }
 
-/// A surface material: what GLB, 3MF and MTL can all say.
+/// Surface material: what GLB, 3MF and MTL can all say.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Name; may be empty.
@@ -68,7 +68,7 @@ impl Default for Material {
 }
 
 impl TriangleMesh {
-    /// A mesh without normals, colours and groups.
+    /// Returns a mesh without normals, colours and groups.
     #[must_use]
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
         Self {
@@ -108,7 +108,7 @@ impl TriangleMesh {
     }
 
     /// Checks indices and positions, and removes triangles without area.
-    pub(crate) fn checked(mut self) -> Result<Self, Error> {
+    pub(crate) fn check(mut self) -> Result<Self, Error> {
         let count = self.positions.len();
         let last = self.triangles.iter().flatten().max();
         if let Some(last) = last.filter(|i| **i as usize >= count) {
@@ -117,8 +117,11 @@ impl TriangleMesh {
             ));
         }
         // A mesh far from everything would come out as nothing.
-        let far = |p: &DVec3| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE;
-        if let Some(i) = self.positions.iter().position(far) {
+        if let Some(i) = self
+            .positions
+            .iter()
+            .position(|p| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE)
+        {
             return fail(format!(
                 "the coordinates of corner {i} (from 0) are not all within ±{MAX_COORDINATE:e}"
             ));
@@ -156,17 +159,14 @@ impl TriangleMesh {
 
     /// Removes triangles without area, and moves the ranges of the groups.
     fn remove_flat_triangles(&mut self) {
-        let positions = &self.positions;
-        let has_area = |triangle: &[u32; 3]| {
-            let [a, b, c] = triangle.map(|i| positions[i as usize]);
-            let (ab, ac) = (b - a, c - a);
-            ab.cross(ac).length() > 1e-12 * ab.length() * ac.length()
-        };
         // How many triangles remain of the first i.
         let mut remaining = vec![0];
-        for triangle in &self.triangles {
-            let last = remaining[remaining.len() - 1];
-            remaining.push(last + u32::from(has_area(triangle)));
+        let mut count = 0;
+        for i in 0..self.triangles.len() {
+            let [a, b, c] = self.corners(i);
+            let (ab, ac) = (b - a, c - a);
+            count += u32::from(ab.cross(ac).length() > 1e-12 * ab.length() * ac.length());
+            remaining.push(count);
         }
         for group in &mut self.groups {
             let Range { start, end } = group.triangles;

@@ -14,7 +14,8 @@ struct Node {
     children: [u32; 2],
 }
 
-/// Boxes of numbered items. Queries do not depend on the order of the changes, only their time does.
+/// Boxes of numbered items. Queries do not depend on the order of the changes, only their time
+/// does.
 #[derive(Debug, Default)]
 pub struct Boxes {
     nodes: Vec<Node>,

@@ -39,8 +39,9 @@ pub struct Cage {
     pub spokes: Vec<Spoke>,
     /// Triangles, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// The lines that it is around, and lines of other cages beside. A ray ends where another line is nearer: its surface is met by rays
-    /// of that line, and beyond, edges between rays would be webs across a bend or between limbs.
+    /// The lines that it is around, and lines of other cages beside. A ray ends where another line
+    /// is nearer: its surface is met by rays of that line, and beyond, edges between rays would be
+    /// webs across a bend or between limbs.
     pub lines: Vec<Line>,
 }
 
@@ -85,7 +86,8 @@ fn spoke(origin: DVec3, direction: DVec3, radius: f64, reach: f64) -> Spoke {
 }
 
 impl Cage {
-    /// Where a ray of the cage ends: at its reach, or where another line is nearer than those that it starts from.
+    /// Where a ray of the cage ends: at its reach, or where another line is nearer than those that
+    /// it starts from.
     #[must_use]
     pub fn end(&self, spoke: &Spoke) -> f64 {
         let is_start = |line: &Line| line.is_own && line.distance(spoke.origin) < 1e-6;
@@ -125,8 +127,8 @@ impl Cage {
         low
     }
 
-    /// The cages around straight lines, each given by its two ends with their radii: lines that meet end to end are one piece, and
-    /// where three or more meet, pieces end.
+    /// The cages around straight lines, each given by its two ends with their radii: lines that
+    /// meet end to end are one piece, and where three or more meet, pieces end.
     #[must_use]
     pub fn around_lines(lines: &[[Place; 2]]) -> Vec<Self> {
         let chains = chains(lines);
@@ -200,7 +202,8 @@ impl Cage {
         }
     }
 
-    /// The cage around a flat face with holes: three rays from each corner, to both sides and outward. `None` if it has no area.
+    /// The cage around a flat face with holes: three rays from each corner, to both sides and
+    /// outward. `None` if it has no area.
     #[must_use]
     pub fn around_face(rings: &[Vec<DVec3>], radius: f64) -> Option<Self> {
         let face = crate::solids::Face::new(rings)?;
@@ -268,7 +271,8 @@ impl Cage {
         })
     }
 
-    /// The cages around the skeletons of a body's surface. Skeletons without an end (planes), and those that carve, have none.
+    /// The cages around the skeletons of a body's surface. Skeletons without an end (planes), and
+    /// those that carve, have none.
     #[must_use]
     pub fn of_surface(scene: &Scene, surface: &Surface) -> Vec<Self> {
         let mut elements = surface.element().to_vec();

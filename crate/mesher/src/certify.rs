@@ -1,12 +1,16 @@
-//! Whether triangles are near the surface: by samples, which may be of [polynomials](crate::patches), and by proofs, which are not.
+//! Whether triangles are near the surface: by samples, which may be of
+//! [polynomials](crate::patches), and by proofs, which are not.
 //!
-//! Let a triangle have the unit normal n, and let all points of it be outside the surface when they are moved by d·n, and inside when
-//! moved by −d·n. Then on each of these ways is a point of the surface: no point of the triangle is farther from it than d. That is proved for parts of the
-//! triangle in balls of radius ρ, by bounds C and D on the function's second and third derivative in them. F is within ½·C·ρ² of the linear
-//! function with its values at the corners (Waldron 1998). And it is within D·ρ³/6 of Taylor's polynomial of the second degree at the centre,
-//! and their gradients within D·ρ²/2. That polynomial is no larger or smaller than its Bézier coefficients: its values at corners, and values plus
-//! half the slope along edges, which F's own are as near to as that. (Terms whose second derivative jumps add their curvature times
-//! ρ²/2 and ρ.)
+//! Let a triangle have the unit normal n, and let all points of it be outside the surface when they
+//! are moved by d·n, and inside when moved by −d·n. Then on each of these ways is a point of the
+//! surface: no point of the triangle is farther from it than d. That is proved for parts of the
+//! triangle in balls of radius ρ, by bounds C and D on the function's second and third derivative
+//! in them. F is within ½·C·ρ² of the linear function with its values at the corners (Waldron
+//! 1998). And it is within D·ρ³/6 of Taylor's polynomial of the second degree at the centre, and
+//! their gradients within D·ρ²/2. That polynomial is no larger or smaller than its Bézier
+//! coefficients: its values at corners, and values plus half the slope along edges, which F's own
+//! are as near to as that. (Terms whose second derivative jumps add their curvature times ρ²/2 and
+//! ρ.)
 
 use crate::space::{SLACK, Space};
 use field::{Ball, Jet, THRESHOLD, Variation};
@@ -87,21 +91,25 @@ const MORE_SAMPLES: [[f64; 3]; 9] = [
     [0.75, 0.0, 0.25],
     [0.25, 0.0, 0.75],
 ];
-/// Largest [`sag`] of an edge, in tolerances, at which one sample is enough for a triangle whose corners' normals are near its own.
+/// Largest [`sag`] of an edge, in tolerances, at which one sample is enough for a triangle whose
+/// corners' normals are near its own.
 pub const EASY: f64 = 0.05;
-/// Least cosine of the angle between a corner's normal and the triangle's at which one sample is enough.
+/// Least cosine of the angle between a corner's normal and the triangle's at which one sample is
+/// enough.
 const EVEN: f64 = 0.95;
 /// The least cosine of the angle between a triangle's normal and the surface's anywhere.
 const FACING: f64 = 0.3;
-/// Largest distance from the surface by a first-order estimate, in tolerances, of a point that may be within the tolerance.
+/// Largest distance from the surface by a first-order estimate, in tolerances, of a point that may
+/// be within the tolerance.
 const FARTHEST: f64 = 2.0;
-/// Least cosine of the angle between a triangle's normal and the surface's at which the first samples are enough.
+/// Least cosine of the angle between a triangle's normal and the surface's at which the first
+/// samples are enough.
 const FLUSH: f64 = 0.9;
 /// Largest distance from the surface, in tolerances, at which the first samples are enough.
 const NEAR: f64 = 0.3;
 
-/// The distance of a triangle from the surface as samples tell it; `None` if it is more than the tolerance, or if the triangle is turned
-/// away from the surface somewhere.
+/// The distance of a triangle from the surface as samples tell it; `None` if it is more than the
+/// tolerance, or if the triangle is turned away from the surface somewhere.
 pub fn estimate(space: &Space<'_>, corners: [&Vertex; 3], tolerance: f64) -> Option<f64> {
     let normal = normal(corners.map(|v| v.position))?;
     let (mut most, mut facing) = (0.0_f64, 1.0_f64);
@@ -185,11 +193,12 @@ fn normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
 
 /// Most times that a triangle is divided into four for its proof.
 const DEPTH: u32 = 3;
-/// Ways along the normal on which the surface is looked for, in tolerances: short ones for parts that are thinner.
+/// Ways along the normal on which the surface is looked for, in tolerances: short ones for parts
+/// that are thinner.
 const WAYS: [f64; 2] = [1.0, 0.25];
 
-/// Whether no point of a triangle is farther from the surface than the tolerance, as proved: all points that are so far in front of it
-/// are outside, and all that are so far behind it inside.
+/// Whether no point of a triangle is farther from the surface than the tolerance, as proved: all
+/// points that are so far in front of it are outside, and all that are so far behind it inside.
 pub fn is_within(space: &Space<'_>, corners: [DVec3; 3], tolerance: f64) -> bool {
     let Some(normal) = normal(corners) else {
         return false;
@@ -206,7 +215,8 @@ pub fn at(space: &Space<'_>, point: DVec3) -> Vertex {
     Vertex::new(point, &space.jet_at(point))
 }
 
-/// Whether the first of two triangles is outside the surface and the second one inside, after `depth` divisions.
+/// Whether the first of two triangles is outside the surface and the second one inside, after
+/// `depth` divisions.
 fn is_between(space: &Space<'_>, pair: [[Vertex; 3]; 2], depth: u32) -> bool {
     let [front, back] = pair;
     let sides = [(&front, -1.0), (&back, 1.0)].map(|(corners, sign)| height(space, corners, sign));
@@ -233,7 +243,8 @@ fn is_between(space: &Space<'_>, pair: [[Vertex; 3]; 2], depth: u32) -> bool {
         .all(|(front, back)| is_between(space, [front, back], depth + 1))
 }
 
-/// A lower bound on the function less the threshold, times a sign, in a triangle; `None` if it is not positive at a corner.
+/// A lower bound on the function less the threshold, times a sign, in a triangle; `None` if it is
+/// not positive at a corner.
 fn height(space: &Space<'_>, corners: &[Vertex; 3], sign: f64) -> Option<f64> {
     let [error, steep_error] = space.worst_error();
     let lowest = corners.iter().map(|v| sign * v.value);
@@ -265,18 +276,21 @@ fn height(space: &Space<'_>, corners: &[Vertex; 3], sign: f64) -> Option<f64> {
         step,
         ..
     } = space.variation(space.part_for(ball), ball);
-    // How far the function and its gradient are from Taylor's polynomial of the second degree at the centre.
+    // How far the function and its gradient are from Taylor's polynomial of the second degree at
+    // the centre.
     let off = ((third * radius / 3.0 + rough).min(curvature) * 0.5 * radius + jump) * radius;
     let steep_off =
         (0.5 * third * radius + rough).min(curvature) * radius + jump + SLACK + steep_error;
-    // Its values at corners are that far from the function's, and its coefficients at edges further by half of them times the slopes' error.
+    // Its values at corners are that far from the function's, and its coefficients at edges further
+    // by half of them times the slopes' error.
     let quadratic = bezier - 2.0 * off - 0.5 * steep_off * longest;
     let linear = lowest - (0.5 * curvature * radius + 2.0 * jump) * radius;
     Some(quadratic.max(linear) - step - SLACK - error)
 }
 
-/// The place of the surface on a segment between two points where the function, less the threshold, has other signs:
-/// as a share of the way, between `margin` and 1 − `margin`. By false position with the slopes that were met on the way.
+/// The place of the surface on a segment between two points where the function, less the threshold,
+/// has other signs: as a share of the way, between `margin` and 1 − `margin`. By false position
+/// with the slopes that were met on the way.
 pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margin: f64) -> Vertex {
     let part = space.part_for(Ball {
         center: 0.5 * (a + b),
@@ -312,8 +326,8 @@ pub fn root(space: &Space<'_>, [a, b]: [DVec3; 2], [at_a, at_b]: [f64; 2], margi
     vertex
 }
 
-/// The point of the surface that is reached from a position along gradients, by a few steps of Newton's; not farther than
-/// `reach`. Polynomials may stand for the function.
+/// The point of the surface that is reached from a position along gradients, by a few steps of
+/// Newton's; not farther than `reach`. Polynomials may stand for the function.
 pub fn project(space: &Space<'_>, position: DVec3, reach: f64, tolerance: f64) -> Option<Vertex> {
     let near = |point| Vertex::new(point, &space.near_jet_at(point));
     steps(near, position, reach, tolerance)
@@ -329,7 +343,8 @@ pub fn project_exactly(
     steps(|point| at(space, point), position, reach, tolerance)
 }
 
-/// Newton's steps along gradients from a position to the surface; `None` if they lead farther away than `reach`.
+/// Newton's steps along gradients from a position to the surface;
+/// `None` if they lead farther away than `reach`.
 fn steps(
     vertex_at: impl Fn(DVec3) -> Vertex,
     position: DVec3,

@@ -1,12 +1,14 @@
-//! Coatings: coarse closed meshes around the pieces of a skeleton that follow it while a hand drags it.
+//! Coatings: coarse closed meshes around the pieces of a skeleton that follow it while a hand drags
+//! it.
 //!
-//! Angelidis, Jepp and Cani 2002, §3. Each maximal piece of a skeleton without branches has a [`Cage`]: a closed mesh each vertex of
-//! which moves along a ray (u, t, d) from a point u of the skeleton in a direction d, to where the field is T. An edge is
-//! split where |f(middle) − T| exceeds a bound; the rays of its ends are interpolated for the new vertex. When the skeleton moves, each
-//! search starts from the last t.
+//! Angelidis, Jepp and Cani 2002, §3. Each maximal piece of a skeleton without branches has a
+//! [`Cage`]: a closed mesh each vertex of which moves along a ray (u, t, d) from a point u of the
+//! skeleton in a direction d, to where the field is T. An edge is split where |f(middle) − T|
+//! exceeds a bound; the rays of its ends are interpolated for the new vertex. When the skeleton
+//! moves, each search starts from the last t.
 //!
-//! Nothing is proved of these meshes: pieces overlap where they blend, and what no ray meets is not there. The meshes of
-//! [`crate::mesh_scene`] are for files.
+//! Nothing is proved of these meshes: pieces overlap where they blend, and what no ray meets is not
+//! there. The meshes of [`crate::mesh_scene`] are for files.
 
 use crate::cages::{Cage, Spoke};
 use crate::options::{MeshError, Progress};
@@ -20,7 +22,8 @@ use std::collections::BTreeMap;
 
 /// Most times that triangles are divided.
 const DEEPEST: u32 = 8;
-/// Edges between rays that are nearer to each other than this share of their steps are not split: the surface jumps between them …
+/// Edges between rays that are nearer to each other than this share of their steps are not split:
+/// the surface jumps between them …
 const ALIKE: f64 = 1.0 / 32.0;
 /// … and than this one where one ray stays inside.
 const ALIKE_INSIDE: f64 = 0.5;
@@ -78,7 +81,8 @@ pub struct Coat {
     pub mesh: TriangleMesh,
     /// Evaluations of the function.
     pub evaluations: u64,
-    /// Vertices whose ray does not leave the surface within its reach: they are inside, where other shells cover them.
+    /// Vertices whose ray does not leave the surface within its reach: they are inside, where other
+    /// shells cover them.
     pub buried: usize,
     /// The largest |f − T| in the middle of an edge with both ends on the surface.
     pub excess: f64,
@@ -89,12 +93,13 @@ pub struct Coat {
 impl Coating {
     /// Most triangles of a coating: edges are not split further beyond.
     pub const MOST_TRIANGLES: usize = 400_000;
-    /// Most primitives that are evaluated at a point, summed over all points: some seconds. Edges are not split further beyond, and
-    /// beyond twice as many the cages that are left get no shells.
+    /// Most primitives that are evaluated at a point, summed over all points: some seconds. Edges
+    /// are not split further beyond, and beyond twice as many the cages that are left get no
+    /// shells.
     pub const MOST_WORK: u64 = 40_000_000;
 
-    /// Coats the cages of a function with the bound on |f − T| in the middles of edges, which may depend on the place: larger far from
-    /// the eye, say.
+    /// Coats the cages of a function with the bound on |f − T| in the middles of edges, which may
+    /// depend on the place: larger far from the eye, say.
     pub fn update(
         &mut self,
         function: &dyn Implicit,
@@ -266,7 +271,8 @@ impl Work<'_> {
         Ok((vertices, done))
     }
 
-    /// Splits the edges of some triangles that need it, and returns those with their new vertices, sorted.
+    /// Splits the edges of some triangles that need it, and returns those with their new vertices,
+    /// sorted.
     fn split(
         &mut self,
         cage: &Cage,
@@ -310,7 +316,8 @@ impl Work<'_> {
         Ok(middles)
     }
 
-    /// The vertex of a ray: from where it was last, else from a guess, else from the skeleton outwards.
+    /// The vertex of a ray: from where it was last, else from a guess, else from the skeleton
+    /// outwards.
     fn meet(&mut self, cage: &Cage, spoke: Spoke, number: u64, guess: Option<f64>) -> Vertex {
         self.done += 10 * cage.lines.len() as u64;
         let end = cage.end(&spoke);

@@ -1,4 +1,5 @@
-//! A balanced forest of octrees: a box cut into cells, of which neighbours across faces and edges differ by one level at most.
+//! A balanced forest of octrees: a box cut into cells, of which neighbours across faces and edges
+//! differ by one level at most.
 
 use glam::DVec3;
 use mesh::Aabb;
@@ -6,7 +7,8 @@ use mesh::Aabb;
 /// No node, no part.
 pub const NONE: u32 = u32::MAX;
 
-/// Bits of a coordinate: cells, corners and centres have whole coordinates below 2²⁰ along each axis.
+/// Bits of a coordinate: cells, corners and centres have whole coordinates below 2²⁰ along each
+/// axis.
 const BITS: u32 = 20;
 
 /// Position of a cell against the surface.
@@ -25,11 +27,13 @@ pub enum Side {
 /// Bounds on the function in a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Largest difference between the gradient and its linear interpolant in a tetrahedron of the cell.
+    /// Largest difference between the gradient and its linear interpolant in a tetrahedron of the
+    /// cell.
     pub rest: f64,
     /// Largest difference between the function and its linear interpolant there.
     pub off: f64,
-    /// Largest distance between the level set of that interpolant and the surface in the cell; infinite if unknown.
+    /// Largest distance between the level set of that interpolant and the surface in the cell;
+    /// infinite if unknown.
     pub error: f64,
     /// Whether smaller cells would prove no more: the gradient may jump by as much as its length.
     pub is_stuck: bool,
@@ -86,8 +90,9 @@ pub struct Forest {
 }
 
 impl Forest {
-    /// Divides a box into root cells that are nearly cubes, not smaller than a twentieth of its longest side. The usual level
-    /// is the first with cells of `finest` or less, and so many levels below it are allowed, both as far as coordinates reach.
+    /// Divides a box into root cells that are nearly cubes, not smaller than a twentieth of its
+    /// longest side. The usual level is the first with cells of `finest` or less, and so many
+    /// levels below it are allowed, both as far as coordinates reach.
     pub fn new(bounds: &Aabb, finest: f64, levels: u32) -> Self {
         let size = bounds.max - bounds.min;
         let longest = size.max_element();
@@ -189,7 +194,8 @@ impl Forest {
         }
     }
 
-    /// The neighbour of a cell of the same level in a direction, or the leaf that contains its place; `None` outside the box.
+    /// The neighbour of a cell of the same level in a direction, or the leaf that contains its
+    /// place; `None` outside the box.
     pub fn neighbor(&self, cell: &Cell, direction: [i64; 3]) -> Option<u32> {
         let at = [0, 1, 2].map(|i| i64::from(cell.at[i]) + direction[i]);
         self.find(cell.level, at)

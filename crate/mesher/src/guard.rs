@@ -1,7 +1,8 @@
 //! Keeps edits from making a mesh cut itself, where proofs of triangles may fail.
 //!
-//! The mesh of marching tetrahedra does not cut itself. If no edit makes a triangle that meets another one, as an exact test says, no later
-//! mesh does. The test is only made near guarded vertices: elsewhere [proofs](crate::certify) do the same for less.
+//! The mesh of marching tetrahedra does not cut itself. If no edit makes a triangle that meets
+//! another one, as an exact test says, no later mesh does. The test is only made near guarded
+//! vertices: elsewhere [proofs](crate::certify) do the same for less.
 
 use crate::boxes::Boxes;
 use glam::DVec3;
@@ -97,7 +98,8 @@ impl Guard {
         }
     }
 
-    /// Whether none of some triangles is flat, or meets another one or a face that stays, but in common vertices and edges.
+    /// Whether none of some triangles is flat, or meets another one or a face that stays, but in
+    /// common vertices and edges.
     pub fn is_free(&self, mesh: &HalfEdgeMesh, triangles: &[[Corner; 3]], gone: &[FaceId]) -> bool {
         let mut near = Vec::new();
         for (i, triangle) in triangles.iter().enumerate() {
@@ -154,8 +156,8 @@ fn meshed(triangles: &[[Corner; 3]]) -> TriangleMesh {
     )
 }
 
-/// Whether the corners of one triangle that are not those of another are on one side of its plane, with no doubt left by rounding: then
-/// they meet in common vertices and edges only.
+/// Whether the corners of one triangle that are not those of another are on one side of its plane,
+/// with no doubt left by rounding: then they meet in common vertices and edges only.
 fn is_beside(one: &[Corner; 3], plane: &[Corner; 3]) -> bool {
     let [a, b, c] = plane.map(|corner| corner.position);
     let (u, v) = (b - a, c - a);
@@ -174,7 +176,8 @@ fn is_beside(one: &[Corner; 3], plane: &[Corner; 3]) -> bool {
     above || below
 }
 
-/// Bound on the relative error of a volume that is computed of three differences: more than the 20 roundings of the computation.
+/// Bound on the relative error of a volume that is computed of three differences: more than the 20
+/// roundings of the computation.
 const ROUNDING: f64 = 1e-14;
 
 fn bounds(mesh: &HalfEdgeMesh, f: FaceId) -> Aabb {

@@ -1,8 +1,9 @@
 //! The tetrahedra of a balanced forest: a body-centred lattice whose cells may differ in size.
 //!
-//! Between two leaves of one size, four tetrahedra stand around the line that joins their centres, one for each edge of the
-//! common face, or two where a finer cell nearby divides that edge. Where a leaf meets finer ones, each quarter of its face is
-//! two triangles, which make tetrahedra with the centres on both sides. So all tetrahedra fit together face to face.
+//! Between two leaves of one size, four tetrahedra stand around the line that joins their centres,
+//! one for each edge of the common face, or two where a finer cell nearby divides that edge. Where
+//! a leaf meets finer ones, each quarter of its face is two triangles, which make tetrahedra with
+//! the centres on both sides. So all tetrahedra fit together face to face.
 
 use crate::forest::{Forest, NONE, Side};
 use crate::options::{MeshError, Progress};
@@ -38,7 +39,8 @@ pub fn direction(side: usize) -> [i64; 3] {
 pub struct Lattice {
     keys: Vec<Key>,
     values: Vec<(f64, DVec3)>,
-    /// Values of the function at vertices whose value in the lattice was moved away from the threshold.
+    /// Values of the function at vertices whose value in the lattice was moved away from the
+    /// threshold.
     moved: BTreeMap<Key, f64>,
     /// Vertices whose sign was changed.
     forced: BTreeSet<Key>,
@@ -92,8 +94,8 @@ impl Lattice {
         self.values[index as usize].1
     }
 
-    /// Value and gradient of the function at a vertex, without the changes that keep values off the threshold; `None` if it was not
-    /// evaluated there.
+    /// Value and gradient of the function at a vertex, without the changes that keep values off the
+    /// threshold; `None` if it was not evaluated there.
     pub fn jet(&self, key: Key) -> Option<Jet<f64>> {
         let index = self.find(key)?;
         let value = match self.moved.get(&key) {
@@ -107,7 +109,8 @@ impl Lattice {
         })
     }
 
-    /// Evaluates the function at all vertices of the tetrahedra of some cells where that was not done.
+    /// Evaluates the function at all vertices of the tetrahedra of some cells where that was not
+    /// done.
     ///
     /// # Errors
     /// If the caller cancels.
@@ -171,9 +174,9 @@ impl Lattice {
 /// Vertices that are collected before doubles are removed.
 const MANY_KEYS: usize = 8_000_000;
 
-/// Calls a function with the corners of each tetrahedron of a leaf that the surface may cross, and the one or two cells that it
-/// lies in. A tetrahedron between two such leaves comes once, with one of them. Its corners a, b, c, d are turned so that
-/// (b−a)×(c−a)·(d−a) > 0.
+/// Calls a function with the corners of each tetrahedron of a leaf that the surface may cross, and
+/// the one or two cells that it lies in. A tetrahedron between two such leaves comes once, with one
+/// of them. Its corners a, b, c, d are turned so that (b−a)×(c−a)·(d−a) > 0.
 pub fn tetrahedra(forest: &Forest, node: u32, each: &mut impl FnMut([Key; 4], [u32; 2])) {
     for side in 0..6 {
         let cell = &forest.cells[node as usize];
@@ -199,8 +202,8 @@ pub fn tetrahedra(forest: &Forest, node: u32, each: &mut impl FnMut([Key; 4], [u
     }
 }
 
-/// The corners of a face, counter-clockwise seen from outside the cell, and for the edge from each to the next the direction
-/// from the cell to that edge.
+/// The corners of a face, counter-clockwise seen from outside the cell, and for the edge from each
+/// to the next the direction from the cell to that edge.
 fn ring(low: [u32; 3], span: u32, side: usize) -> [([u32; 3], [i64; 3]); 4] {
     let (axis, is_high) = (side / 2, side % 2 == 1);
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -237,8 +240,8 @@ fn middle(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
     [0, 1, 2].map(|i| a[i].midpoint(b[i]))
 }
 
-/// Calls a function with the edges of a face, halves where finer cells divide them. `across` is the way over the face, if
-/// there are cells beyond.
+/// Calls a function with the edges of a face, halves where finer cells divide them. `across` is the
+/// way over the face, if there are cells beyond.
 fn face_edges(
     forest: &Forest,
     node: u32,
@@ -317,7 +320,8 @@ fn quarter(
     }
 }
 
-/// Triangles of a side of a leaf that is on the boundary of the box, counter-clockwise seen from outside.
+/// Triangles of a side of a leaf that is on the boundary of the box, counter-clockwise seen from
+/// outside.
 pub fn boundary_triangles(forest: &Forest, node: u32, side: usize) -> Vec<[Key; 3]> {
     let cell = &forest.cells[node as usize];
     let face = ring(forest.corner(cell), forest.span(cell.level), side).map(|(c, _)| c);

@@ -28,25 +28,35 @@
 //! ```
 //!
 //! The way of a mesh, a file each:
-//! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with tetrahedra that fit together;
-//! - `refine.rs` splits cells until each proves, by bounds on the function's derivatives, that the linear interpolant has
-//!   the topology of the surface; `thin.rs` splits those on that may hide a part which is thinner than they are; `space.rs` evaluates the function by the terms that matter in a place;
+//! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with
+//!   tetrahedra that fit together;
+//! - `refine.rs` splits cells until each proves, by bounds on the function's derivatives, that the
+//!   linear interpolant has the topology of the surface; `thin.rs` splits those on that may hide a
+//!   part which is thinner than they are; `space.rs` evaluates the function by the terms that
+//!   matter in a place;
 //! - `march.rs` makes triangles of the interpolant's level set, and lids where a box cuts it off;
-//! - `patches.rs` fits polynomials to the function near the surface, which are evaluated much sooner than it;
-//! - `improve/` makes them fewer and better, as long as samples of `certify.rs` tell that each is within the tolerance and all vertices of the
-//!   fine mesh are that near to the new one; then `certify.rs` proves what can be proved of them;
+//! - `patches.rs` fits polynomials to the function near the surface, which are evaluated much
+//!   sooner than it;
+//! - `improve/` makes them fewer and better, as long as samples of `certify.rs` tell that each is
+//!   within the tolerance and all vertices of the fine mesh are that near to the new one; then
+//!   `certify.rs` proves what can be proved of them;
 //! - `measure.rs` measures distances by samples;
-//! - `surface.rs` does all that for one function ([`polygonize`]), `model.rs` for a scene ([`mesh_scene`]) with the help of
-//!   `solids.rs` (hard shapes), `level.rs` (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
+//! - `surface.rs` does all that for one function ([`polygonize`]),
+//!   `model.rs` for a scene ([`mesh_scene`]) with the help of `solids.rs` (hard shapes), `level.rs`
+//!   (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
-//! Limits of the proofs: that a triangle is near the surface is not always proved at kinks (profiles, creases between bodies), where the
-//! gradient jumps, where a surface touches itself, and where it has parts as thin as a tolerance. Such triangles are counted as `unproved`; samples
-//! measure their distance. Of the way back, from the surface to the mesh, no proof is made: it is checked at the vertices of the fine mesh. Triangles do not cut
-//! each other: an exact test looks at all of them at the end, and where cells leave the surface open `guard.rs` refuses each edit that an exact test finds to do so, with `boxes.rs` for the
-//! search. Parts thinner than the tolerance are there, about half a tolerance thick, unless they are too many: a thin plate of some
-//! hundred tolerances' size may be missing; its cells are counted as undecided.
+//! Limits of the proofs: that a triangle is near the surface is not always proved at kinks
+//! (profiles, creases between bodies), where the gradient jumps, where a surface touches itself,
+//! and where it has parts as thin as a tolerance. Such triangles are counted as `unproved`; samples
+//! measure their distance. Of the way back, from the surface to the mesh, no proof is made: it is
+//! checked at the vertices of the fine mesh. Triangles do not cut each other: an exact test looks
+//! at all of them at the end, and where cells leave the surface open `guard.rs` refuses each edit
+//! that an exact test finds to do so, with `boxes.rs` for the search. Parts thinner than the
+//! tolerance are there, about half a tolerance thick, unless they are too many: a thin plate of
+//! some hundred tolerances' size may be missing; its cells are counted as undecided.
 //!
-//! [`Coating`] is another kind of mesh, which follows a skeleton that is dragged: `cages.rs` has its rays, `coating.rs` their ends.
+//! [`Coating`] is another kind of mesh, which follows a skeleton that is dragged: `cages.rs` has
+//! its rays, `coating.rs` their ends.
 //!
 //! Results have the same bits everywhere, whatever the number of threads.
 

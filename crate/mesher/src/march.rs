@@ -1,6 +1,6 @@
-//! Marching tetrahedra: the level set of the linear interpolant, closed by lids where the box cuts it off. Its vertices slide
-//! along the edges of the lattice to the surface: that keeps each triangle in its tetrahedron, so that the mesh does not cut
-//! itself.
+//! Marching tetrahedra: the level set of the linear interpolant, closed by lids where the box cuts
+//! it off. Its vertices slide along the edges of the lattice to the surface: that keeps each
+//! triangle in its tetrahedron, so that the mesh does not cut itself.
 
 use crate::certify::{Vertex, root};
 use crate::forest::{Forest, NONE, Side};
@@ -10,8 +10,8 @@ use crate::parallel::map_told;
 use crate::refine::crossing;
 use crate::space::Space;
 
-/// An edge of the lattice on which a vertex of the mesh lies, as the numbers of its ends, the lower one first; or twice the same
-/// vertex of the lattice.
+/// An edge of the lattice on which a vertex of the mesh lies, as the numbers of its ends, the lower
+/// one first; or twice the same vertex of the lattice.
 type Place = u64;
 
 /// The mesh before it is improved.
@@ -31,7 +31,8 @@ const MARGIN: f64 = 0.01;
 /// Even permutations that bring one corner to the front.
 const FIRST: [[usize; 4]; 4] = [[0, 1, 2, 3], [1, 0, 3, 2], [2, 0, 1, 3], [3, 0, 2, 1]];
 
-/// Even permutations that bring two corners to the front, for pairs in the order 01, 02, 03, 12, 13, 23.
+/// Even permutations that bring two corners to the front, for pairs in the order 01, 02, 03, 12,
+/// 13, 23.
 const FIRST_TWO: [[usize; 4]; 6] = [
     [0, 1, 2, 3],
     [0, 2, 3, 1],
@@ -127,8 +128,8 @@ fn lids(
     triangles
 }
 
-/// The level set of the interpolant in all cells. Leaves that are wholly inside have lids, too: `lattice` is extended by
-/// their vertices.
+/// The level set of the interpolant in all cells. Leaves that are wholly inside have lids, too:
+/// `lattice` is extended by their vertices.
 ///
 /// # Errors
 /// If the caller cancels.

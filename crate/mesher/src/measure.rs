@@ -1,4 +1,5 @@
-//! Distances between a mesh and a surface by samples: they check what is proved, and tell of what is not.
+//! Distances between a mesh and a surface by samples: they check what is proved, and tell of what
+//! is not.
 
 use crate::certify::{Vertex, project_exactly};
 use crate::forest::Cell;
@@ -11,7 +12,8 @@ use crate::space::Space;
 use glam::DVec3;
 use mesh::{Aabb, Bvh, closest_point};
 
-/// Most triangles, and most places of the surface, that are looked at where proofs may fail: they are spread evenly.
+/// Most triangles, and most places of the surface, that are looked at where proofs may fail: they
+/// are spread evenly.
 const MOST: usize = 1500;
 /// Most of those anywhere.
 const FEW: usize = 600;
@@ -48,7 +50,8 @@ impl Measured {
     }
 }
 
-/// Measures both distances: at places spread over the mesh and the surface, and more of them where proofs may fail.
+/// Measures both distances: at places spread over the mesh and the surface, and more of them where
+/// proofs may fail.
 ///
 /// # Errors
 /// If the caller cancels.
@@ -68,7 +71,8 @@ pub fn distances(
         root_of(bvh.nearest(p, f64::INFINITY, square))
     };
 
-    // The surface: where the mesh was before it was improved, and what is near points of the cells that it may cross.
+    // The surface: where the mesh was before it was improved, and what is near points of the cells
+    // that it may cross.
     let is_open = |v: &&Vertex| may_be_unproved(&space.forest, v.position);
     let open: Vec<DVec3> = raw
         .vertices
@@ -165,7 +169,8 @@ pub fn distances(
     Ok(measured)
 }
 
-/// A point of a cell, another share of the way in each: by the fractions of multiples of three irrational numbers.
+/// A point of a cell, another share of the way in each: by the fractions of multiples of three
+/// irrational numbers.
 fn scattered(space: &Space<'_>, cell: &Cell, node: u32) -> DVec3 {
     let share = (DVec3::new(0.819_172_513, 0.671_043_607, 0.549_700_478) * f64::from(node)).fract();
     space.forest.center(cell) + (share - 0.5) * space.forest.size(cell.level)
@@ -177,7 +182,8 @@ fn spread<T>(all: Vec<T>, most: usize) -> Vec<T> {
     all.into_iter().step_by(step).collect()
 }
 
-/// Distance to a place of the surface on a ray, no nearer than it is; `None` if none was found within the largest distance.
+/// Distance to a place of the surface on a ray, no nearer than it is; `None` if none was found
+/// within the largest distance.
 fn along_ray(
     space: &Space<'_>,
     from: DVec3,

@@ -32,7 +32,8 @@ impl Default for Tolerance {
     }
 }
 
-/// Lower bound of a model's size, as a part of the size of the box found for it, which is a little too large.
+/// Lower bound of a model's size, as a part of the size of the box found for it, which is a little
+/// too large.
 const SMALLEST: f64 = 1.0 - 2.0 * EXCESS;
 
 /// Wishes for the mesh of a scene.
@@ -102,8 +103,8 @@ pub struct ModelPart {
     pub raw_triangles: usize,
     /// Distances that samples found, of soft surfaces.
     pub measured: Measured,
-    /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices are nearer to each other than
-    /// numbers can tell.
+    /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices
+    /// are nearer to each other than numbers can tell.
     pub crossings: usize,
 }
 
@@ -116,7 +117,8 @@ impl Model {
     }
 }
 
-/// Meshes a scene: for each body its soft surface, its closed hard elements, and what is open by nature.
+/// Meshes a scene: for each body its soft surface, its closed hard elements, and what is open by
+/// nature.
 ///
 /// ```
 /// use mesher::{Progress, Wishes};
@@ -205,8 +207,8 @@ pub struct CoatedBody {
     pub coat: Coat,
 }
 
-/// Coats the skeletons of all bodies of a scene. `coatings` has one for each body, with what was found for the last scene: it is made
-/// as long as it must be.
+/// Coats the skeletons of all bodies of a scene. `coatings` has one for each body, with what was
+/// found for the last scene: it is made as long as it must be.
 ///
 /// # Errors
 /// If the caller cancels.

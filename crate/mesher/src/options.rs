@@ -44,7 +44,8 @@ pub enum MeshError {
     TooMany {
         /// The limit.
         limit: usize,
-        /// A tolerance with which there are fewer, as far as can be told; `None` if no tolerance helps.
+        /// A tolerance with which there are fewer, as far as can be told; `None` if no tolerance
+        /// helps.
         fitting: Option<f64>,
     },
     /// The function is nearly its threshold throughout a region, so that no cells are fine enough.

@@ -45,7 +45,8 @@ impl<'a> Paint<'a> {
         }
     }
 
-    /// Gives a mesh one group with the material that most primitives have, and vertex colours if there are several materials.
+    /// Gives a mesh one group with the material that most primitives have, and vertex colours if
+    /// there are several materials.
     ///
     /// # Errors
     /// If the caller cancels.
@@ -101,8 +102,8 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Adds a mesh of an element. Where that has paint the vertices get the colour at the nearest corner, and the finish is the one that
-    /// the colours multiply.
+    /// Adds a mesh of an element. Where that has paint the vertices get the colour at the nearest
+    /// corner, and the finish is the one that the colours multiply.
     pub fn add(&mut self, mesh: &TriangleMesh, element: &Element) {
         let mut mesh = mesh.clone();
         let mut finish = element.finish;
@@ -129,8 +130,9 @@ impl<'a> Parts<'a> {
         ((paint.finish as usize) < self.scene.finishes.len()).then_some((paint, corners))
     }
 
-    /// One mesh with a group for each finish, and with vertex colours if there is paint. If asked, vertices at the same place become one:
-    /// their normals are added up, and their colours averaged.
+    /// One mesh with a group for each finish, and with vertex colours if there is paint. If asked,
+    /// vertices at the same place become one: their normals are added up, and their colours
+    /// averaged.
     pub fn mesh(self, is_welded: bool) -> TriangleMesh {
         let mut all = TriangleMesh::default();
         let (mut normals, mut colors) = (Vec::new(), Vec::new());

@@ -8,7 +8,8 @@ const BATCH: usize = 1024;
 /// Items between two reports that take some hundred evaluations each.
 pub const LARGE: usize = 128;
 
-/// The same as [`map`], with reports of the last progress in between, so that a long computation can be cancelled.
+/// The same as [`map`], with reports of the last progress in between, so that a long computation
+/// can be cancelled.
 ///
 /// # Errors
 /// If the caller cancels.
@@ -43,8 +44,8 @@ pub fn map_by<T: Sync, R: Send>(
 /// Items below which no threads are started.
 const FEW: usize = 64;
 
-/// Calls a pure function with each item, on so many threads, and returns the results in the order of the items. With one
-/// thread, and always in wasm, none is started.
+/// Calls a pure function with each item, on so many threads, and returns the results in the order
+/// of the items. With one thread, and always in wasm, none is started.
 pub fn map<T: Sync, R: Send>(threads: usize, items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> {
     if threads <= 1 || items.len() < FEW || cfg!(target_arch = "wasm32") {
         return items.iter().map(f).collect();

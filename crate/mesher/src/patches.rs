@@ -1,10 +1,13 @@
-//! Polynomials of the fifth degree that stand for the function in boxes near the surface, where edits of the mesh look at it
-//! hundreds of times: each costs at most as much as some forty evaluations, and then a twentieth of one.
+//! Polynomials of the fifth degree that stand for the function in boxes near the surface, where
+//! edits of the mesh look at it hundreds of times: each costs at most as much as some forty
+//! evaluations, and then a twentieth of one.
 //!
-//! A box is a cell with at most two generations of cells below it that the surface may cross: these are as fine as the shape is there, so
-//! that nothing lies between samples. The polynomial is the one with the least squares of errors of values and gradients at 27
-//! points. Where it is off there or at 14 others by more than a small share of the tolerance, the cell's children are tried;
-//! where leaves fail, as at kinks, the function itself is evaluated. What is proved of a mesh is proved of the function.
+//! A box is a cell with at most two generations of cells below it that the surface may cross: these
+//! are as fine as the shape is there, so that nothing lies between samples. The polynomial is the
+//! one with the least squares of errors of values and gradients at 27 points. Where it is off there
+//! or at 14 others by more than a small share of the tolerance, the cell's children are tried;
+//! where leaves fail, as at kinks, the function itself is evaluated. What is proved of a mesh is
+//! proved of the function.
 
 use crate::forest::{Forest, NONE, Side};
 use crate::lattice::{Lattice, pack};
@@ -41,7 +44,8 @@ const BATCH: usize = 64;
 struct Patch {
     center: DVec3,
     half: DVec3,
-    /// Coefficients of xⁱyʲzᵏ, i + j + k ≤ 5, where x, y and z run from −1 to 1 in the box: sorted by k, then j, then i.
+    /// Coefficients of xⁱyʲzᵏ, i + j + k ≤ 5, where x, y and z run from −1 to 1 in the box: sorted
+    /// by k, then j, then i.
     coefficients: [f64; TERMS],
 }
 
@@ -57,7 +61,8 @@ pub struct Patches {
 }
 
 impl Patches {
-    /// Value and gradient by the polynomial that serves in a leaf, if there is one and the point is in its box.
+    /// Value and gradient by the polynomial that serves in a leaf, if there is one and the point is
+    /// in its box.
     pub fn jet(&self, leaf: u32, point: DVec3) -> Option<Jet<f64>> {
         let patch = *self.of_cell.get(leaf as usize)?;
         let patch = self.patches.get(patch as usize)?;
@@ -67,7 +72,8 @@ impl Patches {
         is_in.then(|| patch.jet(place))
     }
 
-    /// Fits polynomials to a function, wherever the surface may be, when the values at the vertices of the lattice are known.
+    /// Fits polynomials to a function, wherever the surface may be, when the values at the vertices
+    /// of the lattice are known.
     ///
     /// # Errors
     /// If the caller cancels.
@@ -132,7 +138,8 @@ impl Patches {
     }
 }
 
-/// The largest number of generations below a cell down to leaves that the surface may cross; `None` if there is no such leaf.
+/// The largest number of generations below a cell down to leaves that the surface may cross; `None`
+/// if there is no such leaf.
 fn heights(forest: &Forest) -> Vec<Option<u32>> {
     let mut heights = vec![None; forest.cells.len()];
     // Children come after their parents.
@@ -187,7 +194,8 @@ impl Patch {
         (is_near(&samples) && is_near(&others().map(exact))).then_some(patch)
     }
 
-    /// Whether the polynomial is near the function at some places: as near as a distance tells and, of the slope, a share.
+    /// Whether the polynomial is near the function at some places: as near as a distance tells and,
+    /// of the slope, a share.
     fn is_near(&self, samples: &[Sample], distance: f64, share: f64) -> bool {
         let steepness = |jet: &Jet<f64>| DVec3::from_array(jet.gradient).length();
         // Where the surface may be, if it may be anywhere.
@@ -213,7 +221,8 @@ impl Patch {
 
     /// Value and gradient at a place in the box, from −1 to 1 along each axis.
     fn jet(&self, place: DVec3) -> Jet<f64> {
-        // Horner's scheme in x for each pair of powers of y and z, in y for each power of z, and in z.
+        // Horner's scheme in x for each pair of powers of y and z, in y for each power of z, and in
+        // z.
         let DVec3 { x, y, z } = place;
         let mut end = TERMS;
         let [mut value, mut by_x, mut by_y, mut by_z] = [0.0; 4];
@@ -276,7 +285,8 @@ fn others() -> [DVec3; 14] {
     })
 }
 
-/// Each coefficient as a linear function of the data: (AᵀA)⁻¹Aᵀ, where A has the values and slopes of the terms at the nodes.
+/// Each coefficient as a linear function of the data: (AᵀA)⁻¹Aᵀ, where A has the values and slopes
+/// of the terms at the nodes.
 static FIT: LazyLock<[[f64; DATA]; TERMS]> = LazyLock::new(|| {
     let term = |i: usize| {
         let mut patch = Patch {

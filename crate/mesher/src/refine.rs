@@ -1,10 +1,13 @@
-//! Refinement of cells until each proves that the linear interpolant has the topology of the surface and is near it.
+//! Refinement of cells until each proves that the linear interpolant has the topology of the
+//! surface and is near it.
 //!
-//! Let L be the interpolant of F on the tetrahedra of the [lattice](crate::lattice). Where no point with F = T lies in a
-//! tetrahedron, or else ⟨∇F(x), ∇L⟩ > 0 for all x of it, the level sets of (1−s)F + sL are isotopic for all s from 0 to 1: none
-//! of the generalised gradients vanishes (Agrachev, Pallaschke and Scholtes 1997, on piecewise smooth functions). That is Plantinga
-//! and Vegter's condition, for tetrahedra. The gradient in a tetrahedron in a ball of radius R is the linear interpolant of
-//! those at its corners up to D·R²/2, with D a bound on the third derivative; or up to C·R, with C one on the second.
+//! Let L be the interpolant of F on the tetrahedra of the [lattice](crate::lattice). Where no point
+//! with F = T lies in a tetrahedron, or else ⟨∇F(x), ∇L⟩ > 0 for all x of it, the level sets of
+//! (1−s)F + sL are isotopic for all s from 0 to 1: none of the generalised gradients vanishes
+//! (Agrachev, Pallaschke and Scholtes 1997, on piecewise smooth functions). That is Plantinga and
+//! Vegter's condition, for tetrahedra. The gradient in a tetrahedron in a ball of radius R is the
+//! linear interpolant of those at its corners up to D·R²/2, with D a bound on the third derivative;
+//! or up to C·R, with C one on the second.
 
 use crate::forest::{Bounds, Cell, Forest, NONE, Side};
 use crate::lattice::Lattice;
@@ -15,15 +18,16 @@ use field::{Ball, Jet, Part, THRESHOLD, Variation};
 use glam::DVec3;
 use mesh::Aabb;
 
-/// Cells are split until the gradient is so many times the error of its interpolant: then nearly all tetrahedra pass.
+/// Cells are split until the gradient is so many times the error of its interpolant: then nearly
+/// all tetrahedra pass.
 const STEADY: f64 = 1.5;
 
-/// The tetrahedra of a cell of size s are in balls with R² = 5/16·s²; linear interpolation is off by R²/2 times the second
-/// derivative at most (Waldron 1998).
+/// The tetrahedra of a cell of size s are in balls with R² = 5/16·s²; linear interpolation is off
+/// by R²/2 times the second derivative at most (Waldron 1998).
 const INTERPOLATION: f64 = 5.0 / 32.0;
 
-/// Values nearer to the threshold than this share of the tolerance times the slope are moved away from it, so that no vertex
-/// of the mesh is at a vertex of the lattice.
+/// Values nearer to the threshold than this share of the tolerance times the slope are moved away
+/// from it, so that no vertex of the mesh is at a vertex of the lattice.
 pub const NUDGE: f64 = 0.1;
 
 /// Cells are not divided below so many tolerances where the gradient jumps.
@@ -55,7 +59,8 @@ pub fn coarse_range(variation: &Variation, error: f64) -> [f64; 2] {
     [low - error, high + error]
 }
 
-/// Bounds on the value in a box, by those in a ball around it, the function in its middle, and the values' error.
+/// Bounds on the value in a box, by those in a ball around it, the function in its middle, and the
+/// values' error.
 pub fn fine_range(variation: &Variation, jet: &Jet<f64>, size: DVec3, error: f64) -> [f64; 2] {
     let radius = 0.5 * size.length() * (1.0 + 1e-9);
     // A box is a part of the ball.
@@ -97,7 +102,8 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     } = variation;
     let error = error(space, cell.part, size);
     let sure = side(coarse_range(&variation, error));
-    // Away from the surface the function itself does not matter, unless a jump could be as large as its slope.
+    // Away from the surface the function itself does not matter, unless a jump could be as large as
+    // its slope.
     let is_known = sure != Side::Crossing && jump == 0.0;
     let jet = (!is_known).then(|| space.jet(cell.part, center));
     let side = jet.map_or(sure, |jet| side(fine_range(&variation, &jet, size, error)));
@@ -131,8 +137,8 @@ fn look(space: &Space<'_>, cell: &Cell, [tolerance, fine]: [f64; 2]) -> Look {
     }
 }
 
-/// A box around the surface in a box; `None` if there is no surface. On each side it is larger by at most [`EXCESS`] of its longest
-/// side, but for surfaces that end at very many places there.
+/// A box around the surface in a box; `None` if there is no surface. On each side it is larger by
+/// at most [`EXCESS`] of its longest side, but for surfaces that end at very many places there.
 ///
 /// # Errors
 /// If all of the box is inside, or if the caller cancels.
@@ -186,7 +192,8 @@ pub fn extent(
         let hull = boxes.fold(Aabb::EMPTY, |all, one| all.union(&one));
         let longest = hull.size().max_element();
         if crossing.len() <= MANY_CELLS {
-            // All cells down to a sixteenth, so that no part is missed; then those that say where the box ends.
+            // All cells down to a sixteenth, so that no part is missed; then those that say where
+            // the box ends.
             let is_coarse = |node: &u32| {
                 let cell = &space.forest.cells[*node as usize];
                 let size = space.forest.size(cell.level);
@@ -236,7 +243,8 @@ pub struct Refinement<'s, 'a> {
     pub threads: usize,
     /// Number of cells that were looked at.
     fresh: usize,
-    /// For each cell that was judged since something changed beside it, those around it in which the interpolant changes its sign.
+    /// For each cell that was judged since something changed beside it, those around it in which
+    /// the interpolant changes its sign.
     verdicts: Vec<Option<Vec<u32>>>,
     /// Number of cells that there were then, and the errors of values and gradients.
     judged: (usize, [f64; 2]),
@@ -264,9 +272,10 @@ impl<'s, 'a> Refinement<'s, 'a> {
         }
     }
 
-    /// Refines the cells, down to the usual level, until their interpolants have the topology of the surface and are within the
-    /// tolerance. Cells that cannot be refined further are marked as undecided. Returns the leaves in which the interpolant changes
-    /// its sign, in the order of their numbers.
+    /// Refines the cells, down to the usual level, until their interpolants have the topology of
+    /// the surface and are within the tolerance. Cells that cannot be refined further are marked as
+    /// undecided. Returns the leaves in which the interpolant changes its sign, in the order of
+    /// their numbers.
     ///
     /// # Errors
     /// If there are too many cells, or if the caller cancels.
@@ -433,7 +442,8 @@ const BATCH: usize = 20_000;
 
 /// Cells of a flat region that are looked at to tell it.
 const MOST_LOOKED_AT: usize = 1000;
-/// Change of the function over such a cell together with its distance from the threshold, in thresholds.
+/// Change of the function over such a cell together with its distance from the threshold, in
+/// thresholds.
 const FLAT: f64 = 0.02;
 
 /// Why there are too many cells.

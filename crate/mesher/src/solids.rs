@@ -10,7 +10,8 @@ use scene::Shape;
 
 /// Most segments of a circle.
 const MOST_SEGMENTS: usize = 2048;
-/// Fewest segments of a circle. Neighbouring sides then differ by less than 30°, so that files shade them smoothly.
+/// Fewest segments of a circle. Neighbouring sides then differ by less than 30°, so that files
+/// shade them smoothly.
 const LEAST_SEGMENTS: usize = 13;
 
 /// A hard shape as triangles.
@@ -38,8 +39,8 @@ impl Solid {
     }
 }
 
-/// Tessellates a shape with a radius that may overrule its own, and cuts a plane off by a box. Quadrics are left out: they are
-/// level sets.
+/// Tessellates a shape with a radius that may overrule its own, and cuts a plane off by a box.
+/// Quadrics are left out: they are level sets.
 pub fn tessellate(shape: &Shape, radius: f64, tolerance: f64, limits: &Aabb) -> Solid {
     match *shape {
         Shape::Sphere { center, .. } => Solid::closed(ball(center, radius, tolerance)),
@@ -113,8 +114,8 @@ fn across(direction: DVec3) -> [DVec3; 2] {
     [x, direction.cross(x)]
 }
 
-/// Triangles between rings, each a single point or `n` points that turn counter-clockwise seen from the last ring; the last is
-/// joined with the first if `is_closed`.
+/// Triangles between rings, each a single point or `n` points that turn counter-clockwise seen from
+/// the last ring; the last is joined with the first if `is_closed`.
 fn skin(rings: &[Vec<DVec3>], is_closed: bool) -> TriangleMesh {
     let mut mesh = TriangleMesh::default();
     let mut starts = Vec::new();
@@ -337,7 +338,8 @@ impl Face {
                 ring
             })
             .collect();
-        // This one uses every corner of a side, also of those that lie on one line, so that prisms are closed.
+        // This one uses every corner of a side, also of those that lie on one line, so that prisms
+        // are closed.
         let flat = |p: &DVec3| Vec2::new((*p - outer[0]).dot(x), (*p - outer[0]).dot(y));
         let polygons = rings.iter().map(|ring| ring.iter().map(flat).collect());
         let polygons: Polygons = polygons.collect();

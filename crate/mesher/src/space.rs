@@ -12,9 +12,10 @@ use crate::patches::Patches;
 /// Bound on the sum of terms that are left out at a place, in units of the threshold.
 pub const SLACK: f64 = 1e-7;
 
-/// Error of a polynomial that may stand for far terms, in units of the threshold, over the tolerance as a part of the surface's size:
-/// where the function falls by the threshold along the whole surface or on a shorter way, it moves no point by more than a fifth
-/// of the tolerance, and mostly by far less.
+/// Error of a polynomial that may stand for far terms, in units of the threshold, over the
+/// tolerance as a part of the surface's size: where the function falls by the threshold along the
+/// whole surface or on a shorter way, it moves no point by more than a fifth of the tolerance, and
+/// mostly by far less.
 const BORNE: f64 = 0.2;
 
 /// Parts with fewer terms are not divided further.
@@ -45,7 +46,8 @@ pub struct Space<'a> {
 }
 
 impl<'a> Space<'a> {
-    /// A function in a forest of which nothing is known yet, for a tolerance as a part of the surface's size.
+    /// A function in a forest of which nothing is known yet, for a tolerance as a part of the
+    /// surface's size.
     pub fn new(function: &'a dyn Implicit, forest: Forest, tolerance: f64) -> Self {
         Self {
             function,
@@ -129,7 +131,8 @@ impl<'a> Space<'a> {
         self.parts.len() as u32 - 1
     }
 
-    /// Fits [polynomials](Patches) to the function near the surface, for a tolerance, when the cells are known.
+    /// Fits [polynomials](Patches) to the function near the surface, for a tolerance, when the
+    /// cells are known.
     ///
     /// # Errors
     /// If the caller cancels.

@@ -20,15 +20,16 @@ pub struct SurfaceMesh {
     pub mesh: TriangleMesh,
     /// No point of a triangle is farther from the surface than this, but for unproved ones.
     pub error: f64,
-    /// Triangles that are not proved to be within the tolerance: in parts as thin as it, near undecided cells and kinks.
+    /// Triangles that are not proved to be within the tolerance: in parts as thin as it, near
+    /// undecided cells and kinks.
     pub unproved: usize,
     /// Distances that samples found.
     pub measured: Measured,
-    /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices are nearer to each other than
-    /// numbers can tell.
+    /// Pairs of triangles that cut or touch each other, a hundred at most: none but where vertices
+    /// are nearer to each other than numbers can tell.
     pub crossings: usize,
-    /// Centres of the cells in which the topology of the surface is not proved before it is meshed: none if all is. Components of the
-    /// surface may be missing there that are as small as a cell.
+    /// Centres of the cells in which the topology of the surface is not proved before it is meshed:
+    /// none if all is. Components of the surface may be missing there that are as small as a cell.
     pub undecided: Vec<DVec3>,
     /// The least edge length that cells may have.
     pub finest: f64,
@@ -62,7 +63,8 @@ pub fn extent(
     refine::extent(function, domain, threads, progress)
 }
 
-/// Meshes the surface of a function within a domain: what goes beyond is cut off and closed by flat lids.
+/// Meshes the surface of a function within a domain: what goes beyond is cut off and closed by flat
+/// lids.
 ///
 /// # Errors
 /// See [`MeshError`].
@@ -96,7 +98,8 @@ fn guarded(
     }
     let hull = extent(function, domain, threads, &mut progress.part(0.0, 0.02))?;
     let hull = hull.ok_or(MeshError::Nothing)?;
-    // Cells of larger tolerances may not see the shape at all, and a mesh within a smaller one is within a larger one, too.
+    // Cells of larger tolerances may not see the shape at all, and a mesh within a smaller one is
+    // within a larger one, too.
     let tolerance = tolerance.min(LARGEST * (hull.max - hull.min).max_element());
     // The surface does not touch the boundary of the hull, unless that of the domain.
     let room = 0.02 * (hull.max - hull.min).max_element() + tolerance;
@@ -211,8 +214,9 @@ struct Start<'a> {
 }
 
 impl Start<'_> {
-    /// The improved mesh, with its number of crossings. Each change is kept from making any where cells leave the surface open; if there are some
-    /// nonetheless, a second attempt does so everywhere, and takes longer.
+    /// The improved mesh, with its number of crossings. Each change is kept from making any where
+    /// cells leave the surface open; if there are some nonetheless, a second attempt does so
+    /// everywhere, and takes longer.
     fn improved(&self, progress: &mut Progress<'_>) -> Result<(Improved, usize), MeshError> {
         let attempt = |guarded: Guarded, progress: &mut Progress<'_>| {
             let raw = self.raw.clone();
@@ -233,8 +237,8 @@ impl Start<'_> {
 
 /// Largest tolerance that is worked with, in sizes of the surface.
 const LARGEST: f64 = 0.02;
-/// Cells are at least half so large, in tolerances, but for those that hold parts of the surface which are [thinner](crate::thin):
-/// smaller ones take minutes where surfaces touch.
+/// Cells are at least half so large, in tolerances, but for those that hold parts of the surface
+/// which are [thinner](crate::thin): smaller ones take minutes where surfaces touch.
 const FINEST: f64 = 4.0;
 
 /// Cells may be so many times as far from the surface as the result.
@@ -288,7 +292,8 @@ mod tests {
             assert!(surface.unproved > 100, "{}", surface.unproved);
             surface.crossings
         };
-        // Where the cells lie decides whether a mesh cuts itself: the first distance between spikes where it does is enough.
+        // Where the cells lie decides whether a mesh cuts itself: the first distance between spikes
+        // where it does is enough.
         let mut apart = [0.055, 0.05, 0.045, 0.04, 0.06, 0.065].into_iter();
         let cut = apart.find(|apart| crossings(*apart, Guarded::Nowhere) > 0);
         let cut = cut.expect("no mesh cuts itself");

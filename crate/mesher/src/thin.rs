@@ -1,10 +1,13 @@
-//! Finer cells where those of the usual size leave the surface open, so that parts thinner than the tolerance are not lost.
+//! Finer cells where those of the usual size leave the surface open, so that parts thinner than the
+//! tolerance are not lost.
 //!
-//! After refinement the surface can only hide in undecided cells: all others prove that they hold none, or that the interpolant has
-//! its topology. Undecided cells are *thin* if the interpolant has one sign in them. Of most of those a search by bounds proves that
-//! there is no surface in them. Where it finds some, all undecided cells are split to a small fraction of the tolerance, until they prove the topology,
-//! as long as there are not too many. Thin cells that still hide the surface get the other sign at their centre, so that the mesh has a part
-//! there which is a cell wide, and no point of the surface is farther from it than about a cell.
+//! After refinement the surface can only hide in undecided cells: all others prove that they hold
+//! none, or that the interpolant has its topology. Undecided cells are *thin* if the interpolant
+//! has one sign in them. Of most of those a search by bounds proves that there is no surface in
+//! them. Where it finds some, all undecided cells are split to a small fraction of the tolerance,
+//! until they prove the topology, as long as there are not too many. Thin cells that still hide the
+//! surface get the other sign at their centre, so that the mesh has a part there which is a cell
+//! wide, and no point of the surface is farther from it than about a cell.
 
 use crate::forest::{Cell, Forest, NONE, Side};
 use crate::lattice::{Lattice, direction, pack};
@@ -16,7 +19,8 @@ use field::THRESHOLD;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Undecided cells are split down to so many tolerances, even where the interpolant changes its sign.
+/// Undecided cells are split down to so many tolerances, even where the interpolant changes its
+/// sign.
 const SEEN: f64 = 2.0;
 /// Thin ones and those beside cells in which the surface hid are.
 const THIN: f64 = 0.5;
@@ -33,8 +37,8 @@ const MADE: usize = 24;
 /// Largest cells, in tolerances, that get another sign at their centre.
 const FORCED: f64 = 1.0;
 
-/// Splits undecided cells, and gives another sign to those that would hide a part of the surface. `seen` are the leaves in which the
-/// interpolant changes its sign.
+/// Splits undecided cells, and gives another sign to those that would hide a part of the surface.
+/// `seen` are the leaves in which the interpolant changes its sign.
 ///
 /// # Errors
 /// If there are too many cells, or if the caller cancels.
@@ -109,8 +113,8 @@ fn undecided(space: &Space<'_>, seen: &[u32]) -> Vec<(u32, bool)> {
         .collect()
 }
 
-/// The cells to be split, of open ones and those of them that hide the surface: if these are too many, the hiding ones and those beside
-/// them, or only the former, or none.
+/// The cells to be split, of open ones and those of them that hide the surface: if these are too
+/// many, the hiding ones and those beside them, or only the former, or none.
 fn chosen(
     refinement: &Refinement<'_, '_>,
     open: &[(u32, bool)],
@@ -158,16 +162,17 @@ fn chosen(
     fit.map_or_else(Vec::new, |(cells, _)| cells)
 }
 
-/// Results of searches for the other side of the surface in thin cells, by their numbers: values at the vertices of the lattice stay what
-/// they are, so that another search in the same cell would find the same.
+/// Results of searches for the other side of the surface in thin cells, by their numbers: values at
+/// the vertices of the lattice stay what they are, so that another search in the same cell would
+/// find the same.
 #[derive(Default)]
 struct Searched {
     found: BTreeMap<u32, Found>,
 }
 
 impl Searched {
-    /// Those of some thin cells in which a search finds a point on the other side of the surface. Where it proves that there is none, the
-    /// cell is no longer undecided.
+    /// Those of some thin cells in which a search finds a point on the other side of the surface.
+    /// Where it proves that there is none, the cell is no longer undecided.
     fn hiding(
         &mut self,
         refinement: &mut Refinement<'_, '_>,
@@ -216,8 +221,8 @@ const BOXES: usize = 64;
 /// Halvings of a cell after which its boxes are not divided.
 const HALVINGS: u32 = 5;
 
-/// Searches a thin cell for a point on the other side of the surface than its centre is: along the gradient, then in the boxes that promise
-/// most by the bounds in them.
+/// Searches a thin cell for a point on the other side of the surface than its centre is: along the
+/// gradient, then in the boxes that promise most by the bounds in them.
 fn search(space: &Space<'_>, lattice: &Lattice, cell: &Cell) -> Found {
     let forest = &space.forest;
     let center = forest.center(cell);

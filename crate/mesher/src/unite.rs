@@ -48,8 +48,8 @@ fn manifold(mesh: &TriangleMesh) -> Result<Manifold, MeshError> {
     }
 }
 
-/// The union of two. The caller is asked before, and natively all the while: then another thread computes, and ends soon after the
-/// caller cancels. In wasm a page ends the worker instead.
+/// The union of two. The caller is asked before, and natively all the while: then another thread
+/// computes, and ends soon after the caller cancels. In wasm a page ends the worker instead.
 fn joined(
     one: &Manifold,
     other: &Manifold,

@@ -4,11 +4,11 @@ use field::Real;
 use field::real::Scalar;
 use glam::DVec3;
 
-/// A ball in one precision.
+/// Ball in one precision.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ball<S> {
     center: [S; 3],
-    /// ρ.
+    /// Radius ρ of the circle.
     radius: S,
 }
 
@@ -30,20 +30,21 @@ impl<S: Scalar> Ball<S> {
 
 /// Returns the centre and radius of a triangle's circumcircle.
 ///
-/// Where an angle is above 150° the circle would be larger than the longest side L and grow without bound: then it is the
-/// circle of the radius L through that side's ends, whose centre lies on the side where the circumcentre does. A triangle
-/// without area has one on any side; one that is a point, a radius of 0.
+/// Where an angle is above 150° the circle would be larger than the longest side L and grow without
+/// bound: then it is the circle of the radius L through that side's ends, whose centre lies on the
+/// side where the circumcentre does. A triangle without area has one on any side; one that is a
+/// point, a radius of 0.
 ///
 /// ```
 /// use glam::DVec3;
 ///
 /// let right_angled = [DVec3::ZERO, 4.0 * DVec3::X, 3.0 * DVec3::Y];
-/// let (center, radius) = metaballs::circumscribed(&right_angled);
+/// let (center, radius) = metaballs::circumcircle(&right_angled);
 /// assert!(center.distance(DVec3::new(2.0, 1.5, 0.0)) < 1e-15);
 /// assert!((radius - 2.5).abs() < 1e-15);
 /// ```
 #[must_use]
-pub fn circumscribed(corners: &[DVec3; 3]) -> (DVec3, f64) {
+pub fn circumcircle(corners: &[DVec3; 3]) -> (DVec3, f64) {
     // From the longest side: base to tip, and the corner opposite.
     let [a, b, c] = *corners;
     let sides = [(a, b, c), (b, c, a), (c, a, b)];
@@ -91,7 +92,7 @@ mod tests {
             DVec3::new(0.1, 0.4, 1.0),
         ];
         for corners in [corners, [corners[1], corners[0], corners[2]]] {
-            let (center, radius) = circumscribed(&corners);
+            let (center, radius) = circumcircle(&corners);
             for corner in corners {
                 assert!((center.distance(corner) - radius).abs() < 1e-14);
             }
@@ -104,11 +105,11 @@ mod tests {
     fn slivers_have_a_circle_no_larger_than_their_longest_side() {
         for height in [0.2, 0.1, 1e-3, 1e-9, 1e-300, 0.0] {
             let corners = [DVec3::ZERO, 2.0 * DVec3::X, DVec3::new(0.9, height, 0.0)];
-            let (center, radius) = circumscribed(&corners);
+            let (center, radius) = circumcircle(&corners);
             assert!((1.0..=2.0 + 1e-12).contains(&radius), "{height}");
             assert!((center.length() - radius).abs() < 1e-12);
         }
-        let (center, radius) = circumscribed(&[DVec3::ONE; 3]);
+        let (center, radius) = circumcircle(&[DVec3::ONE; 3]);
         assert_eq!((center, radius), (DVec3::ONE, 0.0));
     }
 }

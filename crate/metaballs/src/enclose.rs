@@ -9,7 +9,8 @@ use glam::DVec3;
 const COARSE: f64 = 0.5;
 /// The least k(d − ρ) of a point from which all facets are counted as equally far.
 const AFAR: f64 = 300.0;
-/// A group of facets is counted as one where it adds less than this, in the most that the nearest facet may add.
+/// Group of facets is counted as one where it adds less than this, in the most that the nearest
+/// facet may add.
 const FEW: f64 = 0.02;
 /// s up to which a term is counted that is to keep F above the threshold.
 const SAFE: f64 = 8.0;
@@ -19,8 +20,9 @@ const ROUNDING: f64 = 1e-9;
 /// The largest k·r of a ball whose bounds follow from the values at its centre.
 const SMALL: f64 = 2.0;
 
-/// A bound on the second derivative along any line of a metaball of at most this value, whose d is at least `nearest`: with c the
-/// cosine between the line and ∇d, `|φ″k²c² + φ′k(1 − c²)/d| ≤ max(|φ″|k², |φ′|k/d)`.
+/// Returns a bound on the second derivative along any line of a metaball of at most this value,
+/// whose d is at least `nearest`: with c the cosine between the line and ∇d,
+/// `|φ″k²c² + φ′k(1 − c²)/d| ≤ max(|φ″|k², |φ′|k/d)`.
 fn bend(k: f64, value: f64, nearest: f64, [first, second]: [f64; 2]) -> f64 {
     if nearest > 0.0 {
         value * k * (second * k).max(first / nearest)
@@ -29,9 +31,20 @@ fn bend(k: f64, value: f64, nearest: f64, [first, second]: [f64; 2]) -> f64 {
     }
 }
 
+/// Widens bounds by what their rounding errors may be; values are 0 or more.
+fn widen(bounds: Enclosure) -> Enclosure {
+    let [low, high] = bounds.value;
+    Enclosure {
+        value: [low * (1.0 - ROUNDING), high * (1.0 + ROUNDING)],
+        slope: bounds.slope * (1.0 + ROUNDING),
+        curvature: bounds.curvature * (1.0 + ROUNDING),
+    }
+}
+
 impl Metaballs {
-    /// Proven bounds in a ball. Each facet is bounded by itself: its distance changes by at most the radius. Groups of
-    /// facets that are small beside the ball are bounded by their box, so that large balls cost no more than small ones.
+    /// Proven bounds in a ball. Each facet is bounded by itself: its distance changes by at most
+    /// the radius. Groups of facets that are small beside the ball are bounded by their box, so
+    /// that large balls cost no more than small ones.
     pub(crate) fn enclosure(&self, Ball { center, radius }: Ball) -> Enclosure {
         let k = self.sharpness;
         let point = center.to_array();
@@ -75,12 +88,7 @@ impl Metaballs {
             }
             true
         });
-        let slack = |bound: f64| bound * (1.0 + ROUNDING);
-        total = Enclosure {
-            value: [total.value[0] * (1.0 - ROUNDING), slack(total.value[1])],
-            slope: slack(total.slope),
-            curvature: slack(total.curvature),
-        };
+        total = widen(total);
         // Where the surface is out of question already the narrower range is not needed.
         if total.value[1] < THRESHOLD || total.value[0] > THRESHOLD {
             return total;
@@ -89,10 +97,11 @@ impl Metaballs {
         total.about(&jet, radius)
     }
 
-    /// Proven bounds in a ball that is no larger than a few 1/k, and value and gradient at its centre; `None` in a larger one.
+    /// Proven bounds in a ball that is no larger than a few 1/k, and value and gradient at its
+    /// centre; `None` in a larger one.
     ///
-    /// Over the distance r no term changes by more than the factor `e^±kr`, but for those that fall to 0: they are bounded by the
-    /// exponential from above and by 0 from below.
+    /// Over the distance r no term changes by more than the factor `e^±kr`, but for those that fall
+    /// to 0: they are bounded by the exponential from above and by 0 from below.
     pub(crate) fn small_enclosure(
         &self,
         Ball { center, radius }: Ball,
@@ -135,27 +144,27 @@ impl Metaballs {
             }
             true
         });
-        let slack = |bound: f64| bound * (1.0 + ROUNDING);
-        let bounds = Enclosure {
-            value: [low * (1.0 - ROUNDING), slack(high)],
-            slope: slack(k * slope),
-            curvature: slack(curvature),
-        };
+        let bounds = widen(Enclosure {
+            value: [low, high],
+            slope: k * slope,
+            curvature,
+        });
         Some((bounds.about(&jet, radius), jet))
     }
 
-    /// A ball around a point in which F stays on one side of the threshold 1.
+    /// Returns a ball around a point in which F stays on one side of the threshold 1.
     ///
-    /// Each dᵢ changes by at most r over the distance r, so `Σ e^−k(dᵢ−ρᵢ)` changes by at most the factor `e^±kr`. That sum is at
-    /// least F everywhere; and of terms with s ≤ 16 at the ball's end, at most F, as the tangent below −40 falls slower than the
-    /// exponential.
+    /// Each dᵢ changes by at most r over the distance r, so `Σ e^−k(dᵢ−ρᵢ)` changes by at most the
+    /// factor `e^±kr`. That sum is at least F everywhere; and of terms with s ≤ 16 at the ball's
+    /// end, at most F, as the tangent below −40 falls slower than the exponential.
     pub(crate) fn clear_ball(&self, point: DVec3) -> Clearance {
         let k = self.sharpness;
         let scale = 1.0 / k;
         let count = self.bvh.len() as f64;
         // d − ρ of all facets is at least the distance from their boxes.
-        let from_box = |facet: u32| self.bvh.bounds_of(facet).distance_squared(point);
-        let nearest = self.bvh.nearest(point, f64::INFINITY, from_box);
+        let nearest = self.bvh.nearest(point, f64::INFINITY, |facet: u32| {
+            self.bvh.bounds_of(facet).distance_squared(point)
+        });
         let gap = nearest.map_or(0.0, |(_, square)| square.sqrt());
         let clear = if k * gap > AFAR {
             gap - scale * Real::ln(count)
@@ -176,8 +185,9 @@ impl Metaballs {
         }
     }
 
-    /// The sum `Σ e^−k(dᵢ−ρᵢ)` at a point from above, where each group of facets that adds less than `little` is bounded by its box,
-    /// and the part of it whose s is at most [`SAFE`], from below.
+    /// The sum `Σ e^−k(dᵢ−ρᵢ)` at a point from above, where each group of facets that adds less
+    /// than `little` is bounded by its box, and the part of it whose s is at most [`SAFE`], from
+    /// below.
     fn exponentials(&self, point: DVec3, little: f64) -> [f64; 2] {
         let k = self.sharpness;
         let place = point.to_array();
@@ -216,7 +226,8 @@ impl Metaballs {
             slope,
             curvature,
         } = range(k * low, k * high);
-        // Along a line, with c the cosine between it and ∇d: |φ″k²c² + φ′k(1 − c²)/d| ≤ max(|φ″|k², |φ′|k/d).
+        // Along a line, with c the cosine between it and ∇d: |φ″k²c² + φ′k(1 − c²)/d| ≤ max(|φ″|k²,
+        // |φ′|k/d).
         let bend = (curvature * k * k).max(slope * k / nearest);
         Enclosure {
             value,

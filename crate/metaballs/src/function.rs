@@ -1,6 +1,6 @@
 //! The sum of metaballs as an implicit function.
 
-use crate::ball::{Ball, circumscribed};
+use crate::ball::{Ball, circumcircle};
 use crate::profile::{CUT, profile};
 use crate::triangle::Triangle;
 use core::fmt;
@@ -12,12 +12,12 @@ use mesh::{Aabb, Bvh};
 use serde::{Deserialize, Serialize};
 use wide::f32x8;
 
-/// What surrounds a facet.
+/// Kind of metaball around a facet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Kind {
-    /// A ball: dᵢ is the distance from the circumcentre, ρᵢ the circumradius ([`circumscribed`]).
+    /// Ball: dᵢ is the distance from the circumcentre, ρᵢ the circumradius ([`circumcircle`]).
     Spherical,
-    /// A shell: dᵢ is the distance from the whole triangle, ρᵢ the thickness.
+    /// Shell: dᵢ is the distance from the whole triangle, ρᵢ the thickness.
     Triangular {
         /// ρᵢ of all facets, ≥ 0.
         thickness: f64,
@@ -27,15 +27,15 @@ pub enum Kind {
 /// Why a mesh has no implicit surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Error {
-    /// It has no triangles.
+    /// Mesh without triangles.
     Empty,
-    /// It has more than [`MAX_TRIANGLES`].
+    /// Mesh of this many triangles, more than [`MAX_TRIANGLES`].
     TooMany(usize),
-    /// A triangle names a vertex that is not there, or one that is not finite.
+    /// Triangle of this number with a vertex that is not there, or not finite.
     Broken(usize),
-    /// k is not a finite number above 0.
+    /// k that is not a finite number above 0.
     Sharpness(f64),
-    /// The thickness is not a finite number of 0 or more.
+    /// Thickness that is not a finite number of 0 or more.
     Thickness(f64),
 }
 
@@ -82,11 +82,11 @@ impl<S: Scalar> Facets<S> {
 #[derive(Clone, Debug)]
 pub struct Metaballs {
     kind: Kind,
-    /// k.
+    /// k, the inverse of the length in which a term falls to 1/e.
     pub(crate) sharpness: f64,
     pub(crate) double: Facets<f64>,
     single: Facets<f32>,
-    /// Boxes around where d ≤ ρ.
+    /// Hierarchy of boxes around the points with d ≤ ρ, facet by facet.
     pub(crate) bvh: Bvh,
     /// Facets below each node of the hierarchy.
     pub(crate) counts: Vec<u32>,
@@ -95,10 +95,12 @@ pub struct Metaballs {
 }
 
 impl Metaballs {
-    /// Surrounds each triangle with a metaball. `sharpness` is k, the inverse of the length in which a term falls to 1/e.
+    /// Surrounds each triangle with a metaball. `sharpness` is k, the inverse of the length in
+    /// which a term falls to 1/e.
     ///
     /// # Errors
-    /// If there are no or too many triangles, a corner is no finite point, or a number is out of range.
+    /// If there are no or too many triangles, a corner is no finite point, or a number is out of
+    /// range.
     pub fn new(
         positions: &[DVec3],
         triangles: &[[u32; 3]],
@@ -114,29 +116,23 @@ impl Metaballs {
         if !(sharpness.is_finite() && sharpness > 0.0) {
             return Err(Error::Sharpness(sharpness));
         }
-        let corner = |i: u32| positions.get(i as usize).filter(|p| p.is_finite());
         let mut facets = Vec::with_capacity(triangles.len());
         for (number, triangle) in triangles.iter().enumerate() {
-            let [Some(a), Some(b), Some(c)] = triangle.map(corner) else {
+            let [Some(a), Some(b), Some(c)] =
+                triangle.map(|i| positions.get(i as usize).filter(|p| p.is_finite()))
+            else {
                 return Err(Error::Broken(number));
             };
             facets.push([*a, *b, *c]);
         }
-        let around = |points: &[DVec3], radius: f64| {
-            let tight = Aabb::of_points(points.iter().copied());
-            Aabb {
-                min: tight.min - radius,
-                max: tight.max + radius,
-            }
-        };
         let (double, single, boxes, thinnest) = match kind {
             Kind::Spherical => {
-                let balls: Vec<_> = facets.iter().map(circumscribed).collect();
+                let balls: Vec<_> = facets.iter().map(circumcircle).collect();
                 let thinnest = balls.iter().fold(f64::INFINITY, |least, b| least.min(b.1));
                 (
                     Facets::Balls(balls.iter().copied().map(Ball::new).collect()),
                     Facets::Balls(balls.iter().copied().map(Ball::new).collect()),
-                    balls.iter().map(|b| around(&[b.0], b.1)).collect(),
+                    balls.iter().map(|b| box_around(&[b.0], b.1)).collect(),
                     thinnest,
                 )
             }
@@ -147,7 +143,7 @@ impl Metaballs {
                 (
                     Facets::Triangles(facets.iter().map(Triangle::new).collect(), thickness),
                     Facets::Triangles(facets.iter().map(Triangle::new).collect(), thickness as f32),
-                    facets.iter().map(|f| around(f, thickness)).collect(),
+                    facets.iter().map(|f| box_around(f, thickness)).collect(),
                     thickness,
                 )
             }
@@ -166,13 +162,13 @@ impl Metaballs {
         })
     }
 
-    /// What surrounds the facets.
+    /// Kind of metaball around each facet.
     #[must_use]
     pub fn kind(&self) -> Kind {
         self.kind
     }
 
-    /// k.
+    /// k, the inverse of the length in which a term falls to 1/e.
     #[must_use]
     pub fn sharpness(&self) -> f64 {
         self.sharpness
@@ -188,7 +184,8 @@ impl Metaballs {
         self.bvh.overlapping(&self.around(point, point))
     }
 
-    /// A box around the points from which a facet must be looked for, a little wider than needed in single precision.
+    /// Returns a box around the points from which a facet must be looked for, a little wider than
+    /// needed in single precision.
     fn around(&self, low: DVec3, high: DVec3) -> Aabb {
         let rounding = 1e-5 * low.abs().max(high.abs()).max_element();
         let reach = self.reach() * (1.0 + 1e-5) + rounding;
@@ -198,7 +195,8 @@ impl Metaballs {
         }
     }
 
-    /// Value and gradient in any precision. `low` and `high` are the corners of a box around all lanes.
+    /// Value and gradient in any precision. `low` and `high` are the corners of a box around all
+    /// lanes.
     fn sum<R: Real>(
         &self,
         facets: &Facets<R::Scalar>,
@@ -213,6 +211,15 @@ impl Metaballs {
             sum = sum.plus(term(k, offset, radius));
         }
         sum
+    }
+}
+
+/// Returns the box of the points within a radius of some points.
+fn box_around(points: &[DVec3], radius: f64) -> Aabb {
+    let tight = Aabb::of_points(points.iter().copied());
+    Aabb {
+        min: tight.min - radius,
+        max: tight.max + radius,
     }
 }
 
@@ -242,10 +249,9 @@ impl Implicit for Metaballs {
 
     fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
         let lanes = points.map(|p| p.to_array().map(f64::from));
-        let corner = |pick: fn(f64, f64) -> f64| {
+        let bounds = [f64::min, f64::max].map(|pick: fn(f64, f64) -> f64| {
             DVec3::from_array(lanes.map(|lane| lane.into_iter().reduce(pick).unwrap_or(f64::NAN)))
-        };
-        let bounds = [corner(f64::min), corner(f64::max)];
+        });
         self.sum(&self.single, points, bounds)
     }
 

@@ -15,19 +15,20 @@
 //! # Ok::<(), metaballs::Error>(())
 //! ```
 //!
-//! The function is `F(x) = Σ φ(k·(dᵢ(x) − ρᵢ))` with `φ(s) = e^−s`, after Ilić and Fua. [`Kind`] says what the distance
-//! dᵢ from a facet and its radius ρᵢ are. Two changes to `e^−s`, both continuous with their derivative, are part of the
-//! definition ([`profile`](profile())):
-//! - From s = 16 to 20 it falls to 0, so that a facet acts within ρᵢ + 20/k only. The sum differs from the plain one by
-//!   less than `1.2·10⁻⁷` for each facet that is near, which moves the surface by less than `1.2·10⁻⁷·n/k`.
+//! The function is `F(x) = Σ φ(k·(dᵢ(x) − ρᵢ))` with `φ(s) = e^−s`, after Ilić and Fua. [`Kind`]
+//! says what the distance dᵢ from a facet and its radius ρᵢ are. Two changes to `e^−s`, both
+//! continuous with their derivative, are part of the definition ([`profile`](profile())):
+//! - From s = 16 to 20 it falls to 0, so that a facet acts within ρᵢ + 20/k only. The sum differs
+//!   from the plain one by less than `1.2·10⁻⁷` for each facet that is near, which moves the
+//!   surface by less than `1.2·10⁻⁷·n/k`.
 //! - Below s = −40 it goes on as its tangent, so that nothing overflows deep inside.
 //!
-//! Facets are found by a hierarchy of boxes: the cost of a value grows with the facets that are near, that of an
-//! enclosure, too.
+//! Facets are found by a hierarchy of boxes: the cost of a value grows with the facets that are
+//! near, that of an enclosure, too.
 //!
-//! F is continuous, and so is its gradient but on the facets themselves (of balls: at their centres), where it is
-//! largest. Second derivatives jump where the nearest feature of a facet changes, and are at most
-//! `max(k², k/d)·e^(−k(d−ρ))` for each facet at the distance d.
+//! F is continuous, and so is its gradient but on the facets themselves (of balls: at their
+//! centres), where it is largest. Second derivatives jump where the nearest feature of a facet
+//! changes, and are at most `max(k², k/d)·e^(−k(d−ρ))` for each facet at the distance d.
 
 mod ball;
 mod enclose;
@@ -35,7 +36,7 @@ mod function;
 mod profile;
 mod triangle;
 
-pub use ball::circumscribed;
+pub use ball::circumcircle;
 pub use function::{Error, Kind, Metaballs};
 pub use profile::{CUT, profile};
 pub use triangle::{Nearest, nearest};

@@ -2,17 +2,17 @@
 
 use field::Real;
 
-/// Where the profile has fallen to 0: facets further than `ρ + CUT/k` do not act.
+/// s from which the profile is 0: facets further than `ρ + CUT/k` do not act.
 pub const CUT: f64 = 20.0;
-/// Where it begins to fall faster than the exponential.
+/// s from which the profile falls faster than the exponential.
 pub(crate) const FADE: f64 = 16.0;
 /// |φ′| and |φ″| in times of `e^−s`, at most, where φ falls to 0.
 pub(crate) const FADING: [f64; 2] = [1.47, 2.31];
-/// Below this it is its own tangent.
+/// s below which the profile is its tangent at this place.
 pub(crate) const DEEP: f64 = -40.0;
 
-/// Returns the profile φ(s) and its derivative, both continuous: `e^−s` for −40 ≤ s ≤ 16, times a smooth step of the
-/// fifth degree that falls to 0 at [`CUT`], and its tangent at −40 below.
+/// Returns the profile φ(s) and its derivative, both continuous: `e^−s` for −40 ≤ s ≤ 16, times a
+/// smooth step of the fifth degree that falls to 0 at [`CUT`], and its tangent at −40 below.
 #[inline(always)]
 #[must_use]
 pub fn profile<R: Real>(s: R) -> (R, R) {
@@ -52,7 +52,8 @@ pub(crate) fn range(low: f64, high: f64) -> Range {
         };
     }
     let decay = low.max(DEEP).decay();
-    // φ falls with s. With the step w, |w′| ≤ 0.47 and |w″| ≤ 0.37: |φ′| = e^−s (w + |w′|), |φ″| ≤ e^−s (w + 2|w′| + |w″|).
+    // φ falls with s. With the step w, |w′| ≤ 0.47 and |w″| ≤ 0.37: |φ′| = e^−s (w + |w′|), |φ″| ≤
+    // e^−s (w + 2|w′| + |w″|).
     let (first, second) = if high <= FADE {
         (1.0, 1.0)
     } else {

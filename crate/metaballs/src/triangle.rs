@@ -4,8 +4,8 @@ use field::Real;
 use field::real::Scalar;
 use glam::DVec3;
 
-/// A triangle in its own coordinates, in one precision: the longest side runs along the first axis from the origin, the
-/// third corner lies at y ≥ 0, the third axis is the normal.
+/// Triangle in its own coordinates, in one precision: the longest side runs along the first axis
+/// from the origin, the third corner lies at y ≥ 0, the third axis is the normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle<S> {
     origin: [S; 3],
@@ -30,8 +30,11 @@ impl<S: Scalar> Triangle<S> {
             .try_normalize()
             .map(|y| (y - x * y.dot(x)).normalize())
             .unwrap_or_else(|| x.any_orthonormal_vector());
-        let local = |p: DVec3| [(p - a).dot(x), (p - a).dot(y)];
-        let flat = [[0.0; 2], [a.distance(b), 0.0], local(c)];
+        let flat = [
+            [0.0; 2],
+            [a.distance(b), 0.0],
+            [(c - a).dot(x), (c - a).dot(y)],
+        ];
         let mut inverse = [0.0; 3];
         let sides = core::array::from_fn(|i| {
             let (from, to): ([f64; 2], [f64; 2]) = (flat[i], flat[(i + 1) % 3]);

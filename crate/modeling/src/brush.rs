@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use sculpt::{Action, Choice, Constraint, Decay, Form, Sweep, Tool};
 
-/// What the tool does.
+/// The effect of the tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doing {
     /// Drives the surface out of itself.
@@ -21,7 +21,7 @@ pub enum Doing {
 }
 
 impl Doing {
-    /// All of them, in the order of the page.
+    /// The effects in the order of the page.
     pub const ALL: [Self; 6] = [
         Self::Pull,
         Self::Push,
@@ -31,7 +31,7 @@ impl Doing {
         Self::Region,
     ];
 
-    /// Its name on the page.
+    /// Returns the name on the page.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Doing {
         }
     }
 
-    /// What it does, in a sentence.
+    /// Returns a sentence on the effect.
     #[must_use]
     pub fn meaning(self) -> &'static str {
         match self {
@@ -60,24 +60,24 @@ impl Doing {
     }
 }
 
-/// A virtual tool with all that can be set about it.
+/// A virtual tool with its settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brush {
-    /// What it does.
+    /// The effect.
     pub doing: Doing,
-    /// Its basic form.
+    /// The basic form.
     pub form: Form,
-    /// Its radius, as a length of the mesh.
+    /// The radius, as a length of the mesh.
     pub size: f64,
     /// Factors of the radius along its axes.
     pub stretch: DVec3,
     /// The exponents of its superquadric.
     pub exponents: [f64; 2],
-    /// Its rotation.
+    /// The rotation.
     pub turn: DQuat,
-    /// How a motion fades over neighbours.
+    /// The function by which a motion fades over neighbours.
     pub decay: Decay,
-    /// How far that reaches, as a multiple of the radius.
+    /// The distance at which it has faded, as a multiple of the radius.
     pub range: f64,
     /// A limit on the direction of motions.
     pub constraint: Option<Constraint>,
@@ -118,10 +118,10 @@ impl Brush {
         let axes = (self.stretch * self.size).max(DVec3::splat(sculpt::limits::SMALLEST));
         let mut tool = Tool::new(
             self.form,
-            rounded(axes, decimals).max(DVec3::splat(smallest(decimals))),
+            round_vector(axes, decimals).max(DVec3::splat(smallest(decimals))),
         );
         tool.exponents = self.exponents.map(|e| round(e, 2).clamp(0.05, 2.0));
-        tool.turn = rounded(angles(self.turn), 1);
+        tool.turn = round_vector(angles(self.turn), 1);
         tool
     }
 
@@ -152,7 +152,7 @@ impl Brush {
     }
 }
 
-/// A number with so many decimals.
+/// Rounds a number to decimals; returns 0 where the result would not be finite.
 pub fn round(x: f64, decimals: i32) -> f64 {
     let factor = power(decimals);
     let rounded = (x * factor).round() / factor;
@@ -164,8 +164,8 @@ pub fn round(x: f64, decimals: i32) -> f64 {
     }
 }
 
-/// The same for a vector.
-pub fn rounded(p: DVec3, decimals: i32) -> DVec3 {
+/// Rounds a vector to decimals.
+pub fn round_vector(p: DVec3, decimals: i32) -> DVec3 {
     DVec3::from_array(p.to_array().map(|x| round(x, decimals)))
 }
 
@@ -232,7 +232,7 @@ mod tests {
             let mut brush = Brush::new(0.123_456_789 * size);
             brush.stretch.y = 1e-12;
             let mut sweep = brush.sweep(Doing::Push, false, decimals);
-            sweep.path.push(sculpt::PathPoint::new(rounded(
+            sweep.path.push(sculpt::PathPoint::new(round_vector(
                 DVec3::splat(size / 7.0),
                 decimals,
             )));

@@ -4,13 +4,13 @@ use sculpt::{Clay, Loader, PathPoint, Script, Sculpture, Stroke, Sweep};
 
 /// A text of strokes that is worked on. Remarks and blank lines of the text stay where they are.
 pub struct Document {
-    /// All lines before the first stroke.
+    /// The lines before the first stroke.
     head: String,
     /// The lines of each stroke, with the remarks before it.
     lines: Vec<String>,
-    /// Those of strokes that were undone, the last one first to come back.
+    /// The lines of each stroke that was undone; redoing takes the last one first.
     undone: Vec<String>,
-    /// All lines after the last stroke of the text that was opened.
+    /// The lines after the last stroke of the text that was opened.
     tail: String,
     sculpture: Sculpture,
     /// Rises with every change of the mesh.
@@ -27,8 +27,8 @@ impl Document {
     pub fn open(text: &str, load: Loader<'_>) -> Result<Self, String> {
         let script: Script = text
             .parse()
-            .map_err(|told: sculpt::Diagnostic| told.to_string())?;
-        let sculpture = Sculpture::open(&script, load).map_err(|told| told.to_string())?;
+            .map_err(|error: sculpt::Diagnostic| error.to_string())?;
+        let sculpture = Sculpture::open(&script, load).map_err(|error| error.to_string())?;
         let mut rest: Vec<&str> = text.split_inclusive('\n').collect();
         let mut take = |upto: usize, done: usize| -> String {
             let count = upto.saturating_sub(done).min(rest.len());
@@ -85,7 +85,7 @@ impl Document {
         self.topology
     }
 
-    /// How many strokes can be undone, and how many redone.
+    /// Returns the numbers of strokes that can be undone and redone.
     #[must_use]
     pub fn depth(&self) -> [usize; 2] {
         self.sculpture.depth()
@@ -166,7 +166,8 @@ impl Document {
     /// Takes the last stroke back; returns whether there was one.
     ///
     /// # Errors
-    /// If strokes before had to be carried out again and one of them failed, which it did not the first time.
+    /// If strokes before had to be carried out again and one of them failed, which it did not the
+    /// first time.
     pub fn undo(&mut self) -> Result<bool, String> {
         self.end();
         let is_undone = self
@@ -218,7 +219,8 @@ mod tests {
     use glam::DVec3;
     use sculpt::{Action, Form, Tool};
 
-    const TEXT: &str = "# a horned ball\nstrokes 1\n\nstart sphere 4 # round\n# up\npull sphere 0.3 0.3 0.3 bell 0.5 : 0 0 1, 0 0 1.5\nstage horn\nloop\n# the end\n";
+    const TEXT: &str = "# a horned ball\nstrokes 1\n\nstart sphere 4 # round\n# up\n\
+        pull sphere 0.3 0.3 0.3 bell 0.5 : 0 0 1, 0 0 1.5\nstage horn\nloop\n# the end\n";
 
     fn open(text: &str) -> Document {
         Document::open(text, &mut |name| Err(format!("no {name}"))).expect("a text of strokes")

@@ -52,7 +52,7 @@ pub fn update(surface: &mut Surface, clay: &Clay, is_same_topology: bool) {
         let color = if own == [1.0; 3] {
             CLAY
         } else {
-            own.map(encoded)
+            own.map(encode)
         };
         let mask = 0.75 * clay.mask(v);
         surface.colors[v.index()] = [0, 1, 2].map(|k| color[k] + (MASK[k] - color[k]) * mask);
@@ -69,7 +69,7 @@ pub fn surface_of(clay: &Clay) -> Surface {
 }
 
 /// The sRGB value of a linear channel.
-fn encoded(x: f32) -> f32 {
+fn encode(x: f32) -> f32 {
     if x <= 0.003_130_8 {
         12.92 * x
     } else {

@@ -1,4 +1,4 @@
-//! What a hand holds while it sculpts: a stroke, the view, or a setting of the tool.
+//! The grip of a hand that sculpts: a stroke, the view, or a setting of the tool.
 
 use crate::brush::{Brush, Doing};
 use egui::Pos2;
@@ -10,11 +10,12 @@ use viewport::{Frame, Surface, View};
 /// State of the hand.
 #[derive(Default)]
 pub struct Hand {
-    /// Where the tool is shown.
+    /// The place where the tool is shown.
     pub shown: Option<DVec3>,
     pub doing: State,
-    /// Where a key has asked to grab the mesh, or to take a point as the centre of rotation.
+    /// The place where a key has asked to grab the mesh.
     pub grabs: Option<Pos2>,
+    /// The place where a key has asked to take a point as the centre of rotation.
     pub centers: Option<Pos2>,
 }
 
@@ -26,7 +27,7 @@ pub enum State {
     Turn(Pos2),
     Shift(Pos2),
     Modal(Box<Modal>),
-    /// Two fingers; nothing begins until all are lifted.
+    /// A gesture of two fingers; nothing begins until all are lifted.
     Fingers,
 }
 
@@ -34,9 +35,10 @@ pub enum State {
 pub struct Ongoing {
     pub doing: Doing,
     pub reverses: bool,
-    /// What was seen when it began: a push goes along the surface that was there, not into its own dent.
+    /// The image when it began: a push goes along the surface that was there, not into its own
+    /// dent.
     pub seen: Option<(Frame, Rc<Surface>, View)>,
-    /// Of the point that was taken hold of.
+    /// The depth of the point that was taken hold of.
     pub depth: f64,
     pub grip: DVec3,
     pub normal: DVec3,
@@ -64,11 +66,6 @@ pub enum Setting {
 }
 
 impl Hand {
-    /// The place of the tool, if it is shown.
-    pub fn shown(&self) -> Option<DVec3> {
-        self.shown
-    }
-
     /// Whether the view turns now.
     pub fn turns(&self) -> bool {
         matches!(self.doing, State::Turn(_) | State::Fingers)

@@ -1,6 +1,6 @@
-//! What pointer, pen, fingers and keys do in the place.
+//! The work of pointer, pen, fingers and keys in the place.
 
-use crate::brush::{Doing, round, rounded};
+use crate::brush::{Doing, round, round_vector};
 use crate::grip::{Modal, Ongoing, Setting, State};
 use crate::state::{Command, Outside, Sculpting, Turning};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
@@ -14,7 +14,7 @@ const DEPTH: f64 = 0.4;
 /// Points of movement that double the tool in S and F.
 const DOUBLE: f32 = 140.0;
 
-/// One line on what a hand can do now.
+/// Returns a line on what a hand can do now.
 pub fn hint(place: &Sculpting, narrow: bool) -> String {
     let axis = |axis: Option<usize>| axis.map_or("", |i| [" along x", " along y", " along z"][i]);
     match &place.hand.doing {
@@ -72,14 +72,13 @@ pub fn pointer(
             Event::PointerMoved(at) => Some(*at),
             _ => None,
         });
-        let button = |b| input.pointer.button_pressed(b);
         let pressed = [
             PointerButton::Primary,
             PointerButton::Secondary,
             PointerButton::Middle,
         ]
         .into_iter()
-        .find(|b| button(*b));
+        .find(|button| input.pointer.button_pressed(*button));
         (
             input.pointer.latest_pos(),
             moves.collect::<Vec<Pos2>>(),
@@ -122,7 +121,7 @@ pub fn pointer(
     }
     let moves = if moves.is_empty() { vec![at] } else { moves };
     for to in moves {
-        moved(place, rect, to, modifiers, pressure);
+        follow_pointer(place, rect, to, modifiers, pressure);
     }
     let is_held = matches!(&place.hand.doing, State::Stroke(on) if !on.is_free)
         || matches!(place.hand.doing, State::Turn(_) | State::Shift(_));
@@ -150,7 +149,7 @@ fn pressure(outside: &Outside) -> f64 {
     round(f64::from(pressure.clamp(0.02, 1.0)), 2)
 }
 
-/// Two fingers turn, zoom and roll. Returns whether they are down.
+/// Turns, zooms and rolls by two fingers. Returns whether they are down.
 fn fingers(
     place: &mut Sculpting,
     outside: &Outside,
@@ -219,7 +218,7 @@ fn begin_stroke(
     let sweep = place.brush.sweep(doing, reverses, place.decimals);
     let center = center(place, doing, reverses, found.point, found.normal);
     let point = PathPoint {
-        position: rounded(center, place.decimals),
+        position: round_vector(center, place.decimals),
         pressure: if is_free { 1.0 } else { pressure },
     };
     let goes_along = doing != Doing::Pull;
@@ -241,7 +240,7 @@ fn begin_stroke(
     place.hand.shown = Some(point.position);
 }
 
-/// Where the tool's centre is when it touches a point of the surface.
+/// Returns the tool's centre when it touches a point of the surface.
 fn center(place: &Sculpting, doing: Doing, reverses: bool, point: DVec3, normal: DVec3) -> DVec3 {
     if doing != Doing::Push {
         return point;
@@ -252,10 +251,16 @@ fn center(place: &Sculpting, doing: Doing, reverses: bool, point: DVec3, normal:
     point + normal * (reach * side)
 }
 
-fn moved(place: &mut Sculpting, rect: Rect, to: Pos2, modifiers: Modifiers, pressure: f64) {
+fn follow_pointer(
+    place: &mut Sculpting,
+    rect: Rect,
+    to: Pos2,
+    modifiers: Modifiers,
+    pressure: f64,
+) {
     let mut doing = core::mem::take(&mut place.hand.doing);
     match &mut doing {
-        State::Stroke(on) => stroke_moved(place, rect, to, on, pressure),
+        State::Stroke(on) => follow_stroke(place, rect, to, on, pressure),
         State::Turn(from) => {
             turn(place, rect, *from, to);
             *from = to;
@@ -273,7 +278,7 @@ fn moved(place: &mut Sculpting, rect: Rect, to: Pos2, modifiers: Modifiers, pres
     place.hand.doing = doing;
 }
 
-fn stroke_moved(place: &mut Sculpting, rect: Rect, to: Pos2, on: &mut Ongoing, pressure: f64) {
+fn follow_stroke(place: &mut Sculpting, rect: Rect, to: Pos2, on: &mut Ongoing, pressure: f64) {
     let pixel = place.pixel(rect, to);
     let position = if let Some((frame, surface, view)) = &on.seen {
         let found = frame.pick(view, surface, pixel);
@@ -296,7 +301,7 @@ fn stroke_moved(place: &mut Sculpting, rect: Rect, to: Pos2, on: &mut Ongoing, p
         on.grip + way
     };
     let point = PathPoint {
-        position: rounded(position, place.decimals),
+        position: round_vector(position, place.decimals),
         pressure: if on.is_free { 1.0 } else { pressure },
     };
     let step = 0.12 * place.brush.size * place.brush.stretch.min_element();
@@ -338,18 +343,17 @@ fn finish(place: &mut Sculpting, keeps: bool, commands: &mut Vec<Command>) {
         } else {
             place.document.cancel();
         }
-        place.told(Ok(()), commands);
+        place.report(Ok(()), commands);
     }
 }
 
 /// Turns view, mesh, tool or light by the trackball.
 fn turn(place: &mut Sculpting, rect: Rect, from: Pos2, to: Pos2) {
     let half = 0.5 * rect.size().min_elem().max(1.0);
-    let own = |at: Pos2| {
+    let [from, to] = [from, to].map(|at| {
         let p = (at - rect.center()) / half;
         [f64::from(p.x), -f64::from(p.y)]
-    };
-    let (from, to) = (own(from), own(to));
+    });
     match place.turning {
         Turning::View => place.view.turn(from, to),
         Turning::Mesh => {
@@ -359,11 +363,11 @@ fn turn(place: &mut Sculpting, rect: Rect, from: Pos2, to: Pos2) {
             place.light = place.view.rotation * (before.inverse() * place.light);
         }
         Turning::Tool => {
-            let rolled = place.view.rolled(from, to);
+            let rolled = place.view.roll(from, to);
             place.brush.turn = (rolled * place.brush.turn).normalize();
         }
         Turning::Light => {
-            let rolled = place.view.rolled(from, to);
+            let rolled = place.view.roll(from, to);
             place.light = rolled * place.light;
         }
     }
@@ -381,7 +385,7 @@ fn hover(place: &mut Sculpting, rect: Rect, at: Pos2, over: bool, modifiers: Mod
             let reverses = modifiers.command || modifiers.ctrl;
             place.hand.shown = found.flatten().map(|found| {
                 let at = center(place, doing, reverses, found.point, found.normal);
-                rounded(at, place.decimals)
+                round_vector(at, place.decimals)
             });
         }
         State::Turn(_) | State::Shift(_) if place.turning != Turning::Tool => {
@@ -423,7 +427,7 @@ fn set(place: &mut Sculpting, rect: Rect, to: Pos2, modal: &mut Modal, modifiers
                     let way = Vec2::new(moved.x, -moved.y) / half;
                     place
                         .view
-                        .rolled([0.0, 0.0], [f64::from(way.x), f64::from(way.y)])
+                        .roll([0.0, 0.0], [f64::from(way.x), f64::from(way.y)])
                 }
             };
             place.brush.turn = (rolled * before.turn).normalize();

@@ -1,9 +1,11 @@
-//! The place of the page where a mesh is sculpted with virtual tools (`sculpt`), drawn by `viewport`. What is done is
-//! written as a text of strokes, which is the truth: the page keeps it like any other text.
+//! The place of the page where a mesh is sculpted with virtual tools (`sculpt`), drawn by
+//! `viewport`. What is done is written as a text of strokes, which is the truth: the page keeps it
+//! like any other text.
 //!
 //! - [`Document`]: a text of strokes with the mesh that they make; undo and redo without limit.
 //! - [`Brush`]: the tool in hand.
-//! - [`Sculpting`] and [`show`]: the place, in all of an egui `Ui`; it lists [`Command`]s for the page.
+//! - [`Sculpting`] and [`show`]: the place, in all of an egui `Ui`; it lists [`Command`]s for the
+//!   page.
 //!
 //! ```
 //! use modeling::Document;

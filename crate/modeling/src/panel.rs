@@ -65,7 +65,7 @@ fn tools(place: &mut Sculpting, ui: &mut Ui) {
     }
 }
 
-/// All controls.
+/// Shows the controls.
 pub fn controls(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
     // A narrow page has the tools in its strip.
@@ -407,7 +407,8 @@ fn flesh(place: &Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
             (
                 Flesh::Convolved,
                 "flesh",
-                "Each triangle is a skeleton that flesh grows on; meshes of many faces take long to trace",
+                "Each triangle is a skeleton that flesh grows on; \
+                 meshes of many faces take long to trace",
             ),
             (
                 Flesh::Metaballs,

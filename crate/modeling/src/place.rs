@@ -31,14 +31,14 @@ pub fn show(place: &mut Sculpting, outside: &Outside, ui: &mut Ui, commands: &mu
             Panel::bottom("sculpt sheet")
                 .exact_size(height)
                 .frame(flat.inner_margin(Margin::symmetric(14, 8)))
-                .show(ui, |ui| scrolled(place, ui, commands));
+                .show(ui, |ui| scroll(place, ui, commands));
         }
     } else {
         Panel::left("sculpt panel")
             .exact_size(272.0)
             .resizable(false)
             .frame(flat.inner_margin(Margin::symmetric(14, 10)))
-            .show(ui, |ui| scrolled(place, ui, commands));
+            .show(ui, |ui| scroll(place, ui, commands));
     }
     Panel::bottom("sculpt stages")
         .exact_size(if narrow { 44.0 } else { 40.0 })
@@ -50,7 +50,7 @@ pub fn show(place: &mut Sculpting, outside: &Outside, ui: &mut Ui, commands: &mu
     }
 }
 
-fn scrolled(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
+fn scroll(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
     ScrollArea::vertical()
         .id_salt("sculpt controls")
         .auto_shrink(false)

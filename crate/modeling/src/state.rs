@@ -17,14 +17,14 @@ use widgets::{clock, theme};
 pub enum Command {
     /// The strokes are another text now.
     Changed {
-        /// All of it.
+        /// The whole text.
         text: String,
         /// The mesh that it makes, if it is not too large for a model.
         mesh: Option<TriangleMesh>,
     },
     /// Show the mesh in the model as this.
     Grow {
-        /// As what.
+        /// The surface that it becomes.
         flesh: Flesh,
         /// The mean length of its edges.
         edge: f64,
@@ -43,18 +43,18 @@ pub enum Command {
     SetTheme(theme::Choice),
 }
 
-/// As what a model shows a sculpture.
+/// The surface that a sculpture becomes in a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flesh {
     /// The triangles themselves.
     Hard,
-    /// Each triangle is a skeleton with flesh on it.
+    /// The convolution surface of the triangles.
     Convolved,
     /// Metaballs around the triangles.
     Metaballs,
 }
 
-/// What is outside the place.
+/// The page's state that the place needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Outside {
     /// Seconds on the page's clock.
@@ -71,7 +71,7 @@ pub struct Outside {
     pub depth: [bool; 2],
 }
 
-/// What the pointer turns beside the mesh.
+/// The thing that the pointer turns beside the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turning {
     /// The eye goes around; the light stays with the mesh.
@@ -102,7 +102,7 @@ pub struct Sculpting {
     written: String,
     pub(crate) brush: Brush,
     pub(crate) view: View,
-    /// Where the light comes from, in coordinates of the mesh.
+    /// The direction towards the light, in coordinates of the mesh.
     pub(crate) light: DVec3,
     pub(crate) turning: Turning,
     pub(crate) hand: Hand,
@@ -119,13 +119,14 @@ pub struct Sculpting {
     pub(crate) frame: Frame,
     pub(crate) texture: Option<TextureHandle>,
     drawn: Option<Drawn>,
-    /// When something moved last, and how much of the pixels are drawn then.
+    /// The time at which something moved last.
     moved: f64,
+    /// The resolution while something moves, as a share of the full one.
     quality: f64,
     pub(crate) tool: Option<(Brush, Surface)>,
 }
 
-/// All that a drawing depends on.
+/// The things that a drawing depends on.
 #[derive(Clone, PartialEq)]
 struct Drawn {
     view: View,
@@ -199,14 +200,14 @@ impl Sculpting {
         text != self.written
     }
 
-    /// How many vertices and faces the mesh has.
+    /// Returns the numbers of vertices and faces of the mesh.
     #[must_use]
     pub fn counts(&self) -> [usize; 2] {
         let mesh = self.document.clay().mesh();
         [mesh.vertex_count(), mesh.face_count()]
     }
 
-    /// How many strokes can be undone, and how many redone.
+    /// Returns the numbers of strokes that can be undone and redone.
     #[must_use]
     pub fn depth(&self) -> [usize; 2] {
         self.document.depth()
@@ -227,7 +228,7 @@ impl Sculpting {
     /// Carries out a stroke, and tells the page.
     pub(crate) fn carry_out(&mut self, stroke: sculpt::Stroke, commands: &mut Vec<Command>) {
         let result = self.document.carry_out(stroke);
-        self.told(result, commands);
+        self.report(result, commands);
     }
 
     /// Undoes the last stroke; what was done before the first one is the page's to take back.
@@ -237,26 +238,27 @@ impl Sculpting {
             return;
         }
         let result = self.document.undo().map(drop);
-        self.told(result, commands);
+        self.report(result, commands);
     }
 
-    /// Carries out the stroke again that was undone last; what came after the last one is the page's.
+    /// Carries out the stroke again that was undone last; what came after the last one is the
+    /// page's.
     pub(crate) fn redo(&mut self, commands: &mut Vec<Command>) {
         if self.depth()[1] == 0 {
             commands.push(Command::Redo);
             return;
         }
         let result = self.document.redo().map(drop);
-        self.told(result, commands);
+        self.report(result, commands);
     }
 
     pub(crate) fn go_to(&mut self, strokes: usize, commands: &mut Vec<Command>) {
         let result = self.document.go_to(strokes);
-        self.told(result, commands);
+        self.report(result, commands);
     }
 
     /// Tells the page that the text has changed, or the user why it has not.
-    pub(crate) fn told(&mut self, result: Result<(), String>, commands: &mut Vec<Command>) {
+    pub(crate) fn report(&mut self, result: Result<(), String>, commands: &mut Vec<Command>) {
         self.trouble = result.err();
         let text = self.document.text();
         if text != self.written {
@@ -325,7 +327,7 @@ impl Sculpting {
             light: self.light,
             made: self.made.unwrap_or_default(),
             size: if rests { fine } else { coarse },
-            tool: self.hand.shown().map(|at| (self.brush.clone(), at)),
+            tool: self.hand.shown.map(|at| (self.brush.clone(), at)),
             wireframe: self.wireframe,
             planes: self.planes,
             dark,

@@ -20,33 +20,39 @@ fn body(nodes: impl Iterator<Item = DVec3>) -> Body {
     }
 }
 
-/// A spiral that falls into a heap.
+/// Returns a spiral that falls into a heap.
 fn spiral(count: usize, boxes: u32) -> (Vec<Body>, Vec<Obstacle>) {
-    let place = |i: usize| {
-        let t = i as f64 * 0.9;
-        let radius = 1.0 + 0.01 * t;
-        DVec3::new(radius * libm::cos(t), 1.0 + 0.12 * t, radius * libm::sin(t))
-    };
     let boxes = (0..boxes).map(|i| Obstacle::Box {
         center: DVec3::new(f64::from(i), -1.0, 0.0),
         axes: [DVec3::X, DVec3::Y, DVec3::Z],
     });
-    (vec![body((0..count).map(place))], boxes.collect())
+    (
+        vec![body((0..count).map(|i| {
+            let t = i as f64 * 0.9;
+            let radius = 1.0 + 0.01 * t;
+            DVec3::new(radius * libm::cos(t), 1.0 + 0.12 * t, radius * libm::sin(t))
+        }))],
+        boxes.collect(),
+    )
 }
 
 /// Worms that lie across each other in one place, all of whose flesh touches.
 fn knot(count: usize) -> (Vec<Body>, Vec<Obstacle>) {
     const NODES: usize = 10;
-    let worm = |number: usize| {
-        let angle = number as f64 * 2.4;
-        let along = DVec3::new(
-            libm::cos(angle),
-            0.3 * libm::sin(3.0 * angle),
-            libm::sin(angle),
-        );
-        body((0..NODES).map(move |i| DVec3::Y + along * (0.2 * (i as f64 - 4.5))))
-    };
-    ((0..count / NODES).map(worm).collect(), Vec::new())
+    (
+        (0..count / NODES)
+            .map(|number| {
+                let angle = number as f64 * 2.4;
+                let along = DVec3::new(
+                    libm::cos(angle),
+                    0.3 * libm::sin(3.0 * angle),
+                    libm::sin(angle),
+                );
+                body((0..NODES).map(move |i| DVec3::Y + along * (0.2 * (i as f64 - 4.5))))
+            })
+            .collect(),
+        Vec::new(),
+    )
 }
 
 fn measure(

@@ -4,26 +4,28 @@ use glam::DVec3;
 
 /// Value and gradient of `∫ ds/|p − s|³` over the segment from `a` to `b`.
 ///
-/// With `A = |p − a|`, `B = |p − b|` and the segment's length l the integral is `l(A + B)/(AB(AB + (p − a)·(p − b)))`, which is
-/// without a pole beyond the segment's ends. On the segment itself, where it has none, the value is large and finite.
+/// With `A = |p − a|`, `B = |p − b|` and the segment's length l the integral is
+/// `l(A + B)/(AB(AB + (p − a)·(p − b)))`, which is without a pole beyond the segment's ends. On the
+/// segment itself, where it has none, the value is large and finite.
 ///
 /// ```
 /// use glam::DVec3;
 ///
 /// // Of an endless line it is 2/ρ².
-/// let (value, gradient) = motion::line(DVec3::new(0.0, 2.0, 0.0), DVec3::X * -1e4, DVec3::X * 1e4);
+/// let (p, end) = (DVec3::new(0.0, 2.0, 0.0), DVec3::X * 1e4);
+/// let (value, gradient) = motion::line(p, -end, end);
 /// assert!((value - 0.5).abs() < 1e-6);
 /// assert!((gradient - DVec3::new(0.0, -0.5, 0.0)).length() < 1e-6);
 /// ```
 #[must_use]
 pub fn line(p: DVec3, a: DVec3, b: DVec3) -> (f64, DVec3) {
-    End::new(p, a).joined(&End::new(p, b), a.distance(b))
+    End::new(p, a).line(&End::new(p, b), a.distance(b))
 }
 
-/// How a point is seen from an end of a segment: what all segments that meet there share.
+/// View of a point from an end of a segment: the terms that all segments which meet there share.
 #[derive(Clone, Copy, Debug)]
 pub struct End {
-    /// From the end to the point, and how far that is.
+    /// Vector from the end to the point, its length, and the unit vector in its direction.
     to: DVec3,
     distance: f64,
     unit: DVec3,
@@ -45,8 +47,8 @@ impl End {
         }
     }
 
-    /// [`line`] of the segment to another end.
-    pub fn joined(&self, other: &Self, length: f64) -> (f64, DVec3) {
+    /// Computes [`line`] of the segment to another end.
+    pub fn line(&self, other: &Self, length: f64) -> (f64, DVec3) {
         let (ra, rb) = (self.distance, other.distance);
         let product = ra * rb;
         // On the axis the sum is all rounding.

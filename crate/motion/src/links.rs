@@ -3,17 +3,18 @@
 use crate::setup::{Body, Settings};
 use glam::DVec3;
 
-/// A spring between nodes.
+/// Spring between nodes.
 #[derive(Clone, Debug)]
 pub enum Link {
-    /// Two nodes at a distance.
+    /// Spring between two nodes, at rest at a distance.
     Distance {
         nodes: [usize; 2],
         rest: f64,
         /// Compliance: the inverse of the spring's constant.
         give: f64,
     },
-    /// A node at a distance from a point between its two neighbours: 0 on a straight curve, more at a corner.
+    /// Node at a distance from a point between its two neighbours: 0 on a straight curve, more at a
+    /// corner.
     Bend {
         /// The neighbour before, the node, the neighbour behind.
         nodes: [usize; 3],
@@ -58,7 +59,7 @@ impl Link {
         }
     }
 
-    /// Its energy; 0 if it does not give way at all.
+    /// Computes the energy `(length − rest)²/(2·give)`; 0 if the spring does not give way at all.
     pub fn energy(&self, places: &[DVec3]) -> f64 {
         let (apart, rest, give) = match *self {
             Self::Distance { nodes, rest, give } => {
@@ -83,7 +84,8 @@ impl Link {
     }
 }
 
-/// The impulse, in lengths times mass, that takes two points at `apart` towards a distance of `rest`.
+/// The impulse, in lengths times mass, that takes two points at `apart` towards a distance of
+/// `rest`.
 fn correction(apart: DVec3, rest: f64, weight: f64, give: f64, step: f64) -> Option<DVec3> {
     let length = apart.length();
     let hold = weight + give / (step * step);
@@ -146,8 +148,9 @@ pub fn links(body: &Body, first: usize, settings: &Settings, into: &mut Vec<Link
     }
 }
 
-/// Masses by the flesh around each node: radius² times half the length of its edges, scaled to a mean of 1. None is less than
-/// a fiftieth of the greatest, as the light ends of heavy limbs would need many more steps.
+/// Masses by the flesh around each node: radius² times half the length of its edges, scaled to a
+/// mean of 1. None is less than a fiftieth of the greatest, as the light ends of heavy limbs would
+/// need many more steps.
 pub fn masses(body: &Body) -> Vec<f64> {
     let nodes = &body.skeleton.nodes;
     let mut masses = vec![0.0; nodes.len()];

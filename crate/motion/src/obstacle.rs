@@ -1,43 +1,44 @@
-//! What stands still: floors, walls, boxes, balls, rods.
+//! Obstacles, which stand still: floors, walls, boxes, balls, rods.
 
 use crate::LARGEST;
 use glam::DVec3;
 
-/// A thing that bodies cannot enter.
+/// Solid that bodies cannot enter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Obstacle {
-    /// All that is below a plane; the normal is a unit vector that points to where bodies may be.
+    /// Half-space below a plane; the normal is a unit vector that points to where bodies may be.
     Plane {
-        /// A point of the plane.
+        /// Point of the plane.
         point: DVec3,
-        /// Its normal.
+        /// Unit normal, away from the half-space.
         normal: DVec3,
     },
-    /// A box with right angles.
+    /// Box with right angles.
     Box {
-        /// Its middle.
+        /// Middle of the box.
         center: DVec3,
-        /// From the middle to the middles of three faces; perpendicular to each other.
+        /// Vectors from the middle to the middles of three faces; perpendicular to each other.
         axes: [DVec3; 3],
     },
-    /// A rod with round ends, whose radius varies evenly along it; a ball if its ends are one point.
+    /// Rod with round ends, whose radius varies evenly along it; a ball if its ends are one point.
     Rod {
-        /// Its ends.
+        /// Ends of the rod's axis.
         ends: [DVec3; 2],
-        /// The radii there.
+        /// Radii at the ends.
         radii: [f64; 2],
     },
 }
 
 impl Obstacle {
-    /// Signed distance of a point from the surface, negative inside, and the direction in which it grows.
-    /// Of a rod that tapers an approximation that is exact at its surface's widest part.
+    /// Signed distance of a point from the surface, negative inside, and the direction in which it
+    /// grows. Of a rod that tapers an approximation that is exact at its surface's widest part.
     ///
     /// ```
     /// use glam::DVec3;
     /// use motion::Obstacle;
     ///
-    /// let step = Obstacle::Box { center: DVec3::ZERO, axes: [DVec3::X * 2.0, DVec3::Y, DVec3::Z] };
+    /// let axes = [DVec3::X * 2.0, DVec3::Y, DVec3::Z];
+    /// let step = Obstacle::Box { center: DVec3::ZERO, axes };
     /// assert_eq!(step.distance(DVec3::new(0.0, 1.5, 0.0)), (0.5, DVec3::Y));
     /// assert_eq!(step.distance(DVec3::new(1.9, 0.0, 0.0)), (2.0 * 0.95 - 2.0, DVec3::X));
     /// ```
@@ -57,7 +58,7 @@ impl Obstacle {
         }
     }
 
-    /// A ball around it, if it has an end; a little larger than need be.
+    /// Returns a ball around it, if it has an end; a little larger than need be.
     fn ball(&self) -> Option<(DVec3, f64)> {
         let (center, radius) = match self {
             Self::Plane { .. } => return None,
@@ -76,20 +77,24 @@ impl Obstacle {
         Some((center, radius * (1.0 + 1e-6)))
     }
 
-    /// Whether all numbers are finite and not too large, and normals have a direction.
+    /// Whether all numbers are finite and not too large, and normals have the length 1.
     #[must_use]
     pub(crate) fn is_usable(&self) -> bool {
-        let usable = |v: &DVec3| v.to_array().into_iter().all(|x| x.abs() <= LARGEST);
         match self {
-            Self::Plane { point, normal } => usable(point) && (normal.length() - 1.0).abs() < 1e-6,
+            Self::Plane { point, normal } => fits(point) && (normal.length() - 1.0).abs() < 1e-6,
             Self::Box { center, axes } => {
-                usable(center) && axes.iter().all(|a| usable(a) && a.length() > 0.0)
+                fits(center) && axes.iter().all(|a| fits(a) && a.length() > 0.0)
             }
             Self::Rod { ends, radii } => {
-                ends.iter().all(usable) && radii.iter().all(|r| (0.0..=LARGEST).contains(r))
+                ends.iter().all(fits) && radii.iter().all(|r| (0.0..=LARGEST).contains(r))
             }
         }
     }
+}
+
+/// Whether no coordinate is larger than [`LARGEST`], or NaN.
+pub(crate) fn fits(v: &DVec3) -> bool {
+    v.to_array().into_iter().all(|x| x.abs() <= LARGEST)
 }
 
 /// An obstacle and the ball around it, so that most samples need no look at more than that.

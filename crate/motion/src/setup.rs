@@ -1,16 +1,16 @@
 //! The data of a motion.
 
-use crate::obstacle::Obstacle;
+use crate::obstacle::{Obstacle, fits};
 use crate::{LARGEST, MOST_NODES, MOST_OBSTACLES, MOST_STEPS};
 use glam::DVec3;
 use skeleton::{Scheme, Skeleton};
 
-/// A skeleton that moves.
+/// Skeleton that moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
     /// Nodes where they are at first, which is also the shape that the springs pull back to.
     pub skeleton: Skeleton,
-    /// How its curves are refined.
+    /// Subdivision of the curves.
     pub scheme: Scheme,
     /// The nodes that do not move by themselves, in increasing order.
     pub pinned: Vec<usize>,
@@ -21,9 +21,11 @@ pub struct Body {
 pub struct Settings {
     /// Acceleration of all that falls, lengths per second².
     pub gravity: DVec3,
-    /// The share of the velocity that is lost in a second, as long as that is small: `v′ = −damping·v`. At least 0.
+    /// The share of the velocity that is lost in a second, as long as that is small:
+    /// `v′ = −damping·v`. At least 0.
     pub damping: f64,
-    /// The force that stretches a curve to twice its length, for a mean mass of 1 a node. At least 0.
+    /// The force that stretches a curve to twice its length, for a mean mass of 1 a node. At least
+    /// 0.
     pub stiffness: f64,
     /// The share of the stiffness with which curves resist bending and twisting. At least 0.
     pub bending: f64,
@@ -52,27 +54,27 @@ impl Default for Settings {
     }
 }
 
-/// All that moves, what stands in its way, and the forces.
+/// Bodies that move, what stands in their way, and the forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// What moves.
+    /// Bodies that move.
     pub bodies: Vec<Body>,
-    /// What stands still.
+    /// Obstacles, which stand still.
     pub obstacles: Vec<Obstacle>,
     /// Forces and time.
     pub settings: Settings,
 }
 
-/// A setup that cannot move.
+/// Setup that cannot move.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
     /// More nodes than [`MOST_NODES`].
     Nodes(usize),
     /// More obstacles than [`MOST_OBSTACLES`].
     Obstacles(usize),
-    /// A skeleton that has no polyline.
+    /// Skeleton that has no polyline.
     Skeleton(skeleton::Error),
-    /// A number that is not finite, too large or out of its range; its name.
+    /// Number that is not finite, too large or out of its range; its name.
     Number(&'static str),
 }
 
@@ -95,6 +97,10 @@ impl std::fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+fn is_positive(number: f64) -> bool {
+    (0.0..=LARGEST).contains(&number)
+}
+
 impl Setup {
     /// The first thing that is wrong, if any.
     pub(crate) fn check(&self) -> Result<(), Error> {
@@ -106,15 +112,13 @@ impl Setup {
             return Err(Error::Obstacles(self.obstacles.len()));
         }
         let s = &self.settings;
-        let usable = |number: f64| number.abs() <= LARGEST;
-        let positive = |number: f64| (0.0..=LARGEST).contains(&number);
         let numbers = [
-            ("gravity", s.gravity.to_array().into_iter().all(usable)),
-            ("damping", positive(s.damping)),
-            ("stiffness", positive(s.stiffness)),
-            ("bending", positive(s.bending)),
+            ("gravity", fits(&s.gravity)),
+            ("damping", is_positive(s.damping)),
+            ("stiffness", is_positive(s.stiffness)),
+            ("bending", is_positive(s.bending)),
             ("bounce", (0.0..=1.0).contains(&s.bounce)),
-            ("friction", positive(s.friction)),
+            ("friction", is_positive(s.friction)),
             ("number of steps", (1..=MOST_STEPS).contains(&s.steps)),
             ("rate", (1e-6..=1e6).contains(&s.rate)),
             (
@@ -124,9 +128,8 @@ impl Setup {
             (
                 "place",
                 self.bodies.iter().all(|body| {
-                    body.skeleton.nodes.iter().all(|node| {
-                        node.position.to_array().into_iter().all(usable) && positive(node.radius)
-                    })
+                    let mut nodes = body.skeleton.nodes.iter();
+                    nodes.all(|node| fits(&node.position) && is_positive(node.radius))
                 }),
             ),
         ];

@@ -13,7 +13,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// `−Σ m g·x`
     pub potential: f64,
-    /// Of springs, and of flesh that is pressed in.
+    /// Energy of the springs, and of flesh that is pressed in.
     pub elastic: f64,
 }
 
@@ -25,7 +25,7 @@ impl Energy {
     }
 }
 
-/// Bodies on their way.
+/// Bodies that move from step to step.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     settings: Settings,
@@ -51,7 +51,8 @@ impl Simulation {
     /// Bodies at rest, where the setup has them.
     ///
     /// # Errors
-    /// If there are too many nodes or obstacles, a number is not usable, or a skeleton has no polyline.
+    /// If there are too many nodes or obstacles, a number is not usable, or a skeleton has no
+    /// polyline.
     pub fn new(setup: &Setup) -> Result<Self, Error> {
         setup.check()?;
         let settings = setup.settings;
@@ -91,7 +92,7 @@ impl Simulation {
         })
     }
 
-    /// Where the nodes are, one body after another.
+    /// Places of the nodes, one body after another.
     #[must_use]
     pub fn positions(&self) -> &[DVec3] {
         &self.places
@@ -117,8 +118,8 @@ impl Simulation {
         &self.pinned
     }
 
-    /// The highest speed at which nothing passes through anything: half the thinnest flesh in a step. What would be faster is
-    /// slowed down to it.
+    /// The highest speed at which nothing passes through anything: half the thinnest flesh in a
+    /// step. What would be faster is slowed down to it.
     #[must_use]
     pub fn speed_limit(&self) -> f64 {
         self.reach * self.settings.rate * f64::from(self.settings.steps)
@@ -130,7 +131,7 @@ impl Simulation {
         self.hurried
     }
 
-    /// How far the flesh reaches into obstacles at most; negative if it touches none.
+    /// Returns the largest depth of the flesh in an obstacle; negative if it touches none.
     #[must_use]
     pub fn deepest(&self) -> f64 {
         self.flesh.deepest(&self.places, &self.obstacles)
@@ -143,7 +144,7 @@ impl Simulation {
         all.fold(DVec3::ZERO, |sum, (v, m)| sum + *v * *m)
     }
 
-    /// The energy of flesh that is pressed into other flesh, or into its own folds.
+    /// Computes the energy of flesh that is pressed into other flesh, or into its own folds.
     pub fn pressed(&mut self) -> f64 {
         self.flesh.energy(&self.places, self.settings.stiffness)
     }
@@ -159,12 +160,11 @@ impl Simulation {
 
     /// The energies now.
     pub fn energy(&mut self) -> Energy {
-        let square = |v: &DVec3| v.length_squared();
         let kinetic = self.velocities.iter().zip(&self.masses);
         let potential = self.places.iter().zip(&self.masses);
         let springs: f64 = self.links.iter().map(|l| l.energy(&self.places)).sum();
         Energy {
-            kinetic: kinetic.map(|(v, m)| 0.5 * m * square(v)).sum(),
+            kinetic: kinetic.map(|(v, m)| 0.5 * m * v.length_squared()).sum(),
             potential: -potential
                 .map(|(x, m)| m * self.settings.gravity.dot(*x))
                 .sum::<f64>(),
@@ -172,7 +172,8 @@ impl Simulation {
         }
     }
 
-    /// Goes on by a frame. Pinned nodes go evenly to `targets`, in the order of [`Self::pinned`]; those without one stay.
+    /// Advances by a frame. Pinned nodes go evenly to `targets`, in the order of [`Self::pinned`];
+    /// those without one stay.
     pub fn advance(&mut self, targets: &[DVec3]) {
         let steps = self.settings.steps;
         let from: Vec<DVec3> = self.pinned.iter().map(|&node| self.places[node]).collect();
@@ -184,7 +185,7 @@ impl Simulation {
         }
     }
 
-    /// Goes on by a step; pinned nodes are put to `goals`.
+    /// Advances by a step; pinned nodes are put to `goals`.
     fn step(&mut self, goals: &[DVec3]) {
         let settings = self.settings;
         let h = 1.0 / (settings.rate * f64::from(settings.steps));
@@ -195,7 +196,7 @@ impl Simulation {
                 continue;
             }
             let velocity = (self.velocities[i] + settings.gravity * h) * drag;
-            let (velocity, slowed) = limited(velocity, self.reach / h);
+            let (velocity, slowed) = limit(velocity, self.reach / h);
             self.hurried |= slowed;
             self.velocities[i] = velocity;
             self.places[i] += velocity * h;
@@ -239,8 +240,8 @@ impl Simulation {
     }
 }
 
-/// A velocity of at most this length, and whether it was longer.
-fn limited(velocity: DVec3, most: f64) -> (DVec3, bool) {
+/// Shortens a velocity to a length of at most `most`; also returns whether it was longer.
+fn limit(velocity: DVec3, most: f64) -> (DVec3, bool) {
     let speed = velocity.length();
     if speed > most {
         (velocity * (most / speed), true)

@@ -1,4 +1,4 @@
-//! Where flesh touches: samples of the surface, what they can meet, and how they are pushed back.
+//! Touching flesh: samples of the surface, what they can meet, and how they are pushed back.
 
 use crate::field::{End, distance};
 use crate::obstacle::{Standing, foot};
@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 
 /// Levels of subdivision of the curves that touch.
 const LEVELS: u32 = 1;
-/// Samples are at most so many radii apart, unless that are too many.
+/// Most distance of neighbouring samples, in radii, unless that makes too many of them.
 const SPACING: f64 = 1.5;
 /// The most samples of a segment, besides its ends.
 const MOST_BETWEEN: usize = 3;
@@ -19,7 +19,7 @@ const MOST_BETWEEN: usize = 3;
 /// The share of its radius by which a sample that begins in an obstacle is put out in a step.
 const RISE: f64 = 0.005;
 
-/// A mean of some nodes: their numbers and weights, which add up to 1.
+/// Mean of some nodes: their numbers and weights, which add up to 1.
 type Mean = Vec<(u32, f64)>;
 
 fn at(mean: &Mean, places: &[DVec3]) -> DVec3 {
@@ -42,27 +42,27 @@ fn push(mean: &Mean, impulse: DVec3, places: &mut [DVec3], inverse: &[f64]) {
     }
 }
 
-/// A point of a curve and the ball of flesh around it.
+/// Point of a curve and the ball of flesh around it.
 #[derive(Clone, Debug)]
 struct Sample {
     mean: Mean,
     radius: f64,
     /// The segments that it can meet.
     far: Vec<u32>,
-    /// Those of them that were near when last looked for.
+    /// Segments of `far` that were near when last looked for.
     near: Vec<u32>,
-    /// By how much the flesh overlapped at first, which is let be.
+    /// Depth to which the flesh overlapped at first, which is not pushed out.
     overlap: f64,
 }
 
-/// A piece of a curve.
+/// Piece of a curve.
 #[derive(Clone, Debug)]
 struct Segment {
     ends: [u32; 2],
     radius: f64,
 }
 
-/// A sample that met an obstacle in this step.
+/// Sample that met an obstacle in this step.
 #[derive(Clone, Copy, Debug)]
 struct Hit {
     sample: usize,
@@ -71,7 +71,7 @@ struct Hit {
     speed: f64,
 }
 
-/// All flesh of some bodies.
+/// The flesh of all bodies of a simulation.
 #[derive(Clone, Debug)]
 pub struct Flesh {
     vertices: Vec<Mean>,
@@ -83,13 +83,14 @@ pub struct Flesh {
     before: Vec<DVec3>,
     /// Places of the nodes when near segments were last looked for.
     looked: Vec<DVec3>,
-    /// By how much a sample may miss a segment and still be taken for near.
+    /// Distance by which a sample may miss a segment and still be taken for near.
     margin: f64,
     hits: Vec<Hit>,
     sight: Sight,
 }
 
-/// A sample as all vertices see it, and the gradients there of the fields of the segments that it can meet.
+/// Sample as all vertices see it, and the gradients there of the fields of the segments that it can
+/// meet.
 #[derive(Clone, Debug, Default)]
 struct Sight {
     ends: Vec<End>,
@@ -157,21 +158,20 @@ impl Flesh {
     ) -> Result<(), skeleton::Error> {
         let base = self.vertices.len();
         let weights = body.skeleton.weights(body.scheme, LEVELS)?;
-        let shifted = |(node, weight): (usize, f64)| ((first + node) as u32, weight);
         let means: Vec<Mean> = weights
             .into_iter()
-            .map(|own| own.into_iter().map(shifted).collect())
+            .map(|own| {
+                own.into_iter()
+                    .map(|(node, weight)| ((first + node) as u32, weight))
+                    .collect()
+            })
             .collect();
-        let radius_at = |segment: &skeleton::Segment| {
-            let [a, b] = segment.ends.map(|end| polyline.vertices[end].radius);
-            0.5 * (a + b)
-        };
         let pieces: Vec<_> = polyline
             .segments
             .iter()
             .map(|s| {
-                let [a, b] = s.ends.map(|end| polyline.vertices[end].position);
-                (a, b, radius_at(s))
+                let [a, b] = s.ends.map(|end| &polyline.vertices[end]);
+                (a.position, b.position, 0.5 * (a.radius + b.radius))
             })
             .collect();
         for (index, vertex) in polyline.vertices.iter().enumerate() {
@@ -210,7 +210,7 @@ impl Flesh {
                 let radii = segment.ends.map(|end| polyline.vertices[end].radius);
                 let own = radii[0] + (radii[1] - radii[0]) * along;
                 self.samples.push(Sample {
-                    mean: mixed(first, second, along),
+                    mean: mix(first, second, along),
                     radius: thickness(&pieces, a.lerp(b, along), b - a, own, false),
                     far: Vec::new(),
                     near: Vec::new(),
@@ -222,8 +222,8 @@ impl Flesh {
         Ok(())
     }
 
-    /// Finds for each sample of a body the segments it can meet: all of other bodies, and those of its own that are neither near
-    /// along the curves nor near in space as they are at first.
+    /// Finds for each sample of a body the segments it can meet: all of other bodies, and those of
+    /// its own that are neither near along the curves nor near in space as they are at first.
     fn own_folds(
         &mut self,
         samples: std::ops::Range<usize>,
@@ -266,14 +266,13 @@ impl Flesh {
                 if segments.contains(&number) {
                     let own = &polyline.segments[number - segments.start];
                     let reach = radius + self.segments[number].radius;
-                    let way = |(vertex, start): (usize, f64)| {
+                    let ways = host.map(|(vertex, start)| {
                         let to = own.ends.map(|end| along[vertex][end]);
                         start + to[0].min(to[1])
-                    };
+                    });
                     let [a, b] = self.ends(number);
                     let apart = point.distance(a.lerp(b, foot(point, a, b)));
-                    let is_far =
-                        way(host[0]).min(way(host[1])) > 2.0 * reach && apart > 1.05 * reach;
+                    let is_far = ways[0].min(ways[1]) > 2.0 * reach && apart > 1.05 * reach;
                     if !is_far {
                         continue;
                     }
@@ -321,8 +320,10 @@ impl Flesh {
         }
     }
 
-    /// How deep a sample is in the flesh of other stretches, and by which gradient `Σ ∇∫ds/d³` it is pushed; the gradient of each of
-    /// `far` is then in `sight`. The field's value stands for a distance, from which both radii are taken.
+    /// Computes the depth of a sample in the flesh of other stretches, and the push out of it,
+    /// along the gradient `Σ ∇∫ds/d³`; leaves the gradient of each of `far` in `sight`. The field's
+    /// value stands for a distance, from which both radii are taken. `None` if the sample touches
+    /// nothing.
     fn depth(&self, index: usize, places: &[DVec3], sight: &mut Sight) -> Option<(f64, Push)> {
         let sample = &self.samples[index];
         if sample.near.is_empty() {
@@ -345,7 +346,7 @@ impl Flesh {
         for &number in &sample.far {
             let segment = &self.segments[number as usize];
             let [a, b] = segment.ends.map(|end| &ends[end as usize]);
-            let (own, gradient) = a.joined(b, self.lengths[number as usize]);
+            let (own, gradient) = a.line(b, self.lengths[number as usize]);
             value += own;
             slope += gradient;
             radii += segment.radius * segment.radius * own;
@@ -368,7 +369,8 @@ impl Flesh {
         ))
     }
 
-    /// Pushes samples out of the flesh of other stretches: springs of the constant `stiffness/radius`, with friction.
+    /// Pushes samples out of the flesh of other stretches: springs of the constant
+    /// `stiffness/radius`, with friction.
     pub fn solve_folds(
         &mut self,
         places: &mut [DVec3],
@@ -404,8 +406,8 @@ impl Flesh {
             if depth <= 0.0 {
                 continue;
             }
-            // The share of each segment in the push, on the point of it that is nearest; the push is their sum, so that it equals
-            // the push back.
+            // The share of each segment in the push, on the point of it that is nearest; the push
+            // is their sum, so that it equals the push back.
             let mut shares: Vec<(usize, f64, DVec3)> = Vec::with_capacity(sample.far.len());
             let mut normal = DVec3::ZERO;
             let mut weight = 0.0;
@@ -418,10 +420,11 @@ impl Flesh {
                 normal += own;
                 let [a, b] = self.ends(number as usize);
                 let along = foot(push_by.point, a, b);
-                let [first, second] = self.segments[number as usize].ends;
-                let of = |end: u32| inverse_mass(&self.vertices[end as usize], inverse);
+                let [first, second] = self.segments[number as usize]
+                    .ends
+                    .map(|end| inverse_mass(&self.vertices[end as usize], inverse));
                 weight += own.length_squared()
-                    * ((1.0 - along) * (1.0 - along) * of(first) + along * along * of(second));
+                    * ((1.0 - along) * (1.0 - along) * first + along * along * second);
                 shares.push((number as usize, along, own));
             }
             weight += inverse_mass(&sample.mean, inverse) * normal.length_squared();
@@ -431,7 +434,8 @@ impl Flesh {
                 continue;
             }
             let mut impulse = depth / hold;
-            // No farther than is deep: springs that pull on light ends of heavy limbs would throw them.
+            // No farther than is deep: springs that pull on light ends of heavy limbs would throw
+            // them.
             let own = inverse_mass(&sample.mean, inverse) * normal.length();
             if impulse * own > depth {
                 impulse = depth / own;
@@ -491,12 +495,13 @@ impl Flesh {
             .map(|end| self.now[end as usize] - self.before[end as usize]);
         let slide = own - a.lerp(b, along);
         let slide = slide - normal * slide.dot(normal);
-        let [first, second] = self.segments[number].ends;
-        let of = |end: u32| inverse_mass(&self.vertices[end as usize], inverse);
+        let [first, second] = self.segments[number]
+            .ends
+            .map(|end| inverse_mass(&self.vertices[end as usize], inverse));
         let weight = inverse_mass(&sample.mean, inverse)
-            + (1.0 - along) * (1.0 - along) * of(first)
-            + along * along * of(second);
-        resisted(
+            + (1.0 - along) * (1.0 - along) * first
+            + along * along * second;
+        resistance(
             slide,
             weight,
             settings.friction * impulse * push_by.slope.length(),
@@ -535,7 +540,8 @@ impl Flesh {
                     normal,
                     speed: at(&sample.mean, velocities).dot(normal),
                 });
-                // What was too deep before is put out bit by bit, and without a speed, as if it had been out.
+                // What was too deep before is put out bit by bit, and without a speed, as if it had
+                // been out.
                 let before = at(&sample.mean, previous);
                 let sunk = (sample.radius - obstacle.distance(before).0).clamp(0.0, depth);
                 let out = sunk.min(RISE * sample.radius);
@@ -544,14 +550,15 @@ impl Flesh {
                 let slide = point - before;
                 let slide = slide - normal * slide.dot(normal);
                 let impulse = depth / weight;
-                let rub = resisted(slide, weight, friction * impulse);
+                let rub = resistance(slide, weight, friction * impulse);
                 push(&sample.mean, normal * impulse + rub, places, inverse);
                 point = at(&sample.mean, places);
             }
         }
     }
 
-    /// Gives samples that met an obstacle the speed away from it that they are left with: that of having been pushed out is none.
+    /// Gives samples that met an obstacle the speed away from it that they are left with: that of
+    /// having been pushed out is none.
     pub fn rebound(&self, velocities: &mut [DVec3], inverse: &[f64], bounce: f64, least: f64) {
         for hit in &self.hits {
             let mean = &self.samples[hit.sample].mean;
@@ -601,37 +608,38 @@ impl Flesh {
         energy
     }
 
-    /// How far the flesh reaches into each obstacle, at most.
+    /// Returns the largest depth of the flesh in an obstacle; negative if it touches none.
     pub fn deepest(&self, places: &[DVec3], obstacles: &[Standing]) -> f64 {
-        let depth = |sample: &Sample| {
-            let point = at(&sample.mean, places);
-            let apart = obstacles.iter().map(|o| o.obstacle.distance(point).0);
-            sample.radius - apart.fold(f64::INFINITY, f64::min)
-        };
         self.samples
             .iter()
-            .map(depth)
+            .map(|sample| {
+                let point = at(&sample.mean, places);
+                let apart = obstacles.iter().map(|o| o.obstacle.distance(point).0);
+                sample.radius - apart.fold(f64::INFINITY, f64::min)
+            })
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Operations of a step, roughly.
     pub fn work(&self, obstacles: usize) -> u64 {
-        let of = |s: &Sample| 4 * (1 + obstacles) + s.far.len();
-        self.samples.iter().map(|s| of(s) as u64).sum()
+        self.samples
+            .iter()
+            .map(|s| (4 * (1 + obstacles) + s.far.len()) as u64)
+            .sum()
     }
 }
 
-/// How a sample is pushed.
+/// Push on a sample.
 struct Push {
     point: DVec3,
-    /// From the field's gradient to that of the distance.
+    /// Factor from the field's gradient to that of the distance.
     scale: f64,
     /// The gradient of the distance.
     slope: DVec3,
 }
 
 /// The impulse that stops a slide, cut off where friction ends.
-fn resisted(slide: DVec3, weight: f64, most: f64) -> DVec3 {
+fn resistance(slide: DVec3, weight: f64, most: f64) -> DVec3 {
     let length = slide.length();
     if !(length > 0.0 && weight > 0.0) {
         return DVec3::ZERO;
@@ -639,8 +647,8 @@ fn resisted(slide: DVec3, weight: f64, most: f64) -> DVec3 {
     slide * (-(length / weight).min(most) / length)
 }
 
-/// A point on the way from one mean to another.
-fn mixed(a: &Mean, b: &Mean, along: f64) -> Mean {
+/// Returns the mean for a point on the way from one to another.
+fn mix(a: &Mean, b: &Mean, along: f64) -> Mean {
     let mut mixed: Mean = a.iter().map(|&(n, w)| (n, w * (1.0 - along))).collect();
     for &(node, weight) in b {
         match mixed.iter_mut().find(|(own, _)| *own == node) {

@@ -13,39 +13,39 @@ use trials::{Random, count};
 
 const EPSILON32: f64 = f32::EPSILON as f64 / 2.0;
 
-/// How exact cells are: errors are at most `relative·|f| + floor·(the largest field it can have)`.
+/// Accuracy of cells: errors are at most `relative·|f| + floor·(the largest field it can have)`.
 #[derive(Clone, Copy)]
 struct Accuracy {
     relative: f64,
     floor: f64,
 }
 
-/// Of double precision against quadrature, in every cell.
+/// Accuracy of double precision against quadrature, in every cell.
 const DOUBLE: Accuracy = Accuracy {
     relative: 1e-9,
     floor: 1e-13,
 };
 
-/// Of single precision against double, in every cell.
+/// Accuracy of single precision against double, in every cell.
 const SINGLE: Accuracy = Accuracy {
     relative: 1e-5,
     floor: 2e-6,
 };
 
-fn shaped(random: &mut Random, kernel: Kernel) -> Shaping {
+fn shape(random: &mut Random, kernel: Kernel) -> Shaping {
     Shaping {
         kernel,
         ..random.shaping(1.0)
     }
 }
 
-/// A random skeleton for a kernel, of these decades of its radius (1).
+/// Returns a random skeleton for a kernel, of these decades of its radius (1).
 fn skeleton(random: &mut Random, kind: Kind, low: f64, high: f64) -> Skeleton {
     let size = random.decades(low, high);
     random.skeleton(kind, size)
 }
 
-/// Values are those of quadrature, to 10⁻⁹.
+/// Checks that values are those of quadrature, to 10⁻⁹.
 pub fn matches_quadrature(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) {
     let mut random = Random::new(101);
     let cases = match kind {
@@ -55,7 +55,7 @@ pub fn matches_quadrature(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) 
     };
     for _ in 0..count(cases) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.2);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = shape(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
         let far = random.pick(&[0.3, 0.3, 2.0]);
         let point = random.near(&skeleton, -4.0, far);
@@ -75,12 +75,13 @@ pub fn matches_quadrature(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) 
     }
 }
 
-/// Two forms in single precision have the same bits, and are `field`'s double form to 10⁻⁵.
+/// Checks that two forms in single precision have the same bits, and are `field`'s double form to
+/// 10⁻⁵.
 pub fn single_matches_double(kernel: Kernel, kind: Kind, forms: [Evaluation<'_>; 2]) {
     let mut random = Random::new(102);
     for _ in 0..count(2_000) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = shape(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
         let point = single(random.near(&skeleton, -3.0, 1.0));
         let (want, want_gradient) = jet::<f64>(&primitive, point);
@@ -132,12 +133,12 @@ pub fn single_matches_double(kernel: Kernel, kind: Kind, forms: [Evaluation<'_>;
     }
 }
 
-/// Gradients are differences of values.
+/// Checks that gradients are differences of values.
 pub fn gradient_is_the_derivative(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) {
     let mut random = Random::new(103);
     for _ in 0..count(600) {
         let skeleton = skeleton(&mut random, kind, -2.0, 1.0);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = shape(&mut random, kernel);
         let primitive = primitive(skeleton.clone(), &shaping, None);
         let point = random.near(&skeleton, -2.0, 0.5);
         let u = primitive.width * skeleton.distance(point);
@@ -166,7 +167,7 @@ pub fn gradient_is_the_derivative(kernel: Kernel, kind: Kind, evaluate: Evaluati
     }
 }
 
-/// A skeleton cut in two has the field of the whole.
+/// Checks that a skeleton cut in two has the field of the whole.
 pub fn superposition(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) {
     let mut random = Random::new(104);
     for _ in 0..count(300) {
@@ -175,7 +176,7 @@ pub fn superposition(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) {
         let Some(parts) = halves(&skeleton, at) else {
             continue;
         };
-        let shaping = shaped(&mut random, kernel);
+        let shaping = shape(&mut random, kernel);
         let whole = primitive(skeleton.clone(), &shaping, None);
         let parts = parts.map(|part| primitive(part, &shaping, None));
         let point = random.near(&skeleton, -2.0, 0.5);
@@ -201,12 +202,12 @@ pub fn superposition(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) {
     }
 }
 
-/// Moved, turned and scaled with its surroundings, a field stays what it was.
+/// Checks that a field that is moved, turned and scaled with its surroundings stays the same.
 pub fn rigid_motion_and_scale(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) {
     let mut random = Random::new(105);
     for _ in 0..count(200) {
         let skeleton = skeleton(&mut random, kind, -1.0, 0.7);
-        let shaping = shaped(&mut random, kernel);
+        let shaping = shape(&mut random, kernel);
         let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, TAU));
         let shift = random.vector(3.0);
         let scale = random.decades(-1.0, 1.0);
@@ -217,7 +218,7 @@ pub fn rigid_motion_and_scale(kernel: Kernel, kind: Kind, evaluate: Evaluation<'
             radius: shaping.radius * scale,
             ..shaping
         };
-        let there = primitive(moved(&skeleton, turn, scale, shift), &there, None);
+        let there = primitive(move_skeleton(&skeleton, turn, scale, shift), &there, None);
         let (value, gradient) = evaluate(&here, point);
         let (after, slopes) = evaluate(&there, to(point));
         let Accuracy { relative, floor } = DOUBLE;
@@ -238,8 +239,9 @@ pub fn rigid_motion_and_scale(kernel: Kernel, kind: Kind, evaluate: Evaluation<'
     }
 }
 
-/// Straight away from the skeleton the field falls, stays within its bound, and is exactly 0 beyond
-/// a compact kernel's support. `epsilon` is the rounding of the evaluation's numbers.
+/// Checks that straight away from the skeleton the field falls, stays within its bound, and is
+/// exactly 0 beyond a compact kernel's support. `epsilon` is the rounding of the evaluation's
+/// numbers.
 pub fn falls_to_nothing(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>, epsilon: f64) {
     let mut random = Random::new(106);
     for _ in 0..count(100) {
@@ -265,7 +267,7 @@ pub fn falls_to_nothing(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>, ep
                 value >= -slack,
                 "{value} at {distance}: {primitive:?} at {point:?}"
             );
-            let bound = primitive.bound_at(distance);
+            let bound = primitive.most_beyond(distance);
             assert!(
                 value <= bound * (1.0 + 1e-6) + slack,
                 "{value} > {bound} at {distance}: {primitive:?} at {point:?}"
@@ -292,8 +294,8 @@ pub fn falls_to_nothing(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>, ep
     }
 }
 
-/// At degenerate bones and places, and a few units in the last place beside them, values in double
-/// and in single precision are finite and continuous.
+/// Checks that at degenerate bones and places, and a few units in the last place beside them,
+/// values in double and in single precision are finite and continuous.
 pub fn degenerate_geometry(kernel: Kernel, kind: Kind, [evaluate, eight]: [Evaluation<'_>; 2]) {
     let shaping = Shaping {
         kernel,
@@ -453,7 +455,7 @@ fn degenerate(kind: Kind) -> Vec<Skeleton> {
     }
 }
 
-/// A skeleton cut in two.
+/// Cuts a skeleton in two.
 fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     Some(match *skeleton {
         Skeleton::Segment { base, apex } => {
@@ -536,7 +538,7 @@ fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     })
 }
 
-fn moved(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
+fn move_skeleton(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
     let to = |p: DVec3| turn * p * scale + shift;
     match *skeleton {
         Skeleton::Point { center } => Skeleton::Point { center: to(center) },
@@ -576,8 +578,8 @@ fn moved(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton
     }
 }
 
-/// A point, a plane and a line that is as good as infinite have F = T at a radius from them, and
-/// for compact kernels nothing at the depth of influence.
+/// Checks that a point, a plane and a line that is as good as infinite have F = T at a radius from
+/// them, and for compact kernels nothing at the depth of influence.
 pub fn radius_in_isolation(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) {
     let mut random = Random::new(107);
     for _ in 0..count(40) {

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 use field::{Evaluate, Jet, Kernel, Primitive, Profile, Shaping, Skeleton};
 use glam::DVec3;
 
-/// A way of computing a primitive's field: value and gradient at a point.
+/// Way of computing a primitive's field: value and gradient at a point.
 pub type Evaluation<'e> = &'e dyn Fn(&Primitive, DVec3) -> (f64, DVec3);
 
 /// Returns a primitive that has flesh.
@@ -115,5 +115,5 @@ pub fn peak(primitive: &Primitive) -> f64 {
     } else {
         0.0
     };
-    primitive.bound_at(from)
+    primitive.most_beyond(from)
 }

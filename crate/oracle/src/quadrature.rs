@@ -36,7 +36,7 @@ fn finest(kernel: Kernel) -> f64 {
     }
 }
 
-/// A primitive's field at a point, by integration over its skeleton.
+/// Computes a primitive's field at a point, by integration over its skeleton.
 ///
 /// Relative error about 10⁻¹² (triangles and polygons, and tapered limbs of kernels with a pole,
 /// 10⁻¹¹).
@@ -310,7 +310,7 @@ fn breaks_along(k: Kernel, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
     breaks
 }
 
-/// Where a function passes a level between two places, if it does.
+/// Returns where a function passes a level between two places, if it does.
 fn passes(f: &dyn Fn(f64) -> f64, level: f64, mut a: f64, mut b: f64) -> Option<f64> {
     let below = f(a) < level;
     if below == (f(b) < level) {
@@ -360,12 +360,12 @@ fn split(
     integral(&mut f, &breaks, 1e-13)
 }
 
-/// Where on `base + t·d` the point's perpendicular falls.
+/// Returns where on `base + t·d` the point's perpendicular falls.
 fn near(base: DVec3, d: DVec3, point: DVec3) -> f64 {
     (point - base).dot(d) / d.length_squared()
 }
 
-/// A profile's factor, from its definition in the world.
+/// Computes a profile's factor, from its definition in the world.
 fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
     let (u, v) = match *skeleton {
         Skeleton::Point { .. }

@@ -12,7 +12,7 @@ use trials::scenes::{Kind, World, scene};
 /// Rays of one packet.
 const PACKET: usize = 8;
 
-/// A scene, its reference and its rays.
+/// Scene with its reference and its rays.
 pub struct Trial {
     /// Kernel, kind and seed.
     pub name: String,
@@ -146,7 +146,7 @@ fn packet(
     }
 }
 
-/// A point on some bone, often one of its ends.
+/// Returns a point on some bone, often one of its ends.
 fn bone_point(scene: &Scene, n: &mut Random) -> DVec3 {
     let count = scene.elements.len();
     let shape = &scene.elements[n.below(count)].shape;
@@ -185,9 +185,9 @@ pub struct Row {
     pub rays: u64,
     /// Rays with a hit.
     pub hits: u64,
-    /// Missed crossings of rays that go deeper than the tolerance …
+    /// Missed crossings of rays that go deeper than the tolerance.
     pub missed: u64,
-    /// … and of rays that graze.
+    /// Missed crossings of rays that graze.
     pub grazed: u64,
     /// Hits where there is nothing.
     pub invented: u64,
@@ -254,7 +254,7 @@ impl Row {
     }
 }
 
-/// A way of finding where a trial's rays first meet its surface: their parameters. The picture is
+/// Way of finding where a trial's rays first meet its surface: their parameters. The picture is
 /// that of the trial's scene.
 pub type Method<'m> = &'m dyn Fn(&Trial, &Picture) -> Vec<Option<f64>>;
 

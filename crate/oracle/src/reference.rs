@@ -171,8 +171,8 @@ impl Reference {
         self.function.sample(point)
     }
 
-    /// All crossings of `origin + t·direction` (a unit vector), 0 < t < `to`. Two that are closer
-    /// together than `resolution` may be left undecided.
+    /// Finds all crossings of `origin + t·direction` (a unit vector), 0 < t < `to`. Two that are
+    /// closer together than `resolution` may be left undecided.
     pub fn crossings(
         &mut self,
         origin: DVec3,

@@ -48,8 +48,9 @@ const ENDLESS: [Kernel; 5] = [
     Kernel::Cubed,
 ];
 
-/// No hit is inaccurate and no surface is missed, but with kernels that never end surfaces that
-/// rays graze, as next to the poles of squared polygons: no more often than this share.
+/// Checks that no hit is inaccurate and no surface is missed, but with kernels that never end
+/// surfaces that rays graze, as next to the poles of squared polygons: no more often than this
+/// share.
 fn certify(kinds: &[Kind], most_grazed: f64, method: Method<'_>) {
     let (mut all, mut faults) = judge(&COMPACT, kinds, 4, 4, method);
     assert!(all.faults() == 0, "{all:?}\n{faults}");
@@ -64,7 +65,7 @@ fn certify(kinds: &[Kind], most_grazed: f64, method: Method<'_>) {
     assert!(grazed <= most_grazed, "{all:?}\n{faults}");
 }
 
-/// Points whose largest field on a ray has a closed form have no fault at all.
+/// Checks that points whose largest field on a ray has a closed form have no fault at all.
 pub fn blobs(method: Method<'_>) {
     let kernels = [&[Kernel::Gauss][..], &COMPACT].concat();
     let (row, told) = judge(&kernels, &[Kind::Point], 30, 6, method);
@@ -72,31 +73,31 @@ pub fn blobs(method: Method<'_>) {
     assert!(row.hits > count(500) as u64, "{row:?}");
 }
 
-/// Points, segments, arcs, curves and tapered limbs.
+/// Checks points, segments, arcs, curves and tapered limbs.
 pub fn points_and_lines(method: Method<'_>) {
     let lines = [Kind::Segment, Kind::Arc, Kind::Curve, Kind::Taper];
     certify(&lines, 0.002, method);
     certify(&[Kind::Point], 0.0, method);
 }
 
-/// Triangles, polygons and planes.
+/// Checks triangles, polygons and planes.
 pub fn faces(method: Method<'_>) {
     let faces = [Kind::Triangle, Kind::Polygon, Kind::Plane, Kind::Restricted];
     certify(&faces, 0.002, method);
 }
 
-/// Profiles, smooth ones and those with kinks and jumps.
+/// Checks profiles, smooth ones and those with kinks and jumps.
 pub fn profiles(method: Method<'_>) {
     certify(&[Kind::Waves, Kind::Kinks], 0.0, method);
 }
 
-/// Mixtures of all, and clusters of hundreds.
+/// Checks mixtures of all, and clusters of hundreds.
 pub fn mixtures_and_clusters(method: Method<'_>) {
     certify(&[Kind::Mixed], 0.002, method);
     certify(&[Kind::Cluster], 0.0, method);
 }
 
-/// Very many points of kernels that never end.
+/// Checks very many points of kernels that never end.
 pub fn clouds(method: Method<'_>) {
     let endless = [
         Kernel::Cauchy,
@@ -109,8 +110,8 @@ pub fn clouds(method: Method<'_>) {
     assert!(row.hits > count(300) as u64, "{row:?}");
 }
 
-/// A ray that starts close to a cloud's surface is as exact as its own distance asks, not that of
-/// the middle of a cell of its hierarchy.
+/// Checks that a ray that starts close to a cloud's surface is as exact as its own distance asks,
+/// not that of the middle of a cell of its hierarchy.
 pub fn starts_beside_a_cloud(method: Method<'_>) {
     let mut told = String::new();
     let trial = Trial::earlier(Kernel::Cubed, Kind::Cloud, 911, 3);
@@ -119,12 +120,12 @@ pub fn starts_beside_a_cloud(method: Method<'_>) {
     assert!(row.hits >= 12, "{row:?}");
 }
 
-/// Regressions, scenes with faults in earlier versions of the tracer: rounding, or a surface along
-/// the ray, that leaves all rays in doubt; beyond the ends of Gaussian arcs; waves across a needle;
-/// beside crisp Gaussian faces and a plane with a very distant crossing; a surface along the ray
-/// between the kinks of profiles; grazing rays that negligible terms or rounding keep outside;
-/// waves beside an arc's axis; a very thin curve whose bent-away parts counted as near; crisp faces
-/// that single precision moves by more than a very fine picture's tolerance.
+/// Checks regressions, scenes with faults in earlier versions of the tracer: rounding, or a surface
+/// along the ray, that leaves all rays in doubt; beyond the ends of Gaussian arcs; waves across a
+/// needle; beside crisp Gaussian faces and a plane with a very distant crossing; a surface along
+/// the ray between the kinks of profiles; grazing rays that negligible terms or rounding keep
+/// outside; waves beside an arc's axis; a very thin curve whose bent-away parts counted as near;
+/// crisp faces that single precision moves by more than a very fine picture's tolerance.
 pub fn earlier_faults(method: Method<'_>) {
     let once = [
         (Kernel::Gauss, Kind::Arc, 89),
@@ -151,7 +152,7 @@ pub fn earlier_faults(method: Method<'_>) {
     recheck(Kernel::Quartic, Kind::Taper, 5031, u64::MAX, method);
 }
 
-/// Three more, whose reference takes seconds.
+/// Checks three more, whose reference takes seconds.
 pub fn earlier_faults_that_are_hard_to_judge(method: Method<'_>) {
     let once = [
         (Kernel::Gauss, Kind::Polygon, 138),
@@ -163,7 +164,7 @@ pub fn earlier_faults_that_are_hard_to_judge(method: Method<'_>) {
     }
 }
 
-/// A scene of an earlier fault has none; one of so many rays meets something.
+/// Checks that a scene of an earlier fault has none; one of so many rays meets something.
 fn recheck(kernel: Kernel, kind: Kind, seed: u64, least: u64, method: Method<'_>) {
     let mut told = String::new();
     let row = check(Trial::earlier(kernel, kind, seed, 8), method, &mut told);

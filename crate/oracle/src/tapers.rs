@@ -15,8 +15,9 @@ use wide::f32x8;
 
 const KINDS: [Kind; 3] = [Kind::Segment, Kind::Arc, Kind::Curve];
 
-/// A shaping of radius 1 at the start and anything from a tip to three times that at the end.
-fn tapered(random: &mut Random, kernel: Kernel) -> Shaping {
+/// Returns a shaping of radius 1 at the start and anything from a tip to three times that at the
+/// end.
+fn taper(random: &mut Random, kernel: Kernel) -> Shaping {
     let (any, slim) = (random.decades(-1.0, 0.5), random.decades(-3.0, 0.0));
     let radius = random.pick(&[any, any, slim, 0.0]);
     let shaping = random.shaping(1.0);
@@ -32,10 +33,10 @@ fn tapered(random: &mut Random, kernel: Kernel) -> Shaping {
 fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, low: f64) -> Primitive {
     let size = random.decades(low, 1.0);
     let skeleton = random.skeleton(kind, size);
-    primitive(skeleton, &tapered(random, kernel), None)
+    primitive(skeleton, &taper(random, kernel), None)
 }
 
-/// Values are those of quadrature, to 10⁻⁹ (metaballs 10⁻⁸).
+/// Checks that values are those of quadrature, to 10⁻⁹ (metaballs 10⁻⁸).
 pub fn matches_quadrature(kernel: Kernel, evaluate: Evaluation<'_>) {
     for kind in KINDS {
         let mut random = Random::new(401);
@@ -72,7 +73,8 @@ pub fn matches_quadrature(kernel: Kernel, evaluate: Evaluation<'_>) {
     }
 }
 
-/// Two forms in single precision have the same bits, and are `field`'s double form to 10⁻⁵.
+/// Checks that two forms in single precision have the same bits, and are `field`'s double form to
+/// 10⁻⁵.
 pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
     for kind in KINDS {
         let mut random = Random::new(402);
@@ -128,7 +130,7 @@ pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
     }
 }
 
-/// Gradients are differences of values.
+/// Checks that gradients are differences of values.
 pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
     for kind in KINDS {
         let mut random = Random::new(403);
@@ -148,7 +150,7 @@ pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
                     evaluate(&primitive, p).0
                 };
                 let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
-                let scale = primitive.bound_at(primitive.skeleton.distance(point));
+                let scale = primitive.most_beyond(primitive.skeleton.distance(point));
                 // Rounding over h; where a clip passes a kink of the kernel, h² times a jump.
                 let tolerance = 1e-6 * gradient.length()
                     + 1e-7 * scale * primitive.width
@@ -165,7 +167,7 @@ pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
     }
 }
 
-/// The two parts of a bone before and after a fraction of its length.
+/// Returns the parts of a bone before and after a fraction of its length.
 fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
     match *skeleton {
         Skeleton::Segment { base, apex } => {
@@ -222,14 +224,15 @@ fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
     }
 }
 
-/// A bone cut in two, with the radius and blobbiness that it has there, is the same field.
+/// Checks that a bone cut in two, with the radius and blobbiness that it has there, is the same
+/// field.
 pub fn superposition(kernel: Kernel, evaluate: Evaluation<'_>) {
     for kind in KINDS {
         let mut random = Random::new(404);
         for _ in 0..count(60) {
             let size = random.decades(-1.0, 1.0);
             let skeleton = random.skeleton(kind, size);
-            let mut shaping = tapered(&mut random, kernel);
+            let mut shaping = taper(&mut random, kernel);
             if let Some(end) = &mut shaping.taper {
                 end.radius = end.radius.max(0.01);
             }
@@ -284,7 +287,7 @@ pub fn scale_invariance(kernel: Kernel, evaluate: Evaluation<'_>) {
         for _ in 0..count(40) {
             let size = random.decades(-1.0, 1.0);
             let skeleton = random.skeleton(kind, size);
-            let shaping = tapered(&mut random, kernel);
+            let shaping = taper(&mut random, kernel);
             let scale = random.decades(-2.0, 2.0);
             let larger = Shaping {
                 radius: shaping.radius * scale,
@@ -347,7 +350,7 @@ fn surface(primitive: &Primitive, x: f64) -> f64 {
     low
 }
 
-/// A slender cone has the radius that is asked for, far from its ends.
+/// Checks that a slender cone has the radius that is asked for, far from its ends.
 pub fn cones_have_their_radius(kernel: Kernel) {
     // The inverse kernel's lines have the radius that their lengths give them.
     if kernel == Kernel::Inverse {
@@ -386,8 +389,9 @@ pub fn cones_have_their_radius(kernel: Kernel) {
     }
 }
 
-/// No field exceeds its bounds, at its distance or in a ball; none is above ε·T outside its depth
-/// of influence, its sphere or its interval of a ray; none is outside a compact kernel's support.
+/// Checks that no field exceeds its bounds, at its distance or in a ball; none is above ε·T outside
+/// its depth of influence, its sphere or its interval of a ray; none is outside a compact kernel's
+/// support.
 pub fn bounds_hold(kernel: Kernel) {
     for kind in KINDS {
         let mut random = Random::new(406);
@@ -404,7 +408,7 @@ pub fn bounds_hold(kernel: Kernel) {
                 let point = random.place(&primitive.skeleton) + spread;
                 let distance = primitive.skeleton.distance(point);
                 let value = jet::<f64>(&primitive, point).0.abs();
-                let most = primitive.bound_at(distance);
+                let most = primitive.most_beyond(distance);
                 assert!(
                     value <= most * (1.0 + 1e-9),
                     "{value} > {most}: {primitive:?} at {point:?}"

@@ -13,12 +13,13 @@
 //! ```
 //!
 //! The window is divided into square tiles. Everything that can change a tile's pixels goes into a
-//! number for each tile: the triangles and rectangles that touch it, in order, with colours, clip
-//! and the time at which the part of the texture they show last changed. Tiles with the same
-//! number as in the last frame are left alone.
+//! hash: the triangles and rectangles that touch it, in order, with colours, clip and the time at
+//! which the part of the texture they show last changed. Tiles with the same hash as in the last
+//! frame are left alone.
 //!
-//! `shape` says which pixels triangles and rectangles cover, `raster` fills them, and `texture` keeps the pictures. The last
-//! two follow egui's own shader: colours are sRGB values multiplied by their alpha, and are blended as such.
+//! `shape` says which pixels triangles and rectangles cover, `raster` fills them, and `texture`
+//! keeps the pictures. The last two follow egui's own shader: colours are sRGB values multiplied by
+//! their alpha, and are blended as such.
 //!
 //! It is a crate of its own because it is compiled for speed, and the rest of the page for size.
 
@@ -35,14 +36,15 @@ use egui::{
 };
 
 use raster::Sheet;
-use shape::{Corner, Quad, Showing, mixed};
+use shape::{Corner, Quad, Showing, mix};
 use texture::Textures;
 
 pub use shape::Area;
 
 /// The side of a tile in pixels.
 const TILE: i32 = 64;
-/// Shapes that touch at most so many tiles, as nearly all do, count as changed in all of them or in none.
+/// The most tiles that a small shape touches; nearly all are small, and count as changed in all
+/// their tiles or in none.
 const SMALL: usize = 4;
 
 /// Draws frames of egui on a sheet of pixels.
@@ -58,12 +60,12 @@ pub struct Painter {
     pieces: Vec<Piece>,
 }
 
-/// Something to fill.
+/// A shape to fill.
 #[derive(Debug)]
 struct Piece {
     shape: Shape,
     texture: TextureId,
-    /// Where it may touch the window.
+    /// The pixels that it may cover.
     area: Area,
 }
 
@@ -114,7 +116,7 @@ impl Painter {
         self.wanted.resize(columns * rows, hash(ground));
 
         self.collect(primitives, pixels_per_point);
-        self.number();
+        self.hash_tiles();
         let dirty = self.dirty();
         for &area in dirty.iter().flatten() {
             self.sheet.clear(area, ground);
@@ -138,12 +140,12 @@ impl Painter {
         dirty.concat()
     }
 
-    /// Tiles in a row and in a column.
+    /// The numbers of tiles in a row and in a column.
     fn grid(&self) -> [usize; 2] {
         self.sheet.size().map(|side| side.div_ceil(TILE as usize))
     }
 
-    /// Takes apart what egui wants painted, leaving out what cannot be seen.
+    /// Collects the pieces of egui's meshes that can be seen.
     fn collect(&mut self, primitives: &[ClippedPrimitive], pixels_per_point: f32) {
         self.pieces.clear();
         for ClippedPrimitive {
@@ -174,28 +176,28 @@ impl Painter {
         }
     }
 
-    /// Computes the numbers of all tiles.
-    fn number(&mut self) {
+    /// Computes the hashes of all tiles.
+    fn hash_tiles(&mut self) {
         let across = self.grid()[0];
         for piece in &self.pieces {
             let Some(texture) = self.textures.get(piece.texture) else {
                 continue;
             };
-            let number = piece.number();
+            let hash = piece.hash();
             let columns = tiles(piece.area.x0, piece.area.x1);
             let rows = tiles(piece.area.y0, piece.area.y1);
             // Which part of a small shape is seen in a tile is not worth finding out.
             let parts = (columns.len() * rows.len() > SMALL).then(|| piece.shape.showing());
             let [from, to] = shape::texels(piece.shape.corners());
-            let whole = mixed(number, texture.changed(from, to));
+            let whole = mix(hash, texture.last_change(from, to));
             for y in rows {
                 for x in columns.clone() {
                     let wanted = &mut self.wanted[y * across + x];
                     let seen = parts.as_ref().map_or(whole, |parts| {
                         let [from, to] = parts.within(piece.area.intersect(tile(x, y)));
-                        mixed(number, texture.changed(from, to))
+                        mix(hash, texture.last_change(from, to))
                     });
-                    *wanted = mixed(*wanted, seen);
+                    *wanted = mix(*wanted, seen);
                 }
             }
         }
@@ -204,8 +206,8 @@ impl Painter {
     /// The areas to redraw, for each row of tiles from the left.
     fn dirty(&self) -> Vec<Vec<Area>> {
         let [columns, rows] = self.grid();
-        let row = |y: usize| {
-            let mut runs: Vec<Area> = Vec::new();
+        let mut areas = vec![Vec::<Area>::new(); rows];
+        for (y, runs) in areas.iter_mut().enumerate() {
             for x in 0..columns {
                 let index = y * columns + x;
                 if self.shown[index] == self.wanted[index] {
@@ -217,22 +219,21 @@ impl Painter {
                     None => runs.push(tile),
                 }
             }
-            runs
-        };
-        (0..rows).map(row).collect()
+        }
+        areas
     }
 }
 
 impl Piece {
-    /// A number for the shape, its texture and where it may be seen.
-    fn number(&self) -> u64 {
+    /// Returns a hash of the shape, its texture and its area.
+    fn hash(&self) -> u64 {
         let texture = match self.texture {
             TextureId::Managed(id) => id,
             TextureId::User(id) => !id,
         };
         let corners = self.shape.corners().iter();
         self.area
-            .number(corners.fold(texture, |before, corner| corner.number(before)))
+            .hash(corners.fold(texture, |before, corner| corner.hash(before)))
     }
 }
 
@@ -260,7 +261,7 @@ impl Shape {
     }
 }
 
-/// The triangles of a mesh, with those that make a box joined to one.
+/// The shapes of a mesh: two triangles that make a box become a rectangle.
 fn shapes(
     mesh: &Mesh,
     texture_size: [usize; 2],
@@ -506,10 +507,9 @@ mod tests {
             ui.painter_at(clip)
                 .rect_filled(everywhere, 0.0, Color32::WHITE);
         });
-        let white = |&(_, pixel): &(usize, &[u8])| pixel[0] == 255;
         let pixels = window.painter.pixels().chunks(4).enumerate();
         let covered: Vec<_> = pixels
-            .filter(white)
+            .filter(|(_, pixel)| pixel[0] == 255)
             .map(|(i, _)| (i % SIZE[0], i / SIZE[0]))
             .collect();
         assert_eq!(covered.first(), Some(&(10, 20)));

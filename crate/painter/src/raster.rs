@@ -6,7 +6,7 @@ use egui::Color32;
 
 use crate::{
     shape::{Area, Corner, Quad, STEPS, Triangle, bounds},
-    texture::{Tap, Texture, blended},
+    texture::{Tap, Texture, interpolate},
 };
 
 /// A picture being drawn on: red, green, blue, alpha in rows from the top.
@@ -22,20 +22,21 @@ pub struct Sheet {
 /// The columns of pixels of a shape whose rows are rows of its texture.
 #[derive(Debug, Default)]
 struct Columns {
-    /// Where each lies in the texture.
+    /// The place of each in the texture.
     taps: Vec<Tap>,
     /// Whether each shows one texel.
     exact: bool,
     /// Whether they follow each other as the texels do.
     ordered: bool,
-    /// How near each channel of each column is to its second texel, 0 … 256.
+    /// The weight of each column's second texel, 0 … 256, once for each channel.
     weights: Vec<[u16; 4]>,
-    /// The channels of the texels at the present row, see [`Texture::between`], …
+    /// The channels of the texels at the present row, see [`Texture::between`].
     between: Vec<u16>,
-    /// … of the two of each column, …
+    /// The first texel of each column at the present row.
     near: Vec<[u16; 4]>,
+    /// The second texel of each column at the present row.
     far: Vec<[u16; 4]>,
-    /// … and what lies between them.
+    /// The colours of the columns at the present row.
     colors: Vec<[u8; 4]>,
 }
 
@@ -55,7 +56,7 @@ impl Sheet {
         [self.width, self.height]
     }
 
-    /// All of it.
+    /// The area of all pixels.
     pub fn area(&self) -> Area {
         Area {
             x0: 0,
@@ -105,8 +106,8 @@ impl Sheet {
         self.columns = columns;
     }
 
-    /// Where the columns of pixels with these texture coordinates lie in a texture; to be put back
-    /// into `self.columns` after use.
+    /// Finds the places of the columns of pixels with these texture coordinates in a texture. They
+    /// take the room of `self.columns`, to be put back there after use.
     fn columns(
         &mut self,
         coordinates: impl Iterator<Item = f32>,
@@ -118,8 +119,9 @@ impl Sheet {
         taps.clear();
         taps.extend(coordinates.map(|at| texture.tap(0, at, smooth)));
         columns.exact = taps.iter().all(|tap| tap.weight == 0);
-        let follows = |pair: &[Tap]| pair[0].near <= pair[1].near && pair[0].far <= pair[1].far;
-        columns.ordered = taps.windows(2).all(follows);
+        columns.ordered = taps
+            .windows(2)
+            .all(|pair| pair[0].near <= pair[1].near && pair[0].far <= pair[1].far);
         columns.weights.clear();
         columns
             .weights
@@ -135,7 +137,7 @@ impl Sheet {
         };
         let [a, b, c] = corners;
         if a.texel != b.texel || a.texel != c.texel {
-            self.pictured(&triangle, texture, area);
+            self.picture(&triangle, texture, area);
             return;
         }
         // Shapes without a picture show one white texel everywhere.
@@ -145,9 +147,9 @@ impl Sheet {
             texture.tap(1, a.texel[1], smooth),
         );
         if a.tint == b.tint && a.tint == c.tint {
-            self.solid(&triangle, tinted(texel, a.tint.to_array()), area);
+            self.solid(&triangle, tint_texel(texel, a.tint.to_array()), area);
         } else {
-            self.shaded(&triangle, texel, area);
+            self.shade(&triangle, texel, area);
         }
     }
 
@@ -164,7 +166,7 @@ impl Sheet {
     }
 
     /// Fills a triangle with a texel and a tint that changes.
-    fn shaded(&mut self, triangle: &Triangle, texel: [u8; 4], area: Area) {
+    fn shade(&mut self, triangle: &Triangle, texel: [u8; 4], area: Area) {
         let tint = triangle.tint();
         let factor = texel.map(|channel| f32::from(channel) / 255.0);
         let step: [f32; 4] = std::array::from_fn(|c| tint[c].dx as f32 * factor[c]);
@@ -178,13 +180,12 @@ impl Sheet {
     }
 
     /// Fills a triangle with a part of a picture and a tint.
-    fn pictured(&mut self, triangle: &Triangle, texture: &Texture, area: Area) {
+    fn picture(&mut self, triangle: &Triangle, texture: &Texture, area: Area) {
         let area = area.intersect(bounds(&triangle.corners));
         let texel = triangle.texel();
-        let length = |[u, v]: [f64; 2]| (u * u + v * v).sqrt();
-        let smooth = texture.is_smooth(
-            length(texel.map(|plane| plane.dx)).max(length(texel.map(|plane| plane.dy))) as f32,
-        );
+        let [right, down] = [texel.map(|plane| plane.dx), texel.map(|plane| plane.dy)]
+            .map(|[u, v]| (u * u + v * v).sqrt());
+        let smooth = texture.is_smooth(right.max(down) as f32);
         let [a, b, c] = triangle.corners.map(|corner| corner.tint);
         let turned = (texel[0].dy * f64::from(area.y1 - area.y0)).abs()
             + (texel[1].dx * f64::from(area.x1 - area.x0)).abs();
@@ -218,7 +219,7 @@ impl Sheet {
 }
 
 impl Columns {
-    /// From the first to the last texel that some columns show.
+    /// The range from the first to the last texel that some columns show.
     fn texels(&self, taps: &[Tap]) -> Range<usize> {
         let least = |tap: &Tap| tap.near.min(tap.far);
         let most = |tap: &Tap| tap.near.max(tap.far);
@@ -243,17 +244,18 @@ impl Columns {
             // Texels on pixels, as nearly all text is.
             let texels = texture.row(row.near);
             for (pixel, column) in span.iter_mut().zip(taps) {
-                blend(pixel, tinted(texels[column.near], tint));
+                blend(pixel, tint_texel(texels[column.near], tint));
             }
             return;
         }
         let seen = self.texels(taps);
         if seen.len() > 2 * span.len() {
             for (pixel, &column) in span.iter_mut().zip(taps) {
-                blend(pixel, tinted(texture.sample(column, row), tint));
+                blend(pixel, tint_texel(texture.sample(column, row), tint));
             }
         } else {
-            // Most texels are seen more than once. Each step is the same for all numbers side by side.
+            // Most texels are seen more than once. Each step is the same for all numbers side by
+            // side.
             let start = seen.start;
             texture.between(row, seen, &mut self.between);
             let (texels, _) = self.between.as_chunks::<4>();
@@ -268,7 +270,7 @@ impl Columns {
             let pairs = self.near.as_flattened().iter().zip(self.far.as_flattened());
             let colors = self.colors.as_flattened_mut().iter_mut();
             for ((color, (near, far)), weight) in colors.zip(pairs).zip(weights) {
-                *color = blended(*near, *far, *weight);
+                *color = interpolate(*near, *far, *weight);
             }
             let opaque = self
                 .colors
@@ -279,7 +281,7 @@ impl Columns {
                 span.copy_from_slice(&self.colors);
             } else {
                 for (pixel, color) in span.iter_mut().zip(&self.colors) {
-                    blend(pixel, tinted(*color, tint));
+                    blend(pixel, tint_texel(*color, tint));
                 }
             }
         }
@@ -292,9 +294,9 @@ fn over_255(x: u32) -> u32 {
     ((x + 128) * 257) >> 16
 }
 
-/// A texel in the tint of the shape.
+/// Multiplies a texel by the tint of its shape.
 #[inline]
-fn tinted(texel: [u8; 4], tint: [u8; 4]) -> [u8; 4] {
+fn tint_texel(texel: [u8; 4], tint: [u8; 4]) -> [u8; 4] {
     if tint == [255; 4] {
         return texel;
     }
@@ -380,13 +382,12 @@ mod tests {
             let at = |x, y| corner(x, y, Color32::WHITE);
             let triangle = [at(1.5, 1.5), at(5.5, 1.5), at(1.5, 4.5)];
             sheet.triangle(&triangle, white, sheet.area());
-            let row = |y: usize| -> String {
-                sheet.pixels[y * 6..(y + 1) * 6]
-                    .iter()
+            let drawn = sheet.pixels.chunks(6).map(|row| {
+                row.iter()
                     .map(|&pixel| if pixel == BLACK { '.' } else { '#' })
                     .collect()
-            };
-            let drawn: Vec<String> = (0..5).map(row).collect();
+            });
+            let drawn: Vec<String> = drawn.collect();
             assert_eq!(drawn, ["......", ".####.", ".###..", ".##...", "......"]);
         });
     }
@@ -453,7 +454,7 @@ mod tests {
     }
 
     #[test]
-    fn enlarged_pictures_are_tinted_and_blended() {
+    fn a_picture_can_be_enlarged_tinted_and_blended() {
         let ground = Color32::from_rgb(10, 90, 200);
         let mut number = numbers(5, 256.0);
         for opaque in [true, false] {
@@ -482,7 +483,7 @@ mod tests {
                             .map(|(axis, at)| texture.tap(axis, quad.texel(axis, at), true));
                         let mut pixel = ground.to_array();
                         let color = texture.sample(column, row);
-                        blend(&mut pixel, tinted(color, tint.to_array()));
+                        blend(&mut pixel, tint_texel(color, tint.to_array()));
                         assert_eq!(drawn.span(y, x, x + 1)[0], pixel, "{x} {y}");
                     }
                 }

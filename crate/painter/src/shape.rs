@@ -37,13 +37,11 @@ impl Area {
         }
     }
 
-    /// A number for another number and this.
-    pub fn number(self, before: u64) -> u64 {
-        let rows = joined([self.y0 as u32, self.y1 as u32]);
-        mixed(
-            mixed(before, joined([self.x0 as u32, self.x1 as u32])),
-            rows,
-        )
+    /// Returns the hash of this area after what has the hash `before`.
+    pub fn hash(self, before: u64) -> u64 {
+        let columns = join([self.x0 as u32, self.x1 as u32]);
+        let rows = join([self.y0 as u32, self.y1 as u32]);
+        mix(mix(before, columns), rows)
     }
 
     /// Whether there is no pixel in it.
@@ -76,25 +74,25 @@ impl Corner {
         })
     }
 
-    /// A number for another number and this.
-    pub fn number(&self, before: u64) -> u64 {
+    /// Returns the hash of this corner after what has the hash `before`.
+    pub fn hash(&self, before: u64) -> u64 {
         let words = [
-            joined(self.position.map(|c| c as u32)),
-            joined(self.texel.map(f32::to_bits)),
+            join(self.position.map(|c| c as u32)),
+            join(self.texel.map(f32::to_bits)),
             u64::from(u32::from_le_bytes(self.tint.to_array())),
         ];
-        words.into_iter().fold(before, mixed)
+        words.into_iter().fold(before, mix)
     }
 }
 
-/// A number for two numbers in order. The first is already well spread.
-pub fn mixed(a: u64, b: u64) -> u64 {
+/// Returns a hash of two numbers in order, the first of which is a hash.
+pub fn mix(a: u64, b: u64) -> u64 {
     // An odd multiplier (2⁶⁴ over the golden ratio) loses nothing and carries low bits up.
     (a.rotate_left(5) ^ b).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
-/// A number for two halves.
-fn joined([a, b]: [u32; 2]) -> u64 {
+/// Returns the number with these upper and lower halves.
+fn join([a, b]: [u32; 2]) -> u64 {
     u64::from(a) << 32 | u64::from(b)
 }
 
@@ -152,7 +150,7 @@ impl Quad {
         from.texel[axis] + offset * self.scale(axis)
     }
 
-    /// Its left upper and right lower corner.
+    /// The left upper and the right lower corner.
     pub fn corners(&self) -> &[Corner] {
         &self.corners
     }
@@ -174,7 +172,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// At the centre of a pixel.
+    /// Returns the value at the centre of a pixel.
     pub fn at(self, x: i32, y: i32) -> f32 {
         (self.origin + (f64::from(x) + 0.5) * self.dx + (f64::from(y) + 0.5) * self.dy) as f32
     }
@@ -193,8 +191,8 @@ impl Triangle {
     /// `None` when it has no area.
     pub fn new(corners: &[Corner; 3]) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| corner.position);
-        let side = |to: [i32; 2]| [0, 1].map(|axis| i64::from(to[axis]) - i64::from(a[axis]));
-        let [[bx, by], [cx, cy]] = [side(b), side(c)];
+        let [[bx, by], [cx, cy]] =
+            [b, c].map(|to| [0, 1].map(|axis| i64::from(to[axis]) - i64::from(a[axis])));
         let twice = bx * cy - cx * by;
         let edges = match twice {
             0 => return None,
@@ -235,7 +233,8 @@ impl Triangle {
         std::array::from_fn(|channel| self.plane(|c| f32::from(c.tint.to_array()[channel])))
     }
 
-    /// Tells the spans of pixels (row, first, after the last) that are in the triangle and an area.
+    /// Calls `draw` with the spans of pixels (row, first, after the last) that are in the triangle
+    /// and an area.
     pub fn rows(&self, area: Area, mut draw: impl FnMut(i32, i32, i32)) {
         let area = area.intersect(bounds(&self.corners));
         for y in area.y0..area.y1 {
@@ -259,7 +258,8 @@ struct Edge {
 }
 
 impl Edge {
-    /// From `from` to `to` with the inside on the right hand (the y axis points down).
+    /// Makes the edge from `from` to `to` with the inside on the right hand (the y axis points
+    /// down).
     fn new(from: [i32; 2], to: [i32; 2]) -> Self {
         let [ax, ay] = from.map(i64::from);
         let [bx, by] = to.map(i64::from);
@@ -295,17 +295,14 @@ impl Edge {
 
 /// The pixels that a triangle may cover.
 pub fn bounds(corners: &[Corner; 3]) -> Area {
-    let [x, y]: [[i32; 3]; 2] =
-        std::array::from_fn(|axis| corners.map(|corner| corner.position[axis]));
-    let least = |values: [i32; 3]| values[0].min(values[1]).min(values[2]);
-    let most = |values: [i32; 3]| values[0].max(values[1]).max(values[2]);
-    Area {
-        x0: first_pixel(i64::from(least(x))),
-        y0: first_pixel(i64::from(least(y))),
+    let ends: [[i32; 2]; 2] = std::array::from_fn(|axis| {
+        let [a, b, c] = corners.map(|corner| corner.position[axis]);
         // A centre on the last edge may belong to the triangle only if that is a top or left edge.
-        x1: first_pixel(i64::from(most(x)) + 1),
-        y1: first_pixel(i64::from(most(y)) + 1),
-    }
+        let [first, last] = [a.min(b).min(c), a.max(b).max(c)].map(i64::from);
+        [first_pixel(first), first_pixel(last + 1)]
+    });
+    let [[x0, x1], [y0, y1]] = ends;
+    Area { x0, y0, x1, y1 }
 }
 
 /// The least and the greatest texture coordinates at some corners.
@@ -324,14 +321,15 @@ pub fn texels(corners: &[Corner]) -> [[f32; 2]; 2] {
 
 /// The texels that a shape shows.
 pub struct Showing {
-    /// Of the whole shape: the least and the greatest coordinates.
+    /// The least and the greatest texture coordinates of the whole shape.
     all: [[f32; 2]; 2],
-    /// At each pixel; none for a triangle with one texel or without an area.
+    /// The texture coordinates at each pixel; none for a triangle with one texel or without an
+    /// area.
     at: Option<[Plane; 2]>,
 }
 
 impl Showing {
-    /// Of a triangle.
+    /// The texels that a triangle shows.
     pub fn triangle(corners: &[Corner; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| corner.texel);
         Self {
@@ -343,7 +341,7 @@ impl Showing {
         }
     }
 
-    /// Of a rectangle.
+    /// The texels that a rectangle shows.
     pub fn quad(quad: &Quad) -> Self {
         let [a, d] = quad.corners;
         let other = Corner {

@@ -10,7 +10,7 @@ use egui::{
 /// Textures remember when they changed in squares of this many texels.
 const BLOCK: usize = 64;
 
-/// How far a sample is moved at most so that its weights are multiples of 1/256.
+/// The most by which a sample is moved, in texels, so that its weights are multiples of 1/256.
 const ROUNDING: f32 = 1.0 / 512.0;
 
 /// A texture and when each part of it changed.
@@ -20,11 +20,11 @@ pub struct Texture {
     /// Red, green, blue, alpha in rows from the top.
     texels: Vec<[u8; 4]>,
     options: TextureOptions,
-    /// For every block, in rows, the time of its last change.
+    /// The time of the last change of every block, in rows.
     changed: Vec<u64>,
 }
 
-/// Where a sample lies between two neighbouring texels of a row or column: at `near` for
+/// The place of a sample between two neighbouring texels of a row or column: at `near` for
 /// `weight` = 0, going to `far` as the weight goes to 256.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tap {
@@ -45,8 +45,8 @@ impl Texture {
         }
     }
 
-    /// Writes a patch; what of it lies outside the texture is left out. Where it is what was there, nothing has changed: a
-    /// picture that is traced more finely has the same background.
+    /// Writes the part of a patch that lies inside the texture. A block counts as changed only if
+    /// a texel differs: a picture that is traced more finely has the same background.
     fn patch(&mut self, delta: &ImageDelta, [left, top]: [usize; 2], now: u64) {
         let ImageData::Color(image) = &delta.image;
         let width = image.size[0].min(self.size[0].saturating_sub(left));
@@ -80,7 +80,7 @@ impl Texture {
         }
     }
 
-    /// From now on it is shown so.
+    /// Sets filters and wrapping.
     fn set_options(&mut self, options: TextureOptions, now: u64) {
         if self.options != options {
             self.options = options;
@@ -93,9 +93,9 @@ impl Texture {
         self.size
     }
 
-    /// When a rectangle of texels (from, to, both within) last changed. Coordinates outside the
-    /// texture count as its edge; with wrapping, all of the texture counts.
-    pub fn changed(&self, from: [f32; 2], to: [f32; 2]) -> u64 {
+    /// Returns the time at which a rectangle of texels (from, to, both within) last changed.
+    /// Coordinates outside the texture count as its edge; with wrapping, all of the texture counts.
+    pub fn last_change(&self, from: [f32; 2], to: [f32; 2]) -> u64 {
         let blocks = |axis: usize| {
             let last = self.size[axis].saturating_sub(1);
             // A sample reaches half a texel to each side, but for the rounding of its weight. The
@@ -117,7 +117,7 @@ impl Texture {
             .unwrap_or(0)
     }
 
-    /// Whether neighbouring texels are blended where so many of them fall on a pixel.
+    /// Whether neighbouring texels are blended, at a number of texels per pixel.
     pub fn is_smooth(&self, texels_per_pixel: f32) -> bool {
         let filter = if texels_per_pixel > 1.0 {
             self.options.minification
@@ -172,22 +172,24 @@ impl Texture {
         }
         let far = row.far * self.size[0];
         let [own, its] = [256 - row.weight, row.weight].map(|weight| weight as u16);
-        let down = |x: usize| -> [u16; 4] {
+        let [left, right]: [[u16; 4]; 2] = [column.near, column.far].map(|x| {
             let [near, far] = [near, far].map(|row| self.texels[row + x].map(u16::from));
             std::array::from_fn(|c| near[c] * own + far[c] * its)
-        };
-        let (left, right) = (down(column.near), down(column.far));
-        std::array::from_fn(|c| blended(left[c], right[c], column.weight as u16))
+        });
+        std::array::from_fn(|c| interpolate(left[c], right[c], column.weight as u16))
     }
 
-    /// The channels of the texels of some columns at a place between two rows, 256 times as large.
+    /// Computes the channels of the texels of some columns at a place between two rows, 256 times
+    /// as large.
     pub fn between(&self, row: Tap, columns: Range<usize>, between: &mut Vec<u16>) {
         let [near, far] =
             [row.near, row.far].map(|y| self.row(y)[columns.clone()].as_flattened().iter());
         let [own, its] = [256 - row.weight, row.weight].map(|weight| weight as u16);
-        let blend = |(near, far): (&u8, &u8)| u16::from(*near) * own + u16::from(*far) * its;
         between.clear();
-        between.extend(near.zip(far).map(blend));
+        between.extend(
+            near.zip(far)
+                .map(|(near, far)| u16::from(*near) * own + u16::from(*far) * its),
+        );
     }
 
     /// The texels of a row.
@@ -198,12 +200,12 @@ impl Texture {
 
 /// Interpolates two channels, each scaled by 256: the weight 0 … 256 is that of the second.
 #[inline]
-pub fn blended(near: u16, far: u16, weight: u16) -> u8 {
+pub fn interpolate(near: u16, far: u16, weight: u16) -> u8 {
     let [near, far, weight] = [near, far, weight].map(u32::from);
     ((near * (256 - weight) + far * weight + (1 << 15)) >> 16) as u8
 }
 
-/// All textures in use. They are few, and what is asked for most, the font, came first.
+/// The textures in use. They are few, and the one that is looked for most, the font, came first.
 #[derive(Debug, Default)]
 pub struct Textures {
     textures: Vec<(TextureId, Texture)>,
@@ -305,8 +307,8 @@ mod tests {
                 std::array::from_fn(|_| if round < 20 { 255 } else { byte() })
             });
             let [across, down] = [byte(), byte()].map(u32::from);
-            let color = |[r, g, b, a]: [u8; 4]| Color32::from_rgba_premultiplied(r, g, b, a);
-            let image = ColorImage::new([2, 2], texels.map(color).to_vec());
+            let colors = texels.map(|[r, g, b, a]| Color32::from_rgba_premultiplied(r, g, b, a));
+            let image = ColorImage::new([2, 2], colors.to_vec());
             let texture = Texture::new(ImageDelta::full(image, TextureOptions::LINEAR), 1);
             let [column, row] = [across, down].map(|weight| Tap {
                 near: 0,
@@ -316,8 +318,9 @@ mod tests {
             let mixed = texture.sample(column, row);
             let mut between = Vec::new();
             texture.between(row, 0..2, &mut between);
-            let along = |c: usize| blended(between[c], between[4 + c], across as u16);
-            assert_eq!(std::array::from_fn(along), mixed);
+            let sample =
+                std::array::from_fn(|c| interpolate(between[c], between[4 + c], across as u16));
+            assert_eq!(sample, mixed);
             for channel in 0..4 {
                 let [a, b, c, d] = texels.map(|texel| u32::from(texel[channel]));
                 let top = a * (256 - across) + b * across;
@@ -366,11 +369,11 @@ mod tests {
         );
         assert_eq!(at(&texture, 195.5, 95.5), 255);
         assert_eq!(at(&texture, 194.5, 95.5), 0);
-        assert_eq!(texture.changed([0.0, 0.0], [120.0, 99.0]), 1);
-        assert_eq!(texture.changed([0.0, 0.0], [199.0, 99.0]), 2);
+        assert_eq!(texture.last_change([0.0, 0.0], [120.0, 99.0]), 1);
+        assert_eq!(texture.last_change([0.0, 0.0], [199.0, 99.0]), 2);
         // A sample at 191.6 also reads the texel 192, which is in the changed block.
-        assert_eq!(texture.changed([180.0, 80.0], [191.6, 90.0]), 2);
-        assert_eq!(texture.changed([180.0, 80.0], [191.5, 90.0]), 1);
+        assert_eq!(texture.last_change([180.0, 80.0], [191.6, 90.0]), 2);
+        assert_eq!(texture.last_change([180.0, 80.0], [191.5, 90.0]), 1);
     }
 
     #[test]
@@ -386,7 +389,7 @@ mod tests {
             delta.push(id, image);
             textures.set(&mut delta);
             let texture = textures.get(id).unwrap();
-            [[10.0; 2], [80.0, 10.0], [130.0, 80.0]].map(|at| texture.changed(at, at))
+            [[10.0; 2], [80.0, 10.0], [130.0, 80.0]].map(|at| texture.last_change(at, at))
         };
         let linear = TextureOptions::LINEAR;
         let dot = |x, y| grey([140, 100], move |u, v| if (u, v) == (x, y) { 9 } else { 0 });

@@ -1,7 +1,7 @@
 //! Animations: frames of one size, shown one after the other.
 //!
-//! Frames go one by one through a [`Writer`] and come one by one from [`frames`], so that an animation
-//! needs the memory of one frame.
+//! Frames go one by one through a [`Writer`] and come one by one from [`frames`], so that an
+//! animation needs the memory of one frame.
 
 #[cfg(feature = "formats")]
 pub use crate::formats::Frames;
@@ -11,18 +11,19 @@ use crate::{Format, Picture, Problem, png_file};
 use crate::{formats, limits::MAX_PIXELS};
 use std::io::Write;
 
-/// How an animation is shown.
+/// The speed and the repetition of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
-    /// How long each frame is shown, hundredths of a second; 1 or more. Browsers show frames of a GIF file
-    /// for 2 at least.
+    /// The time for which each frame is shown, hundredths of a second; 1 or more. Browsers show
+    /// frames of a GIF file for 2 at least.
     pub delay: u16,
     /// Whether it begins again after the last frame.
     pub repeats: bool,
 }
 
 impl Timing {
-    /// So many frames in a second, as near as whole hundredths of a second come.
+    /// Returns the timing whose whole hundredths of a second are nearest to so many frames in a
+    /// second.
     ///
     /// # Errors
     /// If there are not 0.01 … 100 frames in a second.
@@ -35,7 +36,7 @@ impl Timing {
     }
 }
 
-/// The order in which `count` frames run forth and back, each end shown once: 0 1 2 3 2 1.
+/// Returns the order in which `count` frames run forth and back, each end shown once: 0 1 2 3 2 1.
 pub fn mirrored(count: usize) -> impl Iterator<Item = usize> {
     (0..count).chain((1..count.saturating_sub(1)).rev())
 }
@@ -57,13 +58,13 @@ enum Kind<W: Write> {
 }
 
 impl<W: Write> Writer<W> {
-    /// Begins a file with its first frame. `frames` counts all of them; all must have the size of the first,
-    /// and none shows anything through if the first does not. `dither` mixes colours from dots where
-    /// the format has only 256 of them.
+    /// Begins a file with its first frame. `frames` counts all of them; all must have the size of
+    /// the first, and none shows anything through if the first does not. `dither` mixes colours
+    /// from dots where the format has only 256 of them.
     ///
     /// # Errors
-    /// If there are no frames or more than [`MAX_FRAMES`], if the format cannot hold animations, or if
-    /// writing fails.
+    /// If there are no frames or more than [`MAX_FRAMES`], if the format cannot hold animations, or
+    /// if writing fails.
     pub fn begin(
         to: W,
         format: Format,
@@ -103,7 +104,7 @@ impl<W: Write> Writer<W> {
         }
         self.given += 1;
         if self.given > self.announced {
-            return Err(self.miscounted());
+            return Err(self.wrong_count());
         }
         match &mut self.kind {
             Kind::Png(file) => file.add(frame),
@@ -118,7 +119,7 @@ impl<W: Write> Writer<W> {
     /// If frames are missing, or if writing fails.
     pub fn finish(self) -> Result<(), Problem> {
         if self.given != self.announced {
-            return Err(self.miscounted());
+            return Err(self.wrong_count());
         }
         match self.kind {
             Kind::Png(file) => file.finish(),
@@ -128,7 +129,7 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    fn miscounted(&self) -> Problem {
+    fn wrong_count(&self) -> Problem {
         Problem::FramesAnnounced {
             announced: self.announced,
             given: self.given,
@@ -139,8 +140,8 @@ impl<W: Write> Writer<W> {
 /// The frames of a PNG or GIF file, each as it is seen, i.e. laid over those before.
 ///
 /// # Errors
-/// If the bytes are not of this format, or if the format cannot hold animations. A frame that is damaged
-/// or that leads over a limit is the last one, and is an error itself.
+/// If the bytes are not of this format, or if the format cannot hold animations. A frame that is
+/// damaged or that leads over a limit is the last one, and is an error itself.
 #[cfg(feature = "formats")]
 pub fn frames<'a>(bytes: impl AsRef<[u8]> + 'a, format: Format) -> Result<Frames<'a>, Problem> {
     frames_at_most(bytes, format, MAX_PIXELS)

@@ -7,13 +7,13 @@ use crate::{Picture, Problem};
 /// Colour between pictures of different sizes.
 const BACKGROUND: [u8; 4] = [0, 0, 0, 255];
 
-/// Pictures in rows on one sheet, each in its own size and in the middle of its place; all places are as
-/// large as the largest picture. Without a number of `columns` about as many stand side by side as below
-/// each other, but two side by side.
+/// Pictures in rows on one sheet, each in its own size and in the middle of its place; all places
+/// are as large as the largest picture. Without a number of `columns` about as many stand side by
+/// side as below each other, but two side by side.
 ///
 /// # Errors
-/// If there are no pictures or more than [`MAX_SHEET`], if `columns` is 0, or if the sheet would be larger
-/// than a picture may be.
+/// If there are no pictures or more than [`MAX_SHEET`], if `columns` is 0, or if the sheet would be
+/// larger than a picture may be.
 pub fn collage(pictures: &[Picture], columns: Option<usize>) -> Result<Picture, Problem> {
     collage_at_most(pictures, columns, MAX_PIXELS)
 }

@@ -1,7 +1,7 @@
-//! Two pictures of the same size to one, byte by byte.
+//! Combines two pictures of the same size, byte by byte.
 //!
-//! Red, green and blue are combined; the result is opaque, since the bits of an opacity say nothing about
-//! how two pictures differ. What shows through in a picture is combined as it is stored.
+//! Red, green and blue are combined; the result is opaque, since the bits of an opacity say nothing
+//! about how two pictures differ. What shows through in a picture is combined as it is stored.
 
 use crate::{Picture, Problem};
 
@@ -29,7 +29,7 @@ pub fn xor(a: &Picture, b: &Picture) -> Result<Picture, Problem> {
     combine(a, b, |a, b| a ^ b)
 }
 
-/// How much of a combined picture is not black.
+/// The part of a combined picture that is not black.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Remains {
     /// Pixels that are not black.

@@ -31,7 +31,7 @@ impl Format {
     #[cfg(not(feature = "formats"))]
     pub const ENDINGS: &str = ".png, .mtv";
 
-    /// The format that the ending of a file's name tells, in any case.
+    /// Returns the format of a file's name by its ending, in capitals or not.
     ///
     /// # Errors
     /// If the name has none of the [`Self::ENDINGS`] (`.tiff` is known as well).
@@ -74,8 +74,8 @@ pub fn decode(bytes: &[u8], format: Format) -> Result<Picture, Problem> {
     decode_at_most(bytes, format, MAX_PIXELS)
 }
 
-/// [`decode`] for whoever has less memory: a picture of more than `max_pixels` is refused before any memory
-/// is set aside for it.
+/// [`decode`] for whoever has less memory: a picture of more than `max_pixels` is refused before
+/// any memory is set aside for it.
 ///
 /// # Errors
 /// As [`decode`].
@@ -90,10 +90,11 @@ pub fn decode_at_most(bytes: &[u8], format: Format, max_pixels: u64) -> Result<P
     }
 }
 
-/// Width and height that the head of a file tells. The rest of the file may be damaged all the same.
+/// Reads width and height from the head of a file. The rest of the file may be damaged all the
+/// same.
 ///
 /// # Errors
-/// If the bytes are not of this format, or tell of a picture that is too large.
+/// If the bytes are not of this format, or the picture is too large.
 pub fn size(bytes: &[u8], format: Format) -> Result<[u32; 2], Problem> {
     match format {
         Format::Png => png_file::size(bytes),

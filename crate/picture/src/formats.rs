@@ -17,7 +17,8 @@ use std::io::{Cursor, Write};
 const BYTES_A_PIXEL: u64 = 8;
 /// Bytes a decoder may use besides the picture.
 const BESIDES: u64 = 64 << 20;
-/// How many pixels the choice of 256 colours skips, 1 … 30: 10 is four times as fast as 1, and hardly worse.
+/// The step between the pixels from which 256 colours are chosen, 1 … 30: 10 is four times as fast
+/// as 1, and hardly worse.
 const HASTE: i32 = 10;
 
 fn library_format(format: Format) -> ImageFormat {
@@ -39,7 +40,7 @@ fn limits(pixels: u64) -> Limits {
     limits
 }
 
-fn damaged(format: Format, error: &ImageError) -> Problem {
+fn damage(format: Format, error: &ImageError) -> Problem {
     Problem::Damaged(format.name(), error.to_string())
 }
 
@@ -47,11 +48,11 @@ fn not_written(format: Format, error: &ImageError) -> Problem {
     Problem::NotWritten(format.name(), error.to_string())
 }
 
-/// Width and height that the head of a file tells.
+/// Reads width and height from the head of a file.
 pub fn size(bytes: &[u8], format: Format) -> Result<[u32; 2], Problem> {
     let (width, height) = ImageReader::with_format(Cursor::new(bytes), library_format(format))
         .into_dimensions()
-        .map_err(|error| damaged(format, &error))?;
+        .map_err(|error| damage(format, &error))?;
     check_size(width, height)?;
     Ok([width, height])
 }
@@ -62,10 +63,10 @@ pub fn decode(bytes: &[u8], format: Format, max_pixels: u64) -> Result<Picture, 
     reader.limits(limits(max_pixels));
     let decoder = reader
         .into_decoder()
-        .map_err(|error| damaged(format, &error))?;
+        .map_err(|error| damage(format, &error))?;
     let (width, height) = decoder.dimensions();
     check_room(width, height, max_pixels)?;
-    let picture = DynamicImage::from_decoder(decoder).map_err(|error| damaged(format, &error))?;
+    let picture = DynamicImage::from_decoder(decoder).map_err(|error| damage(format, &error))?;
     Picture::new(width, height, picture.into_rgba8().into_raw())
 }
 
@@ -147,7 +148,7 @@ pub fn frames<'a>(
     format: Format,
     max_pixels: u64,
 ) -> Result<Frames<'a>, Problem> {
-    let wrong = |error| damaged(format, &error);
+    let wrong = |error| damage(format, &error);
     let source = Cursor::new(bytes);
     let frames = match format {
         Format::Gif => {
@@ -183,14 +184,15 @@ pub fn frames<'a>(
 }
 
 impl Frames<'_> {
-    /// How long the frame that came last is to be shown, seconds; 0 if its file does not say.
+    /// Returns the time for which the frame that came last is to be shown, seconds; 0 if its file
+    /// does not say.
     #[must_use]
     pub fn delay(&self) -> f64 {
         self.delay
     }
 
     fn check(&mut self, frame: Result<image::Frame, ImageError>) -> Result<Picture, Problem> {
-        let frame = frame.map_err(|error| damaged(self.format, &error))?;
+        let frame = frame.map_err(|error| damage(self.format, &error))?;
         let (milliseconds, parts) = frame.delay().numer_denom_ms();
         self.delay = f64::from(milliseconds) / f64::from(parts.max(1)) / 1000.0;
         let image = frame.into_buffer();

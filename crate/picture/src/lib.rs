@@ -12,14 +12,14 @@
 //! # Ok::<(), picture::Problem>(())
 //! ```
 //!
-//! A [`Picture`] is a width, a height and four bytes a pixel. [`combine`] and [`resize()`] make new ones of
-//! old ones, [`collage()`] puts several on a sheet, [`plot()`] and [`swatches()`] draw simple ones.
-//! [`file`] turns pictures into the bytes of PNG, TGA, TIFF, GIF and MTV files and back,
-//! [`animation`] does so with animations in PNG and GIF.
+//! A [`Picture`] is a width, a height and four bytes a pixel. [`combine`] and [`resize()`] make new
+//! ones of old ones, [`collage()`] puts several on a sheet, [`plot()`] and [`swatches()`] draw
+//! simple ones. [`file`] turns pictures into the bytes of PNG, TGA, TIFF, GIF and MTV files and
+//! back, [`animation`] does so with animations in PNG and GIF.
 //!
-//! Without the feature `formats` only PNG and MTV are known. Bytes of files
-//! are never trusted: what is larger than the limits of [`limits`], cut or wrong is a [`Problem`], which
-//! is a sentence for a person.
+//! Without the feature `formats` only PNG and MTV are known. Bytes of files are never trusted: what
+//! is larger than the limits of [`limits`], cut or wrong is a [`Problem`], which is a sentence for
+//! a person.
 
 pub mod animation;
 mod collage;

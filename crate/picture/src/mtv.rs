@@ -7,11 +7,11 @@ use std::iter;
 /// Longest first line, bytes: two numbers, a space and the ends of lines of two systems.
 const MAX_LINE: usize = 24;
 
-fn damaged(why: String) -> Problem {
+fn damage(why: String) -> Problem {
     Problem::Damaged("MTV", why)
 }
 
-/// Width and height that the first line tells.
+/// Reads width and height from the first line.
 pub fn size(bytes: &[u8]) -> Result<[u32; 2], Problem> {
     let ([width, height], _) = head(bytes)?;
     check_size(width, height)?;
@@ -24,7 +24,7 @@ fn head(bytes: &[u8]) -> Result<([u32; 2], &[u8]), Problem> {
         .iter()
         .take(MAX_LINE)
         .position(|byte| *byte == b'\n')
-        .ok_or_else(|| damaged(String::from("it does not begin with a line `width height`")))?;
+        .ok_or_else(|| damage(String::from("it does not begin with a line `width height`")))?;
     let (line, rest) = (&bytes[..end], &bytes[end + 1..]);
     let numbers: Vec<Option<u32>> = std::str::from_utf8(line)
         .unwrap_or_default()
@@ -32,9 +32,7 @@ fn head(bytes: &[u8]) -> Result<([u32; 2], &[u8]), Problem> {
         .map(|word| word.parse().ok())
         .collect();
     let [Some(width), Some(height)] = numbers[..] else {
-        return Err(damaged(String::from(
-            "its first line is not `width height`",
-        )));
+        return Err(damage(String::from("its first line is not `width height`")));
     };
     Ok(([width, height], rest))
 }
@@ -45,7 +43,7 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
     let count = check_room(width, height, max_pixels)?;
     let needed = 3 * count;
     let Some(rgb) = usize::try_from(needed).ok().and_then(|n| rest.get(..n)) else {
-        return Err(damaged(format!(
+        return Err(damage(format!(
             "{width}×{height} pixels need {needed} bytes, it has {}",
             rest.len()
         )));

@@ -5,7 +5,8 @@ use crate::limits::{MAX_PIXELS, MAX_SIDE};
 
 /// A picture of red, green, blue and opacity, each 0 … 255, rows from the top.
 ///
-/// It has at least one pixel, and never more than [`MAX_PIXELS`]. Colours are not multiplied by opacity.
+/// It has at least one pixel, and never more than [`MAX_PIXELS`]. Colours are not multiplied by
+/// opacity.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     width: u32,
@@ -23,8 +24,8 @@ impl Picture {
     /// A picture from its bytes, four for each pixel.
     ///
     /// # Errors
-    /// If a side is 0 or more than [`MAX_SIDE`], if there are more than [`MAX_PIXELS`] pixels, or if
-    /// the number of bytes is not four times that of the pixels.
+    /// If a side is 0 or more than [`MAX_SIDE`], if there are more than [`MAX_PIXELS`] pixels, or
+    /// if the number of bytes is not four times that of the pixels.
     pub fn new(width: u32, height: u32, pixels: Vec<u8>) -> Result<Self, Problem> {
         let needed = 4 * check_size(width, height)?;
         let found = pixels.len() as u64;
@@ -103,7 +104,8 @@ impl Picture {
             .collect()
     }
 
-    /// Copies a picture onto this one with its upper left corner at (x, y); what falls outside is cut off.
+    /// Copies a picture onto this one with its upper left corner at (x, y); what falls outside is
+    /// cut off.
     pub fn put(&mut self, x: u32, y: u32, other: &Self) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
         if columns == 0 {
@@ -133,7 +135,7 @@ pub(crate) fn check_size(width: u32, height: u32) -> Result<u64, Problem> {
     Ok(count)
 }
 
-/// As [`check_size`], for whoever has room for `most` pixels.
+/// Checks a size like [`check_size`], and that it has at most `most` pixels.
 pub(crate) fn check_room(width: u32, height: u32, most: u64) -> Result<u64, Problem> {
     let count = check_size(width, height)?;
     if count > most {

@@ -13,8 +13,9 @@ const PAPER: [f64; 3] = [255.0, 255.0, 255.0];
 const INK: [f64; 3] = [32.0, 64.0, 160.0];
 const AXIS: [f64; 3] = [170.0, 170.0, 170.0];
 
-/// A line through points at equal distances from left to right, of which `values` are the heights. The
-/// least stands at the bottom, the greatest at the top; a thin line marks 0 where it lies between them.
+/// A line through points at equal distances from left to right, of which `values` are the heights.
+/// The least stands at the bottom, the greatest at the top; a thin line marks 0 where it lies
+/// between them.
 ///
 /// # Errors
 /// If there are fewer than 2 or more than [`MAX_POINTS`] values, or if one is not finite.
@@ -116,18 +117,18 @@ mod tests {
     use super::*;
 
     /// Whether the ink, not the axis, is near a place.
-    fn inked(picture: &Picture, x: u32, y: u32) -> bool {
+    fn has_ink(picture: &Picture, x: u32, y: u32) -> bool {
         picture.pixel(x, y).is_some_and(|pixel| pixel[0] < 100)
     }
 
     #[test]
     fn the_line_goes_through_its_points() {
         let picture = plot(&[0.0, 1.0, 0.0]).expect("a plot");
-        assert!(inked(&picture, 16, 303));
-        assert!(inked(&picture, 256, 17));
-        assert!(inked(&picture, 495, 303));
+        assert!(has_ink(&picture, 16, 303));
+        assert!(has_ink(&picture, 256, 17));
+        assert!(has_ink(&picture, 495, 303));
         assert!(
-            !inked(&picture, 256, 303),
+            !has_ink(&picture, 256, 303),
             "only the axis is below the peak"
         );
         assert_eq!(picture.pixel(256, 303).map(|p| p[0] < 255), Some(true));

@@ -10,16 +10,14 @@ const NAME: &str = "PNG";
 /// Bytes the decoder may use besides the picture: tables and texts of the file.
 const MAX_BESIDES: usize = 16 << 20;
 
-fn damaged(why: &dyn std::fmt::Display) -> Problem {
+fn damage(why: &dyn std::fmt::Display) -> Problem {
     Problem::Damaged(NAME, why.to_string())
 }
 
-/// Width and height that the head of a file tells.
+/// Reads width and height from the head of a file.
 pub fn size(bytes: &[u8]) -> Result<[u32; 2], Problem> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
-    let header = decoder
-        .read_header_info()
-        .map_err(|error| damaged(&error))?;
+    let header = decoder.read_header_info().map_err(|error| damage(&error))?;
     check_size(header.width, header.height)?;
     Ok([header.width, header.height])
 }
@@ -30,19 +28,17 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     decoder.set_ignore_text_chunk(true);
-    let header = decoder
-        .read_header_info()
-        .map_err(|error| damaged(&error))?;
+    let header = decoder.read_header_info().map_err(|error| damage(&error))?;
     let (width, height) = (header.width, header.height);
     check_room(width, height, max_pixels)?;
-    let mut reader = decoder.read_info().map_err(|error| damaged(&error))?;
+    let mut reader = decoder.read_info().map_err(|error| damage(&error))?;
     let size = reader
         .output_buffer_size()
         .ok_or(Problem::Size(width.into(), height.into()))?;
     let mut raw = vec![0; size];
     let frame = reader
         .next_frame(&mut raw)
-        .map_err(|error| damaged(&error))?;
+        .map_err(|error| damage(&error))?;
     raw.truncate(frame.buffer_size());
     let pixels = match frame.color_type {
         png::ColorType::Rgba => raw,
@@ -50,7 +46,7 @@ pub fn decode(bytes: &[u8], max_pixels: u64) -> Result<Picture, Problem> {
         png::ColorType::GrayscaleAlpha => spread(&raw, |p: [u8; 2]| [p[0], p[0], p[0], p[1]]),
         png::ColorType::Grayscale => spread(&raw, |p: [u8; 1]| [p[0], p[0], p[0], 255]),
         // The transformation above has replaced indices by colours.
-        png::ColorType::Indexed => return Err(damaged(&"its colours cannot be read")),
+        png::ColorType::Indexed => return Err(damage(&"its colours cannot be read")),
     };
     Picture::new(frame.width, frame.height, pixels)
 }
@@ -63,7 +59,7 @@ fn spread<const N: usize>(raw: &[u8], pixel: fn([u8; N]) -> [u8; 4]) -> Vec<u8> 
         .collect()
 }
 
-/// Writes a file; without opacity if nothing shows through, which is a quarter less.
+/// Writes a file; one of an opaque picture has no channel for opacity, which saves a quarter.
 pub fn encode(picture: &Picture) -> Result<Vec<u8>, Problem> {
     let opaque = picture.is_opaque();
     let mut bytes = Vec::new();

@@ -15,17 +15,17 @@ pub enum Problem {
     NoRoom {
         /// Width and height.
         size: [u32; 2],
-        /// How many pixels there is room for.
+        /// The number of pixels for which there is room.
         most: u64,
     },
     /// The bytes are not four for each pixel.
     ByteCount {
-        /// How many are needed.
+        /// The number of bytes that are needed.
         needed: u64,
-        /// How many there are.
+        /// The number of bytes that are there.
         found: u64,
     },
-    /// Two pictures that should be of the same size are not.
+    /// The sizes of two pictures differ, and should not.
     DifferentSizes([u32; 2], [u32; 2]),
     /// Resizing would need too much memory on the way.
     TooMuchBetween,
@@ -43,9 +43,9 @@ pub enum Problem {
     FrameCount(u32),
     /// More or fewer frames were given than announced.
     FramesAnnounced {
-        /// How many were announced.
+        /// The number of frames that was announced.
         announced: u32,
-        /// How many were given.
+        /// The number of frames that were given.
         given: u32,
     },
     /// The frames of an animation have more than [`MAX_ANIMATION`] pixels.
@@ -56,7 +56,8 @@ pub enum Problem {
     UnknownFormat(String),
     /// The format cannot hold animations.
     NoAnimation(&'static str),
-    /// The bytes are not a file of this format, or a damaged one; the second string says what is wrong.
+    /// The bytes are not a file of this format, or a damaged one; the second string says what is
+    /// wrong.
     Damaged(&'static str, String),
     /// The file could not be made; the second string says why.
     NotWritten(&'static str, String),
@@ -67,7 +68,8 @@ impl fmt::Display for Problem {
         match self {
             Self::Size(width, height) => write!(
                 f,
-                "a picture of {width}×{height} pixels cannot be: sides are 1 to {MAX_SIDE}, and {MAX_PIXELS} pixels is the limit"
+                "a picture of {width}×{height} pixels cannot be: \
+                 sides are 1 to {MAX_SIDE}, and {MAX_PIXELS} pixels is the limit"
             ),
             Self::NoRoom {
                 size: [width, height],
@@ -81,11 +83,13 @@ impl fmt::Display for Problem {
             }
             Self::DifferentSizes([w, h], [v, g]) => write!(
                 f,
-                "the pictures must have the same size, but they have {w}×{h} and {v}×{g} pixels; resize one of them first"
+                "the pictures must have the same size, but they have {w}×{h} and {v}×{g} pixels; \
+                 resize one of them first"
             ),
             Self::TooMuchBetween => write!(
                 f,
-                "resizing needs too much memory: old width times new height may be {MAX_BETWEEN} pixels; resize in two steps"
+                "resizing needs too much memory: old width times new height may be {MAX_BETWEEN} \
+                 pixels; resize in two steps"
             ),
             Self::SheetCount(count) => write!(
                 f,

@@ -8,9 +8,9 @@ use image::{ImageBuffer, Rgba};
 
 /// A picture in another size, filtered with the cubic of Catmull and Rom.
 ///
-/// That filter keeps edges sharp, and it is a polynomial, so the result is the same on every machine.
-/// Colours are mixed as they are stored; the edge of something that shows through is tinged with
-/// the colour behind it.
+/// That filter keeps edges sharp, and it is a polynomial, so the result is the same on every
+/// machine. Colours are mixed as they are stored; the edge of something that shows through is
+/// tinged with the colour behind it.
 ///
 /// # Errors
 /// If the new size is not possible, or if old width times new height is more than [`MAX_BETWEEN`].

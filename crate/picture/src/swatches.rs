@@ -8,8 +8,8 @@ const ALONE: u32 = 128;
 /// Side of a colour among others, pixels.
 const AMONG_OTHERS: u32 = 24;
 
-/// Squares of colour in rows, each red, green, blue in 0 … 1; what lies beyond is taken as the nearest
-/// that can be shown.
+/// Squares of colour in rows, each red, green, blue in 0 … 1; what lies beyond is taken as the
+/// nearest that can be shown.
 ///
 /// # Errors
 /// If there are no colours or more than [`MAX_SWATCHES`].

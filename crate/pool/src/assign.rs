@@ -1,9 +1,9 @@
 //! Choice of the next task of a worker.
 //!
-//! A tile is traced in each pass by the worker that keeps its samples, as far as that is known: from the full pass on each
-//! worker has its part of the picture ([`partition`]). The cost of a tile is predicted from the passes before. A worker is
-//! given work ahead, because a page that is drawing answers late, but not so much that the others have nothing left to
-//! help with.
+//! A tile is traced in each pass by the worker that keeps its samples, as far as that is known:
+//! from the full pass on each worker has its part of the picture ([`partition`]). The cost of a
+//! tile is predicted from the passes before. A worker is given work ahead, because a page that is
+//! drawing answers late, but not so much that the others have nothing left to help with.
 
 use crate::partition::partition;
 use crate::run::Run;
@@ -16,17 +16,18 @@ pub const AHEAD: f64 = 0.25;
 const EARLY: f64 = 0.05;
 /// Most tiles a worker is given ahead.
 pub const MOST_AHEAD: usize = 64;
-/// Number of its tiles among which a worker looks for the most expensive one; a picture may have very many.
+/// Number of its tiles among which a worker looks for the most expensive one; a picture may have
+/// very many.
 const CANDIDATES: usize = 256;
-/// Time of an additional ray at an edge pixel relative to a typical ray of its tile. Measured over all of seahorse, cowrie
-/// and sphereflake: 2.2, 1.9 and 1.0.
+/// Time of an additional ray at an edge pixel relative to a typical ray of its tile. Measured over
+/// all of seahorse, cowrie and sphereflake: 2.2, 1.9 and 1.0.
 const EDGE_RAY: f64 = 1.5;
 /// Seconds by which the picture must be finished earlier for each second that help costs.
 const HELP_GAIN: f64 = 0.25;
 
 impl Run {
-    /// Returns the next task of a worker, from those never assigned or, with `again`, from those to be repeated. `None` if
-    /// there is none for it.
+    /// Returns the next task of a worker, from those never assigned or, with
+    /// `again`, from those to be repeated. `None` if there is none for it.
     pub fn take(&mut self, worker: usize, idle: bool, again: bool) -> Option<usize> {
         loop {
             let task = if again {
@@ -46,8 +47,8 @@ impl Run {
         }
     }
 
-    /// Recomputes the partition from the known costs: few are known when the first tiles of the full pass are assigned, all
-    /// when the coarse pass is complete.
+    /// Recomputes the partition from the known costs: few are known when the first tiles of the
+    /// full pass are assigned, all when the coarse pass is complete.
     pub(super) fn repartition(&mut self) {
         let known = self.effort.iter().copied().filter(|effort| *effort > 0);
         let least = known.min().unwrap_or(1);
@@ -56,9 +57,9 @@ impl Run {
         self.home = partition(&self.tiles, &costs, self.awake.len());
     }
 
-    /// Returns a task never assigned, of the first pass that has one for this worker. Each worker has its own tiles and makes
-    /// smooth those it has sampled, as it keeps most samples needed for that. A worker that is about to become idle helps
-    /// the others if that pays.
+    /// Returns a task never assigned, of the first pass that has one for this worker. Each worker
+    /// has its own tiles and makes smooth those it has sampled, as it keeps most samples needed for
+    /// that. A worker that is about to become idle helps the others if that pays.
     fn next_new(&mut self, worker: usize, idle: bool) -> Option<usize> {
         for pass in 0..self.passes.len() {
             let left = self.left[pass].len();
@@ -74,8 +75,8 @@ impl Run {
         None
     }
 
-    /// Index, among the unassigned tiles of a pass, of the tile that a worker should do next: one of its own, or one without
-    /// a keeper.
+    /// Index, among the unassigned tiles of a pass, of the tile that a worker should do next: one
+    /// of its own, or one without a keeper.
     fn own(&self, pass: usize, worker: usize) -> Option<usize> {
         let places = self.left[pass].iter().enumerate();
         if self.passes[pass] != Pass::Smooth {
@@ -137,8 +138,9 @@ impl Run {
         }
     }
 
-    /// Index, among the unassigned tiles of a pass, of another worker's tile that an idle worker should do: of the worker with
-    /// the most left to do, the tile with which both finish earliest. `None` if helping does not finish earlier.
+    /// Index, among the unassigned tiles of a pass, of another worker's tile that an idle worker
+    /// should do: of the worker with the most left to do, the tile with which both finish earliest.
+    /// `None` if helping does not finish earlier.
     fn tile_to_help_with(&self, pass: usize, worker: usize) -> Option<usize> {
         let first = pass * self.tiles.len();
         let mut load = vec![0.0; self.awake.len()];
@@ -167,8 +169,8 @@ impl Run {
             .map(|(place, _)| place)
     }
 
-    /// Whether a worker that holds these tasks should be given one more: enough not to wait for the page, but not so much
-    /// that it ends with much more than the other `workers`.
+    /// Whether a worker that holds these tasks should be given one more: enough not to wait for the
+    /// page, but not so much that it ends with much more than the other `workers`.
     pub fn needs_more(&self, holds: &VecDeque<usize>, workers: usize) -> bool {
         let untaken: usize = self.left.iter().map(VecDeque::len).sum();
         if untaken == 0 || holds.len() >= MOST_AHEAD {

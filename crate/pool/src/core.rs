@@ -12,7 +12,7 @@ use worker::engine::KEPT;
 use worker::message::{pack, unpack};
 use worker::{Answer, Kind, Request};
 
-/// Manager of the tracing workers.
+/// A pool without its workers.
 pub struct Core<W> {
     pub scheduler: Scheduler,
     pub workers: W,
@@ -184,9 +184,9 @@ impl<W: Workers> Core<W> {
     }
 
     fn send(&mut self, index: usize, request: &Request) {
-        // Packing fails only when memory runs out; the worker then misses a message, hangs as far as
-        // the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes samples
-        // again.
+        // Packing fails only when memory runs out; the worker then misses a message, hangs as far
+        // as the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes
+        // samples again.
         if let Ok(bytes) = pack(request) {
             self.workers.send(index, &bytes);
         }
@@ -200,12 +200,12 @@ impl<W: Workers + 'static> Manager for Core<W> {
         &mut self.workers
     }
 
-    fn open(&mut self, outcome: Result<(), String>, now: f64) {
+    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.scheduler.launch(now),
-            Err(trouble) => {
-                let trouble = format!("{trouble} and render again.");
-                self.scheduler.unavailable(&trouble, now);
+            Err(reason) => {
+                let reason = format!("{reason}. Check the connection and render again.");
+                self.scheduler.unavailable(&reason, now);
             }
         }
         self.carry_out(now);

@@ -14,7 +14,7 @@ pub const SMALL_TILE: u32 = 56;
 /// Most workers, whatever the machine has: each holds its own copy of the scene.
 pub const MAX_WORKERS: usize = 16;
 
-/// Picture to trace.
+/// A picture to trace.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {
     /// Scene to draw. With `settings.samples` 1 there is no [`Pass::Smooth`]: it would equal
@@ -34,14 +34,14 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Whether it needs the root finders for comparison.
+    /// Tells whether it needs the root finders for comparison.
     #[must_use]
     pub fn compares(&self) -> bool {
         self.kind == Kind::Errors || self.scene.settings.digger != Digger::Hermite
     }
 }
 
-/// Tile that is finished.
+/// A finished tile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileDone {
     /// The number of the [`Job`].

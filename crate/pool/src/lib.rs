@@ -32,8 +32,8 @@
 //!
 //! Decisions, and what happens when a worker dies or hangs, are in three state machines that are
 //! tested without workers: [`life`], the life of any worker; [`scheduler`], the tiles of the
-//! tracing workers; [`queue`], the jobs of a tools worker. `web` and `threads` carry them out.
-//! [`Assembly`] puts the tiles of a picture together as they come.
+//! tracing workers; [`queue`], the jobs of a tools worker. `web` and
+//! `threads` carry them out. [`Assembly`] puts the tiles of a picture together as they come.
 
 pub mod assembly;
 mod assign;

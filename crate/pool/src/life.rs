@@ -14,17 +14,17 @@ pub const DEATHS: u32 = 10;
 /// Seconds a worker may take to start.
 pub const START_LIMIT: f64 = 30.0;
 
-/// Stage of a worker's life.
+/// Where a worker is in its life.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// Neither running nor wanted at the moment.
+    /// Not running, and not wanted at the moment.
     #[default]
     Asleep,
-    /// Called, and to come soon.
+    /// On its way.
     Starting,
     /// Takes requests.
     Awake,
-    /// Abandoned, as it failed too often.
+    /// Not running, as it failed too often.
     GivenUp,
 }
 
@@ -45,7 +45,7 @@ pub struct Life {
 }
 
 impl Life {
-    /// Returns the stage of its life.
+    /// Returns where it is in its life.
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.stage

@@ -1,13 +1,13 @@
 //! Partition of a picture's tiles among the workers.
 //!
-//! Each worker gets one part, nearly always a connected one: samples on a border between two parts are needed by both
-//! workers in the smooth pass and must be taken twice or sent. Parts differ in area but take about equally long, as far
-//! as the coarse pass predicts.
+//! Each worker gets one part, nearly always a connected one: samples on a border between two parts
+//! are needed by both workers in the smooth pass and must be taken twice or sent. Parts differ in
+//! area but take about equally long, as far as the coarse pass predicts.
 
 use tracer::Tile;
 
-/// Returns for each tile the number of the worker that should trace it. `costs` are the tiles' times in any unit, all
-/// positive.
+/// Returns for each tile the number of the worker that should trace it. `costs` are the tiles'
+/// times in any unit, all positive.
 #[must_use]
 pub fn partition(tiles: &[Tile], costs: &[f64], workers: usize) -> Vec<usize> {
     let mut owner = vec![0; tiles.len()];
@@ -16,7 +16,8 @@ pub fn partition(tiles: &[Tile], costs: &[f64], workers: usize) -> Vec<usize> {
     owner
 }
 
-/// Assigns the tiles `some` to `workers` workers from `first` on, by cutting the longer side recursively.
+/// Assigns the tiles `some` to `workers` workers from `first` on, by cutting the longer side
+/// recursively.
 fn halve(
     tiles: &[Tile],
     costs: &[f64],
@@ -61,7 +62,8 @@ fn halve(
 mod tests {
     use super::*;
 
-    /// Number of tiles with a neighbour of the same worker on one of the four sides, and number of those without.
+    /// Number of tiles with a neighbour of the same worker on one of the four sides, and number of
+    /// those without.
     fn neighbours(tiles: &[Tile], owner: &[usize]) -> (usize, usize) {
         let mut count = (0, 0);
         for (tile, worker) in tiles.iter().zip(owner) {

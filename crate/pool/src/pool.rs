@@ -2,29 +2,19 @@
 
 use crate::core::Core;
 use crate::job::{Job, TileDone, worker_count};
-use crate::platform::{COMPARING, Crew, PlatformWorkers, Program, TRACER, cores};
+use crate::platform::{Crew, DIGGER, PlatformWorkers, Program, TRACER, cores};
 use crate::progress::Progress;
 use std::sync::Arc;
 
 /// Traces pictures with all cores; see the [crate](crate).
 pub struct Pool {
     crew: Crew<Core<PlatformWorkers>>,
-    repaint: Arc<dyn Fn() + Send + Sync>,
+    /// Whether the crew has the root finders for comparison.
+    compares: bool,
+    repaint: Repaint,
 }
 
-/// Starts the workers of a program.
-fn crew(program: Program, repaint: &Arc<dyn Fn() + Send + Sync>) -> Crew<Core<PlatformWorkers>> {
-    let count = worker_count(cores());
-    let repaint = repaint.clone();
-    let crew = Crew::new(
-        program,
-        count,
-        move || repaint(),
-        |workers| Core::new(count, workers),
-    );
-    crew.load();
-    crew
-}
+type Repaint = Arc<dyn Fn() + Send + Sync>;
 
 impl Pool {
     /// Starts the workers. `repaint` is called when the app should draw: when a pass is complete,
@@ -32,19 +22,22 @@ impl Pool {
     /// thread, with every answer.
     #[must_use]
     pub fn new(repaint: impl Fn() + Send + Sync + 'static) -> Self {
-        let repaint: Arc<dyn Fn() + Send + Sync> = Arc::new(repaint);
+        let repaint: Repaint = Arc::new(repaint);
         Self {
-            crew: crew(TRACER, &repaint),
+            crew: start(TRACER, repaint.clone()),
+            compares: false,
             repaint,
         }
     }
 
-    /// Begins a picture and forgets the one before. For the first one that needs the root finders
-    /// for comparison, workers that have them take the place of the others.
+    /// Begins a picture and forgets the one before. The first that needs the root finders for
+    /// comparison has the program loaded that has them; once it is there, that does all.
     pub fn start(&mut self, job: Job<'_>) {
-        let program = if job.compares() { COMPARING } else { TRACER };
-        if !self.crew.serves(program) {
-            self.crew = crew(program, &self.repaint);
+        let compares = job.compares() || self.compares && self.crew.is_loaded();
+        if self.compares != compares {
+            let program = if compares { DIGGER } else { TRACER };
+            self.crew = start(program, self.repaint.clone());
+            self.compares = compares;
         }
         self.crew.order(|core, now| core.start(job, now));
     }
@@ -71,4 +64,17 @@ impl Pool {
     pub fn kill_worker(&mut self, index: usize) -> bool {
         self.crew.ask(|core, _| core.workers.kill(index))
     }
+}
+
+/// Starts a crew with a worker for each core.
+fn start(program: Program, repaint: Repaint) -> Crew<Core<PlatformWorkers>> {
+    let count = worker_count(cores());
+    let crew = Crew::new(
+        program,
+        count,
+        move || repaint(),
+        |workers| Core::new(count, workers),
+    );
+    crew.load();
+    crew
 }

@@ -187,7 +187,7 @@ mod tests {
     use super::*;
     use Command::{End, Fail, Restart, Run};
 
-    /// Makes a queue with a worker that runs job 1, submitted at time 0.
+    /// A queue with a worker that runs job 1, submitted at time 0.
     fn running() -> Queue {
         let mut queue = Queue::default();
         queue.launch(0.0);

@@ -38,8 +38,8 @@ pub struct Run {
     pub plan: Plan,
     pub(super) tiles: Vec<Tile>,
     pub(super) passes: &'static [Pass],
-    /// For each pass the tiles never assigned, in the order of the tiles. A task is a tile in a pass, numbered pass · number
-    /// of tiles + tile.
+    /// For each pass the tiles never assigned, in the order of the tiles. A task is a tile in a
+    /// pass, numbered pass · number of tiles + tile.
     pub(super) left: Vec<VecDeque<usize>>,
     /// Work of the coarse pass at each tile (rays and field evaluations), 0 while unknown.
     pub(super) effort: Vec<u64>,
@@ -51,8 +51,8 @@ pub struct Run {
     pub awake: Vec<bool>,
     /// Worker that should trace each tile in the full pass.
     pub(super) home: Vec<usize>,
-    /// Worker that was given each tile last, other than in the coarse pass: it has the tile's first samples unless it was
-    /// restarted.
+    /// Worker that was given each tile last, other than in the coarse pass: it has the tile's first
+    /// samples unless it was restarted.
     pub(super) holder: Vec<Option<usize>>,
     /// Tasks of workers that failed, to be repeated, each alone.
     pub again: Vec<usize>,
@@ -72,7 +72,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// Cuts a picture into tasks for `workers` workers. A picture without pixels is finished at once.
+    /// Cuts a picture into tasks for `workers` workers. A picture without pixels is finished at
+    /// once.
     pub fn new(plan: Plan, workers: usize, now: f64) -> Self {
         let passes: &'static [Pass] = if plan.samples > 1 {
             &[Pass::Coarse, Pass::Full, Pass::Smooth]
@@ -133,7 +134,8 @@ impl Run {
         self.pass_seconds.iter().flatten().count()
     }
 
-    /// Time limit of a task, seconds. It grows with each failure, as a tile may be slow for good reasons.
+    /// Time limit of a task, seconds. It grows with each failure, as a tile may be slow for good
+    /// reasons.
     pub fn limit(&self, task: usize) -> f64 {
         let pass = task / self.tiles.len();
         let failures = self.failures.get(&task).copied().unwrap_or(0);

@@ -113,8 +113,8 @@ impl Scheduler {
         self.run.as_ref().map(|run| run.plan.generation)
     }
 
-    /// Number of complete passes of the present picture. The app is woken when it rises; single tiles are shown when the app
-    /// draws anyway.
+    /// Number of complete passes of the present picture. The app is woken when it rises; single
+    /// tiles are shown when the app draws anyway.
     #[must_use]
     pub fn complete_passes(&self) -> usize {
         self.run.as_ref().map_or(0, Run::complete_passes)
@@ -150,8 +150,9 @@ impl Scheduler {
         self.deal(now);
     }
 
-    /// Assigns the whole coarse pass, a tile to each worker in turn: tracing it takes less time than asking a page that is
-    /// busy drawing for more. Waits until all workers are awake, as the first would get all of it.
+    /// Assigns the whole coarse pass, a tile to each worker in turn: tracing it takes less time
+    /// than asking a page that is busy drawing for more. Waits until all workers are awake, as the
+    /// first would get all of it.
     fn deal(&mut self, now: f64) {
         if self.slots.iter().any(|slot| !slot.life.is_awake()) {
             return;
@@ -263,7 +264,8 @@ impl Scheduler {
         if is_wanted && !given_up {
             self.restart(index, now);
         } else {
-            // Without work to do, it could die again and again; it is started with the next picture.
+            // Without work to do, it could die again and again; it is started with the next
+            // picture.
             self.end(index);
         }
         let is_given_up = |slot: &Slot| slot.life.stage() == Stage::GivenUp;
@@ -335,7 +337,8 @@ impl Scheduler {
         Some((since + run.limit(*task), "a tile took too long"))
     }
 
-    /// Whether [`Scheduler::tick`] must be called: a worker is starting, busy or at an older picture.
+    /// Whether [`Scheduler::tick`] must be called: a worker is starting, busy or at an older
+    /// picture.
     #[must_use]
     pub fn is_busy(&self) -> bool {
         self.slots.iter().any(|slot| {
@@ -448,8 +451,8 @@ impl Scheduler {
         }
     }
 
-    /// Gives a worker tiles until it holds `enough`, or by [`Run::needs_more`], from those never assigned or, with `again`,
-    /// from those to be repeated.
+    /// Gives a worker tiles until it holds `enough`, or by [`Run::needs_more`], from those never
+    /// assigned or, with `again`, from those to be repeated.
     fn give(&mut self, index: usize, enough: Option<usize>, again: bool, now: f64) {
         let (Some(run), slot) = (&mut self.run, &self.slots[index]) else {
             return;

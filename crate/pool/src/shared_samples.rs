@@ -1,7 +1,8 @@
 //! First samples shared between workers: which were reported, and which worker has which.
 //!
-//! The smooth pass of a tile needs the first samples of the tile and of its neighbours' edges. Samples that a worker has
-//! not taken itself are sent with its order, or as soon as another worker reports them, so that few are taken twice.
+//! The smooth pass of a tile needs the first samples of the tile and of its neighbours' edges.
+//! Samples that a worker has not taken itself are sent with its order, or as soon as another worker
+//! reports them, so that few are taken twice.
 
 use tracer::{Known, Pass, Tile, around};
 use worker::Order;
@@ -36,8 +37,8 @@ impl SharedSamples {
         };
     }
 
-    /// Takes the samples that a worker reports with a finished tile, and returns the parts that other workers wait for.
-    /// Ignores reports that a sound worker would not send.
+    /// Takes the samples that a worker reports with a finished tile, and returns the parts that
+    /// other workers wait for. Ignores reports that a sound worker would not send.
     pub fn receive(&mut self, worker: usize, order: &Order, known: Known) -> Vec<(usize, Known)> {
         let tile = known.tile();
         let sound = order.pass == Pass::Full && order.tile == tile && known.is_of(self.size);
@@ -79,7 +80,8 @@ impl SharedSamples {
         self.orders.retain(|(other, _)| *other != worker);
     }
 
-    /// Notes that a worker traces the smooth pass of a tile, and returns the samples it needs and does not have.
+    /// Notes that a worker traces the smooth pass of a tile, and returns the samples it needs and
+    /// does not have.
     pub fn assign(&mut self, worker: usize, tile: Tile) -> Vec<Known> {
         if !self.shared {
             return Vec::new();

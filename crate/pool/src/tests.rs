@@ -88,15 +88,14 @@ fn picture_completes_without_a_killed_worker() {
 #[test]
 fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     let mut pool = Pool::new(|| {});
-    let mut scene = scene();
-    let made = Arc::make_mut(&mut scene);
-    made.flesh.push(scene::Flesh {
+    let mut scene = Scene::clone(&scene());
+    scene.flesh.push(scene::Flesh {
         blobbiness: -1.0,
         ..Default::default()
     });
     for x in [-0.6, 0.6] {
         let center = [x, 0.0, 0.0].into();
-        made.elements.push(scene::Element {
+        scene.elements.push(scene::Element {
             flesh: Some(0),
             ..scene::Element::new(scene::Shape::Sphere {
                 center,
@@ -106,10 +105,11 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     }
     let mut means = Vec::new();
     for (generation, digger) in [(1, Digger::Hermite), (2, Digger::Spans(2))] {
-        Arc::make_mut(&mut scene).settings.digger = digger;
-        let mut trace = |kind| {
+        scene.settings.digger = digger;
+        let shared = Arc::new(scene.clone());
+        let tiles = [Kind::Colours, Kind::Errors].map(|kind| {
             let job = Job {
-                scene: &scene,
+                scene: &shared,
                 camera: None,
                 size: [40, 32],
                 generation,
@@ -119,12 +119,12 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
             assert_eq!(job.compares(), (generation, kind) != (1, Kind::Colours));
             pool.start(job);
             finish(&mut pool).pop().expect("a tile")
-        };
-        let TileDone { tile, pixels, .. } = trace(Kind::Colours);
+        });
+        let [TileDone { tile, pixels, .. }, errors] = tiles;
         let stats = &mut tracer::Stats::default();
         let picture = digger::picture(&scene, [40, 32]);
         assert!(picture.trace(tile, Pass::Smooth, &|| false, stats) == Some(pixels));
-        let pixels = digger::errors::unpack(&trace(Kind::Errors).pixels);
+        let pixels = digger::errors::unpack(&errors.pixels);
         let distances = pixels.into_iter().filter_map(|pixel| match pixel {
             digger::errors::Pixel::Off(distance) => Some(f64::from(distance)),
             _ => None,
@@ -168,8 +168,9 @@ impl Workers for Asked {
     }
 }
 
-/// Traces a picture with so many workers that take turns, each of which may tell others what it sampled. The first one fails
-/// in the middle if that is wanted. Gives the picture's last pixels, tile by tile, and the rays.
+/// Traces a picture with so many workers that take turns, each of which may tell others what it
+/// sampled. The first one fails in the middle if that is wanted. Gives the picture's last pixels,
+/// tile by tile, and the rays.
 fn taking_turns(
     scene: &Arc<Scene>,
     workers: usize,
@@ -178,7 +179,7 @@ fn taking_turns(
 ) -> (HashMap<Tile, Vec<u8>>, u64) {
     let engines = (0..workers).map(|_| Engine::default()).collect();
     let mut core = Core::new(workers, Desks(engines));
-    core.open(Ok(()), 0.0);
+    core.loaded(Ok(()), 0.0);
     let job = Job {
         scene,
         camera: None,
@@ -263,8 +264,8 @@ fn balls(at: [&str; 2]) -> Arc<Scene> {
     scene
 }
 
-/// Pictures of two scenes follow each other while answers of the one before are on their way: each shows its own, and of none
-/// anything is known when it is over, however it ends.
+/// Pictures of two scenes follow each other while answers of the one before are on their way: each
+/// shows its own, and of none anything is known when it is over, however it ends.
 #[test]
 fn picture_shows_nothing_of_an_older_one() {
     let size = [260, 200];
@@ -291,16 +292,18 @@ fn picture_shows_nothing_of_an_older_one() {
         let all: HashMap<_, _> = tiles.map(|tile| (tile, smooth(tile).unwrap())).collect();
         all
     });
-    // Answers that were lost, pictures of which something was known when they were broken off, tiles that were waited for.
+    // Answers that were lost, pictures of which something was known when they were broken off,
+    // tiles that were waited for.
     let (mut lost, mut told, mut waiting) = (0, 0, 0);
     for workers in [2, 3, 5] {
         let engines = (0..workers).map(|_| Engine::default()).collect();
         let mut core = Core::new(workers, Desks(engines));
-        core.open(Ok(()), 0.0);
+        core.loaded(Ok(()), 0.0);
         let mut late: Vec<Vec<Answer>> = vec![Vec::new(); workers];
         let mut now = 0.0;
         for picture in 0..60 {
-            // Every other one is broken off, each later than the one before, and the first one cancelled.
+            // Every other one is broken off, each later than the one before, and the first one
+            // cancelled.
             let breaks = (picture % 2 == 0).then_some(2 * picture);
             let which = picture % 2;
             let job = Job {
@@ -390,7 +393,7 @@ fn samples_of_a_failed_picture_are_dropped() {
     let desks = Desks((0..2).map(|_| Engine::default()).collect());
     let tile = tracer::tiles(260, 200, TILE)[0];
     let mut core = Core::new(2, Stuck(desks, Vec::new(), tile));
-    core.open(Ok(()), 0.0);
+    core.loaded(Ok(()), 0.0);
     let job = Job {
         scene: &scene,
         camera: None,
@@ -441,7 +444,7 @@ fn samples_are_shared_only_where_useful() {
         };
         change(settings, &mut job);
         let mut core = Core::new(workers, Asked(None));
-        core.open(Ok(()), 0.0);
+        core.loaded(Ok(()), 0.0);
         core.start(
             Job {
                 scene: &scene,

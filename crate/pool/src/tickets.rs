@@ -66,7 +66,7 @@ struct News<T> {
     result: Option<Result<T, String>>,
 }
 
-/// Claim to the result of a job that was handed in. When it is dropped the job is cancelled.
+/// A job that was handed in. When it is dropped the job is cancelled.
 pub struct Ticket<T> {
     crew: Crew<Jobs<PlatformWorkers>>,
     id: u64,
@@ -107,7 +107,7 @@ enum Told<'a> {
     Over(Result<&'a [u8], String>),
 }
 
-/// Job without a result yet.
+/// A job that is not over.
 struct Sent {
     /// Index of its worker.
     worker: usize,
@@ -118,7 +118,7 @@ struct Sent {
 
 /// The manager of the tools workers.
 struct Jobs<W> {
-    /// Jobs of each worker.
+    /// One for each worker.
     queues: [Queue; Pace::ALL.len()],
     workers: W,
     last: u64,
@@ -155,10 +155,11 @@ impl<W: Workers> Jobs<W> {
             Ok(request) => {
                 let worker = J::PACE as usize;
                 let place = news.clone();
+                let tell = move |told: Told<'_>| note::<J>(&mut place.borrow_mut(), told);
                 let sent = Sent {
                     worker,
                     request,
-                    tell: Box::new(move |told| note::<J>(&mut place.borrow_mut(), told)),
+                    tell: Box::new(tell),
                 };
                 self.sent.insert(id, sent);
                 self.queues[worker].submit(id, now);
@@ -232,9 +233,8 @@ fn note<J: Job>(news: &mut News<J::Output>, told: Told<'_>) {
         Told::Fraction(fraction) => news.fraction = Some(fraction),
         Told::Part(bytes) => news.parts.extend(unpack(bytes)),
         Told::Over(result) => {
-            news.result = Some(
-                result.and_then(|bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned())),
-            );
+            let unpacked = |bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned());
+            news.result = Some(result.and_then(unpacked));
         }
     }
 }
@@ -246,12 +246,12 @@ impl<W: Workers + 'static> Manager for Jobs<W> {
         &mut self.workers
     }
 
-    fn open(&mut self, outcome: Result<(), String>, now: f64) {
+    fn loaded(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
             Ok(()) => self.all(now, |queue| queue.launch(now)),
-            Err(trouble) => {
-                let trouble = format!("{trouble} and try again.");
-                self.all(now, |queue| queue.unavailable(&trouble));
+            Err(reason) => {
+                let reason = format!("{reason}. Check the connection and try again.");
+                self.all(now, |queue| queue.unavailable(&reason));
             }
         }
     }

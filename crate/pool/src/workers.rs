@@ -15,12 +15,12 @@ pub trait Workers {
     fn send(&mut self, index: usize, request: &[u8]);
 }
 
-/// Message of a worker.
+/// A message of a worker.
 #[derive(Debug)]
 pub enum Message {
     /// The bytes it sent.
     Bytes(Vec<u8>),
-    /// Reason why it cannot continue.
+    /// It cannot continue, for this reason.
     Failed(String),
 }
 
@@ -31,9 +31,8 @@ pub trait Manager: 'static {
 
     /// Returns the workers.
     fn workers(&mut self) -> &mut Self::Workers;
-    /// Notes that workers can be started from now on, or why their program could not be loaded: a
-    /// sentence to which its end, what to do, is to be added.
-    fn open(&mut self, outcome: Result<(), String>, now: f64);
+    /// Notes that workers can be started from now on, or why their program could not be loaded.
+    fn loaded(&mut self, outcome: Result<(), String>, now: f64);
     /// Takes a worker's message. Returns whether the app should draw.
     fn receive(&mut self, index: usize, message: Message, now: f64) -> bool;
     /// Notes that time has passed. Returns whether the app should draw.

@@ -1,4 +1,4 @@
-//! How large a scene is, and where.
+//! The ball around a scene.
 
 use crate::instance::Units;
 use crate::solid::Solid;
@@ -8,9 +8,9 @@ use scene::{Element, Scene, Shape};
 /// A sphere around everything in a scene that has an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Its centre, world coordinates.
+    /// The centre, world coordinates.
     pub center: DVec3,
-    /// Its radius, > 0.
+    /// The radius, > 0.
     pub radius: f64,
 }
 
@@ -43,8 +43,8 @@ impl Bounds {
             })
     }
 
-    /// The least height of a scene's elements along a direction; of a scene without any that have an end, that of the middle
-    /// of what its camera looks at.
+    /// The least height of a scene's elements along a direction; of a scene without any that have
+    /// an end, that of the middle of what its camera looks at.
     pub(crate) fn lowest(scene: &Scene, up: DVec3) -> f64 {
         let lows = scene
             .elements

@@ -35,9 +35,9 @@ pub struct Drawn {
 /// [`Draft::render`]. Before the first scene it draws an empty one.
 pub struct Draft {
     pipelines: Pipelines,
-    /// Of hard elements, and of soft ones.
+    /// The instances of hard elements, and of soft ones.
     instances: [[Instances; Kind::COUNT]; 2],
-    /// Drawn in place of the soft ones.
+    /// The mesh that is drawn in place of the soft ones.
     mesh: Option<Uploaded>,
     bindings: wgpu::BindGroup,
     units: Units,
@@ -73,7 +73,8 @@ impl Draft {
     }
 
     /// Replaces the scene: its elements at the radius that counts ([`Scene::radius`]), materials,
-    /// lights, background and gamma. The scene's own camera is not used. Tells what is drawn. A mesh stays.
+    /// lights, background and gamma. The scene's own camera is not used, and a mesh stays. Returns
+    /// the numbers of what is drawn.
     pub fn set_scene(
         &mut self,
         device: &wgpu::Device,
@@ -125,7 +126,7 @@ impl Draft {
                 let paint = element.paint.as_ref().filter(|_| solid.kind == Kind::Patch);
                 let finish = paint.map_or(element.finish, |paint| paint.finish);
                 let material = materials.slot(finish as usize);
-                let solid = solid.anchored(self.units.center);
+                let solid = solid.move_origin_near(self.units.center);
                 lists[solid.kind as usize].push(Instance::new(&solid, material, self.units));
             }
         }
@@ -137,8 +138,9 @@ impl Draft {
         drawn
     }
 
-    /// Draws a mesh in place of the scene's soft elements from now on, or with `None` their offset surfaces again. One that has no
-    /// triangles, or is too large for the device, counts as none. Returns whether there is one.
+    /// Draws a mesh in place of the scene's soft elements from now on, or with `None` their offset
+    /// surfaces again. One that has no triangles, or is too large for the device, counts as none.
+    /// Returns whether there is one.
     pub fn set_mesh(
         &mut self,
         device: &wgpu::Device,
@@ -149,7 +151,7 @@ impl Draft {
         self.mesh.is_some()
     }
 
-    /// How many samples a pixel gets from now on.
+    /// Sets the number of samples of each pixel.
     pub fn set_sampling(&mut self, sampling: Sampling) {
         self.sampling = sampling;
     }

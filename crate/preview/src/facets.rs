@@ -9,21 +9,23 @@ use scene::{Quadric, Scene, Shape};
 
 /// The most cells across a quadric.
 const FINEST: usize = 24;
-/// The fewest.
+/// The fewest cells across a quadric.
 const COARSEST: usize = 3;
-/// No quadric is drawn when there are as many patches already.
+/// The number of patches from which on no further quadric is drawn.
 pub(crate) const MOST: usize = 1_000_000;
 /// Corners of cells in all quadrics of a scene together.
 const CORNERS: usize = 2_000_000;
 
-/// How many cells across each quadric of a scene has: the fewer, the more quadrics there are, so
-/// that the draft is still made in an instant.
+/// Returns the number of cells across each quadric of a scene: the fewer, the more quadrics there
+/// are, so that the draft is still made in an instant.
 pub(crate) fn detail(scene: &Scene) -> usize {
-    let is_quadric = |shape: &Shape| matches!(shape, Shape::Quadric(_));
-    let count = scene.elements.iter().filter(|e| is_quadric(&e.shape));
-    let each = CORNERS / count.count().max(1);
-    let fits = |cells: &usize| (cells + 1).pow(3) <= each;
-    (COARSEST..=FINEST).rev().find(fits).unwrap_or(COARSEST)
+    let elements = scene.elements.iter();
+    let quadrics = elements.filter(|e| matches!(e.shape, Shape::Quadric(_)));
+    let most_corners = CORNERS / quadrics.count().max(1);
+    (COARSEST..=FINEST)
+        .rev()
+        .find(|cells| (cells + 1).pow(3) <= most_corners)
+        .unwrap_or(COARSEST)
 }
 
 /// The faces of a box.
@@ -50,8 +52,8 @@ pub(crate) fn cuboid(center: DVec3, axes: [DVec3; 3]) -> Vec<Shape> {
     patches
 }
 
-/// A cell's corners on the way from its lowest to its highest corner, one axis after the other: each
-/// order of the axes is a tetrahedron, and those of neighbouring cells share their faces.
+/// A cell's corners on the way from its lowest to its highest corner, one axis after the other:
+/// each order of the axes is a tetrahedron, and those of neighbouring cells share their faces.
 const ORDERS: [[IVec3; 4]; 6] = {
     const fn path(a: IVec3, b: IVec3) -> [IVec3; 4] {
         let ab = IVec3::new(a.x + b.x, a.y + b.y, a.z + b.z);
@@ -92,10 +94,9 @@ pub(crate) fn quadric(quadric: &Quadric, cells: usize) -> Vec<Shape> {
     for cell in grid(side - 1) {
         for order in &ORDERS {
             let corners = order.map(|step| cell + step);
-            // Those inside first.
-            let is_inside = |at: &IVec3| values[index(*at)] < 0.0;
-            let (inside, outside): (Vec<IVec3>, Vec<IVec3>) =
-                corners.into_iter().partition(is_inside);
+            let (inside, outside): (Vec<IVec3>, Vec<IVec3>) = corners
+                .into_iter()
+                .partition(|corner| values[index(*corner)] < 0.0);
             let cut = |a: IVec3, b: IVec3| crossing(quadric, place(a), place(b));
             match (&inside[..], &outside[..]) {
                 (&[a], &[b, c, d]) | (&[b, c, d], &[a]) => {
@@ -113,7 +114,7 @@ pub(crate) fn quadric(quadric: &Quadric, cells: usize) -> Vec<Shape> {
     patches
 }
 
-/// Where the surface crosses an edge whose ends are on different sides of it.
+/// Returns the point at which the surface crosses an edge whose ends are on different sides of it.
 fn crossing(quadric: &Quadric, from: DVec3, to: DVec3) -> DVec3 {
     // Along an edge the equation is a·t² + b·t + c = 0, and exactly one root is between 0 and 1.
     let (c, gradient) = quadric.value(from);
@@ -122,8 +123,8 @@ fn crossing(quadric: &Quadric, from: DVec3, to: DVec3) -> DVec3 {
     let sum = -0.5 * (b + (b * b - 4.0 * a * c).max(0.0).sqrt().copysign(b));
     let roots = [sum / a, c / sum];
     // Rounding may push the root of an edge that ends on the surface a little out of the edge.
-    let out = |t: f64| (t - t.clamp(0.0, 1.0)).abs();
-    let t = if out(roots[1]) <= out(roots[0]) || roots[0].is_nan() {
+    let out = roots.map(|t| (t - t.clamp(0.0, 1.0)).abs());
+    let t = if out[1] <= out[0] || roots[0].is_nan() {
         roots[1]
     } else {
         roots[0]

@@ -4,7 +4,7 @@ use crate::solid::{Kind, Solid};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec2Swizzles as _, Vec3};
 
-/// One element as its vertex shader reads it; the fields are explained in `shaders/element.wgsl`.
+/// An element as its vertex shader reads it; the fields are explained in `shaders/element.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct Instance {
@@ -50,8 +50,8 @@ impl Instance {
     }
 }
 
-/// A unit vector as a point of the square onto which the octahedron |x| + |y| + |z| = 1 unfolds; the
-/// lower half is folded outwards.
+/// A unit vector as a point of the square onto which the octahedron |x| + |y| + |z| = 1 unfolds;
+/// the lower half is folded outwards.
 fn fold(v: DVec3) -> [f32; 2] {
     let flat = v.truncate() / v.abs().element_sum();
     let folded = (1.0 - flat.abs().yx()) * flat.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
@@ -59,7 +59,7 @@ fn fold(v: DVec3) -> [f32; 2] {
     place.as_vec2().to_array()
 }
 
-/// From world coordinates to draft units: the scene's middle is the origin, its radius 1.
+/// The map from world coordinates to draft units: the scene's middle is the origin, its radius 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Units {
     pub(crate) center: DVec3,
@@ -90,7 +90,7 @@ pub(crate) struct Instances {
 }
 
 impl Instances {
-    /// How many instances of one kind a device can take.
+    /// Returns the number of instances of one kind that a device can take.
     pub(crate) fn limit(device: &wgpu::Device) -> usize {
         let most = device.limits().max_buffer_size / size_of::<Instance>() as u64;
         usize::try_from(most).unwrap_or(usize::MAX)
@@ -111,13 +111,13 @@ impl Instances {
             return;
         }
         let needed = bytes.len() as u64;
-        let fits = |buffer: &wgpu::Buffer| {
-            // Not far too large either: memory of an earlier scene is returned.
-            buffer.size() >= needed && buffer.size() / 4 <= needed.max(1 << 16)
-        };
-        let buffer = match self.buffer.take() {
-            Some(buffer) if fits(&buffer) => buffer,
-            _ => device.create_buffer(&wgpu::BufferDescriptor {
+        // A buffer that is far too large is not kept: memory of an earlier scene is returned.
+        let kept = self
+            .buffer
+            .take()
+            .filter(|buffer| buffer.size() >= needed && buffer.size() / 4 <= needed.max(1 << 16));
+        let buffer = kept.unwrap_or_else(|| {
+            device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(kind.label()),
                 size: needed
                     .next_power_of_two()
@@ -125,8 +125,8 @@ impl Instances {
                     .max(needed),
                 usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
-            }),
-        };
+            })
+        });
         queue.write_buffer(&buffer, 0, bytes);
         self.buffer = Some(buffer);
     }

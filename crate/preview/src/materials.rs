@@ -20,7 +20,7 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
     let mut texels = vec![[0.0f32; 4]; rows * MATERIALS_A_ROW * TEXELS];
     let all = scene.finishes[..kept].iter().chain([&fallback]);
     for (texel, material) in texels.chunks_exact_mut(TEXELS).zip(all) {
-        let [ambient, diffuse] = worn(material, scene.background.mean());
+        let [ambient, diffuse] = draft_colours(material, scene.background.mean());
         texel[0] = with(ambient, finite(material.shine).max(0.0));
         texel[1] = with(diffuse, 0.0);
         texel[2] = with(material.specular, 0.0);
@@ -59,10 +59,11 @@ pub(crate) fn upload(device: &wgpu::Device, queue: &wgpu::Queue, scene: &Scene) 
 /// The share of the background's mean colour that mirrors and glass show.
 const AROUND: f32 = 0.6;
 
-/// The ambient and diffuse colours of a material under its textures: each pattern counts as if it were half its lowest and half
-/// its highest value everywhere, which is what the draft shows of it. What is all mirror or glass would be black: it gets that
-/// share as a grey, and of what is around it, which it would mirror or let through.
-pub(crate) fn worn(material: &Finish, around: Rgb) -> [Rgb; 2] {
+/// The ambient and diffuse colours of a material under its textures: each pattern counts as if it
+/// were half its lowest and half its highest value everywhere, which is what the draft shows of it.
+/// A mirror or glass without colours of its own would be black: its reflective and transparent
+/// share gives it a grey, and a part of the background's colour `around`.
+pub(crate) fn draft_colours(material: &Finish, around: Rgb) -> [Rgb; 2] {
     let mut colours = [material.ambient, material.diffuse];
     for layer in &material.layers {
         let targets: &[usize] = match layer.target {
@@ -103,17 +104,19 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Where in the table a material is; the default material for an index that has none.
+    /// Returns a material's place in the table, or that of the default material for an index that
+    /// has none.
     pub(crate) fn slot(&self, material: usize) -> u32 {
         material.min(self.count) as u32
     }
 }
 
-fn with([red, green, blue]: Rgb, fourth: f32) -> [f32; 4] {
+/// Returns a colour as finite numbers, with a fourth one.
+pub(crate) fn with([red, green, blue]: Rgb, fourth: f32) -> [f32; 4] {
     [finite(red), finite(green), finite(blue), fourth]
 }
 
-/// The number, or 0 for what is none: a GPU may do anything with it.
+/// Returns the number if it is finite, else 0: a GPU may do anything with others.
 pub(crate) fn finite(x: f32) -> f32 {
     if x.is_finite() { x } else { 0.0 }
 }

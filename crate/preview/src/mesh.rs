@@ -1,16 +1,18 @@
-//! A mesh of the true surface of a scene's soft elements, which the draft draws in place of their offset surfaces.
+//! A mesh of the true surface of a scene's soft elements, which the draft draws in place of their
+//! offset surfaces.
 
 use crate::instance::Units;
-use crate::materials::{finite, worn};
+use crate::materials::{draft_colours, finite};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use scene::{Finish, Rgb, Scene};
 
-/// Bytes of a vertex: its position (three `f32`), its normal (four signed 16-bit parts of 32767, the last one unused), and three
-/// colours of four bytes each, parts of 255: ambient with the shine of [`shine`], diffuse and specular.
+/// Bytes of a vertex: its position (three `f32`), its normal (four signed 16-bit parts of 32767,
+/// the last one unused), and three colours of four bytes each, parts of 255: ambient with the shine
+/// of [`shine`], diffuse and specular.
 pub const VERTEX: usize = 32;
 
-/// The exponents of highlights fill so many powers of two; as in `shaders/mesh.wgsl`.
+/// Powers of two that the exponents of highlights span; as in `shaders/mesh.wgsl`.
 const SHINE_OCTAVES: f32 = 12.0;
 
 /// Triangles to be drawn: plain bytes, as the GPU takes them.
@@ -18,7 +20,7 @@ const SHINE_OCTAVES: f32 = 12.0;
 pub struct Mesh<'a> {
     /// Vertices of [`VERTEX`] bytes each.
     pub vertices: &'a [u8],
-    /// Three numbers of vertices a triangle, 32 bits each.
+    /// The numbers of each triangle's three vertices, 32 bits each.
     pub triangles: &'a [u8],
     /// World position of the vertices' origin.
     pub origin: DVec3,
@@ -26,8 +28,8 @@ pub struct Mesh<'a> {
     pub unit: f64,
 }
 
-/// The look of each finish of a scene as the draft shows it: ambient, diffuse and specular colours, and the shine by [`shine`]; all
-/// from 0 to 1.
+/// The look of each finish of a scene as the draft shows it: ambient, diffuse and specular colours,
+/// and the shine by [`shine`]; all from 0 to 1.
 #[must_use]
 pub fn looks(scene: &Scene) -> Vec<[f32; 10]> {
     let around = scene.background.mean();
@@ -36,7 +38,7 @@ pub fn looks(scene: &Scene) -> Vec<[f32; 10]> {
 }
 
 fn look(finish: &Finish, around: Rgb) -> [f32; 10] {
-    let [ambient, diffuse] = worn(finish, around);
+    let [ambient, diffuse] = draft_colours(finish, around);
     let colours = [ambient, diffuse, finish.specular].concat();
     core::array::from_fn(|i| match colours.get(i) {
         Some(channel) => finite(*channel).clamp(0.0, 1.0),
@@ -49,8 +51,8 @@ fn shine(exponent: f32) -> f32 {
     (libm::log2f(finite(exponent).max(0.0) + 1.0) / SHINE_OCTAVES).min(1.0)
 }
 
-/// The place and scale of a mesh, a uniform of the vertex shader: the origin in two single-precision parts, and the length of
-/// a unit of the vertices.
+/// The place and scale of a mesh, a uniform of the vertex shader: the origin in two
+/// single-precision parts, and the length of a unit of the vertices.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct Placed {
@@ -91,7 +93,8 @@ impl Uploaded {
         }),
     ];
 
-    /// Uploads a mesh; `None` if there is nothing to draw, a triangle has a corner that is not there, or the device has no room.
+    /// Uploads a mesh; `None` if there is nothing to draw, a triangle has a corner that is not
+    /// there, or the device has no room.
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &Mesh<'_>) -> Option<Self> {
         let corners = mesh.vertices.len() / VERTEX;
         let numbers = mesh.triangles.chunks_exact(4);
@@ -102,9 +105,8 @@ impl Uploaded {
             && mesh.origin.is_finite()
             && mesh.unit.is_finite()
             && mesh.unit > 0.0;
-        let room = device.limits().max_buffer_size;
-        let fits = |bytes: &[u8]| bytes.len() as u64 <= room;
-        if !(is_sound && fits(mesh.vertices) && fits(mesh.triangles)) {
+        let bytes = mesh.vertices.len().max(mesh.triangles.len());
+        if !is_sound || bytes as u64 > device.limits().max_buffer_size {
             return None;
         }
         let buffer = |size: usize, usage: wgpu::BufferUsages| {

@@ -76,12 +76,12 @@ impl Pipelines {
         let element_layout = layout(
             device,
             "element",
-            &[uniform(0, stages), unfiltered_texture(1, fragment)],
+            &[uniform(0, stages), texture(1, fragment)],
         );
         let resolve_layout = layout(
             device,
             "resolve",
-            &[unfiltered_texture(0, fragment), uniform(1, fragment)],
+            &[texture(0, fragment), uniform(1, fragment)],
         );
         Self {
             elements: Kind::ALL.map(|kind| element_pipeline(device, kind, &element_layout)),
@@ -162,7 +162,7 @@ fn uniform(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayou
     }
 }
 
-fn unfiltered_texture(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+fn texture(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,

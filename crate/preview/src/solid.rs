@@ -5,7 +5,7 @@ use crate::facets;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use scene::{Element, Rgb, Scene, Shape};
 
-/// Which shader draws a solid.
+/// The kind of a solid, which decides the shader that draws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Sphere,
@@ -44,7 +44,7 @@ pub(crate) struct Solid {
     /// Numbers that the shape's shader explains; each is an `f32` for it.
     pub(crate) a: [f64; 4],
     pub(crate) b: [f64; 4],
-    /// Of a patch: the unit normals at its corners, own coordinates.
+    /// The unit normals at the corners of a patch, own coordinates.
     pub(crate) normals: [DVec3; 3],
 }
 
@@ -68,15 +68,15 @@ impl Solid {
             ref other => other.parts(radius),
         };
         let paint = element.paint.as_ref().map(|paint| paint.corners);
-        let solid = |part: &Shape| {
+        let solids = parts.iter().filter_map(|part| {
             let radius = if is_function { part.radius() } else { radius };
             Self::new(part, radius, paint)
-        };
-        parts.iter().filter_map(solid).collect()
+        });
+        solids.collect()
     }
 
-    /// The offset surface of a shape at the given radius.
-    /// `paint` gives colours to the corners of a patch, and of a triangle without thickness, which then becomes a patch.
+    /// The offset surface of a shape at the given radius. `paint` gives colours to the corners of a
+    /// patch, and of a triangle without thickness, which then becomes a patch.
     fn new(shape: &Shape, radius: f64, paint: Option<[Rgb; 3]>) -> Option<Self> {
         if !radius.is_finite() {
             return None;
@@ -139,9 +139,9 @@ impl Solid {
         Some((middle - reach, middle + reach))
     }
 
-    /// The same solid with its origin, where that is free, as near to a point as possible: a plane
-    /// looks the same from anywhere along it, but digits are best where the scene is.
-    pub(crate) fn anchored(mut self, point: DVec3) -> Self {
+    /// Moves the origin, where that is free, as near to a point as possible: a plane looks the same
+    /// from anywhere along it, but digits are best where the scene is.
+    pub(crate) fn move_origin_near(mut self, point: DVec3) -> Self {
         if self.kind == Kind::Plane {
             let normal = self.rotation * DVec3::Z;
             self.origin = point - normal * normal.dot(point - self.origin);
@@ -193,7 +193,8 @@ impl Solid {
         Some(pipe)
     }
 
-    /// A flat triangle with colours at its corners, whose normals there may have any length; 0 stands for the face's.
+    /// A flat triangle with colours at its corners, whose normals there may have any length; 0
+    /// stands for the face's.
     fn patch(corners: [DVec3; 3], normals: [DVec3; 3], colors: [Rgb; 3]) -> Option<Self> {
         let flat = Self::triangle(corners, 0.0)?;
         let [p, q, r] = [
@@ -201,17 +202,16 @@ impl Solid {
             [flat.a[2], flat.a[3]],
             [flat.b[0], flat.b[1]],
         ];
-        // The corners may have been renumbered; a normal and a colour belong to the one nearest to their place.
+        // The corners may have been renumbered; a normal and a colour belong to the one nearest to
+        // their place.
         let back = flat.rotation.inverse();
         let order = [p, q, r].map(|corner| {
             let world = flat.origin + flat.rotation * DVec2::from(corner).extend(0.0) * flat.unit;
-            let nearest = (0..3).min_by(|&i, &j| {
-                let distance = |k: usize| corners[k].distance_squared(world);
-                distance(i).total_cmp(&distance(j))
-            });
+            let distances = corners.map(|corner| corner.distance_squared(world));
+            let nearest = (0..3).min_by(|&i, &j| distances[i].total_cmp(&distances[j]));
             nearest.unwrap_or(0)
         });
-        let [high, low] = packed(order.map(|k| colors[k]));
+        let [high, low] = pack(order.map(|k| colors[k]));
         Some(Self {
             kind: Kind::Patch,
             normals: order.map(|k| (back * normals[k]).normalize_or(DVec3::Z)),
@@ -264,10 +264,8 @@ impl Solid {
     fn triangle(corners: [DVec3; 3], radius: f64) -> Option<Self> {
         let half = radius.max(0.0);
         // The longest edge becomes the x-axis, so the box is tight.
-        let longest = (0..3).max_by(|&i, &j| {
-            let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
-            length(i).total_cmp(&length(j))
-        })?;
+        let squares = [0, 1, 2].map(|k| corners[k].distance_squared(corners[(k + 1) % 3]));
+        let longest = (0..3).max_by(|&i, &j| squares[i].total_cmp(&squares[j]))?;
         let [p, q, r] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
         let x = (q - p).try_normalize()?;
         let aside = (r - p).reject_from_normalized(x);
@@ -321,14 +319,15 @@ fn with_z(direction: DVec3) -> Option<DQuat> {
     Some(DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)).normalize())
 }
 
-/// Three colours as two whole numbers below 2^24, for `patch.wgsl`: 16 bits each, of which red has 5, green 6, blue 5.
-fn packed(colors: [Rgb; 3]) -> [f64; 2] {
-    let bits = |[red, green, blue]: Rgb| {
-        let level = |channel: f32, most: f32| (channel.clamp(0.0, 1.0) * most).round() as u64;
-        level(red, 31.0) << 11 | level(green, 63.0) << 5 | level(blue, 31.0)
-    };
-    let all = colors
-        .into_iter()
-        .fold(0, |all, color| all << 16 | bits(color));
-    [all >> 24, all & 0xff_ffff].map(|number| number as f64)
+/// Packs three colours in two whole numbers below 2^24, for `patch.wgsl`: 16 bits each, of which
+/// red has 5, green 6, blue 5.
+fn pack(colors: [Rgb; 3]) -> [f64; 2] {
+    let mut bits = 0u64;
+    for color in colors {
+        for (channel, width) in color.into_iter().zip([5, 6, 5]) {
+            let most = ((1 << width) - 1) as f32;
+            bits = bits << width | (channel.clamp(0.0, 1.0) * most).round() as u64;
+        }
+    }
+    [bits >> 24, bits & 0xff_ffff].map(|number| number as f64)
 }

@@ -2,14 +2,14 @@
 
 use crate::pipelines::{COLOUR, DEPTH, Pipelines};
 
-/// How many samples a pixel gets.
+/// The number of samples of each pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampling {
     /// Four where the picture has at most a million pixels and a graphics processor draws it,
     /// else one: small pictures show jagged edges, large ones cost time.
     #[default]
     Automatic,
-    /// One sample: fastest, for instance while the camera moves on a slow device.
+    /// A single sample: fastest, for instance while the camera moves on a slow device.
     One,
     /// Four samples, where the device's largest texture allows.
     Four,
@@ -42,7 +42,8 @@ pub(crate) struct Targets {
     pub(crate) samples: [u32; 2],
     pub(crate) picture: wgpu::Texture,
     pub(crate) view: wgpu::TextureView,
-    /// Where the samples are drawn if there are several a pixel, and how they are read back.
+    /// The texture into which the samples are drawn if there are several a pixel, and the bindings
+    /// by which they are read back.
     pub(crate) oversized: Option<(wgpu::TextureView, wgpu::BindGroup)>,
     pub(crate) depth: wgpu::TextureView,
 }

@@ -1,7 +1,7 @@
 //! Uniforms of the camera and the lights.
 
 use crate::instance::Units;
-use crate::materials::finite;
+use crate::materials::{finite, with};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use scene::{Background, Camera, Light, LightKind, Scene, Tone as Tonemap};
@@ -106,10 +106,12 @@ pub(crate) struct Lights {
 }
 
 impl Lights {
-    /// Packs the strongest lights, and tells how many were left out.
+    /// Packs the strongest lights, and returns the number of those left out.
     pub(crate) fn new(lights: &[Light], units: Units) -> (Self, usize) {
-        let strength = |light: &Light| light.colour.map(finite).into_iter().sum::<f32>();
-        let mut order: Vec<(f32, usize)> = lights.iter().map(strength).zip(0..).collect();
+        let strengths = lights
+            .iter()
+            .map(|light| light.colour.map(finite).into_iter().sum());
+        let mut order: Vec<(f32, usize)> = strengths.zip(0..).collect();
         // Of equally strong lights the first ones count.
         field::heap_sort(&mut order, |a, b| {
             b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).is_lt()
@@ -155,7 +157,7 @@ impl Lights {
 /// Colours of a background that the draft can take. Of more, the first ones and the last count.
 const MAX_COLOURS: usize = 4;
 
-/// What is around the elements: the end of the uniform `view`.
+/// The air, ground and sky around the elements: the end of the uniform `view`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct Air {
@@ -172,10 +174,6 @@ impl Air {
     /// The air of a scene. `lowest` is the least height of its elements along its direction up.
     pub(crate) fn new(scene: &Scene, units: Units, lowest: f64) -> Self {
         let up = scene.up.normalize_or(DVec3::Y);
-        let with = |colour: scene::Rgb, w: f32| {
-            let [red, green, blue] = colour.map(finite);
-            [red, green, blue, w]
-        };
         let level = |height: f64| finite(((height - units.center.dot(up)) / units.radius) as f32);
         let inverse = |length: f64| {
             let share = (units.radius / length) as f32;
@@ -220,7 +218,7 @@ impl Air {
         }
     }
 
-    /// Whether all of what is behind the elements has one colour, which needs no pass of its own.
+    /// Whether the ground, sky and background have one colour, which needs no pass of its own.
     pub(crate) fn is_plain(&self) -> bool {
         self.zenith[3] <= 1.0
             && self.ground[3] == 0.0

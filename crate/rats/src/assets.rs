@@ -1,5 +1,5 @@
-//! Meshes, height fields and images made of a project's files, kept while the files are: a text is compiled at
-//! every keystroke, a large file should be read once.
+//! Meshes, height fields and images made of a project's files, kept while the files are: a text is
+//! compiled at every keystroke, a large file should be read once.
 
 use crate::limits::MAX_IMAGE_PIXELS;
 use crate::project::Asset;
@@ -146,8 +146,8 @@ pub fn shapes(mesh: &TriangleMesh) -> impl Iterator<Item = Shape> {
     })
 }
 
-/// What making something of a file costs in steps. It may have been made before, but what a text means
-/// must not depend on that.
+/// What making something of a file costs in steps. It may have been made before, but what a text
+/// means must not depend on that.
 #[must_use]
 pub fn cost(asset: &Asset) -> u64 {
     let bytes = &asset.bytes;
@@ -166,8 +166,8 @@ pub fn cost(asset: &Asset) -> u64 {
     1 + bytes.len() as u64 / 100 + pixels / 64
 }
 
-/// Whether [`keep_mesh`] or an earlier compilation has the mesh of this file, so that compiling does not
-/// read it.
+/// Whether [`keep_mesh`] or an earlier compilation has the mesh of this file, so that compiling
+/// does not read it.
 #[must_use]
 pub fn is_mesh_read(asset: &Asset) -> bool {
     let how = (asset.name.clone(), None);
@@ -175,7 +175,8 @@ pub fn is_mesh_read(asset: &Asset) -> bool {
 }
 
 /// Keeps the mesh of a file that was read elsewhere, or the error message of its reader, for all
-/// compilations by this thread while the file's bytes are kept. It must be what [`mesh::read`] gives.
+/// compilations by this thread while the file's bytes are kept. It must be what [`mesh::read`]
+/// gives.
 pub fn keep_mesh(asset: &Asset, mesh: Result<TriangleMesh, String>) {
     let how = (asset.name.clone(), None);
     MESHES.with_borrow_mut(|cache| {

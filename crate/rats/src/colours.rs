@@ -1,8 +1,8 @@
 //! The standard colours by name.
 //!
-//! The names and values of X11, and those that only POV-Ray's table has (`SummerSky`, `LightWood` …), which
-//! the published datasets use; where both have a name, X11's value counts. `Gray0` … `Gray100` (or `Grey`)
-//! are per cents of white. Case does not matter.
+//! The names and values of X11, and those that only POV-Ray's table has (`SummerSky`, `LightWood`
+//! …), which the published datasets use; where both have a name, X11's value counts.
+//! `Gray0` … `Gray100` (or `Grey`) are per cents of white. Case does not matter.
 
 /// A colour's red, green and blue by its name, each in [0, 1].
 #[must_use]

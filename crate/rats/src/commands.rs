@@ -1,7 +1,7 @@
 //! The one table of commands: what each is called, what it takes, what it means and what runs it.
 //!
-//! The parser, the evaluator, the highlighter, suggestions and `help` all read this table, so a command
-//! that is in it is known everywhere. Its rows stand beside the functions that run them, in
+//! The parser, the evaluator, the highlighter, suggestions and `help` all read this table, so a
+//! command that is in it is known everywhere. Its rows stand beside the functions that run them, in
 //! `evaluator/`; `evaluator/table.rs` lists them. To everybody else a row is plain data.
 
 pub(crate) mod build;

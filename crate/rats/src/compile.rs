@@ -30,9 +30,10 @@ pub fn compile(project: &Project) -> Compiled {
     compile_at(project, &[], 0.0)
 }
 
-/// As [`compile`], with images and meshes that the texts may use, at a moment of the animation in frames: between two frames
-/// for an exposure that lasts. A variable `+= step` has changed by `step·moment`, one `*= factor` by `factor^moment`.
-/// A moment that is negative or not finite is taken for 0.
+/// As [`compile`], with images and meshes that the texts may use, at a moment of the animation in
+/// frames: between two frames for an exposure that lasts. A variable `+=
+/// step` has changed by `step·moment`, one `*= factor` by `factor^moment`. A moment that is
+/// negative or not finite is taken for 0.
 ///
 /// ```
 /// let text = "var x = 0 += 2\nsurface Clay, diffuse SandyBrown\nsphere Clay 1, x 0 0\n";
@@ -58,9 +59,9 @@ pub fn compile_at(project: &Project, assets: &[Asset], moment: f64) -> Compiled 
     evaluator::run(project, &sources, assets, moment, Scope::new(symbols))
 }
 
-/// Finds from where in the texts the numbers of a shape's command come: runs the project up to the command
-/// with this origin (see [`scene::Element::origin`]), at a cost of at most that of compiling. `None` if the
-/// run does not come there.
+/// Finds from where in the texts the numbers of a shape's command come: runs the project up to the
+/// command with this origin (see [`scene::Element::origin`]), at a cost of at most that of
+/// compiling. `None` if the run does not come there.
 ///
 /// ```
 /// use rats::provenance::Source;

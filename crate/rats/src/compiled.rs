@@ -36,7 +36,8 @@ pub struct Compiled {
 pub struct Deform {
     /// Where the command stands.
     pub origin: Origin,
-    /// Whether it was run in a loop, a defined command or the library, so that its numbers are not only its own.
+    /// Whether it was run in a loop, a defined command or the library, so that its numbers are not
+    /// only its own.
     pub repeated: bool,
     /// The commands that made what is deformed.
     pub of: Vec<Origin>,
@@ -70,8 +71,8 @@ pub struct Placement {
     pub to_world: DAffine3,
     /// By how much lengths grew on the way.
     pub growth: f64,
-    /// Whether its command was run in a loop, a defined command or by `instance`, so that it may have
-    /// made more elements than this one.
+    /// Whether its command was run in a loop, a defined command or by `instance`, so that it may
+    /// have made more elements than this one.
     pub repeated: bool,
 }
 
@@ -113,9 +114,9 @@ pub struct HotVariable {
     pub value: HotValue,
     /// Index of the file in [`Project::files`].
     pub file: usize,
-    /// The byte range of the value in that file if it is a plain number, three numbers, a colour's name or
-    /// `rgb(…)`, so that a slider can replace it (see [`crate::hot::set`]); `None` if it comes from an
-    /// expression.
+    /// The byte range of the value in that file if it is a plain number, three numbers, a colour's
+    /// name or `rgb(…)`, so that a slider can replace it (see [`crate::hot::set`]); `None` if it
+    /// comes from an expression.
     pub literal: Option<std::ops::Range<usize>>,
     /// The slider's range, if the text says it.
     pub range: Option<[f64; 2]>,

@@ -1,10 +1,10 @@
 //! Arithmetic in operands.
 //!
-//! From weakest to strongest: `or`, `and`, `not`, comparisons (in conditions only, because elsewhere `<`
-//! and `>` separate), `+ −`, `* /`, a sign, `^` (from the right). Since operands follow each other with
-//! nothing but space between, one rule decides what `−` and `+` mean in a list: with space before and
-//! none after they begin the next operand, otherwise they join two numbers. So `1 -2` is two operands,
-//! `1 - 2`, `1-2` and `(1 -2)` are one.
+//! From weakest to strongest: `or`, `and`, `not`, comparisons (in conditions only, because
+//! elsewhere `<` and `>` separate), `+ −`, `* /`, a sign, `^` (from the right). Since operands
+//! follow each other with nothing but space between, one rule decides what `−` and `+` mean in a
+//! list: with space before and none after they begin the next operand, otherwise they join two
+//! numbers. So `1 -2` is two operands, `1 - 2`, `1-2` and `(1 -2)` are one.
 
 use crate::colours;
 use crate::functions::{self, Run};
@@ -178,7 +178,8 @@ impl<'a> Reader<'_, 'a> {
             }
             Some(Datum::Word(symbol)) => {
                 let word = self.scope.symbols.word(symbol);
-                // A variable or colour (`Tan`) hides a function of the same name, unless it is plainly called.
+                // A variable or colour (`Tan`) hides a function of the same name, unless it is
+                // plainly called.
                 let is_known = self.scope.get(symbol).is_some() || colours::find(word).is_some();
                 if (!is_known || self.is_called())
                     && let Some(function) = functions::find(word)

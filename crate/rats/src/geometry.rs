@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use scene::{Quadric, Shape};
 
-/// The local axes u, v of an arc with unit normal `n`: u is the world's x axis made perpendicular to n
-/// (the y axis if n is parallel to x), v = n × u. Angles run from u towards v.
+/// The local axes u, v of an arc with unit normal `n`: u is the world's x axis made perpendicular
+/// to n (the y axis if n is parallel to x), v = n × u. Angles run from u towards v.
 #[must_use]
 pub fn arc_axes(n: DVec3) -> (DVec3, DVec3) {
     // Nearer than this the x axis has no direction left that is more than rounding.
@@ -14,8 +14,8 @@ pub fn arc_axes(n: DVec3) -> (DVec3, DVec3) {
     (u, n.cross(u))
 }
 
-/// The arc's shape from the operands of `arc`: angles in degrees, a negative width turns the other way,
-/// more than a full turn is a full turn.
+/// The arc's shape from the operands of `arc`: angles in degrees, a negative width turns the other
+/// way, more than a full turn is a full turn.
 #[must_use]
 pub fn arc(center: DVec3, normal: DVec3, sweep: f64, radius: f64, start: f64, width: f64) -> Shape {
     let (x, y) = arc_axes(normal);
@@ -107,8 +107,8 @@ fn straight(a: DVec3, b: DVec3, c: DVec3) -> ThreePoints {
     })
 }
 
-/// Moves a polygon's corners onto one plane: through the middle of its outer ring, with the ring's area
-/// for a normal. Gives how far the furthest was from it, as a share of the polygon's size.
+/// Moves a polygon's corners onto one plane: through the middle of its outer ring, with the ring's
+/// area for a normal. Gives how far the furthest was from it, as a share of the polygon's size.
 pub fn flatten(rings: &mut [Vec<DVec3>]) -> f64 {
     let Some(outer) = rings.first().filter(|ring| !ring.is_empty()) else {
         return 0.0;
@@ -256,8 +256,8 @@ impl Transform {
         (self.linear.inverse().transpose() * normal).normalize_or(normal)
     }
 
-    /// The image of a shape. If the map is not uniform, round shapes stay round, with radii grown by the
-    /// mean factor.
+    /// The image of a shape. If the map is not uniform, round shapes stay round, with radii grown
+    /// by the mean factor.
     #[must_use]
     pub fn apply(&self, shape: &Shape) -> Shape {
         match *shape {

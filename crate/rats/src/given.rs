@@ -1,9 +1,9 @@
 //! Reads a command's operands as the table says, and keeps where each one stands.
 //!
-//! [`Reader::given`] goes through the parameters of a command, then through its options; so the table
-//! is the one place that knows what a command takes. From the operands it takes the values of the
-//! types in its [`Slot`]s. The few commands with a form of their own (`var`, the method of a
-//! `texture`) read their own part with the functions of [`crate::reader`].
+//! [`Reader::given`] goes through the parameters of a command, then through its options; so the
+//! table is the one place that knows what a command takes. From the operands it takes the values of
+//! the types in its [`Slot`]s. The few commands with a form of their own
+//! (`var`, the method of a `texture`) read their own part with the functions of [`crate::reader`].
 
 use crate::commands::slot::{Backdrop, Choice, Named, Placed, Slot, Text, Word};
 use crate::commands::{Arity, Kind, Names, OptionSpec, Parameter};

@@ -4,9 +4,10 @@ use crate::HotValue;
 use crate::colours;
 use std::ops::Range;
 
-/// The text with the literal of a hot variable replaced by a new value. Numbers are written with at most
-/// six significant digits; a colour by its name if it has one, else as `rgb(…)`, so that it stays a
-/// colour. A range that does not fit the text, or a value that is not finite, changes nothing.
+/// The text with the literal of a hot variable replaced by a new value. Numbers are written with at
+/// most six significant digits; a colour by its name if it has one, else as `rgb(…)`, so that it
+/// stays a colour. A range that does not fit the text, or a value that is not finite, changes
+/// nothing.
 #[must_use]
 pub fn set(text: &str, literal: Range<usize>, value: &HotValue) -> String {
     let (Some(before), Some(after)) = (text.get(..literal.start), text.get(literal.end..)) else {

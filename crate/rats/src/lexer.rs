@@ -14,8 +14,9 @@ pub enum TokenKind {
     Newline,
     /// `#` and the rest of the line.
     Comment,
-    /// Letters, digits, `_` and `.`, not a number. (`^` is a sign, since it also is the power; names
-    /// with `^` are glued together where a name is wanted.)
+    /// Letters, digits, `_` and `.`, not a number.
+    /// (`^` is a sign, since it also is the power; names with `^` are glued together where a name
+    /// is wanted.)
     Word,
     /// A decimal number without sign: `1`, `.5`, `2.`, `1e-3`.
     Number,

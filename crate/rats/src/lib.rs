@@ -17,12 +17,12 @@
 //! assert_eq!(mistake.hint.as_deref(), Some("did you mean `sphere`?"));
 //! ```
 //!
-//! A text goes through these stages: [`lexer`] cuts it into tokens, [`parser`] makes a tree of commands
-//! ([`syntax`]), `evaluator` runs the tree. Each command's operands are read while it runs
-//! (`reader`, `expression`, `operands`, `given`), because the meaning of a word depends on the variables at that
-//! time. All commands stand in one table ([`commands`]), whose rows stand beside the functions that
-//! run them; as plain data it also serves help and the editor (the crate `assist`). All bounds are
-//! in [`limits`].
+//! A text goes through these stages: [`lexer`] cuts it into tokens, [`parser`] makes a tree of
+//! commands ([`syntax`]), `evaluator` runs the tree. Each command's operands are read while it runs
+//! (`reader`, `expression`, `operands`, `given`), because the meaning of a word depends on the
+//! variables at that time. All commands stand in one table ([`commands`]), whose rows stand beside
+//! the functions that run them; as plain data it also serves help and the editor (the crate
+//! `assist`). All bounds are in [`limits`].
 
 mod assets;
 pub mod colours;

@@ -1,8 +1,9 @@
 //! The library: commands that are written in the language itself, in `crate/rats/library/`.
 //!
-//! Each file defines one command of the file's name. It is read when the command is used for the first
-//! time, or by `read NAME.rat`. Its first comment is its manual: `# NAME: what it makes`, then a line
-//! `#   parameter  meaning` for each parameter; the defaults stand in the `define` only.
+//! Each file defines one command of the file's name. It is read when the command is used for the
+//! first time, or by `read NAME.rat`. Its first comment is its manual: `# NAME: what it makes`,
+//! then a line `#   parameter  meaning` for each parameter; the defaults stand in the `define`
+//! only.
 
 use crate::project::Asset;
 use std::fmt::Write;

@@ -1,8 +1,8 @@
 //! The limits that keep any text harmless: none can hang, exhaust memory or overflow the stack.
 //!
 //! Each limit has its own clear error; the command that steps over it is dropped and what was built
-//! before stays. The original program stopped at 128 nested files, 512 operands a command, 12 layers a
-//! texture and 16 levels of objects (thesis, appendix C, "Bugs and restrictions").
+//! before stays. The original program stopped at 128 nested files, 512 operands a command, 12
+//! layers a texture and 16 levels of objects (thesis, appendix C, "Bugs and restrictions").
 
 /// All texts of a project together, bytes.
 pub const MAX_TEXT: usize = 1024 * 1024;
@@ -20,8 +20,8 @@ pub const STEPS_PER_LOOKUP: u64 = 8;
 pub const STEPS_PER_CALL: u64 = 12;
 /// Steps that one error costs, so that a loop of errors ends soon too.
 pub const STEPS_PER_ERROR: u64 = 4200;
-/// Some hints look through the text: an error costs one step more for so many operands in its file. (Not for
-/// so many bytes: how a text is laid out must not matter.)
+/// Some hints look through the text: an error costs one step more for so many operands in its file.
+/// (Not for so many bytes: how a text is laid out must not matter.)
 pub const OPERANDS_PER_STEP: usize = 20;
 /// Steps that reading a command's operands costs, besides one for each: lists are made of them.
 pub const STEPS_PER_OPERANDS: u64 = 5;
@@ -29,7 +29,8 @@ pub const STEPS_PER_OPERANDS: u64 = 5;
 pub const MAX_CONTROL_OPERANDS: usize = 65_536;
 /// Steps that the coordinates of a vertex cost that is deformed.
 pub const STEPS_PER_VERTEX: u64 = 12;
-/// Vertices that the deformations of one text may move together: their coordinates take a tenth of a millisecond each at first.
+/// Vertices that the deformations of one text may move together: their coordinates take a tenth of
+/// a millisecond each at first.
 pub const MAX_DEFORMED: usize = 60_000;
 /// Files read from files.
 pub const MAX_NESTED_FILES: usize = 128;
@@ -57,8 +58,8 @@ pub const CURVE_WEIGHT: usize = 64;
 pub const MAX_OBJECTS: usize = 100_000;
 /// Contacts of bodies.
 pub const MAX_CONTACTS: usize = 1000;
-/// Operations of all motions of a text, up to the frame that is shown. They take a second or two at first; then the frames
-/// are kept.
+/// Operations of all motions of a text, up to the frame that is shown. They take a second or two at
+/// first; then the frames are kept.
 pub const MAX_MOTION_WORK: u64 = 150_000_000;
 /// Motions of a text.
 pub const MAX_MOTIONS: usize = 32;
@@ -82,8 +83,8 @@ pub const MAX_IMAGE_PIXELS: u64 = 1 << 23;
 pub const MAX_MOMENTS: usize = 16;
 /// Largest magnitude of a number given to a command, so that squares and cubes of it stay finite.
 pub const MAX_MAGNITUDE: f64 = 1e12;
-/// Smallest magnitude of a number given to a command that is not 0; what is smaller counts as 0, as its square's inverse
-/// would not be finite in single precision.
+/// Smallest magnitude of a number given to a command that is not 0; what is smaller counts as 0, as
+/// its square's inverse would not be finite in single precision.
 pub const MIN_MAGNITUDE: f64 = 1e-15;
 /// Messages about one project.
 pub const MAX_DIAGNOSTICS: usize = 200;

@@ -37,8 +37,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Whether the next operand can only be a number: not an option word or the end. A scalar variable
-    /// counts, unless an option is called so.
+    /// Whether the next operand can only be a number: not an option word or the end. A scalar
+    /// variable counts, unless an option is called so.
     pub fn is_number_next(&mut self, options: &[OptionSpec]) -> bool {
         if !self.more() {
             return false;

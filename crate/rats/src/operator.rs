@@ -41,9 +41,9 @@ pub const NOT: u8 = 3;
 pub const SIGN: u8 = 7;
 
 impl Operator {
-    /// The operator at an item and how many items it has; `None` if none stands there. `listed` tells whether
-    /// operands follow each other with nothing but space between, so that `a -b` is two of them; `comparing`
-    /// whether it is a condition, where `<` and `>` compare.
+    /// The operator at an item and how many items it has; `None` if none stands there. `listed`
+    /// tells whether operands follow each other with nothing but space between, so that `a -b` is
+    /// two of them; `comparing` whether it is a condition, where `<` and `>` compare.
     #[must_use]
     pub fn at(
         items: &[Item],
@@ -112,8 +112,8 @@ impl Operator {
         }
     }
 
-    /// The least strength of an operator that belongs to its right side: `^` groups from the right, the others
-    /// from the left.
+    /// The least strength of an operator that belongs to its right side: `^` groups from the right,
+    /// the others from the left.
     #[must_use]
     pub fn right_strength(self) -> u8 {
         self.strength() + u8::from(self != Self::Power)

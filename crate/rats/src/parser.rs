@@ -1,5 +1,5 @@
-//! Tokens to a tree of commands. Whatever is wrong, the rest of the text is still read: a mistake costs
-//! one command or one block, with a message.
+//! Tokens to a tree of commands. Whatever is wrong, the rest of the text is still read: a mistake
+//! costs one command or one block, with a message.
 
 use crate::commands;
 use crate::lexer::{Token, TokenKind, lex};
@@ -30,7 +30,8 @@ pub fn parse<'a>(text: &'a str, symbols: &mut Symbols<'a>) -> Syntax {
     }
 }
 
-/// For every `{` token the index of its `}`, if it has one; 0 for all other tokens (a `}` is never first).
+/// For every `{` token the index of its `}`, if it has one; 0 for all other tokens (a `}` is never
+/// first).
 fn match_braces(text: &str, tokens: &[Token]) -> Vec<usize> {
     let mut partner = vec![0; tokens.len()];
     let mut open = Vec::new();
@@ -138,8 +139,8 @@ impl<'a> Parser<'a, '_, '_> {
         block
     }
 
-    /// `@` before a command, whose echo it silences, and stray separators. Without a command in the same line
-    /// it is a mistake.
+    /// `@` before a command, whose echo it silences, and stray separators. Without a command in the
+    /// same line it is a mistake.
     fn silenced(&mut self, at: Token) {
         self.at += 1;
         while let Some(next) = self.peek(false)
@@ -256,7 +257,8 @@ impl<'a> Parser<'a, '_, '_> {
             return Err(Problem::new(head.span.clone(), "`define` needs a name").hint(HINT));
         };
         let word = self.symbols.word(*name);
-        // A text's own command hides one of the library and a newer one, so that texts from before them still run.
+        // A text's own command hides one of the library and a newer one, so that texts from before
+        // them still run.
         if commands::find(word).is_some_and(|spec| !spec.yields()) {
             return Err(Problem::new(
                 items[0].span(),
@@ -316,7 +318,8 @@ impl<'a> Parser<'a, '_, '_> {
         Ok((*name, parameters))
     }
 
-    /// A parameter whose first word was read; `at` is the index of what follows among the head's items.
+    /// A parameter whose first word was read; `at` is the index of what follows among the head's
+    /// items.
     fn formal(&self, head: &Command, at: &mut usize, word: Symbol, span: Range<usize>) -> Formal {
         let items = &self.items[head.items.clone()];
         let text = self.symbols.word(word);
@@ -467,8 +470,8 @@ impl<'a> Parser<'a, '_, '_> {
         })
     }
 
-    /// Takes the operands of a command up to where they end. Returns one past the last byte of the last operand or
-    /// closing brace; `None` if there is neither.
+    /// Takes the operands of a command up to where they end. Returns one past the last byte of the
+    /// last operand or closing brace; `None` if there is neither.
     fn operands(&mut self, ends: Ends) -> Option<usize> {
         let mut end = None;
         let mut depth = 0_usize;

@@ -1,7 +1,8 @@
 //! Random numbers that are the same on every machine.
 //!
 //! Both kinds use the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom
-//! number generators", 2014): a counter stepped by the golden ratio and stirred by two multiplications.
+//! number generators", 2014): a counter stepped by the golden ratio and stirred by two
+//! multiplications.
 
 /// 2⁶⁴ divided by the golden ratio, made odd.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -39,9 +40,9 @@ pub fn hash(arguments: &[f64]) -> f64 {
 
 /// `noise(x, y, z)`: smooth noise in [−1, 1], 0 at whole numbers, the same on every machine.
 ///
-/// Gradient noise (Perlin, "Improving noise", 2002): at each corner of the unit cube around the point
-/// stands a slope by chance, of three numbers in [−1, 1]; what they foretell is blended with the curve
-/// 6t⁵ − 15t⁴ + 10t³.
+/// Gradient noise (Perlin, "Improving noise", 2002): at each corner of the unit cube around the
+/// point stands a slope by chance, of three numbers in [−1, 1]; what they foretell is blended with
+/// the curve 6t⁵ − 15t⁴ + 10t³.
 #[must_use]
 pub fn noise(point: [f64; 3]) -> f64 {
     let cell = point.map(f64::floor);

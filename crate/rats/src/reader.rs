@@ -217,8 +217,8 @@ impl<'e, 'a> Reader<'e, 'a> {
         .hint(format!("write `{}`", quote(&better))))
     }
 
-    /// A name that was made before. A parameter of the running call that stands for a name gives that
-    /// name.
+    /// A name that was made before. A parameter of the running call that stands for a name gives
+    /// that name.
     ///
     /// # Errors
     /// If there is none.
@@ -290,8 +290,8 @@ impl<'e, 'a> Reader<'e, 'a> {
         }
     }
 
-    /// The next option, one of `options`, which may be shortened to any beginning that fits one only.
-    /// `None` at the end of the command.
+    /// The next option, one of `options`, which may be shortened to any beginning that fits one
+    /// only. `None` at the end of the command.
     ///
     /// # Errors
     /// If there is something else, or a beginning of several options.
@@ -346,7 +346,8 @@ impl<'e, 'a> Reader<'e, 'a> {
         let Some((symbol, word)) = self.peek_word() else {
             return false;
         };
-        // A variable is meant where its name is short for an option, but not where it is the option.
+        // A variable is meant where its name is short for an option, but not where it is the
+        // option.
         let is_variable = self.scope.get(symbol).is_some();
         options
             .iter()

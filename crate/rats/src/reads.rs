@@ -6,8 +6,8 @@ use crate::syntax::{Block, Command, Datum, Node, Syntax};
 use crate::{is_strokes, start_file};
 use std::ops::Range;
 
-/// The file names after every `read` of a text, in order, wherever it stands, then the texts of strokes after `mesh`. Nothing is run, so
-/// a `read` that a condition would skip is listed too.
+/// The file names after every `read` of a text, in order, wherever it stands, then the texts of
+/// strokes after `mesh`. Nothing is run, so a `read` that a condition would skip is listed too.
 #[must_use]
 pub fn reads(text: &str) -> Vec<String> {
     let mut symbols = Symbols::default();
@@ -20,8 +20,8 @@ pub fn reads(text: &str) -> Vec<String> {
     names
 }
 
-/// The names that a file may have in the project which the text `reader` calls `wanted`: beside the reader
-/// first, unless that leads out of the project's folder, then as it is.
+/// The names that a file may have in the project which the text `reader` calls `wanted`: beside the
+/// reader first, unless that leads out of the project's folder, then as it is.
 #[must_use]
 pub fn places(reader: &str, wanted: &str) -> Vec<String> {
     let bare = wanted.strip_prefix("./").unwrap_or(wanted);
@@ -70,8 +70,8 @@ fn has_ending(name: &str, endings: &[&str]) -> bool {
     })
 }
 
-/// The images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`), in order, wherever it does. A text of
-/// strokes asks for the mesh that it starts from.
+/// The images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`), in order,
+/// wherever it does. A text of strokes asks for the mesh that it starts from.
 #[must_use]
 pub fn asset_names(text: &str) -> Vec<String> {
     let is_remark = |line: &&str| line.trim().is_empty() || line.trim_start().starts_with('#');

@@ -1,4 +1,5 @@
-//! Collects what is to be said about a text: each thing once, the worst kept when there is too much.
+//! Collects what is to be said about a text: each thing once, the worst kept when there is too
+//! much.
 
 use crate::diagnostic::Related;
 use crate::limits::MAX_DIAGNOSTICS;
@@ -90,8 +91,8 @@ impl Report {
         self.kept[Severity::Error as usize] > 0
     }
 
-    /// The messages in the order of the text; at most [`MAX_DIAGNOSTICS`], errors before warnings before
-    /// notes.
+    /// The messages in the order of the text; at most [`MAX_DIAGNOSTICS`], errors before warnings
+    /// before notes.
     #[must_use]
     pub fn finish(mut self, project: &Project) -> Vec<Diagnostic> {
         self.messages.sort_by_key(|m| std::cmp::Reverse(m.severity));

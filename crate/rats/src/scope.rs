@@ -1,4 +1,5 @@
-//! The state of a running text besides the scene: variables, random numbers and how long it has run.
+//! The state of a running text besides the scene: variables, random numbers and how long it has
+//! run.
 
 use crate::limits;
 use crate::problem::{Outcome, Problem};

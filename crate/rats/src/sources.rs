@@ -1,5 +1,5 @@
-//! The texts of one run: those of the project, and what they use of the library and of the examples in
-//! the table of commands.
+//! The texts of one run: those of the project, and what they use of the library and of the examples
+//! in the table of commands.
 
 use crate::commands;
 use crate::library;

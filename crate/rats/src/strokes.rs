@@ -1,7 +1,8 @@
-//! Meshes made by strokes: texts of a project with the ending `.strokes`, which `mesh` uses like files of meshes.
+//! Meshes made by strokes: texts of a project with the ending `.strokes`, which `mesh` uses like
+//! files of meshes.
 //!
-//! What was made is kept while compilations ask for it, and a text that has only grown is carried on from where the
-//! last one ended, as a text is compiled after every stroke.
+//! What was made is kept while compilations ask for it, and a text that has only grown is carried
+//! on from where the last one ended, as a text is compiled after every stroke.
 
 use crate::limits::{MAX_STROKES_FACES, MAX_STROKES_WORK};
 use crate::project::Asset;
@@ -145,8 +146,8 @@ fn keep(text: &str, start: Option<&Asset>, made: Made) {
     });
 }
 
-/// Keeps a mesh made elsewhere by the strokes of a text, so that compiling does not carry them out again. It must be what they
-/// make.
+/// Keeps a mesh made elsewhere by the strokes of a text, so that compiling does not carry them out
+/// again. It must be what they make.
 pub fn keep_sculpted(text: &str, start: Option<&Asset>, mesh: TriangleMesh) {
     if mesh.triangles.len() <= limits::MAX_ELEMENTS {
         keep(text, start, Ok(Rc::new(Sculpted::new(mesh))));

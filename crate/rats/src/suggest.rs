@@ -2,14 +2,15 @@
 
 /// Longer words are no typing slips, and comparing them would cost time.
 const MAX_WORD: usize = 40;
-/// Among more names than these no hint is looked for: a text can have many thousands, and as many slips.
+/// Among more names than these no hint is looked for: a text can have many thousands, and as many
+/// slips.
 const MAX_CANDIDATES: usize = 2000;
-/// Pairs of letters that one hint may compare, a tenth of a millisecond; where it would take more, no hint
-/// is looked for.
+/// Pairs of letters that one hint may compare, a tenth of a millisecond; where it would take more,
+/// no hint is looked for.
 const MAX_PAIRS: usize = 60_000;
 
-/// The candidate that is nearest to a mistyped word, ignoring case, if it is near enough to be what was
-/// meant: at most one slip in three letters. Of several equally near the first of the alphabet.
+/// The candidate that is nearest to a mistyped word, ignoring case, if it is near enough to be what
+/// was meant: at most one slip in three letters. Of several equally near the first of the alphabet.
 #[must_use]
 pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.len() > MAX_WORD {
@@ -30,7 +31,8 @@ pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) ->
         .filter(fits)
         .map(|c| (distance(word.as_bytes(), c.as_bytes()), c))
         .filter(|(d, _)| *d <= allowed)
-        // Some candidates come from maps, which have no order; the same text must get the same hint.
+        // Some candidates come from maps, which have no order; the same text must get the same
+        // hint.
         .min()
         .map(|(_, c)| c)
 }
@@ -41,8 +43,8 @@ pub fn hint<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Op
     nearest(word, candidates).map(|c| format!("did you mean `{c}`?"))
 }
 
-/// The optimal string alignment distance, ignoring case: insertions, deletions, replacements and swaps of
-/// neighbours. Both words have at most [`MAX_WORD`] bytes.
+/// The optimal string alignment distance, ignoring case: insertions, deletions, replacements and
+/// swaps of neighbours. Both words have at most [`MAX_WORD`] bytes.
 fn distance(a: &[u8], b: &[u8]) -> usize {
     let same = |x: u8, y: u8| x.eq_ignore_ascii_case(&y);
     let mut rows = [[0_usize; MAX_WORD + 1]; 3];

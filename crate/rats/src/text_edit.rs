@@ -34,8 +34,8 @@ impl TextEdit {
         Self::new(file, 0..usize::MAX, text)
     }
 
-    /// Returns the text with changes made, which must be in its order and must not overlap. One whose
-    /// range does not lie on characters is left out.
+    /// Returns the text with changes made, which must be in its order and must not overlap. One
+    /// whose range does not lie on characters is left out.
     pub fn apply<'e>(text: &str, edits: impl IntoIterator<Item = &'e Self>) -> String {
         let mut new = String::with_capacity(text.len());
         let mut at = 0;
@@ -57,8 +57,8 @@ impl TextEdit {
 }
 
 impl Project {
-    /// Returns the project with changes made; those of a file must be in the order of its text and must
-    /// not overlap.
+    /// Returns the project with changes made; those of a file must be in the order of its text and
+    /// must not overlap.
     #[must_use]
     pub fn apply(&self, edits: &[TextEdit]) -> Self {
         let mut project = self.clone();

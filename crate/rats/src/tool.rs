@@ -1,8 +1,8 @@
 //! Work on pictures, as the commands of the TOOLS group ask for it.
 //!
-//! The compiler touches no files. It turns `resize`, `collage`, `diff` … into the jobs below, in the
-//! order of the text, and leaves them to whoever keeps files: the program carries them out in the folder
-//! of the dataset, the page on the files of the open work.
+//! The compiler touches no files. It turns `resize`, `collage`, `diff` … into the jobs below, in
+//! the order of the text, and leaves them to whoever keeps files: the program carries them out in
+//! the folder of the dataset, the page on the files of the open work.
 //!
 //! All names of files are as the text gives them: not checked, possibly leading anywhere.
 
@@ -179,6 +179,7 @@ pub enum Shown {
         /// Red, green, blue, each 0 … 1.
         rgb: [f32; 3],
     },
-    /// Colours side by side, each red, green, blue in 0 … 1; `show palette` gives all that have a name.
+    /// Colours side by side, each red, green, blue in 0 … 1; `show palette` gives all that have a
+    /// name.
     Palette(Vec<[f32; 3]>),
 }

@@ -1,8 +1,10 @@
-//! Rigs of scenes: the nodes of skeletons become joints, each vertex follows the nodes of the stretches that its place in the
-//! field comes from, and the scenes of further frames give an animation.
+//! Rigs of scenes: the nodes of skeletons become joints, each vertex follows the nodes of the
+//! stretches that its place in the field comes from, and the scenes of further frames give an
+//! animation.
 //!
-//! A vertex's weights are the shares of the primitives in the field there, each handed on to the nodes whose mean the
-//! primitive's stretch of the curve is. Joints turn as the edges at their node turn, along the shortest way from frame to frame.
+//! A vertex's weights are the shares of the primitives in the field there, each handed on to the
+//! nodes whose mean the primitive's stretch of the curve is. Joints turn as the edges at their node
+//! turn, along the shortest way from frame to frame.
 //!
 //! ```
 //! use glam::DVec3;
@@ -11,16 +13,19 @@
 //! let text = "var y = 0 += 1\nsurface s, diffuse Red, radius 0.3\n\
 //!     skeleton s, ARM { node A <0 0 0> node B <2 0 0> node C <4 y 0> curve A B C }";
 //! let project = rats::Project::single(text);
-//! let scene = |f| rats::compile_at(&project, &[], f64::from(f)).scene;
-//! let scenes: Vec<_> = (0..3).map(scene).map(std::sync::Arc::unwrap_or_clone).collect();
+//! let scenes = [0.0, 1.0, 2.0].map(|frame| {
+//!     std::sync::Arc::unwrap_or_clone(rats::compile_at(&project, &[], frame).scene)
+//! });
 //! // Two vertices above the ends.
-//! let mesh = TriangleMesh::new(vec![DVec3::new(0.0, 0.3, 0.0), DVec3::new(4.0, 0.3, 0.0)], vec![]);
+//! let vertices = vec![DVec3::new(0.0, 0.3, 0.0), DVec3::new(4.0, 0.3, 0.0)];
+//! let mesh = TriangleMesh::new(vertices, vec![]);
 //! let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
 //! // One that stays, and three nodes.
 //! assert_eq!(rig.joints.len(), 4);
-//! let moved = |i: usize, frame: usize| rig.skinned(mesh.positions[i], &rig.shares[0][i], &rig.frames[frame]);
-//! assert!(moved(0, 2).distance(mesh.positions[0]) < 0.2);
-//! assert!(moved(1, 2).y > 1.5);
+//! let [left, right] =
+//!     [0, 1].map(|i| rig.(mesh.positions[i], &rig.shares[0][i], &rig.frames[2]));
+//! assert!(left.distance(mesh.positions[0]) < 0.2);
+//! assert!(right.y > 1.5);
 //! ```
 
 mod pose;
@@ -40,10 +45,10 @@ const LEAST_SHARE: f64 = 0.01;
 
 /// A skeleton of a scene.
 struct Skeleton<'a> {
-    /// Its element's index in the scene.
+    /// The element's index in the scene.
     element: u32,
     curves: &'a Curves,
-    /// Its nodes' places in the world.
+    /// The nodes' places in the world.
     places: Vec<DVec3>,
 }
 
@@ -56,11 +61,11 @@ fn skeletons(scene: &Scene) -> Vec<Skeleton<'_>> {
         };
         let curves = function.curves()?;
         let nodes = curves.skeleton.nodes.iter();
-        let place = |node: &skeleton::Node| function.to_world.transform_point3(node.position);
+        let places = nodes.map(|node| function.to_world.transform_point3(node.position));
         Some(Skeleton {
             element,
             curves,
-            places: nodes.map(place).collect(),
+            places: places.collect(),
         })
     });
     own.collect()
@@ -83,26 +88,26 @@ pub fn skeletons_of(scene: &Scene) -> Scene {
     }
 }
 
-/// The body, by its number in [`Scene::bodies`], whose soft surface is the mesh of this name: the mesher names a soft surface
-/// as its body, and that of a body without a name `model`.
+/// The body, by its number in [`Scene::bodies`], whose soft surface is the mesh of this name: the
+/// mesher names a soft surface as its body, and that of a body without a name `model`.
 #[must_use]
 pub fn body_of(scene: &Scene, name: &str) -> Option<u32> {
-    let is_it = |body: &scene::Body| body.name == name || (body.name.is_empty() && name == "model");
-    scene
+    let number = scene
         .bodies
         .iter()
-        .position(is_it)
-        .map(|number| number as u32)
+        .position(|body| body.name == name || (body.name.is_empty() && name == "model"));
+    number.map(|number| number as u32)
 }
 
-/// The rig of meshes of a scene. The first of `scenes` is the one that was meshed; all of them, in order, are the frames of the
-/// animation, up to the first one whose skeletons are not the same curves. `rate` is in frames per second. With each mesh comes the
-/// number of the body whose soft surface it is, in [`Scene::bodies`]; none for hard shapes, which stay.
+/// Makes the rig of meshes of a scene. The first of `scenes` is the one that was meshed; all, in
+/// order, are the frames of the animation, up to the first one whose skeletons are not the same
+/// curves. `rate` is in frames per second. With each mesh comes the number of the body whose soft
+/// surface it is, in [`Scene::bodies`]; none for hard shapes, which stay.
 ///
 /// The first joint stays where it is: vertices that no skeleton has a share in hang on it.
 ///
 /// # Errors
-/// In a sentence, if there is no skeleton, or if there are more than [`MOST_NODES`].
+/// A sentence, if there is no skeleton, or if the skeletons have more than [`MOST_NODES`] nodes.
 pub fn rig(
     scenes: &[Scene],
     rate: f64,
@@ -162,17 +167,17 @@ pub fn rig(
         frames.push(frame);
     }
     let weights = Weights::new(first, &rest, &joint_of)?;
-    let of = |(body, mesh): &(Option<u32>, &TriangleMesh)| weights.of(*body, mesh);
-    let shares = meshes.iter().map(of).collect();
+    let shares = meshes.iter().map(|(body, mesh)| weights.of(*body, mesh));
     Ok(Rig {
         joints,
-        shares,
+        shares: shares.collect(),
         frames,
         rate,
     })
 }
 
-/// Adds the joints of a skeleton, each hanging on a neighbour along a curve. Returns the joint of each node.
+/// Adds the joints of a skeleton, each hanging on a neighbour along a curve. Returns the joint of
+/// each node.
 fn hang(number: usize, own: &Skeleton<'_>, joints: &mut Vec<Joint>) -> Vec<usize> {
     let nodes = own.places.len();
     let mut around = vec![Vec::new(); nodes];
@@ -204,7 +209,7 @@ fn hang(number: usize, own: &Skeleton<'_>, joints: &mut Vec<Joint>) -> Vec<usize
     joint_of
 }
 
-/// What a primitive hands its share on to: joints and weights.
+/// The joints to which a primitive hands its share on, with their weights.
 type Hold = Vec<(usize, f64)>;
 
 /// The weights of the joints in space.
@@ -219,7 +224,8 @@ impl Weights {
         for (own, joint_of) in rest.iter().zip(joint_of) {
             stretches.push((own.element, of_stretches(scene, own, joint_of)?));
         }
-        // Of curves that are convolved locally all stretches share: near a fold that touches at rest too.
+        // Of curves that are convolved locally all stretches share: near a fold that touches at
+        // rest too.
         let mut whole = scene.clone();
         for element in &mut whole.elements {
             if let Shape::Function(function) = &mut element.shape
@@ -238,10 +244,10 @@ impl Weights {
                     return Vec::new();
                 };
                 // Long stretches are cut into several primitives, so that it is found by its place.
-                let distance = |(place, _): &(DVec3, Hold)| place.distance_squared(middle);
-                let nearest = all
-                    .iter()
-                    .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let nearest = all.iter().min_by(|a, b| {
+                    let [a, b] = [a.0, b.0].map(|place| place.distance_squared(middle));
+                    a.total_cmp(&b)
+                });
                 nearest.map_or_else(Vec::new, |(_, hold)| hold.clone())
             });
             let holds = holds.collect();
@@ -258,7 +264,7 @@ impl Weights {
         let mut sums = vec![0.0; self.joints];
         let mut surfaces = self.surfaces.iter();
         let surface = surfaces.find(|(surface, _)| Some(surface.body) == body);
-        let vertex = |point: &DVec3| {
+        let weights = mesh.positions.iter().map(|point| {
             sums.fill(0.0);
             if let Some((surface, holds)) = surface {
                 shares.clear();
@@ -275,8 +281,8 @@ impl Weights {
                 }
             }
             strongest(&sums)
-        };
-        mesh.positions.iter().map(vertex).collect()
+        });
+        weights.collect()
     }
 }
 
@@ -297,7 +303,8 @@ fn strongest(sums: &[f64]) -> [(u16, f32); 4] {
     }
 }
 
-/// For each stretch of a skeleton's curves its middle in the world, and the joints that move it.
+/// Returns the middle of each stretch of a skeleton's curves in the world, and the joints that move
+/// it.
 fn of_stretches(
     scene: &Scene,
     own: &Skeleton<'_>,

@@ -1,4 +1,4 @@
-//! How joints turn.
+//! The turns of joints.
 
 use glam::{DQuat, DVec3};
 
@@ -12,9 +12,9 @@ pub struct Turns {
 #[derive(Debug)]
 struct Edge {
     ends: [usize; 2],
-    /// Its direction in the frame before; zero if it has had no length so far.
+    /// The direction in the frame before; zero if the edge has had no length so far.
     direction: DVec3,
-    /// Its turn since the start.
+    /// The turn since the start.
     turn: DQuat,
 }
 
@@ -55,11 +55,11 @@ impl Turns {
                 });
             }
         }
-        let unit = |sum: Option<DQuat>| match sum {
+        let turns = sums.into_iter().map(|sum| match sum {
             Some(sum) if sum.length() > 1e-6 => sum.normalize(),
             _ => DQuat::IDENTITY,
-        };
-        sums.into_iter().map(unit).collect()
+        });
+        turns.collect()
     }
 }
 

@@ -1,9 +1,9 @@
-//! From where the scene is seen, and the one projection that the tracer and the draft share.
+//! The camera, and the one projection that the tracer and the draft share.
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A pinhole camera (`eyep`, `vrp`, `vup`, `fov`).
+/// Pinhole camera (`eyep`, `vrp`, `vup`, `fov`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// The eye, world coordinates (`eyep`).
@@ -16,8 +16,8 @@ pub struct Camera {
     /// follows from the picture's proportions: the published seahorse asks for 13°×13° in a
     /// 160×256 frame and fits only when read so.
     pub fov: f64,
-    /// By how much the picture is shifted across the view, in halves of its width to the right and
-    /// up: 0 0 has the target in the middle (`window`, Foley's camera).
+    /// Shift of the picture across the view, in halves of its width to the right and up: 0 0 has
+    /// the target in the middle (`window`, Foley's camera).
     #[serde(default)]
     pub shift: [f64; 2],
 }
@@ -62,7 +62,7 @@ impl Camera {
     }
 }
 
-/// A camera's projection onto a picture. View space looks along −z, x to the right, y up.
+/// Projection of a camera onto a picture. View space looks along −z, x to the right, y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
     /// The eye in world coordinates.
@@ -73,7 +73,7 @@ pub struct Projection {
     pub half_width: f64,
     /// Tangent of half the vertical angle of view.
     pub half_height: f64,
-    /// Where the middle of the picture lies, as tangents to the right and up.
+    /// Place of the picture's middle, as tangents to the right and up.
     pub shift: [f64; 2],
 }
 
@@ -85,7 +85,7 @@ impl Projection {
         self.view(x, y).normalize()
     }
 
-    /// The same, one unit of length along the view's axis instead of one in all.
+    /// Returns [`Projection::direction`] with the length that makes it 1 along the view's axis.
     #[must_use]
     pub fn view(&self, x: f64, y: f64) -> DVec3 {
         let view = DVec3::new(
@@ -96,8 +96,8 @@ impl Projection {
         self.world_from_view * view
     }
 
-    /// By how much [`Projection::view`] changes from the left edge of the picture to the right one, and from the top
-    /// edge to the bottom: two directions at right angles.
+    /// Returns the changes of [`Projection::view`] from the left edge of the picture to the right
+    /// one, and from the top edge to the bottom: two vectors at right angles.
     #[must_use]
     pub fn across(&self) -> [DVec3; 2] {
         [

@@ -7,12 +7,13 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Two bodies that touch and do not overlap. A body named twice: its locally convolved skeletons, whose folds do.
+/// Contact of two bodies, which touch and do not overlap. If a body is named twice, the folds of
+/// its locally convolved skeletons do so.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Indices into [`Scene::bodies`].
     pub bodies: [u32; 2],
-    /// How they swell beside the contact.
+    /// Swelling of the bodies beside the contact.
     pub bulge: Bulge,
 }
 
@@ -20,15 +21,14 @@ impl Scene {
     /// The bulge of a body whose folds touch.
     #[must_use]
     pub fn fold(&self, body: u32) -> Option<Bulge> {
-        let of = |c: &&Contact| c.bodies == [body; 2] && c.bulge.is_usable();
         self.contacts
             .iter()
             .rev()
-            .find(of)
+            .find(|c| c.bodies == [body; 2] && c.bulge.is_usable())
             .map(|contact| contact.bulge)
     }
 
-    /// For each body that touches others these and their bulges.
+    /// Returns the partners and bulges of each body that touches others.
     #[must_use]
     pub fn partners(&self) -> BTreeMap<u32, BTreeMap<u32, Bulge>> {
         let mut partners: BTreeMap<u32, BTreeMap<u32, Bulge>> = BTreeMap::new();
@@ -48,7 +48,8 @@ impl Scene {
         if partners.is_empty() {
             return surfaces;
         }
-        // Those without a partner stay as they are; of the others each is its own and its partners' function.
+        // Those without a partner stay as they are; of the others each is its own and its partners'
+        // function.
         let shared: Vec<Result<Surface, ComposedSurface>> = surfaces
             .into_iter()
             .map(|surface| match partners.contains_key(&surface.body()) {

@@ -9,17 +9,18 @@ use std::sync::OnceLock;
 /// The blobbiness of curves whose material has none.
 pub const BLOBBINESS: f64 = -2.0;
 
-/// Curves on a graph of nodes, refined to a level. Their polyline's segments are convolved, each with radii that vary evenly along
-/// it.
+/// Curves on a graph of nodes, refined to a level. Their polyline's segments are convolved, each
+/// with radii that vary evenly along it.
 ///
-/// Positions and radii are in coordinates of the element's own ([`Function::to_world`](crate::Function)).
+/// Positions and radii are in coordinates of the element's own
+/// ([`Function::to_world`](crate::Function)).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Curves {
     /// Nodes and control polygons.
     pub skeleton: Skeleton,
-    /// How the curves are refined.
+    /// Rule by which the curves are refined.
     pub scheme: Scheme,
-    /// How often.
+    /// Levels of subdivision.
     pub levels: u32,
     /// Arc length within which the skeleton counts at a point, if not all of it does.
     pub local: Option<f64>,
@@ -51,7 +52,7 @@ impl Curves {
         })
     }
 
-    /// The same curves with their nodes at other places.
+    /// Returns the curves with their nodes at other places.
     ///
     /// # Errors
     /// If places are not usable.
@@ -68,7 +69,8 @@ impl Curves {
         })
     }
 
-    /// The same curves, convolved locally: only what is within an arc length of a point's place counts there.
+    /// Returns the curves for local convolution: only what is within an arc length of a point's
+    /// place counts there.
     #[must_use]
     pub fn within(self, reach: f64) -> Self {
         let local = Some(reach);
@@ -78,8 +80,9 @@ impl Curves {
     /// The refined curves; `None` if data from elsewhere are not usable.
     #[must_use]
     pub fn polyline(&self) -> Option<&Polyline> {
-        let refine = || self.skeleton.polyline(self.scheme, self.levels).ok();
-        self.polyline.get_or_init(refine).as_ref()
+        self.polyline
+            .get_or_init(|| self.skeleton.polyline(self.scheme, self.levels).ok())
+            .as_ref()
     }
 
     /// Whether the radius varies anywhere.
@@ -107,17 +110,23 @@ impl Curves {
 
     /// The shapes that stand for the curves in drafts: cones, and balls between them.
     pub(crate) fn draft(&self, to_world: &DAffine3, growth: f64) -> Vec<Shape> {
-        let ball = |(center, radius): (DVec3, f64)| Shape::Sphere {
-            center: to_world.transform_point3(center),
-            radius: radius * growth,
-        };
-        let cone = |[(base, start), (apex, end)]: [(DVec3, f64); 2]| Shape::Cone {
-            base: to_world.transform_point3(base),
-            base_radius: start * growth,
-            apex: to_world.transform_point3(apex),
-            apex_radius: end * growth,
-        };
-        let balls = self.points().filter(|(_, radius)| *radius > 0.0).map(ball);
-        balls.chain(self.pieces().map(cone)).collect()
+        let balls = self
+            .points()
+            .filter(|(_, radius)| *radius > 0.0)
+            .map(|(center, radius)| Shape::Sphere {
+                center: to_world.transform_point3(center),
+                radius: radius * growth,
+            });
+        balls
+            .chain(
+                self.pieces()
+                    .map(|[(base, start), (apex, end)]| Shape::Cone {
+                        base: to_world.transform_point3(base),
+                        base_radius: start * growth,
+                        apex: to_world.transform_point3(apex),
+                        apex_radius: end * growth,
+                    }),
+            )
+            .collect()
     }
 }

@@ -7,7 +7,8 @@ use field::Kernel;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// One shape with its softness and its look. The indices point into the lists of the [`Scene`](crate::Scene).
+/// Shape with its softness and its look. The indices point into the lists of the
+/// [`Scene`](crate::Scene).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Element {
     /// The geometry, in the world's coordinates.
@@ -22,14 +23,16 @@ pub struct Element {
     pub frame: u32,
     /// The kernel, unless the flesh names one.
     pub kernel: Kernel,
-    /// Where in the text this element was written.
+    /// Place in the text of the command that made the element.
     pub origin: Origin,
-    /// Colours at the corners of a triangle or patch; `None` for other shapes, and where the finish says all.
+    /// Colours at the corners of a triangle or patch; `None` for other shapes, and where the finish
+    /// says all.
     pub paint: Option<Box<Paint>>,
 }
 
 impl Element {
-    /// A hard element with the first finish, in the body without a name and the world's frame.
+    /// Returns a hard element with the first finish, in the body without a name and the world's
+    /// frame.
     #[must_use]
     pub fn new(shape: Shape) -> Self {
         Self {
@@ -45,49 +48,49 @@ impl Element {
     }
 }
 
-/// Colours at the corners of a triangle, mixed linearly within it. [`Element::finish`] has about their mean, for what
-/// cannot mix colours within a triangle.
+/// Colours at the corners of a triangle, mixed linearly within it. [`Element::finish`] has about
+/// their mean, for what cannot mix colours within a triangle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Paint {
-    /// Index into [`Scene::finishes`](crate::Scene::finishes): the finish whose `ambient` and `diffuse` the colours
-    /// multiply.
+    /// Index into [`Scene::finishes`](crate::Scene::finishes): the finish whose `ambient` and
+    /// `diffuse` the colours multiply.
     pub finish: u32,
     /// The colours, in the order of the shape's corners; each channel 0 to 1.
     pub corners: [Rgb; 3],
 }
 
-/// Where an element comes from: a byte range of one of the project's files.
+/// Origin of an element: a byte range of one of the project's files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Origin {
     /// Index of the file in the compiler's file list.
     pub file: u32,
     /// First byte of the command.
     pub start: u32,
-    /// One past its last byte.
+    /// End of the command: one past its last byte.
     pub end: u32,
 }
 
-/// A shape. When soft, its axis, arc, face or plane is the skeleton; when hard, it is drawn as its
+/// Shape. When soft, its axis, arc, face or plane is the skeleton; when hard, it is drawn as its
 /// offset surface at [`Shape::radius`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
-    /// A ball. Soft: a point.
+    /// Ball. Soft: a point.
     Sphere {
         /// Centre.
         center: DVec3,
         /// Radius, > 0.
         radius: f64,
     },
-    /// A cylinder with flat lids. Soft: a line segment.
+    /// Cylinder with flat lids. Soft: a line segment.
     Cylinder {
-        /// One end of the axis.
+        /// Start of the axis.
         base: DVec3,
-        /// The other end.
+        /// End of the axis.
         apex: DVec3,
         /// Radius, > 0.
         radius: f64,
     },
-    /// A piece of a torus with flat lids: the points `center + sweep·(cos t·u + sin t·v)`,
+    /// Piece of a torus with flat lids: the points `center + sweep·(cos t·u + sin t·v)`,
     /// `0 ≤ t ≤ angle`, thickened. Soft: the arc itself.
     Arc {
         /// Centre of the circle.
@@ -103,21 +106,21 @@ pub enum Shape {
         /// Radius of the tube, > 0.
         radius: f64,
     },
-    /// A flat triangle; hard with a blobbiness and `soft off`, a prism of thickness `2·radius`.
+    /// Flat triangle; hard with a blobbiness and `soft off`, a prism of thickness `2·radius`.
     Triangle {
         /// Corners.
         corners: [DVec3; 3],
         /// Half the thickness; 0 for a plain flat triangle.
         radius: f64,
     },
-    /// A planar polygon with holes; as an offset surface, a prism of thickness `2·radius`.
+    /// Planar polygon with holes; as an offset surface, a prism of thickness `2·radius`.
     Polygon {
         /// Corners of the outer ring, then of the holes; each ring has at least three.
         rings: Vec<Vec<DVec3>>,
         /// Half the thickness; 0 for a plain flat polygon.
         radius: f64,
     },
-    /// A tube around a cubic Bézier curve, round at its ends. Soft: the curve itself.
+    /// Tube around a cubic Bézier curve, round at its ends. Soft: the curve itself.
     Curve {
         /// Control points.
         control: [DVec3; 4],
@@ -126,43 +129,43 @@ pub enum Shape {
     },
     /// An infinite plane; as an offset surface, a slab of thickness `2·radius`.
     Plane {
-        /// A point of the plane.
+        /// Point of the plane.
         point: DVec3,
         /// Unit normal.
         normal: DVec3,
         /// Half the thickness; 0 for a plain plane.
         radius: f64,
     },
-    /// A cone cut off at both ends, with flat lids. Soft: a line segment whose radius in isolation
+    /// Cone cut off at both ends, with flat lids. Soft: a line segment whose radius in isolation
     /// varies evenly from one end to the other.
     Cone {
-        /// One end of the axis.
+        /// Start of the axis.
         base: DVec3,
         /// The radius there, ≥ 0.
         base_radius: f64,
-        /// The other end.
+        /// End of the axis.
         apex: DVec3,
         /// The radius there, ≥ 0; at least one of the two is > 0.
         apex_radius: f64,
     },
     /// The wall of a cylinder, without lids. Soft: a line segment.
     Pipe {
-        /// One end of the axis.
+        /// Start of the axis.
         base: DVec3,
-        /// The other end.
+        /// End of the axis.
         apex: DVec3,
         /// Radius, > 0.
         radius: f64,
     },
-    /// A box that may be turned and sheared: the points `center + Σ sᵢ·axisᵢ`, −1 ≤ sᵢ ≤ 1. It has
+    /// Box that may be turned and sheared: the points `center + Σ sᵢ·axisᵢ`, −1 ≤ sᵢ ≤ 1. It has
     /// no skeleton and stays hard.
     Box {
-        /// Its middle.
+        /// Middle.
         center: DVec3,
-        /// From the middle to the middles of three faces; they span a volume.
+        /// Vectors from the middle to the middles of three faces; they span a volume.
         axes: [DVec3; 3],
     },
-    /// A flat triangle that is lit as if it were curved (Phong's interpolation of normals). Soft:
+    /// Flat triangle that is lit as if it were curved (Phong's interpolation of normals). Soft:
     /// the flat triangle.
     Patch {
         /// Corners.
@@ -170,9 +173,9 @@ pub enum Shape {
         /// The normals that light sees at the corners; any length but 0.
         normals: [DVec3; 3],
     },
-    /// A piece of a surface of the second degree. It has no skeleton and stays hard.
+    /// Piece of a surface of the second degree. It has no skeleton and stays hard.
     Quadric(Box<Quadric>),
-    /// A function of space, soft without any flesh. It has no skeleton.
+    /// Function of space, soft without any flesh. It has no skeleton.
     Function(Box<Function>),
 }
 
@@ -208,7 +211,8 @@ impl Shape {
         }
     }
 
-    /// Whether the shape can be convolved. Shapes without a skeleton stay as they are with any material.
+    /// Whether the shape can be convolved. Shapes without a skeleton stay as they are with any
+    /// material.
     #[must_use]
     pub fn has_skeleton(&self) -> bool {
         !matches!(

@@ -19,16 +19,17 @@ pub struct Finish {
     pub shine: f32,
     /// Share of the light from the mirrored direction.
     pub reflective: Rgb,
-    /// Share of the light from the refracted direction, and of the light that passes on its way from a source.
+    /// Share of the light from the refracted direction, and of the light that passes on its way
+    /// from a source.
     pub transparent: Rgb,
     /// Index of refraction of the inside, the outside being air: > 0.
     pub index: f32,
-    /// By how much blue's index is larger than red's (see [`texture::refraction::dispersed`]).
+    /// Dispersion: blue's index less red's (see [`texture::refraction::dispersed`]).
     pub dispersion: f32,
     /// Kinds of rays to which surfaces of this look are not there.
     pub skip: Skip,
-    /// Layers of texture, the first one at the bottom; at most [`texture::MAX_LAYERS`]. Their images are indices into
-    /// [`Scene::images`](crate::Scene::images).
+    /// Layers of texture, the first one at the bottom; at most [`texture::MAX_LAYERS`]. Their
+    /// images are indices into [`Scene::images`](crate::Scene::images).
     pub layers: Vec<Texture>,
 }
 

@@ -28,8 +28,8 @@ pub struct Flesh {
 }
 
 impl Flesh {
-    /// The same flesh on a skeleton scaled by a factor: radii and depths grow with it, and an absolute blobbiness, which is
-    /// a squared inverse width, shrinks.
+    /// Returns these parameters for a skeleton scaled by a factor: radii and depths grow with it,
+    /// and an absolute blobbiness, which is a squared inverse width, shrinks.
     #[must_use]
     pub fn scaled(&self, factor: f64, blob_scale: BlobScale) -> Self {
         let mut flesh = self.clone();

@@ -6,12 +6,13 @@ use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A soft shape that is a function of space, placed in the world. It adds to the field of its body as primitives do.
+/// Soft shape that is a function of space, placed in the world. It adds to the field of its body as
+/// primitives do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Function {
     /// The function, in coordinates of its own.
     pub form: Form,
-    /// From its own coordinates to the world's.
+    /// Map from the function's own coordinates to the world's.
     pub to_world: DAffine3,
 }
 
@@ -20,19 +21,29 @@ pub struct Function {
 pub enum Form {
     /// Balls whose fields fall exponentially, see [`Exponentials`].
     Metaballs {
-        /// How fast they fall, an inverse length.
+        /// Rate at which the fields fall, an inverse length.
         hardness: f64,
         /// Centres and radii.
         balls: Arc<Vec<(DVec3, f64)>>,
     },
-    /// Curves convolved with the kernel of their flesh. They are primitives, so that they have no function of their own.
+    /// Curves convolved with the kernel of their flesh. They are primitives, so that they have no
+    /// function of their own.
     Skeleton(Arc<Curves>),
     /// The implicit surface of a mesh.
     Mesh(Arc<ImplicitMesh>),
 }
 
+/// Returns the lowest and the highest corner of the box around balls.
+fn corners_around(balls: impl Iterator<Item = (DVec3, f64)>) -> (DVec3, DVec3) {
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    balls.fold(start, |(low, high), (center, radius)| {
+        (low.min(center - radius), high.max(center + radius))
+    })
+}
+
 impl Function {
-    /// The function in the world's coordinates; `None` if its numbers are not usable, or if it is a sum of primitives.
+    /// The function in the world's coordinates; `None` if its numbers are not usable, or if it is a
+    /// sum of primitives.
     #[must_use]
     pub fn implicit(&self) -> Option<Arc<dyn Implicit>> {
         let own: Arc<dyn Implicit> = match &self.form {
@@ -45,7 +56,7 @@ impl Function {
         Some(Arc::new(Placed::new(own, self.to_world)?))
     }
 
-    /// As how many shapes it counts where their number is limited.
+    /// Number of shapes that the function counts as where their number is limited.
     #[must_use]
     pub fn weight(&self) -> usize {
         match &self.form {
@@ -73,13 +84,15 @@ impl Function {
         }
     }
 
-    /// The factor from its own lengths to the world's; where directions are stretched differently, their geometric mean.
+    /// The factor from its own lengths to the world's; where directions are stretched differently,
+    /// their geometric mean.
     #[must_use]
     pub fn growth(&self) -> f64 {
         libm::cbrt(self.to_world.matrix3.determinant().abs())
     }
 
-    /// Points on its skeleton, where it is strongest, in the world's coordinates: as many as suit a quick look.
+    /// Points on its skeleton, where it is strongest, in the world's coordinates: as many as suit a
+    /// quick look.
     #[must_use]
     pub fn axis(&self) -> Vec<DVec3> {
         const MOST: usize = 16;
@@ -102,39 +115,37 @@ impl Function {
     pub fn draft(&self) -> Vec<Shape> {
         let growth = self.growth();
         match &self.form {
-            Form::Metaballs { balls, .. } => {
-                let ball = |&(center, radius): &(DVec3, f64)| Shape::Sphere {
+            Form::Metaballs { balls, .. } => balls
+                .iter()
+                .map(|&(center, radius)| Shape::Sphere {
                     center: self.to_world.transform_point3(center),
                     radius: radius * growth,
-                };
-                balls.iter().map(ball).collect()
-            }
+                })
+                .collect(),
             Form::Skeleton(curves) => curves.draft(&self.to_world, growth),
             Form::Mesh(mesh) => {
-                let place = |i: u32| mesh.positions.get(i as usize).copied();
-                let corners = |[a, b, c]: &[u32; 3]| Some([place(*a)?, place(*b)?, place(*c)?]);
-                let triangles = mesh.triangles.iter().filter_map(corners);
-                let triangle = |corners: [DVec3; 3]| Shape::Triangle {
-                    corners: corners.map(|p| self.to_world.transform_point3(p)),
-                    radius: 0.0,
-                };
-                triangles.map(triangle).collect()
+                let mut parts = Vec::new();
+                for triangle in &mesh.triangles {
+                    let corners = triangle.map(|i| mesh.positions.get(i as usize));
+                    if let [Some(a), Some(b), Some(c)] = corners {
+                        parts.push(Shape::Triangle {
+                            corners: [a, b, c].map(|p| self.to_world.transform_point3(*p)),
+                            radius: 0.0,
+                        });
+                    }
+                }
+                parts
             }
         }
     }
 
-    /// Two corners of a box that holds what [`Function::draft`] shows.
+    /// Returns the lowest and the highest corner of a box that holds what [`Function::draft`]
+    /// shows.
     #[must_use]
     pub fn corners(&self) -> (DVec3, DVec3) {
-        let around = |balls: &mut dyn Iterator<Item = (DVec3, f64)>| {
-            let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-            balls.fold(start, |(low, high), (center, radius)| {
-                (low.min(center - radius), high.max(center + radius))
-            })
-        };
         let (low, high) = match &self.form {
-            Form::Metaballs { balls, .. } => around(&mut balls.iter().copied()),
-            Form::Skeleton(curves) => around(&mut curves.points()),
+            Form::Metaballs { balls, .. } => corners_around(balls.iter().copied()),
+            Form::Skeleton(curves) => corners_around(curves.points()),
             Form::Mesh(mesh) => mesh.corners(),
         };
         let middle = self.to_world.transform_point3(0.5 * (low + high));

@@ -6,16 +6,16 @@ use metaballs::{Error, Kind, Metaballs};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
-/// A mesh whose implicit surface is a soft shape, in coordinates of its own.
+/// Mesh whose implicit surface is a soft shape, in coordinates of its own.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ImplicitMesh {
     /// Vertices.
     pub positions: Vec<DVec3>,
     /// Triangles, as numbers of vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// What surrounds each triangle.
+    /// Kind of metaball around each triangle.
     pub kind: Kind,
-    /// How sharply the field falls, an inverse length.
+    /// Sharpness k, an inverse length: each term falls by 1/e over 1/k.
     pub sharpness: f64,
     /// The function, made at first use: large meshes take a while.
     #[serde(skip)]
@@ -23,7 +23,7 @@ pub struct ImplicitMesh {
 }
 
 impl ImplicitMesh {
-    /// A mesh with what surrounds its triangles.
+    /// Makes the soft shape of a mesh.
     #[must_use]
     pub fn new(
         positions: Vec<DVec3>,
@@ -45,15 +45,15 @@ impl ImplicitMesh {
     /// # Errors
     /// As [`Metaballs::new`].
     pub fn function(&self) -> Result<Arc<dyn Implicit>, Error> {
-        let make = || {
-            let made = Metaballs::new(&self.positions, &self.triangles, self.kind, self.sharpness);
-            made.map(Arc::new)
-        };
-        let made = self.function.get_or_init(make).clone()?;
-        Ok(made)
+        let function = self.function.get_or_init(|| {
+            Metaballs::new(&self.positions, &self.triangles, self.kind, self.sharpness)
+                .map(Arc::new)
+        });
+        Ok(function.clone()?)
     }
 
-    /// Two corners of a box around the triangles and what surrounds them at their thickness; around balls, the triangles.
+    /// Returns the lowest and the highest corner of a box around the triangles with their
+    /// thickness; for balls, around the triangles alone.
     pub(crate) fn corners(&self) -> (DVec3, DVec3) {
         let thickness = match self.kind {
             Kind::Spherical => 0.0,

@@ -1,10 +1,11 @@
 //! Scenes: the description of a picture as plain data.
 //!
-//! A [`Scene`] is a list of [`Element`]s, lights, a camera and settings. An element is a [`Shape`] with a [`Finish`]
-//! (its look) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend within their [`Body`] and never
-//! across bodies. The language (`rats`) writes scenes; the tracer and the draft read them. This room
-//! does not depend on text, pixels or GPUs. Two things are computed here because all readers must agree
-//! on them: the projection ([`Camera`]), and the function of each body ([`surface`]).
+//! A [`Scene`] is a list of [`Element`]s, lights, a camera and settings. An element is a [`Shape`]
+//! with a [`Finish`] (its look) and, if it is soft, a [`Flesh`] (its kernel). Soft elements blend
+//! within their [`Body`] and never across bodies. The language (`rats`) writes scenes; the tracer
+//! and the draft read them. This room does not depend on text, pixels or GPUs. Two things are
+//! computed here because all readers must agree on them: the projection ([`Camera`]), and the
+//! function of each body ([`surface`]).
 //!
 //! ```
 //! use glam::DVec3;
@@ -66,7 +67,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use texture::Rgb8;
 
-/// A linear colour, red, green, blue; 0 is none and 1 the full light. Values above 1 are allowed.
+/// Linear colour, red, green, blue; 0 is none and 1 the full light. Values above 1 are allowed.
 pub type Rgb = [f32; 3];
 
 /// Everything a renderer needs to draw one picture.
@@ -76,7 +77,7 @@ pub struct Scene {
     pub elements: Vec<Element>,
     /// Bodies; [`Element::body`] indexes this list. The first is the body without a name.
     pub bodies: Vec<Body>,
-    /// Which bodies touch, in the order of the text; of two for the same bodies the last counts.
+    /// Contacts of bodies, in the order of the text; of two for the same bodies the last counts.
     pub contacts: Vec<Contact>,
     /// Softness; [`Element::flesh`] indexes this list.
     pub flesh: Vec<Flesh>,
@@ -86,11 +87,11 @@ pub struct Scene {
     pub frames: Vec<Frame>,
     /// Light sources. A scene without any is lit by ambient light only.
     pub lights: Vec<Light>,
-    /// What a ray sees that meets nothing.
+    /// Light that a ray gets which meets nothing.
     pub background: Background,
     /// Light from everywhere, if any.
     pub sky: Option<Sky>,
-    /// A plane to stand on, if any.
+    /// Plane to stand on, if any.
     pub ground: Option<Ground>,
     /// Air that is not clear, if so.
     pub fog: Option<Fog>,
@@ -101,13 +102,14 @@ pub struct Scene {
     /// Images for textures and the background, shared by all copies of the scene.
     #[serde(with = "shared")]
     pub images: Vec<Arc<Rgb8>>,
-    /// From where the scene is seen.
+    /// View of the scene.
     pub camera: Camera,
     /// The camera's lens.
     pub lens: Lens,
-    /// The scene at moments evenly spread over the time that the shutter is open, if anything moves then; the camera may
-    /// move too. Samples of a pixel are taken from these in turn, with the settings of the scene that holds them. At most
-    /// [`Scene::MAX_MOMENTS`]; those of the moments themselves are not looked at.
+    /// The scene at moments evenly spread over the time that the shutter is open, if anything moves
+    /// then; the camera may move too. Samples of a pixel are taken from these in turn, with the
+    /// settings of the scene that holds them. At most [`Scene::MAX_MOMENTS`]; those of the moments
+    /// themselves are not looked at.
     pub moments: Vec<Scene>,
     /// Options that steer modelling and rendering.
     pub settings: Settings,

@@ -4,22 +4,23 @@ use crate::Rgb;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// One light source. Its brightness does not fall with distance, as in the published datasets.
+/// Light source. Its brightness does not fall with distance, as in the published datasets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Light {
-    /// Where the light comes from.
+    /// Geometry of the source.
     pub kind: LightKind,
     /// Colour times intensity.
     pub colour: Rgb,
     /// Whether things in the way stop the light (`noshadow` clears it).
     pub shadow: bool,
-    /// Radius of the source, which has soft shadows with [`Settings::penumbra`](crate::Settings::penumbra). Of a
-    /// [`LightKind::Distant`] one, the radius at the distance 1: the tangent of half the angle under which it is seen.
+    /// Radius of the source, which has soft shadows with
+    /// [`Settings::penumbra`](crate::Settings::penumbra). Of a [`LightKind::Distant`] one, the
+    /// radius at the distance 1: the tangent of half the angle under which it is seen.
     pub size: f64,
 }
 
 impl Light {
-    /// A light that casts shadows and has no size.
+    /// Returns a light that casts shadows and has no size.
     #[must_use]
     pub fn new(kind: LightKind, colour: Rgb) -> Self {
         Self {
@@ -31,13 +32,14 @@ impl Light {
     }
 
     /// The share of the light's brightness, 0 to 1, that it sends to a point: less than 1 only for
-    /// [`LightKind::Spot`], where it is 1 up to `angle − edge` from the axis and 0 from `angle` on; between them it falls
-    /// as `3s² − 2s³` with the angle.
+    /// [`LightKind::Spot`], where it is 1 up to `angle − edge` from the axis and 0 from `angle` on;
+    /// between them it falls as `3s² − 2s³` with the angle.
     ///
     /// ```
     /// use glam::DVec3;
     /// use scene::{Light, LightKind};
-    /// let spot = LightKind::Spot { position: DVec3::ZERO, direction: DVec3::Z, angle: 60.0, edge: 30.0 };
+    /// let (position, direction) = (DVec3::ZERO, DVec3::Z);
+    /// let spot = LightKind::Spot { position, direction, angle: 60.0, edge: 30.0 };
     /// let light = Light::new(spot, [1.0; 3]);
     /// let half = DVec3::new(1.0, 0.0, 1.0); // 45° off the axis
     /// assert!((light.share(half) - 0.5).abs() < 1e-12);
@@ -92,7 +94,8 @@ pub enum LightKind {
         direction: DVec3,
         /// Angle from the axis beyond which there is no light, degrees, in (0, 180].
         angle: f64,
-        /// Angle over which the light fades towards that limit, degrees, in [0, `angle`]. 0: a sharp edge.
+        /// Angle over which the light fades towards that limit, degrees, in [0, `angle`]. 0: a
+        /// sharp edge.
         edge: f64,
     },
 }

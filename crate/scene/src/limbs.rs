@@ -1,21 +1,21 @@
 //! Long curves and tapered limbs, cut into pieces for the search for the surface.
 //!
-//! A convolution surface does not change when a bone is cut in two (superposition), but what is known
-//! of a piece without evaluating it is sharper: a short one is nowhere near most rays, and along it the
-//! width of a taper hardly varies.
+//! A convolution surface does not change when a bone is cut in two (superposition), but what is
+//! known of a piece without evaluating it is sharper: a short one is nowhere near most rays, and
+//! along it the width of a taper hardly varies.
 
 use field::skeleton::halves;
 use field::{Shaping, Skeleton, Taper};
 
 /// The most pieces of one bone.
 const MOST: usize = 16;
-/// A piece is about this many radii long …
+/// Length of a piece, in radii, about.
 const LENGTH: f64 = 2.0;
-/// … and its radius and blobbiness vary by this factor at most, until there are [`MOST`] pieces.
+/// Most factor by which radius and blobbiness vary along a piece, until there are [`MOST`] pieces.
 const CHANGE: f64 = 1.25;
 
-/// The pieces of a curve or of a tapered segment or arc, each with its part of the taper; any other bone
-/// as it is.
+/// The pieces of a curve or of a tapered segment or arc, each with its part of the taper; any other
+/// bone as it is.
 #[must_use]
 pub fn cut(skeleton: Skeleton, shaping: Shaping) -> Vec<(Skeleton, Shaping)> {
     let is_limb = match skeleton {
@@ -30,7 +30,8 @@ pub fn cut(skeleton: Skeleton, shaping: Shaping) -> Vec<(Skeleton, Shaping)> {
     cut_into(&skeleton, shaping, count)
 }
 
-/// A segment in pieces no longer than a length, of which there are not more than `most`, or as [`cut`] makes them.
+/// Cuts a segment into pieces no longer than a length, but not into more than `most`; or as [`cut`]
+/// does, if that makes more.
 #[must_use]
 pub(crate) fn cut_short(
     skeleton: &Skeleton,
@@ -76,18 +77,20 @@ fn share(i: usize, count: usize) -> f64 {
     i as f64 / count as f64
 }
 
-/// Into how many pieces a bone is cut.
+/// Returns the number of pieces into which a bone is cut.
 fn pieces(skeleton: &Skeleton, shaping: &Shaping) -> usize {
     let end = shaping.at(1.0);
     let radius = 0.5 * (shaping.radius + end.radius);
     let by_length = skeleton.measure() / (LENGTH * radius);
-    let change = |a: f64, b: f64| {
-        let ratio = (a / b).abs();
+    let [by_radius, by_blobbiness] = [
+        shaping.radius / end.radius,
+        shaping.blobbiness / end.blobbiness,
+    ]
+    .map(|ratio| {
+        let ratio = ratio.abs();
         libm::log(ratio.max(1.0 / ratio)) / libm::log(CHANGE)
-    };
-    let by_change =
-        change(shaping.radius, end.radius).max(change(shaping.blobbiness, end.blobbiness));
-    let wanted = by_length.max(by_change);
+    });
+    let wanted = by_length.max(by_radius.max(by_blobbiness));
     // A number that is no number, or infinite at a tip of radius 0, is taken for very many.
     if wanted < MOST as f64 {
         (wanted.ceil() as usize).max(1)

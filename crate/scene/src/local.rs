@@ -6,12 +6,14 @@ use field::{Local, Primitive};
 use glam::DVec3;
 use skeleton::{Polyline, Segment};
 
-/// Pieces of a skeleton within the reach of local convolution, at least, and the most pieces of a segment.
+/// Pieces of a skeleton within the reach of local convolution, at least, and the most pieces of a
+/// segment.
 const PIECES: f64 = 4.0;
 const MOST_PIECES: usize = 64;
 
 impl Scene {
-    /// The local convolution of an element's curves, in the world's coordinates; `None` if the element is no such skeleton.
+    /// The local convolution of an element's curves, in the world's coordinates; `None` if the
+    /// element is no such skeleton.
     ///
     /// # Errors
     /// If there is no such function.
@@ -25,8 +27,8 @@ impl Scene {
         Some(Local::new(&limbs.points, &limbs.limbs, limbs.reach))
     }
 
-    /// The points and segments of an element's curves that are convolved locally, in the world's coordinates, and their reach; `None`
-    /// if the element is no such skeleton.
+    /// The points and segments of an element's curves that are convolved locally, in the world's
+    /// coordinates, and their reach; `None` if the element is no such skeleton.
     #[must_use]
     pub fn limbs(&self, element: &Element, function: &Function) -> Option<Limbs> {
         let curves = function.curves()?;
@@ -59,7 +61,7 @@ impl Scene {
     }
 }
 
-/// What [`Local::new`] makes a local convolution of.
+/// Input of [`Local::new`], which makes a local convolution from it.
 #[derive(Clone, Debug)]
 pub struct Limbs {
     /// Points of the skeleton.
@@ -70,7 +72,8 @@ pub struct Limbs {
     pub reach: f64,
 }
 
-/// The segments of a polyline that have a length, and where they meet. Vertices between which there is no length are one.
+/// The segments of a polyline that have a length, and where they meet. Vertices between which there
+/// is no length are one.
 struct Joints<'a> {
     segments: Vec<([usize; 2], &'a Segment)>,
     around: Vec<Vec<usize>>,
@@ -98,7 +101,8 @@ impl<'a> Joints<'a> {
         Self { segments, around }
     }
 
-    /// The segment that goes on from an end of another: the only other one there, or at a branch the next one of its curve.
+    /// The segment that goes on from an end of another: the only other one there, or at a branch
+    /// the next one of its curve.
     fn next(&self, index: usize, end: usize) -> Option<u32> {
         let (ends, segment) = &self.segments[index];
         let around = &self.around[ends[end]];

@@ -1,5 +1,5 @@
-//! Parts of a shape's offset surface, for renderers that draw balls, cylinders, arcs, triangles
-//! and the like only: a polygon is cut into triangles, a curve into short cylinders with balls between,
+//! Parts of a shape's offset surface, for renderers that draw balls, cylinders, arcs, triangles and
+//! the like only: a polygon is cut into triangles, a curve into short cylinders with balls between,
 //! a function into balls with radii of their own.
 
 use crate::Shape;
@@ -19,18 +19,19 @@ impl Shape {
                 .map(|corners| Self::Triangle { corners, radius })
                 .collect(),
             Self::Curve { control, .. } => {
-                let at = |i: usize| along(control, i as f64 / PIECES as f64);
+                let mut base = along(control, 0.0);
                 let mut parts = vec![Self::Sphere {
-                    center: at(0),
+                    center: base,
                     radius,
                 }];
-                for i in 0..PIECES {
-                    let (base, apex) = (at(i), at(i + 1));
+                for i in 1..=PIECES {
+                    let apex = along(control, i as f64 / PIECES as f64);
                     parts.push(Self::Cylinder { base, apex, radius });
                     parts.push(Self::Sphere {
                         center: apex,
                         radius,
                     });
+                    base = apex;
                 }
                 parts
             }
@@ -51,7 +52,7 @@ fn along([a, b, c, d]: &[DVec3; 4], t: f64) -> DVec3 {
     *a * (s * s * s) + *b * (3.0 * s * s * t) + *c * (3.0 * s * t * t) + *d * (t * t * t)
 }
 
-/// A polygon's triangles, by cutting off ears.
+/// Cuts a polygon into triangles, ear by ear.
 fn triangles(rings: &[Vec<DVec3>]) -> Vec<[DVec3; 3]> {
     let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
         return Vec::new();

@@ -2,8 +2,8 @@
 //!
 //! Most of them are unbounded, so each is cut off by a box. The box is also what carries the
 //! surface into the world: everything is said in coordinates q that go from −1 to 1 across the box,
-//! and an affine map takes them to `center + q₀·axes[0] + q₁·axes[1] + q₂·axes[2]`. Moving, turning,
-//! scaling and shearing the surface changes the map and leaves the equation as it is.
+//! and an affine map takes them to `center + q₀·axes[0] + q₁·axes[1] + q₂·axes[2]`. Moving,
+//! turning, scaling and shearing the surface changes the map and leaves the equation as it is.
 
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -11,15 +11,15 @@ use serde::{Deserialize, Serialize};
 /// The points of a box where `q·A·q + 2·b·q + c = 0`; the surface only, without lids on the box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quadric {
-    /// A, symmetric.
+    /// Symmetric matrix A.
     pub square: DMat3,
-    /// b.
+    /// Vector b.
     pub linear: DVec3,
-    /// c.
+    /// Constant c.
     pub constant: f64,
     /// The middle of the box.
     pub center: DVec3,
-    /// From the middle to the middles of three faces; they span a volume.
+    /// Vectors from the middle to the middles of three faces; they span a volume.
     pub axes: [DVec3; 3],
 }
 

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Settings {
     /// Width and height of the picture in pixels (`framesize`), each 1 … [`Settings::MAX_FRAME`].
     pub frame: [u32; 2],
-    /// `sample n`: at most n×n rays a pixel where the picture has contrast. 1 … [`Settings::MAX_SAMPLES`].
+    /// `sample n`: at most n×n rays a pixel where the picture has contrast. 1 …
+    /// [`Settings::MAX_SAMPLES`].
     pub samples: u32,
     /// Per-channel contrast between neighbouring pixels above which a pixel is sampled further.
     pub contrast: [f32; 3],
@@ -18,23 +19,25 @@ pub struct Settings {
     pub soft: bool,
     /// `double on`: faces are seen from both sides; off: those seen from behind are hidden.
     pub double_sided: bool,
-    /// How a blobbiness is read.
+    /// Meaning of a blobbiness.
     pub blob_scale: BlobScale,
-    /// Which soft primitives take their material's radius instead of their own.
+    /// Soft primitives that take their material's radius instead of their own.
     pub fragile: Fragile,
     /// Depth of influence: a soft element is ignored where its field is below this share of the
     /// threshold. In (0, 1).
     pub influence: f64,
     /// Root finder for the soft surface.
     pub digger: Digger,
-    /// `maxdepth n`: how many surfaces may mirror or refract a ray, one after the other. 0 … [`Settings::MAX_DEPTH`].
+    /// `maxdepth n`: how many surfaces may mirror or refract a ray, one after the other. 0 …
+    /// [`Settings::MAX_DEPTH`].
     pub max_depth: u32,
-    /// `vanish v`: reflected and refracted rays that add less than this share of their light to each channel of the
-    /// pixel are not sent. ≥ 0.
+    /// `vanish v`: reflected and refracted rays that add less than this share of their light to
+    /// each channel of the pixel are not sent. ≥ 0.
     pub vanish: f32,
-    /// `epsilon e`: precision of hits with hard surfaces, > 0. Rays from there to lights, reflected and refracted ones
-    /// start a hundredth of it above the surface, in halves of the scene's size. (Convolution surfaces know their own
-    /// error, and the rays from them start as near as it allows.)
+    /// `epsilon e`: precision of hits with hard surfaces, > 0. Rays from there to lights, reflected
+    /// and refracted ones start a hundredth of it above the surface, in halves of the scene's size.
+    /// (Convolution surfaces know their own error, and the rays from them start as near as it
+    /// allows.)
     pub epsilon: f64,
     /// `penumbra on`: lights with a size have soft shadows.
     pub penumbra: bool,
@@ -78,25 +81,25 @@ impl Default for Settings {
     }
 }
 
-/// How light without limit becomes a channel of 0 to 1.
+/// Map from light without limit to a channel of 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Tone {
-    /// What is above 1 is cut.
+    /// Light above 1 is cut.
     #[default]
     None,
-    /// A shoulder like film's ([`texture::tone::filmic`]).
+    /// Shoulder like film's ([`texture::tone::filmic`]).
     Filmic,
 }
 
-/// `digger NAME`: the ways of finding where a ray meets the soft surface. All but the first are there
-/// for comparison, and have their settings fixed.
+/// `digger NAME`: the ways of finding where a ray meets the soft surface. All but the first are
+/// there for comparison, and have their settings fixed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Digger {
     /// Hermite spans placed by a certified bound of their error.
     #[default]
     Hermite,
-    /// `hermite2 n`: n equally long Hermite spans a primitive over its interval of the ray, 2 in the
-    /// thesis; 1 … [`Settings::MAX_SPANS`].
+    /// `hermite2 n`: n equally long Hermite spans a primitive over its interval of the ray, 2 in
+    /// the thesis; 1 … [`Settings::MAX_SPANS`].
     Spans(u32),
     /// Polynomials through samples.
     Lagrange,

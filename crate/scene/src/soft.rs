@@ -1,4 +1,5 @@
-//! The convolution surfaces of a scene: which elements are soft, and the field that those of each body make together.
+//! The convolution surfaces of a scene: which elements are soft, and the field that those of each
+//! body make together.
 
 use crate::{Curves, Element, Flesh, Fragile, Frame, Function, Scene, Shape};
 use crate::{curves, limbs};
@@ -12,7 +13,7 @@ pub struct SoftSurface {
     pub body: u32,
     /// The sum of the soft elements' fields; the surface is where it equals [`field::THRESHOLD`].
     pub sum: Sum,
-    /// For each primitive of the sum, the index of its element in [`Scene::elements`].
+    /// Index in [`Scene::elements`] of the element of each primitive of the sum.
     pub element: Vec<u32>,
 }
 
@@ -27,12 +28,13 @@ impl Scene {
 
     /// Whether an element adds primitives to the soft surface of its body.
     fn is_convolved(&self, element: &Element) -> bool {
-        let is_local = || element.shape.curves().is_some_and(|c| c.local.is_some());
-        self.settings.soft && self.flesh_of(element).is_some() && !is_local()
+        self.settings.soft
+            && self.flesh_of(element).is_some()
+            && element.shape.curves().is_none_or(|c| c.local.is_none())
     }
 
-    /// The flesh of an element that has a skeleton and a finish, whether or not soft elements are drawn soft. Skeletons of curves
-    /// are soft with any flesh.
+    /// The flesh of an element that has a skeleton and a finish, whether or not soft elements are
+    /// drawn soft. Skeletons of curves are soft with any flesh.
     fn flesh_of(&self, element: &Element) -> Option<&Flesh> {
         let flesh = self.flesh.get(element.flesh? as usize)?;
         let is_soft = match element.shape.curves() {
@@ -43,7 +45,7 @@ impl Scene {
         (drawn && is_soft).then_some(flesh)
     }
 
-    /// The same in lengths of the world.
+    /// Returns an element's flesh in lengths of the world; `None` if it has none.
     pub(crate) fn flesh_in_world(&self, element: &Element) -> Option<Flesh> {
         let flesh = self.flesh_of(element)?;
         Some(flesh.scaled(self.frame(element).growth, self.settings.blob_scale))
@@ -172,7 +174,8 @@ impl Scene {
         })
     }
 
-    /// The kernel's parameters for an element with this radius and this flesh, in lengths of the world.
+    /// The kernel's parameters for an element with this radius and this flesh, in lengths of the
+    /// world.
     fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
         // A cone has radii of its own, in place of its flesh's.
         let (radius, end_radius) = match element.shape {
@@ -202,13 +205,14 @@ impl Scene {
         }
     }
 
-    /// The primitives of all bodies that have some, in the order of [`Scene::bodies`]. A body may have functions beside them: its
-    /// whole function is that of [`Scene::surfaces`].
+    /// The primitives of all bodies that have some, in the order of [`Scene::bodies`]. A body may
+    /// have functions beside them: its whole function is that of [`Scene::surfaces`].
     #[must_use]
     pub fn soft_surfaces(&self) -> Vec<SoftSurface> {
         let mut surfaces: Vec<SoftSurface> = Vec::new();
         let mut of_body = vec![None; self.bodies.len()];
-        // As many primitives as there are elements, unless limbs are cut: growing lists would take up to twice the room.
+        // As many primitives as there are elements, unless limbs are cut: growing lists would take
+        // up to twice the room.
         let mut counts = vec![0; self.bodies.len()];
         for element in self.elements.iter().filter(|e| self.is_convolved(e)) {
             if let Some(count) = counts.get_mut(element.body as usize) {

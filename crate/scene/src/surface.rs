@@ -8,9 +8,9 @@ use std::sync::Arc;
 /// The function of a body. Its surface is where the function equals [`field::THRESHOLD`].
 #[derive(Clone, Debug)]
 pub enum Surface {
-    /// A plain sum of primitives.
+    /// Plain sum of primitives.
     Sum(SoftSurface),
-    /// Any other function.
+    /// Function of any other kind.
     Composed(ComposedSurface),
 }
 
@@ -21,7 +21,7 @@ pub struct ComposedSurface {
     pub body: u32,
     /// The function.
     pub function: Arc<dyn Implicit>,
-    /// For each element of the function, the index of an element in [`Scene::elements`].
+    /// Index in [`Scene::elements`] of each element of the function.
     pub element: Vec<u32>,
 }
 
@@ -57,7 +57,7 @@ impl Surface {
         }
     }
 
-    /// For each element of the function, the index of an element in [`Scene::elements`].
+    /// Index in [`Scene::elements`] of each element of the function.
     #[must_use]
     pub fn element(&self) -> &[u32] {
         match self {
@@ -67,8 +67,9 @@ impl Surface {
     }
 }
 
-/// The element that has the largest share of a function's value at a point; `None` if none has one. Elements of the function that
-/// came from one element of the scene count together; `element` tells from which.
+/// The element that has the largest share of a function's value at a point; `None` if none has one.
+/// Elements of the function that came from one element of the scene count together; `element` tells
+/// from which.
 #[must_use]
 pub fn strongest(function: &dyn Implicit, element: &[u32], point: glam::DVec3) -> Option<u32> {
     let mut shares = Vec::new();
@@ -82,13 +83,15 @@ pub fn strongest(function: &dyn Implicit, element: &[u32], point: glam::DVec3) -
 }
 
 impl Scene {
-    /// The functions of all bodies that have soft elements, in the order of [`Scene::bodies`], as their contacts deform them.
+    /// The functions of all bodies that have soft elements, in the order of [`Scene::bodies`], as
+    /// their contacts deform them.
     #[must_use]
     pub fn surfaces(&self) -> Vec<Surface> {
         self.in_contact(self.surfaces_apart())
     }
 
-    /// The same without contacts of two bodies; folds of a skeleton do press each other.
+    /// Returns [`Self::surfaces`] without contacts of two bodies; folds of a skeleton do press each
+    /// other.
     #[must_use]
     pub fn surfaces_apart(&self) -> Vec<Surface> {
         let mut functions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
@@ -122,7 +125,8 @@ impl Scene {
 }
 
 impl Scene {
-    /// The function of an element that is one; `None` if it is a sum of primitives, or its numbers are not usable.
+    /// The function of an element that is one; `None` if it is a sum of primitives, or its numbers
+    /// are not usable.
     fn function_of(&self, element: &Element, function: &Function) -> Option<Arc<dyn Implicit>> {
         if function.curves().is_none() {
             return function.implicit();

@@ -1,25 +1,27 @@
-//! What is around the shapes: background, sky, ground, fog and clouds of light; and the lens they are seen through.
+//! Surroundings of the shapes: background, sky, ground, fog and clouds of light; and the lens that
+//! they are seen through.
 
 use crate::Rgb;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// What a ray sees that meets nothing.
+/// Light that a ray gets which meets nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Background {
-    /// One colour.
+    /// Constant colour.
     Colour(Rgb),
-    /// Colours from above to below, evenly spaced; at least one. They change over directions between 30° above the
-    /// horizon and 30° below it, evenly in the sine of that angle.
+    /// Colours from above to below, evenly spaced; at least one. They change over directions
+    /// between 30° above the horizon and 30° below it, evenly in the sine of that angle.
     Gradient(Vec<Rgb>),
-    /// An image around the scene, by its index in [`Scene::images`](crate::Scene::images): the whole way round across
-    /// (its middle towards −z if y is up), from straight up to straight down.
+    /// An image around the scene, by its index in [`Scene::images`](crate::Scene::images): the
+    /// whole way round across (its middle towards −z if y is up), from straight up to straight
+    /// down.
     Image(u32),
 }
 
 impl Background {
-    /// One colour that stands for the whole: that of a background of one, else the mean of the colours; of an image,
-    /// which is not looked at here, grey.
+    /// Returns a colour that stands for the whole: the constant colour, the mean of a gradient's,
+    /// or grey for an image, which is not looked at here.
     #[must_use]
     pub fn mean(&self) -> Rgb {
         match self {
@@ -47,13 +49,14 @@ impl From<Rgb> for Background {
 
 /// Light that comes from everywhere above, except where something is in the way.
 ///
-/// A surface gets the mean of the sky over the directions of its half space that are free, weighted by their cosine to
-/// the normal, times its diffuse colour.
+/// A surface gets the mean of the sky over the directions of its half space that are free, weighted
+/// by their cosine to the normal, times its diffuse colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sky {
     /// Light from straight above, times an intensity.
     pub colour: Rgb,
-    /// Light from the horizon and from below. Between them it changes evenly with the sine of the height.
+    /// Light from the horizon and from below. Between them it changes evenly with the sine of the
+    /// height.
     pub horizon: Rgb,
     /// Directions per sample of a pixel, 1 … [`Sky::MAX_SAMPLES`].
     pub samples: u32,
@@ -64,17 +67,17 @@ impl Sky {
     pub const MAX_SAMPLES: u32 = 64;
 }
 
-/// A plane across the [`Scene::up`](crate::Scene::up) direction that is there to receive shadows.
+/// Plane across the [`Scene::up`](crate::Scene::up) direction that is there to receive shadows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ground {
-    /// Its diffuse colour.
+    /// Diffuse colour.
     pub colour: Rgb,
-    /// Its height along [`Scene::up`](crate::Scene::up); `None`: just below everything else.
+    /// Height along [`Scene::up`](crate::Scene::up); `None`: just below everything else.
     pub height: Option<f64>,
 }
 
-/// Air that swallows light and glows in its own colour: of what is seen at the distance d, the share `e^(−d/distance)`
-/// is left (see [`texture::fog`]).
+/// Air that swallows light and glows in its own colour: of what is seen at the distance d, the
+/// share `e^(−d/distance)` is left (see [`texture::fog`]).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fog {
     /// The fog's own colour.
@@ -86,15 +89,15 @@ pub struct Fog {
     pub height: Option<f64>,
 }
 
-/// A glowing ball of mist, without a surface; it casts no shadow and hides nothing.
+/// Glowing ball of mist, without a surface; it casts no shadow and hides nothing.
 ///
-/// Its density at the distance r from its middle is `density·(1 − (r/radius)²)²`; a ray gets the integral of the density
-/// along its way, in units of the radius, times the colour.
+/// Its density at the distance r from its middle is `density·(1 − (r/radius)²)²`; a ray gets the
+/// integral of the density along its way, in units of the radius, times the colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cloud {
     /// Colour times intensity.
     pub colour: Rgb,
-    /// Its middle.
+    /// Middle.
     pub position: DVec3,
     /// Radius beyond which there is none of it, > 0.
     pub radius: f64,
@@ -102,7 +105,8 @@ pub struct Cloud {
     pub density: f64,
 }
 
-/// The lens and the shutter of the [`Camera`](crate::Camera), which makes rays as through a pinhole.
+/// The lens and the shutter of the [`Camera`](crate::Camera), which makes rays as through a
+/// pinhole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Lens {
     /// Radius of the lens, ≥ 0; 0 is a pinhole.

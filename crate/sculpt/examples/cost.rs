@@ -1,17 +1,18 @@
-//! The cost of a step of a tool: the same brush, in vertices, on 10,000 and on 1,000,000 faces, and a step that touches 2,000
-//! vertices against a plain pass over as many. Medians, a JSON object a line; best run with `--release`, or by `cargo xtask bench sculpt`.
+//! The cost of a step of a tool: the same brush, in vertices, on 10,000 and on 1,000,000 faces, and
+//! a step that touches 2,000 vertices against a plain pass over as many. Medians, a JSON object a
+//! line; best run with `--release`, or by `cargo xtask bench sculpt`.
 
 use glam::DVec3;
 use sculpt::{Action, Clay, Decay, Drag, Form, PathPoint, Shape, Start, Sweep, Tool};
 use std::time::Instant;
 
-/// A ball with about so many faces.
+/// Returns a ball with about so many faces.
 fn ball(faces: u32) -> Clay {
     let n = (f64::from(faces) / 8.0).sqrt().round() as u32;
     Clay::of_shape(&Start::new(Shape::Sphere, n)).expect("a ball")
 }
 
-/// A tool whose range holds about so many vertices of the ball where it touches it.
+/// Returns a tool whose range holds about so many vertices of the ball where it touches it.
 fn sweep(clay: &Clay, action: Action, vertices: f64) -> Sweep {
     // A cap of the height h has a share of h / 2 of the ball, and the radius √(2 h).
     let share = vertices / clay.mesh().vertex_count() as f64;
@@ -22,8 +23,9 @@ fn sweep(clay: &Clay, action: Action, vertices: f64) -> Sweep {
     sweep
 }
 
-/// The median seconds of a step for each vertex that it and the step before move, that of a step, and the median number of these vertices. The steps are
-/// in proportion to the tool, so that on any number of faces the same happens.
+/// The median seconds of a step for each vertex that it and the step before move, that of a step,
+/// and the median number of these vertices. The steps are in proportion to the tool, so that on any
+/// number of faces the same happens.
 fn step(clay: &mut Clay, sweep: &Sweep) -> (f64, f64, usize) {
     let radius = sweep.range / 0.4;
     let mut seen = Vec::new();
@@ -94,7 +96,8 @@ fn main() {
             let (each_b, b, moved_b) = step(&mut large, &of_large);
             let plain = pass(moved_b);
             println!(
-                "{{\"action\": \"{name}\", \"small\": {moved_a}, \"small_ms\": {:.4}, \"large\": {moved_b}, \"large_ms\": {:.4}, \
+                "{{\"action\": \"{name}\", \"small\": {moved_a}, \"small_ms\": {:.4}, \
+                 \"large\": {moved_b}, \"large_ms\": {:.4}, \
                  \"times\": {:.3}, \"passes\": {:.1}}}",
                 1e3 * a,
                 1e3 * b,

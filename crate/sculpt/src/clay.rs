@@ -9,7 +9,8 @@ use crate::start::Start;
 use glam::DVec3;
 use mesh::{Built, FaceId, HalfEdgeMesh, PolygonSoup, Repairs, TriangleMesh, VertexId};
 
-/// A mesh that is sculpted. For each vertex it has a mask, from 0 (free) to 1 (neither moved nor removed), and a colour.
+/// Mesh that is sculpted. For each vertex it has a mask, from 0 (free) to 1 (neither moved nor
+/// removed), and a colour.
 ///
 /// ```
 /// use sculpt::{Clay, Refinement, Shape, Start};
@@ -42,15 +43,15 @@ const WHITE: [f32; 3] = [1.0; 3];
 /// The faces that refinements, deletions and the like work on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Region {
-    /// All faces.
+    /// The region is all faces.
     #[default]
     All,
-    /// These, in ascending order.
+    /// The given faces, in ascending order.
     Faces(Vec<FaceId>),
 }
 
 impl Clay {
-    /// A start shape.
+    /// Makes clay from a start shape.
     ///
     /// # Errors
     /// If it would have too many faces.
@@ -60,13 +61,13 @@ impl Clay {
         Ok(clay)
     }
 
-    /// Any polygons; what is no manifold is repaired, and the repairs are returned.
+    /// Makes clay from any polygons; what is no manifold is repaired, and the repairs are returned.
     ///
     /// # Errors
     /// If there are no faces or too many, or a position is not usable.
     pub fn of_polygons(soup: &PolygonSoup) -> Result<(Self, Repairs), Error> {
         check(soup)?;
-        Self::of_built(HalfEdgeMesh::repaired(soup)?)
+        Self::of_built(HalfEdgeMesh::repair(soup)?)
     }
 
     fn of_built(built: Built) -> Result<(Self, Repairs), Error> {
@@ -89,15 +90,16 @@ impl Clay {
         Ok((clay, built.repairs))
     }
 
-    /// A triangle mesh with its colours; what is no manifold is repaired, and the repairs are returned. Vertices at the same
-    /// place become one, as files of single triangles need it.
+    /// Makes clay from a triangle mesh with its colours; what is no manifold is repaired, and the
+    /// repairs are returned. Vertices at the same place become one, as files of single triangles
+    /// need it.
     ///
     /// # Errors
     /// As [`Clay::of_polygons`].
     pub fn of_triangles(mesh: &TriangleMesh) -> Result<(Self, Repairs), Error> {
-        let (joined, first) = joined(mesh);
+        let (joined, first) = join_vertices(mesh);
         check(&joined)?;
-        let built = HalfEdgeMesh::repaired(&joined)?;
+        let built = HalfEdgeMesh::repair(&joined)?;
         let sources = built.sources.clone();
         let (mut clay, repairs) = Self::of_built(built)?;
         if let Some(colors) = &mesh.colors {
@@ -145,7 +147,8 @@ impl Clay {
         self.work
     }
 
-    /// The sum of the normals of the faces at a vertex by area, of length 1; zero where they cancel out.
+    /// The sum of the normals of the faces at a vertex by area, of length 1; zero where they cancel
+    /// out.
     #[must_use]
     pub fn normal(&self, v: VertexId) -> DVec3 {
         let faces = self.mesh.vertex_faces(v);
@@ -184,7 +187,7 @@ impl Clay {
         Ok(mesh)
     }
 
-    /// A hash of all bits: of positions, connections, masks, colours, region and symmetry.
+    /// Returns a hash of all bits: of positions, connections, masks, colours, region and symmetry.
     #[must_use]
     pub fn digest(&self) -> u64 {
         let mut hash = Fnv::default();
@@ -306,8 +309,9 @@ fn is_near(p: DVec3) -> bool {
     p.is_finite() && p.abs().max_element() <= FARTHEST
 }
 
-/// Triangles whose vertices at the same place are one, and which vertex each was first.
-fn joined(mesh: &TriangleMesh) -> (PolygonSoup, Vec<u32>) {
+/// Makes one vertex of those at the same place. Returns the triangles, and for each vertex the
+/// first of the mesh's at its place.
+fn join_vertices(mesh: &TriangleMesh) -> (PolygonSoup, Vec<u32>) {
     let key = |i: &u32| {
         (mesh.positions[*i as usize] + DVec3::ZERO)
             .to_array()

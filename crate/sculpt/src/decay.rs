@@ -2,8 +2,8 @@
 
 use core::f64::consts::PI;
 
-/// A function of the distance from a vertex that is moved, t from 0 to 1 at the end of the range. It falls from 1, and is 0
-/// beyond 1.
+/// Function of the distance from a vertex that is moved, t from 0 to 1 at the end of the range. It
+/// falls from 1, and is 0 beyond 1.
 ///
 /// ```
 /// use sculpt::Decay;
@@ -28,7 +28,7 @@ pub enum Decay {
 }
 
 impl Decay {
-    /// All of them.
+    /// The decay functions, in the order of the manual.
     pub const ALL: [Self; 5] = [Self::Goo, Self::Bell, Self::Cusp, Self::Cone, Self::Flat];
 
     /// The value at t ≥ 0, in 0 … 1.
@@ -40,8 +40,9 @@ impl Decay {
         let s = 1.0 - t;
         match self {
             Self::Goo => {
-                let (t2, square) = (t * t, |x: f64| x * x);
-                square(1.0 - t2 * t2)
+                let square = t * t;
+                let root = 1.0 - square * square;
+                root * root
             }
             Self::Bell => 0.5 * (1.0 + libm::cos(PI * t)),
             Self::Cusp => s * s,
@@ -50,7 +51,7 @@ impl Decay {
         }
     }
 
-    /// The word for it.
+    /// Returns the word for it in texts of strokes.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -62,7 +63,7 @@ impl Decay {
         }
     }
 
-    /// The one with this name, if there is one.
+    /// Returns the decay function with a name, if there is one.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|decay| decay.name() == name)

@@ -1,4 +1,4 @@
-//! What a stroke has changed, for undo.
+//! Changes that a stroke has made, for undo.
 
 use crate::clay::{Clay, Region, State};
 use glam::DVec3;
@@ -27,10 +27,11 @@ pub(crate) struct Topology {
 impl Topology {
     /// The changes since an earlier state.
     pub fn between(old: &State, new: &Clay) -> Self {
-        let bits = |c: &[f32; 3]| c.map(f32::to_bits);
         Self {
             mesh: MeshPatch::between(&old.mesh, &new.mesh),
-            colors: ListPatch::between(&old.colors, &new.colors, |a, b| bits(a) == bits(b)),
+            colors: ListPatch::between(&old.colors, &new.colors, |a, b| {
+                a.map(f32::to_bits) == b.map(f32::to_bits)
+            }),
             masks: ListPatch::between(&old.masks, &new.masks, |a, b| a.to_bits() == b.to_bits()),
         }
     }

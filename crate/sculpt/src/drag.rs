@@ -1,4 +1,4 @@
-//! A tool at work: a sweep, point by point.
+//! Tool at work: a sweep, point by point.
 
 use crate::clay::Clay;
 use crate::decay::Decay;
@@ -12,10 +12,10 @@ use glam::DVec3;
 use mesh::{Aabb, FaceId, VertexId};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A vertex and its motion.
+/// Vertex and its motion.
 type Motion = (u32, DVec3);
 
-/// A tool on its way. Each point takes time in proportion to what the tool touches there.
+/// Tool on its way. Each point takes time in proportion to what the tool touches there.
 pub struct Drag<'a> {
     solid: Box<dyn Solid + 'a>,
     action: Action,
@@ -36,13 +36,13 @@ pub struct Drag<'a> {
 }
 
 impl<'a> Drag<'a> {
-    /// A tool at the start of its way; the sweep's path is not used.
+    /// Returns a tool at the start of its way; the sweep's path is not used.
     #[must_use]
     pub fn new(clay: &Clay, sweep: &Sweep) -> Self {
         Self::with_solid(clay, sweep, Box::new(sweep.tool.solid()))
     }
 
-    /// The same with another solid as the tool: a body of a model.
+    /// Like [`Drag::new`] with another solid as the tool: a body of a model.
     ///
     /// ```
     /// use glam::DVec3;
@@ -61,13 +61,10 @@ impl<'a> Drag<'a> {
     pub fn with_solid(clay: &Clay, sweep: &Sweep, solid: Box<dyn Solid + 'a>) -> Self {
         let mut copies = vec![DVec3::ONE];
         for axis in (0..3).filter(|axis| clay.symmetry[*axis]) {
-            let mirrored = |signs: &DVec3| {
-                let mut signs = *signs;
+            for mut signs in copies.clone() {
                 signs[axis] = -1.0;
-                signs
-            };
-            let mirrored: Vec<DVec3> = copies.iter().map(mirrored).collect();
-            copies.extend(mirrored);
+                copies.push(signs);
+            }
         }
         Self {
             solid,
@@ -139,7 +136,7 @@ impl<'a> Drag<'a> {
     }
 
     /// The vertices inside a copy of the tool, in ascending order.
-    fn touched(&self, clay: &mut Clay, signs: DVec3, center: DVec3) -> Vec<u32> {
+    fn vertices_inside(&self, clay: &mut Clay, signs: DVec3, center: DVec3) -> Vec<u32> {
         let own = self.solid.bounds();
         let corners = [own.min, own.max].map(|corner| (corner + center) * signs);
         let mut near = Vec::new();
@@ -155,12 +152,14 @@ impl<'a> Drag<'a> {
 
     /// The weights with which vertices follow a copy of the tool.
     fn weights(&self, clay: &mut Clay, signs: DVec3, center: DVec3) -> Vec<(u32, f64)> {
-        let source = |vertex: u32| Source {
-            vertex,
-            strength: 1.0,
-        };
-        let touched = self.touched(clay, signs, center);
-        let sources: Vec<Source> = touched.into_iter().map(source).collect();
+        let touched = self.vertices_inside(clay, signs, center);
+        let sources: Vec<Source> = touched
+            .into_iter()
+            .map(|vertex| Source {
+                vertex,
+                strength: 1.0,
+            })
+            .collect();
         let reached = self.spread(clay, &sources);
         reached
             .into_iter()
@@ -183,8 +182,11 @@ impl<'a> Drag<'a> {
     }
 
     fn grab(&mut self, clay: &mut Clay, center: DVec3) {
-        let grab = |signs: &DVec3| self.weights(clay, *signs, center);
-        self.grabbed = self.copies.iter().map(grab).collect();
+        self.grabbed = self
+            .copies
+            .iter()
+            .map(|signs| self.weights(clay, *signs, center))
+            .collect();
     }
 
     fn pull(&mut self, clay: &mut Clay, way: DVec3, pressure: f64) {
@@ -204,7 +206,7 @@ impl<'a> Drag<'a> {
             Action::Push => self.push(clay, point),
             Action::Region(_) => {
                 for signs in self.copies.clone() {
-                    let touched = self.touched(clay, signs, point.position);
+                    let touched = self.vertices_inside(clay, signs, point.position);
                     let faces = touched
                         .iter()
                         .flat_map(|v| clay.mesh.vertex_faces(VertexId(*v)));
@@ -219,13 +221,15 @@ impl<'a> Drag<'a> {
         let mut motions: Vec<Motion> = Vec::new();
         let mut inside: Vec<Vec<u32>> = Vec::new();
         for signs in &self.copies {
-            let touched = self.touched(clay, *signs, point.position);
-            let driven = self.driven_out(clay, &touched, *signs, point);
-            let source = |(v, motion): &Motion| Source {
-                vertex: *v,
-                strength: motion.length(),
-            };
-            let sources: Vec<Source> = driven.iter().map(source).collect();
+            let touched = self.vertices_inside(clay, *signs, point.position);
+            let driven = self.drive_out(clay, &touched, *signs, point);
+            let sources: Vec<Source> = driven
+                .iter()
+                .map(|(v, motion)| Source {
+                    vertex: *v,
+                    strength: motion.length(),
+                })
+                .collect();
             for (v, source, weight) in self.spread(clay, &sources) {
                 motions.push((v, driven[source as usize].1 * weight));
             }
@@ -238,29 +242,31 @@ impl<'a> Drag<'a> {
         // What a neighbour's motion has not brought out.
         let mut motions: Vec<Motion> = Vec::new();
         for (signs, touched) in self.copies.iter().zip(&inside) {
-            motions.extend(self.driven_out(clay, touched, *signs, point));
+            motions.extend(self.drive_out(clay, touched, *signs, point));
         }
         self.move_vertices(clay, motions);
     }
 
     /// The motions that drive vertices out of a copy of the tool.
-    fn driven_out(
+    fn drive_out(
         &self,
         clay: &Clay,
         vertices: &[u32],
         signs: DVec3,
         point: PathPoint,
     ) -> Vec<Motion> {
-        let motion = |v: &u32| {
-            let local = clay.mesh.position(VertexId(*v)) * signs - point.position;
-            let out = self.solid.driven_out(local)? - local;
-            Some((*v, out * signs * point.pressure))
-        };
-        vertices.iter().filter_map(motion).collect()
+        vertices
+            .iter()
+            .filter_map(|v| {
+                let local = clay.mesh.position(VertexId(*v)) * signs - point.position;
+                let out = self.solid.drive_out(local)? - local;
+                Some((*v, out * signs * point.pressure))
+            })
+            .collect()
     }
 
-    /// Moves vertices; of several motions of a vertex in the same direction of an axis the largest counts, so that a
-    /// tool and its mirror images are one tool where they overlap.
+    /// Moves vertices; of several motions of a vertex in the same direction of an axis the largest
+    /// counts, so that a tool and its mirror images are one tool where they overlap.
     fn move_vertices(&mut self, clay: &mut Clay, mut motions: Vec<Motion>) {
         motions.sort_by_key(|(v, _)| *v);
         let mut places: Vec<Motion> = Vec::with_capacity(motions.len());
@@ -306,34 +312,34 @@ impl<'a> Drag<'a> {
             weights.extend(self.weights(clay, *signs, point.position));
         }
         weights.sort_by_key(|(v, _)| *v);
-        let strongest = |group: &[(u32, f64)]| {
+        let weights = weights.chunk_by(|a, b| a.0 == b.0).map(|group| {
             let most = group.iter().map(|(_, weight)| *weight).fold(0.0, f64::max);
             (group[0].0, most * point.pressure)
-        };
-        let weights = weights.chunk_by(|a, b| a.0 == b.0).map(strongest);
+        });
         match self.action {
             Action::Mask(value) => weights.for_each(|(v, weight)| {
                 let mask = &mut clay.masks[v as usize];
                 self.masks.entry(v).or_insert(*mask);
-                *mask = mixed(*mask, value, weight);
+                *mask = mix(*mask, value, weight);
             }),
             Action::Paint(color) => {
                 let color = color.map(linear);
                 weights.for_each(|(v, weight)| {
                     let own = &mut clay.colors[v as usize];
                     self.colors.entry(v).or_insert(*own);
-                    *own = [0, 1, 2].map(|k| mixed(own[k], color[k], weight));
+                    *own = [0, 1, 2].map(|k| mix(own[k], color[k], weight));
                 });
             }
             _ => {
-                let place = |(v, weight): (u32, f64)| {
-                    let id = VertexId(v);
-                    let p = clay.mesh.position(id);
-                    let free = 1.0 - f64::from(clay.mask(id));
-                    let motion = mean_of_neighbors(&clay.mesh, id) - p;
-                    (v, motion * weight, free)
-                };
-                let moved: Vec<(u32, DVec3, f64)> = weights.map(place).collect();
+                let moved: Vec<(u32, DVec3, f64)> = weights
+                    .map(|(v, weight)| {
+                        let id = VertexId(v);
+                        let p = clay.mesh.position(id);
+                        let free = 1.0 - f64::from(clay.mask(id));
+                        let motion = mean_of_neighbors(&clay.mesh, id) - p;
+                        (v, motion * weight, free)
+                    })
+                    .collect();
                 let moving = moved.into_iter().filter(|(_, _, free)| *free > 0.0);
                 let motions = moving.map(|(v, motion, _)| (v, motion)).collect();
                 self.move_vertices(clay, motions);
@@ -342,8 +348,8 @@ impl<'a> Drag<'a> {
     }
 }
 
-/// A value on the way to another, in 0 … 1.
-fn mixed(from: f32, to: f64, weight: f64) -> f32 {
+/// Returns a value on the way to another, `from + (to − from)·weight`, cut to 0 … 1.
+fn mix(from: f32, to: f64, weight: f64) -> f32 {
     let from = f64::from(from);
     ((from + (to - from) * weight) as f32).clamp(0.0, 1.0)
 }

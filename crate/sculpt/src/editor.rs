@@ -1,4 +1,5 @@
-//! Edits of elements that keep what is beside them: masks, colours, and which faces are in the region.
+//! Edits of elements that keep what is beside them: masks, colours, and which faces are in the
+//! region.
 
 use crate::clay::{Clay, Region, mean_color};
 use crate::error::{Error, fail};
@@ -6,10 +7,10 @@ use crate::limits::MAX_FACES;
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, VertexId};
 
-/// A clay whose elements are edited.
+/// Clay whose elements are edited.
 pub(crate) struct Editor<'a> {
     pub clay: &'a mut Clay,
-    /// For each face slot, whether it is in the region.
+    /// Tells of each face slot whether it is in the region.
     pub in_region: Vec<bool>,
     /// `true` if the region is all.
     is_all: bool,
@@ -87,7 +88,8 @@ impl<'a> Editor<'a> {
         Ok(v)
     }
 
-    /// Divides a face by an edge between the origins of two of its half-edges; both parts are in the region if it was.
+    /// Divides a face by an edge between the origins of two of its half-edges; both parts are in
+    /// the region if it was.
     pub fn split_face(&mut self, a: HalfEdgeId, b: HalfEdgeId) -> Result<FaceId, Error> {
         let old = self.clay.mesh.face(a);
         let new = self.clay.mesh.split_face(a, b)?;
@@ -101,8 +103,10 @@ impl<'a> Editor<'a> {
         let is_in = self.is_in(f);
         let corners: Vec<VertexId> = self.clay.mesh.face_vertices(f).collect();
         let count = corners.len() as f64;
-        let share = |v: &VertexId| self.clay.mesh.position(*v) / count;
-        let center: DVec3 = corners.iter().map(share).sum();
+        let center: DVec3 = corners
+            .iter()
+            .map(|v| self.clay.mesh.position(*v) / count)
+            .sum();
         let v = self.clay.mesh.poke_face(f, center)?;
         self.set_mean(v, &corners);
         let faces: Vec<FaceId> = self.clay.mesh.vertex_faces(v).collect();

@@ -1,26 +1,26 @@
 //! The grammar of texts of strokes: one table for messages and the manual.
 
-/// A line that a text of strokes may have.
+/// Command: a kind of line in a text of strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Command {
-    /// Its first word.
+    /// First word of the line.
     pub name: &'static str,
-    /// Its forms; what is in brackets may be left out, `|` is between choices.
+    /// Forms of the line; what is in brackets may be left out, `|` is between choices.
     pub forms: &'static [&'static str],
-    /// What it does, in one line.
+    /// Effect, in one line.
     pub meaning: &'static str,
-    /// What else is to be known; may be empty.
+    /// Details; may be empty.
     pub details: &'static str,
 }
 
-/// What TOOL stands for in [`Command::forms`].
+/// Meaning of TOOL in [`Command::forms`].
 pub const TOOL: &str = "box|cylinder|sphere sx sy sz [e1 e2] [turn ax ay az]";
-/// What DECAY stands for.
+/// Meaning of DECAY.
 pub const DECAY: &str = "[goo|bell|cusp|cone|flat range] [normal|tangent] [only]";
-/// What PATH stands for.
+/// Meaning of PATH.
 pub const PATH: &str = "x y z [pressure], x y z [pressure], …";
 
-/// All commands, in the order of the manual.
+/// The commands, in the order of the manual.
 pub const COMMANDS: [Command; 16] = [
     Command {
         name: "strokes",
@@ -35,7 +35,10 @@ pub const COMMANDS: [Command; 16] = [
             "start file NAME",
         ],
         meaning: "the mesh that is sculpted",
-        details: "A shape of size −1 … 1 whose edges are divided n times, stretched by sx, sy and sz: a plane z = 0 of 2n² triangles, a sphere of 8n², a tetrahedron of 4n², a cylinder along z or a box of 12n². Or the mesh of a file of the project (OBJ, PLY, STL, GLB); one that is no manifold is repaired.",
+        details: "A shape of size −1 … 1 whose edges are divided n times, stretched by sx, sy and \
+                  sz: a plane z = 0 of 2n² triangles, a sphere of 8n², a tetrahedron of 4n², a \
+                  cylinder along z or a box of 12n². Or the mesh of a file of the project (OBJ, \
+                  PLY, STL, GLB); one that is no manifold is repaired.",
     },
     Command {
         name: "stage",
@@ -52,14 +55,17 @@ pub const COMMANDS: [Command; 16] = [
     Command {
         name: "push",
         forms: &["push TOOL DECAY : PATH"],
-        meaning: "drives vertices inside the tool out, along the ray from its centre onto its surface",
-        details: "From outside it dents, from inside it swells. Neighbours within the range, measured along edges, take the decay function's share of the motion.",
+        meaning: "drives vertices inside the tool out, along the ray from its centre onto its \
+                  surface",
+        details: "From outside it dents, from inside it swells. Neighbours within the range, \
+                  measured along edges, take the decay function's share of the motion.",
     },
     Command {
         name: "pull",
         forms: &["pull TOOL DECAY : PATH"],
         meaning: "vertices inside the tool at the start of its path follow it",
-        details: "Neighbours within the range, measured along edges, take the decay function's share.",
+        details: "Neighbours within the range, measured along edges, take the decay function's \
+                  share.",
     },
     Command {
         name: "smooth",
@@ -71,7 +77,8 @@ pub const COMMANDS: [Command; 16] = [
         name: "mask",
         forms: &["mask value TOOL DECAY : PATH", "mask clear|invert"],
         meaning: "gives vertices inside the tool a mask: 0 is free, 1 neither moved nor removed",
-        details: "Masks stay with the vertices when the mesh is refined; new vertices get the mean.",
+        details: "Masks stay with the vertices when the mesh is refined; new vertices get the \
+                  mean.",
     },
     Command {
         name: "paint",
@@ -93,7 +100,10 @@ pub const COMMANDS: [Command; 16] = [
         name: "refine",
         forms: &["refine [propagate|local|polygons|centers]"],
         meaning: "divides the faces of the region",
-        details: "Triangles become four, polygons get a centre vertex. With `propagate`, which is usual, faces beside the region are divided so that all are triangles; with `local` they only gain vertices. `polygons` leaves triangles as they are; `centers` gives every face a centre vertex.",
+        details: "Triangles become four, polygons get a centre vertex. With `propagate`, which is \
+                  usual, faces beside the region are divided so that all are triangles; with \
+                  `local` they only gain vertices. `polygons` leaves triangles as they are; \
+                  `centers` gives every face a centre vertex.",
     },
     Command {
         name: "loop",
@@ -104,7 +114,8 @@ pub const COMMANDS: [Command; 16] = [
     Command {
         name: "average",
         forms: &["average [n [share]]"],
-        meaning: "smooths the region without subdivision: vertices go a share of the way (1 unless told) to the mean of their neighbours, n times",
+        meaning: "smooths the region without subdivision: vertices go a share of the way (1 unless \
+                  told) to the mean of their neighbours, n times",
         details: "",
     },
     Command {
@@ -122,7 +133,8 @@ pub const COMMANDS: [Command; 16] = [
     Command {
         name: "simplify",
         forms: &["simplify share"],
-        meaning: "collapses edges of the region until a share of its faces is left, those first that change the shape least",
+        meaning: "collapses edges of the region until a share of its faces is left, those first \
+                  that change the shape least",
         details: "Vertices with faces outside the region or a mask of 1 stay.",
     },
 ];

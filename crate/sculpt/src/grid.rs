@@ -7,8 +7,8 @@ const NONE: u32 = u32::MAX;
 /// Edge lengths that a cell is wide.
 const WIDTH: f64 = 4.0;
 
-/// Vertices by the cells of a grid of cubes. Cells share buckets, so that any extent takes the same space; what is found is
-/// tested anyway.
+/// Vertices by the cells of a grid of cubes. Cells share buckets, so that any extent takes the same
+/// space; what is found is tested anyway.
 #[derive(Clone, Debug, Default)]
 pub struct Grid {
     width: f64,
@@ -24,7 +24,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid for vertices of some slots and edges of a mean length.
+    /// Returns a grid for vertices of some slots and edges of a mean length.
     pub fn new(slots: usize, mean_edge: f64) -> Self {
         let width = WIDTH * mean_edge;
         let buckets = (slots / 4).next_power_of_two().max(16);
@@ -95,7 +95,8 @@ impl Grid {
         }
     }
 
-    /// Vertices that may be in a box, in ascending order, and more: all of the cells that the box touches.
+    /// Vertices that may be in a box, in ascending order, and more: all of the cells that the box
+    /// touches.
     pub fn near(&self, bounds: &Aabb, out: &mut Vec<u32>) {
         out.clear();
         let low = bounds.min.to_array().map(|x| self.cell(x));

@@ -8,20 +8,20 @@ use crate::limits::MAX_SIDES;
 use mesh::{FaceId, HalfEdgeId, VertexId};
 use std::collections::BTreeSet;
 
-/// What deletion leaves of the region.
+/// Remainder of a region that is deleted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deletion {
-    /// One face in place of each connected part.
+    /// Faces: one in place of each connected part.
     Face,
     /// Holes.
     Hole,
 }
 
 impl Deletion {
-    /// Both.
+    /// The choices, in the order of the manual.
     pub const ALL: [Self; 2] = [Self::Face, Self::Hole];
 
-    /// The word for it.
+    /// Returns the word for it in texts of strokes.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -32,8 +32,8 @@ impl Deletion {
 }
 
 impl Clay {
-    /// Closes the holes beside the region by triangles about a centre vertex, the mean of the vertices around. The
-    /// triangles belong to the region.
+    /// Closes the holes beside the region by triangles about a centre vertex, the mean of the
+    /// vertices around. The triangles belong to the region.
     ///
     /// # Errors
     /// If the mesh would become too large; then it is as it was before.
@@ -47,8 +47,10 @@ impl Clay {
             for h in editor.clay.mesh.boundary_loops() {
                 let mesh = &editor.clay.mesh;
                 let around: Vec<HalfEdgeId> = mesh.loop_half_edges(h).collect();
-                let is_beside = |h: &HalfEdgeId| editor.region_face(mesh.twin(*h)).is_some();
-                if around.iter().any(is_beside) {
+                if around
+                    .iter()
+                    .any(|h| editor.region_face(mesh.twin(*h)).is_some())
+                {
                     editor.need_room(around.len())?;
                     let corners: Vec<VertexId> = around.iter().map(|h| mesh.origin(*h)).collect();
                     let center = editor.clay.mesh.fill_hole(h)?;
@@ -62,19 +64,19 @@ impl Clay {
         })
     }
 
-    /// Deletes the region, but for faces with a vertex whose mask is 1. Of a region deleted to one face, the new faces are
-    /// the region then; after a deletion to a hole it is all.
+    /// Deletes the region, but for faces with a vertex whose mask is 1. Of a region deleted to one
+    /// face, the new faces are the region then; after a deletion to a hole it is all.
     ///
     /// # Errors
-    /// If nothing would be left; if a part that should become one face has a hole or ends with the mesh. Then all is
-    /// as it was before.
+    /// If nothing would be left; if a part that should become one face has a hole or ends with the
+    /// mesh. Then all is as it was before.
     pub fn delete(&mut self, to: Deletion) -> Result<(), Error> {
         self.delete_with(to).map(drop)
     }
 
     pub(crate) fn delete_with(&mut self, to: Deletion) -> Result<Delta, Error> {
         self.change(|clay| {
-            let faces = clay.unmasked_faces();
+            let faces = clay.free_faces();
             if faces.len() == clay.mesh.face_count() {
                 return fail("nothing would be left: choose a region first");
             }
@@ -96,8 +98,8 @@ impl Clay {
         })
     }
 
-    /// Simplifies the region to a share of its faces: edges are collapsed, those first that change the shape least. Vertices
-    /// with faces outside the region or a mask of 1 stay.
+    /// Simplifies the region to a share of its faces: edges are collapsed, those first that change
+    /// the shape least. Vertices with faces outside the region or a mask of 1 stay.
     ///
     /// # Errors
     /// If there is no such share.
@@ -140,10 +142,9 @@ impl Clay {
     }
 
     /// The faces of the region without a vertex whose mask is 1.
-    fn unmasked_faces(&self) -> Vec<FaceId> {
+    fn free_faces(&self) -> Vec<FaceId> {
         let mut faces = self.region_faces();
-        let is_free = |v: VertexId| self.mask(v) < 1.0;
-        faces.retain(|f| self.mesh.face_vertices(*f).all(is_free));
+        faces.retain(|f| self.mesh.face_vertices(*f).all(|v| self.mask(v) < 1.0));
         faces
     }
 
@@ -183,17 +184,19 @@ impl Clay {
         let mesh = &self.mesh;
         let sides = || part.iter().flat_map(|f| mesh.face_half_edges(*f));
         let own: BTreeSet<FaceId> = part.iter().copied().collect();
-        let is_rim = |h: &HalfEdgeId| match mesh.face(mesh.twin(*h)) {
-            Some(f) => !own.contains(&f),
-            None => true,
-        };
         if sides().any(|h| mesh.is_boundary_edge(h)) {
             return fail(
-                "a part of the region ends with the mesh and cannot become one face: fill the hole first, or use `delete hole`",
+                "a part of the region ends with the mesh and cannot become one face: fill the hole \
+                 first, or use `delete hole`",
             );
         }
         let vertices: BTreeSet<VertexId> = sides().map(|h| mesh.origin(h)).collect();
-        let rim: Vec<HalfEdgeId> = sides().filter(is_rim).collect();
+        let rim: Vec<HalfEdgeId> = sides()
+            .filter(|h| match mesh.face(mesh.twin(*h)) {
+                Some(f) => !own.contains(&f),
+                None => true,
+            })
+            .collect();
         // Inner edges come twice.
         let edges = (sides().count() - rim.len()) / 2 + rim.len();
         let euler = (vertices.len() + part.len()) as i64 - edges as i64;
@@ -206,7 +209,8 @@ impl Clay {
         if rim.len() > MAX_SIDES {
             return fail(format!("a face has at most {MAX_SIDES} sides"));
         }
-        // Where the faces around form another fan at a corner, or the hole would be that of two faces, all is refused.
+        // Where the faces around form another fan at a corner, or the hole would be that of two
+        // faces, all is refused.
         let first = rim[0];
         let copies = self.mesh.delete_faces(part)?;
         if !copies.is_empty() || !self.mesh.has_half_edge(first) {

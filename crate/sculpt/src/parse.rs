@@ -43,7 +43,7 @@ pub fn script(text: &str) -> Result<Script, Vec<Diagnostic>> {
     }
     let end = Line::new("", text.split('\n').count(), text.len());
     if problems.is_empty() && reader.start.is_none() {
-        problems.push(end.expected("there must be `strokes 1`, then a `start`"));
+        problems.push(end.problem_here("there must be `strokes 1`, then a `start`"));
     }
     match reader.start {
         Some(start) if problems.is_empty() => Ok(Script {
@@ -55,7 +55,7 @@ pub fn script(text: &str) -> Result<Script, Vec<Diagnostic>> {
     }
 }
 
-/// What has been read.
+/// State of the parser: the part of a text that has been read.
 #[derive(Default)]
 struct ScriptReader {
     has_heading: bool,
@@ -107,7 +107,11 @@ impl ScriptReader {
     }
 }
 
-/// A line that is read from left to right.
+fn is_sign(c: char) -> bool {
+    c == ':' || c == ','
+}
+
+/// Line that is read from left to right.
 struct Line<'a> {
     text: &'a str,
     number: usize,
@@ -115,7 +119,7 @@ struct Line<'a> {
     offset: usize,
     /// Bytes that are read.
     at: usize,
-    /// Where the last token began.
+    /// Bytes before the last token.
     last: usize,
 }
 
@@ -157,7 +161,6 @@ impl<'a> Line<'a> {
     fn peek(&mut self) -> &'a str {
         self.skip();
         let rest = &self.text[self.at..];
-        let is_sign = |c: char| c == ':' || c == ',';
         if rest.starts_with(is_sign) {
             return &rest[..1];
         }
@@ -172,6 +175,14 @@ impl<'a> Line<'a> {
         token
     }
 
+    /// Reads a number of levels, from 1; 1 if none is given.
+    fn levels(&mut self, what: &str) -> Parsed<u32> {
+        if self.is_number() {
+            return self.whole_number(what, 1, MAX_LEVELS);
+        }
+        Ok(1)
+    }
+
     /// Reads a token if it is this one.
     fn takes(&mut self, token: &str) -> bool {
         let is_next = self.peek() == token;
@@ -181,8 +192,8 @@ impl<'a> Line<'a> {
         is_next
     }
 
-    /// The problem that something else stands here.
-    fn expected(&self, what: &str) -> Diagnostic {
+    /// Returns the problem that something else than `what` stands here.
+    fn problem_here(&self, what: &str) -> Diagnostic {
         let rest = &self.text[self.at..];
         let at = self.at + (rest.len() - rest.trim_start().len());
         let length = self.text[at..].find(char::is_whitespace);
@@ -190,14 +201,14 @@ impl<'a> Line<'a> {
         self.place(at, end).problem(what.into())
     }
 
-    /// The problem that the last token is not right.
+    /// Returns the problem that the last token is not right.
     fn wrong(&self, message: impl Into<String>) -> Diagnostic {
         self.place(self.last, self.at).problem(message.into())
     }
 
     fn word(&mut self, what: &str) -> Parsed<&'a str> {
         match self.peek() {
-            "" | ":" | "," => Err(self.expected(what)),
+            "" | ":" | "," => Err(self.problem_here(what)),
             _ => Ok(self.next()),
         }
     }
@@ -206,7 +217,7 @@ impl<'a> Line<'a> {
         if self.is_done() {
             return Ok(());
         }
-        Err(self.expected("the line should end here"))
+        Err(self.problem_here("the line should end here"))
     }
 
     /// Whether a number comes next.
@@ -216,7 +227,7 @@ impl<'a> Line<'a> {
 
     fn number(&mut self, what: &str, low: f64, high: f64) -> Parsed<f64> {
         match self.peek().parse::<f64>() {
-            Err(_) => Err(self.expected(&format!("a number is expected: {what}"))),
+            Err(_) => Err(self.problem_here(&format!("a number is expected: {what}"))),
             Ok(number) => {
                 self.next();
                 if (low..=high).contains(&number) {
@@ -230,7 +241,7 @@ impl<'a> Line<'a> {
 
     fn whole_number(&mut self, what: &str, low: u32, high: u32) -> Parsed<u32> {
         match self.peek().parse::<u32>() {
-            Err(_) => Err(self.expected(&format!("a whole number is expected: {what}"))),
+            Err(_) => Err(self.problem_here(&format!("a whole number is expected: {what}"))),
             Ok(number) => {
                 self.next();
                 if (low..=high).contains(&number) {
@@ -253,7 +264,7 @@ impl<'a> Line<'a> {
         if self.takes("file") {
             let name = self.text[self.at..].trim();
             if name.is_empty() {
-                return Err(self.expected("the name of a file is expected"));
+                return Err(self.problem_here("the name of a file is expected"));
             }
             self.at = self.text.len();
             return Ok(Beginning::File(name.into()));
@@ -261,7 +272,7 @@ impl<'a> Line<'a> {
         let shapes = Shape::ALL.into_iter();
         let name = self.peek();
         let Some(shape) = shapes.into_iter().find(|shape| shape.name() == name) else {
-            return Err(self.expected(
+            return Err(self.problem_here(
                 "a start shape is expected: plane, sphere, tetrahedron, cylinder or box; or `file`",
             ));
         };
@@ -276,17 +287,11 @@ impl<'a> Line<'a> {
     }
 
     fn stroke(&mut self, name: &str, place: &Place) -> Parsed<Stroke> {
-        let levels = |line: &mut Self, what| {
-            if line.is_number() {
-                return line.whole_number(what, 1, MAX_LEVELS);
-            }
-            Ok(1)
-        };
         Ok(match name {
             "stage" => {
                 let name = self.text[self.at..].trim();
                 if name.is_empty() {
-                    return Err(self.expected("the name of the stage is expected"));
+                    return Err(self.problem_here("the name of the stage is expected"));
                 }
                 self.at = self.text.len();
                 Stroke::Stage(name.into())
@@ -314,9 +319,9 @@ impl<'a> Line<'a> {
                 }
                 Stroke::Refine(how.unwrap_or(Refinement::Propagate))
             }
-            "loop" => Stroke::Loop(levels(self, "the levels")?),
+            "loop" => Stroke::Loop(self.levels("the levels")?),
             "average" => {
-                let times = levels(self, "how often")?;
+                let times = self.levels("how often")?;
                 let share = match self.is_number() {
                     true => self.number("the share of the way", 0.0, 1.0)?,
                     false => 1.0,
@@ -326,7 +331,7 @@ impl<'a> Line<'a> {
             "fill" => Stroke::Fill,
             "delete" if self.takes("face") => Stroke::Delete(Deletion::Face),
             "delete" if self.takes("hole") => Stroke::Delete(Deletion::Hole),
-            "delete" => return Err(self.expected("`face` or `hole` is expected")),
+            "delete" => return Err(self.problem_here("`face` or `hole` is expected")),
             "simplify" => Stroke::Simplify(self.number("the share of faces", 0.0, 1.0)?),
             _ => return Err(self.unknown(name, place)),
         })
@@ -352,7 +357,7 @@ impl<'a> Line<'a> {
             match ["x", "y", "z"].iter().position(|axis| *axis == name) {
                 Some(axis) => planes[axis] = true,
                 None if planes == [false; 3] => {
-                    return Err(self.expected("x, y, z or `off` is expected"));
+                    return Err(self.problem_here("x, y, z or `off` is expected"));
                 }
                 None => return Ok(planes),
             }
@@ -395,7 +400,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// A tool with decay, options and path.
+    /// Reads a tool with decay, options and path.
     fn sweep(&mut self, action: Action) -> Parsed<Stroke> {
         let mut sweep = Sweep::new(action, self.tool()?);
         if let Some(decay) = Decay::of_name(self.peek()) {
@@ -416,14 +421,15 @@ impl<'a> Line<'a> {
             } else if self.takes(":") {
                 break;
             } else {
-                return Err(self.expected(
-                    "a colon and the path are expected, or a decay (goo, bell, cusp, cone or flat, with its range), `normal`, `tangent` or `only`",
+                return Err(self.problem_here(
+                    "a colon and the path are expected, or a decay (goo, bell, cusp, cone or flat, \
+                     with its range), `normal`, `tangent` or `only`",
                 ));
             }
         }
         loop {
             if sweep.path.len() == MAX_POINTS {
-                return Err(self.expected(&format!("a path has at most {MAX_POINTS} points")));
+                return Err(self.problem_here(&format!("a path has at most {MAX_POINTS} points")));
             }
             let position = self.vector("a coordinate of the path", -LARGEST, LARGEST)?;
             let pressure = match self.is_number() {
@@ -440,7 +446,7 @@ impl<'a> Line<'a> {
     fn tool(&mut self) -> Parsed<Tool> {
         let name = self.peek();
         let Some(form) = Form::ALL.into_iter().find(|form| form.name() == name) else {
-            return Err(self.expected("a tool is expected: box, cylinder or sphere"));
+            return Err(self.problem_here("a tool is expected: box, cylinder or sphere"));
         };
         self.next();
         let mut tool = Tool::new(form, self.vector("a semi-axis", SMALLEST, LARGEST)?);

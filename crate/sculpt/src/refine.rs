@@ -6,13 +6,13 @@ use crate::editor::Editor;
 use crate::error::Error;
 use mesh::{FaceId, HalfEdgeId, VertexId};
 
-/// A way to refine the faces of the region.
+/// Way to refine the faces of the region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refinement {
-    /// Triangles become four by the middles of their edges (polygons get a centre vertex); neighbours are
-    /// divided so that no face with more than three sides is left at the region.
+    /// Triangles become four by the middles of their edges (polygons get a centre vertex);
+    /// neighbours are divided so that no face with more than three sides is left at the region.
     Propagate,
-    /// The same, but neighbours outside the region stay one face and gain vertices.
+    /// Like [`Self::Propagate`], but neighbours outside the region stay one face and gain vertices.
     Local,
     /// Faces with more than three sides get a centre vertex; triangles stay.
     Polygons,
@@ -21,10 +21,10 @@ pub enum Refinement {
 }
 
 impl Refinement {
-    /// All of them.
+    /// The ways to refine, in the order of the manual.
     pub const ALL: [Self; 4] = [Self::Propagate, Self::Local, Self::Polygons, Self::Centers];
 
-    /// The word for it.
+    /// Returns the word for it in texts of strokes.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -71,9 +71,9 @@ impl Editor<'_> {
     /// Gives all faces of the region with so many sides or more a centre vertex.
     pub fn poke_all(&mut self, sides: usize) -> Result<(), Error> {
         let mut faces = self.faces();
-        let degree = |f: &FaceId| self.clay.mesh.face_degree(*f);
-        faces.retain(|f| degree(f) >= sides);
-        self.need_room(faces.iter().map(|f| degree(f) - 1).sum())?;
+        let mesh = &self.clay.mesh;
+        faces.retain(|f| mesh.face_degree(*f) >= sides);
+        self.need_room(faces.iter().map(|f| mesh.face_degree(*f) - 1).sum())?;
         faces.into_iter().try_for_each(|f| self.poke(f))
     }
 
@@ -102,11 +102,13 @@ impl Editor<'_> {
         let sides: usize = polygons.filter(|degree| *degree > 3).sum();
         // Each middle adds a face on either side.
         self.need_room(2 * edges.len() + sides)?;
-        let halve = |h: &HalfEdgeId| {
-            let middle = self.split_edge(*h)?;
-            Ok(Halved { edge: *h, middle })
-        };
-        edges.iter().map(halve).collect()
+        edges
+            .iter()
+            .map(|h| {
+                let middle = self.split_edge(*h)?;
+                Ok(Halved { edge: *h, middle })
+            })
+            .collect()
     }
 
     /// Divides the faces beside halved edges, and the region's polygons.
@@ -151,22 +153,22 @@ impl Editor<'_> {
             2 => self.cut_twice(side),
             _ => self.cut_corners(side),
         };
-        // Faces between the same vertices cannot have the same edge twice; the new vertex in the centre has none yet.
+        // Faces between the same vertices cannot have the same edge twice; the new vertex in the
+        // centre has none yet.
         cut.or_else(|_| {
             let rest = self.clay.mesh.face(side(middles));
             rest.map_or(Ok(()), |f| self.poke(f))
         })
     }
 
-    /// Of a triangle with two middles, sides 0 and 2 leaving them, cuts off the corner between, then the rest along
-    /// its shorter diagonal.
+    /// Divides a triangle with two middles, from which the sides 0 and 2 leave: cuts off the corner
+    /// between them, then divides the rest along its shorter diagonal.
     fn cut_twice(&mut self, side: impl Fn(usize) -> HalfEdgeId) -> Result<(), Error> {
         self.split_face(side(2), side(0))?;
         let mesh = &self.clay.mesh;
-        let place = |i: usize| mesh.position(mesh.origin(side(i)));
+        let [a, b, c, d] = [0, 2, 3, 4].map(|i| mesh.position(mesh.origin(side(i))));
         let closing = mesh.next(side(4));
-        let length = |i: usize, k: usize| place(i).distance_squared(place(k));
-        if length(2, 4) <= length(0, 3) {
+        if b.distance_squared(d) <= a.distance_squared(c) {
             self.split_face(side(4), side(2))?;
         } else {
             self.split_face(side(3), closing)?;
@@ -174,8 +176,8 @@ impl Editor<'_> {
         Ok(())
     }
 
-    /// Of a triangle with three middles, sides 0, 2 and 4 leaving them, cuts off the corners; the face keeps the triangle
-    /// of the middles.
+    /// Cuts off the corners of a triangle with three middles, from which the sides 0, 2 and 4
+    /// leave; the face keeps the triangle of the middles.
     fn cut_corners(&mut self, side: impl Fn(usize) -> HalfEdgeId) -> Result<(), Error> {
         self.split_face(side(2), side(0))?;
         self.split_face(side(4), side(2))?;

@@ -4,22 +4,22 @@ use crate::clay::{Clay, Region};
 use mesh::{FaceId, VertexId};
 use std::collections::BTreeSet;
 
-/// How faces that are chosen change the region.
+/// Change of the region by faces that are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
-    /// They are the region.
+    /// The faces become the region.
     Replace,
-    /// They are added to it.
+    /// The faces are added to the region.
     Add,
-    /// They are taken out of it.
+    /// The faces are taken out of the region.
     Remove,
 }
 
 impl Choice {
-    /// All of them.
+    /// The choices, in the order of the manual.
     pub const ALL: [Self; 3] = [Self::Replace, Self::Add, Self::Remove];
 
-    /// The word for it; none for the first.
+    /// Returns the word for it in texts of strokes; an empty one for the first.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -30,18 +30,18 @@ impl Choice {
     }
 }
 
-/// A change of the region without a tool.
+/// Change of the region without a tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegionChange {
-    /// All faces.
+    /// The region is all faces.
     All,
-    /// No face.
+    /// The region is empty.
     None,
-    /// The others.
+    /// Faces of the region leave it, the others join it.
     Invert,
-    /// The faces around, too, so many times.
+    /// The faces around join the region, so many times.
     Grow(u32),
-    /// Without the faces at its border, so many times.
+    /// The faces at the region's border leave it, so many times.
     Shrink(u32),
 }
 
@@ -93,9 +93,14 @@ impl Clay {
     }
 
     fn shrink(&mut self) {
-        let is_inner = |v: VertexId| self.mesh.vertex_faces(v).all(|f| self.is_in_region(f));
         let mut faces = self.region_faces();
-        faces.retain(|f| self.mesh.face_vertices(*f).all(is_inner));
+        faces.retain(|f| {
+            let mut around = self
+                .mesh
+                .face_vertices(*f)
+                .flat_map(|v| self.mesh.vertex_faces(v));
+            around.all(|f| self.is_in_region(f))
+        });
         self.region = Region::Faces(faces);
     }
 }

@@ -10,12 +10,13 @@ use core::fmt;
 use core::ops::Range;
 use core::str::FromStr;
 
-/// A sculpture as text: what it starts from, and strokes. Parsing what is displayed gives the same.
+/// Sculpture as text: what it starts from, and strokes. Parsing what is displayed gives the same.
 ///
 /// ```
 /// use sculpt::Script;
 ///
-/// let text = "strokes 1\nstart box 4 # a cube\npull sphere 0.3 0.3 0.3 bell 0.8 : 0 0 1, 0 0 1.5 0.5\nloop\n";
+/// let text = "strokes 1\nstart box 4 # a cube\n\
+///     pull sphere 0.3 0.3 0.3 bell 0.8 : 0 0 1, 0 0 1.5 0.5\nloop\n";
 /// let script: Script = text.parse()?;
 /// assert_eq!(script.strokes.len(), 2);
 /// assert_eq!(script.to_string().parse::<Script>()?.strokes, script.strokes);
@@ -26,15 +27,15 @@ use core::str::FromStr;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Script {
-    /// What the sculpture starts from.
+    /// Mesh that the sculpture starts from.
     pub start: Beginning,
     /// The strokes, in order.
     pub strokes: Vec<Stroke>,
-    /// Where the start and each stroke stand.
+    /// Places of the start and of each stroke in the text.
     pub(crate) places: Vec<Place>,
 }
 
-/// A place of a text.
+/// Place of a text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Place {
     pub line: usize,
@@ -42,7 +43,7 @@ pub(crate) struct Place {
     pub span: Range<usize>,
 }
 
-/// A problem of a text.
+/// Problem of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Line, from 1.
@@ -51,7 +52,7 @@ pub struct Diagnostic {
     pub column: usize,
     /// Bytes of the text that it is about.
     pub span: Range<usize>,
-    /// A sentence without its full stop.
+    /// Sentence without its full stop.
     pub message: String,
 }
 
@@ -68,7 +69,7 @@ impl fmt::Display for Diagnostic {
 impl core::error::Error for Diagnostic {}
 
 impl Script {
-    /// A text with strokes that were not written yet.
+    /// Returns a text with strokes that were not written yet.
     #[must_use]
     pub fn new(start: Beginning, strokes: Vec<Stroke>) -> Self {
         let places = vec![Place::default(); strokes.len() + 1];
@@ -99,7 +100,7 @@ impl Script {
         self.places.get(stroke + 1).map_or(0, |place| place.line)
     }
 
-    /// A problem of the start.
+    /// Returns a problem of the start.
     #[must_use]
     pub fn problem_at_start(&self, message: &str) -> Diagnostic {
         self.at_start(&Error(message.to_owned()))
@@ -113,7 +114,8 @@ impl Script {
         begin(&self.start, load).map_err(|error| self.at_start(&error))
     }
 
-    /// Carries out the strokes from one on. With those before it they may visit `most_work` vertices together.
+    /// Carries out the strokes from one on. With those before it they may visit `most_work`
+    /// vertices together.
     ///
     /// # Errors
     /// At the line that cannot be carried out, or at which it becomes too much work.

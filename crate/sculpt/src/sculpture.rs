@@ -1,4 +1,4 @@
-//! A sculpture: clay, the strokes that made it, and undo.
+//! Sculpture: clay, the strokes that made it, and undo.
 
 use crate::clay::{Clay, Region};
 use crate::delta::Delta;
@@ -10,8 +10,8 @@ use crate::script::{Diagnostic, Script};
 use crate::stroke::{Beginning, MaskChange, PathPoint, Stroke, Sweep};
 use mesh::TriangleMesh;
 
-/// Clay with the strokes that made it of its start. All strokes can be undone: what was changed is kept, and where that
-/// would take too much memory, the strokes before are replayed.
+/// Clay with the strokes that made it of its start. All strokes can be undone: what was changed is
+/// kept, and where that would take too much memory, the strokes before are replayed.
 ///
 /// ```
 /// use sculpt::{Script, Sculpture};
@@ -36,7 +36,7 @@ pub struct Sculpture {
     most_bytes: usize,
 }
 
-/// A stroke, and what it changed if that is kept.
+/// Stroke, and what it changed if that is kept.
 struct Done {
     stroke: Stroke,
     delta: Option<Delta>,
@@ -46,7 +46,7 @@ struct Done {
 pub type Loader<'a> = &'a mut dyn FnMut(&str) -> Result<TriangleMesh, String>;
 
 impl Sculpture {
-    /// A sculpture of clay without strokes.
+    /// Returns a sculpture of clay without strokes.
     #[must_use]
     pub fn new(clay: Clay) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl Sculpture {
         self.done.iter().map(|done| &done.stroke)
     }
 
-    /// How many strokes can be undone, and how many redone.
+    /// Returns the numbers of strokes that can be undone and redone.
     #[must_use]
     pub fn depth(&self) -> [usize; 2] {
         [self.done.len(), self.undone.len()]
@@ -139,7 +139,8 @@ impl Sculpture {
     /// Takes the last stroke back, and returns it; `None` if there is none.
     ///
     /// # Errors
-    /// If strokes before had to be replayed and one of them failed, which it did not the first time.
+    /// If strokes before had to be replayed and one of them failed, which it did not the first
+    /// time.
     pub fn undo(&mut self) -> Result<Option<&Stroke>, Error> {
         self.end_drag();
         let Some(mut done) = self.done.pop() else {
@@ -207,8 +208,9 @@ impl Sculpture {
     }
 }
 
-/// Carries out all strokes of a text without keeping what they change. `each` is called after every stroke with its index.
-/// Strokes may visit `most_work` vertices together; [`MAX_WORK`] is about a minute or two.
+/// Carries out all strokes of a text without keeping what they change. `each` is called after every
+/// stroke with its index. Strokes may visit `most_work` vertices together; [`MAX_WORK`] is about a
+/// minute or two.
 ///
 /// # Errors
 /// At the line that cannot be carried out, or at which it becomes too much work.
@@ -237,7 +239,8 @@ pub(crate) fn begin(beginning: &Beginning, load: Loader<'_>) -> Result<Clay, Err
     }
 }
 
-/// As how many visits of a vertex a face counts where elements change: all are compared with those before.
+/// Visits of a vertex that a face counts as when elements change, since all elements are then
+/// compared with those before.
 const TOPOLOGY_WORK: u64 = 20;
 
 /// Carries out a stroke, and returns what it has changed.

@@ -10,9 +10,10 @@ use glam::DVec3;
 use mesh::{HalfEdgeId, HalfEdgeMesh, VertexId};
 
 impl Clay {
-    /// Subdivides the region by Loop's scheme, so many times. Polygons are divided about their centres first. Vertices with
-    /// faces outside the region stay; edges between inside and outside are halved. Where the mesh ends, so does the scheme of
-    /// curves: (1, 6, 1)/8. Masks hold vertices back.
+    /// Subdivides the region by Loop's scheme, so many times. Polygons are divided about their
+    /// centres first. Vertices with faces outside the region stay; edges between inside and outside
+    /// are halved. Where the mesh ends, so does the scheme of curves: (1, 6, 1)/8. Masks hold
+    /// vertices back.
     ///
     /// # Errors
     /// If the mesh would become too large; then it is as it was before.
@@ -35,8 +36,9 @@ impl Clay {
         })
     }
 
-    /// Moves the vertices of the region towards the mean of their neighbours by a share, so many times. Vertices with faces
-    /// outside the region stay; those at an end of the mesh move along it only. Masks hold vertices back.
+    /// Moves the vertices of the region towards the mean of their neighbours by a share, so many
+    /// times. Vertices with faces outside the region stay; those at an end of the mesh move along
+    /// it only. Masks hold vertices back.
     ///
     /// # Errors
     /// If there are too many levels.
@@ -50,24 +52,30 @@ impl Clay {
         }
         let editor = Editor::new(self);
         let inner = editor.inner_vertices();
-        let place = |v: &VertexId| (v.0, self.mesh.position(*v));
-        let mut moved: Vec<(u32, DVec3)> = inner.iter().map(place).collect();
+        let mut moved: Vec<(u32, DVec3)> = inner
+            .iter()
+            .map(|v| (v.0, self.mesh.position(*v)))
+            .collect();
         for _ in 0..levels {
             self.work += inner.len() as u64;
-            let target = |v: &VertexId| {
-                let p = self.mesh.position(*v);
-                let free = 1.0 - f64::from(self.mask(*v));
-                p + (mean_of_neighbors(&self.mesh, *v) - p) * (share * free)
-            };
-            let places: Vec<DVec3> = inner.iter().map(target).collect();
+            let places: Vec<DVec3> = inner
+                .iter()
+                .map(|v| {
+                    let p = self.mesh.position(*v);
+                    let free = 1.0 - f64::from(self.mask(*v));
+                    p + (mean_of_neighbors(&self.mesh, *v) - p) * (share * free)
+                })
+                .collect();
             for (v, place) in inner.iter().zip(places) {
                 if self.mask(*v) < 1.0 {
                     self.replace_position(v.0, place);
                 }
             }
         }
-        let bits = |p: DVec3| p.to_array().map(f64::to_bits);
-        moved.retain(|(v, p)| bits(*p) != bits(self.mesh.position(VertexId(*v))));
+        moved.retain(|(v, old)| {
+            let new = self.mesh.position(VertexId(*v));
+            old.to_array().map(f64::to_bits) != new.to_array().map(f64::to_bits)
+        });
         Ok(Delta {
             moved,
             ..Delta::default()
@@ -100,18 +108,21 @@ impl Editor<'_> {
     /// The vertices all of whose faces are in the region, in ascending order.
     pub fn inner_vertices(&self) -> Vec<VertexId> {
         let mesh = &self.clay.mesh;
-        let is_inner = |v: &VertexId| mesh.vertex_faces(*v).all(|f| self.is_in(f));
-        mesh.vertices().filter(is_inner).collect()
+        mesh.vertices()
+            .filter(|v| mesh.vertex_faces(*v).all(|f| self.is_in(f)))
+            .collect()
     }
 
     /// Subdivides once.
     fn loop_level(&mut self) -> Result<(), Error> {
         let vertices = self.inner_vertices();
-        let moved = |v: &VertexId| {
-            let (p, free) = (self.clay.mesh.position(*v), self.freedom(&[*v]));
-            (*v, p + (loop_vertex(&self.clay.mesh, *v) - p) * free)
-        };
-        let moved: Vec<(VertexId, DVec3)> = vertices.iter().map(moved).collect();
+        let moved: Vec<(VertexId, DVec3)> = vertices
+            .iter()
+            .map(|v| {
+                let (p, free) = (self.clay.mesh.position(*v), self.freedom(&[*v]));
+                (*v, p + (loop_vertex(&self.clay.mesh, *v) - p) * free)
+            })
+            .collect();
         let edges = self.triangle_edges();
         let middles: Vec<DVec3> = edges.iter().map(|h| self.loop_edge(*h)).collect();
         let halved = self.halve(&edges)?;
@@ -126,7 +137,7 @@ impl Editor<'_> {
         self.divide_beside(&halved, true)
     }
 
-    /// How far vertices are free to move: one less the mean of their masks.
+    /// Returns the share of a motion that vertices take: one less the mean of their masks.
     fn freedom(&self, vertices: &[VertexId]) -> f64 {
         let masks = vertices.iter().map(|v| f64::from(self.clay.mask(*v)));
         1.0 - masks.sum::<f64>() / vertices.len() as f64

@@ -7,9 +7,9 @@ use mesh::Aabb;
 /// Steps along the gradient at most.
 const MAX_STEPS: u32 = 40;
 
-/// A solid about the origin.
+/// Solid about the origin.
 pub trait Solid {
-    /// A box that contains it.
+    /// Returns a box that contains it.
     fn bounds(&self) -> Aabb;
 
     /// The length of a step along a path that leaves out nothing.
@@ -18,17 +18,18 @@ pub trait Solid {
     /// `true` if a point is inside.
     fn contains(&self, point: DVec3) -> bool;
 
-    /// Where a point that is inside is driven to; `None` for others, and where there is no way out.
-    fn driven_out(&self, point: DVec3) -> Option<DVec3>;
+    /// Returns the place to which a point inside is driven; `None` for a point outside, and if
+    /// there is no way out.
+    fn drive_out(&self, point: DVec3) -> Option<DVec3>;
 }
 
-/// A body of a model as a tool, a hand that works the clay: what is inside its surface is driven out along its
-/// gradient.
+/// Body of a model as a tool, a hand that works the clay: what is inside its surface is driven out
+/// along its gradient.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<'a> {
-    /// Its function: inside where it is larger than the threshold.
+    /// Function of the body, which is inside where this is larger than the threshold.
     pub function: &'a dyn Implicit,
-    /// A box that contains its surface.
+    /// Box that contains its surface.
     pub bounds: Aabb,
 }
 
@@ -46,9 +47,9 @@ impl Solid for Body<'_> {
         self.function.jet(point).value > THRESHOLD
     }
 
-    /// Newton's method along the gradient; a step is never longer than an eighth of the box, so that it does not leave
-    /// the part of the body that the point is in.
-    fn driven_out(&self, point: DVec3) -> Option<DVec3> {
+    /// Newton's method along the gradient; a step is never longer than an eighth of the box, so
+    /// that it does not leave the part of the body that the point is in.
+    fn drive_out(&self, point: DVec3) -> Option<DVec3> {
         let longest = 0.125 * (self.bounds.max - self.bounds.min).length();
         let mut p = point;
         for i in 0..MAX_STEPS {

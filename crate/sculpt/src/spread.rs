@@ -5,14 +5,14 @@ use core::cmp::Ordering;
 use mesh::{HalfEdgeMesh, VertexId};
 use std::collections::BinaryHeap;
 
-/// A vertex that is moved, and how strongly.
+/// Vertex that is moved, and how strongly.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
     pub vertex: u32,
     pub strength: f64,
 }
 
-/// A vertex that takes a share of a source's motion.
+/// Vertex that takes a share of a source's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
     pub vertex: u32,
@@ -22,7 +22,8 @@ pub struct Reached {
     pub weight: f64,
 }
 
-/// What is known of each vertex, for one spreading at a time: marks tell which entries are of the present one.
+/// Values of each vertex for one spreading at a time; marks tell which entries belong to the
+/// present one.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     mark: u32,
@@ -61,7 +62,7 @@ impl Scratch {
     }
 }
 
-/// A motion handed on to a vertex.
+/// Motion handed on to a vertex.
 struct Handed {
     /// Strength times weight.
     value: f64,
@@ -95,9 +96,9 @@ impl PartialEq for Handed {
 
 impl Eq for Handed {}
 
-/// Hands the motions of sources on from neighbour to neighbour: each vertex within the range of a source, measured along
-/// edges, takes the strongest motion that reaches it, strength × decay(distance / range). Without a range the
-/// sources keep theirs.
+/// Hands the motions of sources on from neighbour to neighbour: each vertex within the range of a
+/// source, measured along edges, takes the strongest motion that reaches it, strength ×
+/// decay(distance / range). Without a range the sources keep theirs.
 ///
 /// Returns each vertex once, the strongest motions first.
 pub fn spread(
@@ -109,12 +110,14 @@ pub fn spread(
 ) -> Vec<Reached> {
     let mut queue: BinaryHeap<Handed> = BinaryHeap::with_capacity(2 * sources.len());
     if range <= 0.0 {
-        let own = |(source, s): (u32, &Source)| Reached {
-            vertex: s.vertex,
-            source,
-            weight: 1.0,
-        };
-        return (0..).zip(sources).map(own).collect();
+        return (0..)
+            .zip(sources)
+            .map(|(source, s)| Reached {
+                vertex: s.vertex,
+                source,
+                weight: 1.0,
+            })
+            .collect();
     }
     scratch.begin(mesh.vertex_slots());
     for (source, s) in (0..).zip(sources) {

@@ -6,7 +6,7 @@ use glam::{DVec3, IVec3};
 use mesh::PolygonSoup;
 use std::collections::BTreeMap;
 
-/// A shape to start from.
+/// Shape to start from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// The square −1 … 1 of the plane z = 0, seen from above: 2n² triangles.
@@ -22,7 +22,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// All of them.
+    /// The shapes, in the order of the manual.
     pub const ALL: [Self; 5] = [
         Self::Plane,
         Self::Sphere,
@@ -31,7 +31,7 @@ impl Shape {
         Self::Box,
     ];
 
-    /// The word for it.
+    /// Returns the word for it in texts of strokes.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl Shape {
     }
 }
 
-/// A shape with an initial refinement.
+/// Shape with an initial refinement.
 ///
 /// ```
 /// use sculpt::{Shape, Start};
@@ -73,7 +73,7 @@ pub struct Start {
 }
 
 impl Start {
-    /// A shape of its own size.
+    /// Returns a shape of its own size.
     #[must_use]
     pub fn new(shape: Shape, divisions: u32) -> Self {
         Self {
@@ -83,7 +83,7 @@ impl Start {
         }
     }
 
-    /// How many faces it has.
+    /// Number of faces of the mesh.
     ///
     /// ```
     /// assert_eq!(sculpt::Start::new(sculpt::Shape::Box, 3).face_count(), 108);
@@ -112,8 +112,8 @@ impl Start {
         }
     }
 
-    /// Its triangles. Opposite sides have the same pattern mirrored (for a plane, box or cylinder if the
-    /// number of divisions is even).
+    /// Triangulates the shape. Opposite sides have the same pattern mirrored (for a plane, box or
+    /// cylinder if the number of divisions is even).
     #[must_use]
     pub fn polygons(&self) -> PolygonSoup {
         let n = self.divisions.max(1) as i32;
@@ -124,16 +124,21 @@ impl Start {
             Shape::Sphere => lattice.octahedron(n),
             Shape::Tetrahedron => lattice.tetrahedron(n),
         }
-        let place = |p: &IVec3| {
-            let p = p.as_dvec3();
-            self.semi_axes
-                * match self.shape {
-                    Shape::Sphere => p / p.length(),
-                    Shape::Cylinder => round(p / f64::from(n)),
-                    _ => p / f64::from(n),
-                }
-        };
-        let mut soup = PolygonSoup::new(lattice.points.iter().map(place).collect());
+        let mut soup = PolygonSoup::new(
+            lattice
+                .points
+                .iter()
+                .map(|p| {
+                    let p = p.as_dvec3();
+                    self.semi_axes
+                        * match self.shape {
+                            Shape::Sphere => p / p.length(),
+                            Shape::Cylinder => round(p / f64::from(n)),
+                            _ => p / f64::from(n),
+                        }
+                })
+                .collect(),
+        );
         for triangle in &lattice.triangles {
             soup.add_face(triangle);
         }
@@ -141,7 +146,7 @@ impl Start {
     }
 }
 
-/// A point of the cube, moved towards the z-axis so that squares become circles.
+/// Returns a point of the cube, moved towards the z-axis so that squares become circles.
 fn round(p: DVec3) -> DVec3 {
     let along = (p.x * p.x + p.y * p.y).sqrt();
     if along == 0.0 {
@@ -174,7 +179,8 @@ impl Lattice {
         self.triangles.push(triangle);
     }
 
-    /// A square with sides of 2n along two axes about a centre, in n² cells; diagonals lead from the middle outwards.
+    /// Adds a square with sides of 2n along two axes about a centre, in n² cells; diagonals lead
+    /// from the middle outwards.
     fn square(&mut self, n: i32, [u, v]: [IVec3; 2], center: IVec3) {
         for i in 0..n {
             for j in 0..n {
@@ -201,7 +207,7 @@ impl Lattice {
     }
 
     /// The triangle of three points, n times the corners, in n² triangles.
-    fn divided(&mut self, n: i32, [a, b, c]: [IVec3; 3]) {
+    fn divide_triangle(&mut self, n: i32, [a, b, c]: [IVec3; 3]) {
         let at = |i: i32, j: i32| a * (n - i - j) + b * i + c * j;
         for i in 0..n {
             for j in 0..n - i {
@@ -219,7 +225,7 @@ impl Lattice {
                 for z in [1, -1] {
                     let [a, b, c] = [IVec3::X * x, IVec3::Y * y, IVec3::Z * z];
                     let is_turned = x * y * z < 0;
-                    self.divided(n, if is_turned { [a, c, b] } else { [a, b, c] });
+                    self.divide_triangle(n, if is_turned { [a, c, b] } else { [a, b, c] });
                 }
             }
         }
@@ -234,7 +240,7 @@ impl Lattice {
             corner(-1, -1, 1),
         ];
         for face in [[a, b, c], [a, d, b], [a, c, d], [b, d, c]] {
-            self.divided(n, face);
+            self.divide_triangle(n, face);
         }
     }
 }

@@ -8,29 +8,29 @@ use crate::start::Start;
 use crate::tool::Tool;
 use glam::DVec3;
 
-/// What a sculpture starts from.
+/// Mesh that a sculpture starts from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Beginning {
-    /// A shape.
+    /// Shape.
     Shape(Start),
-    /// A file of a mesh, by its name.
+    /// File of a mesh, by its name.
     File(String),
 }
 
-/// A stroke, in the order of the manual.
+/// Stroke, in the order of the manual.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stroke {
-    /// A name for what has been reached.
+    /// Name for what has been reached.
     Stage(String),
     /// Mirrors tools in the planes x = 0, y = 0, z = 0 from here on.
     Symmetry([bool; 3]),
-    /// A tool's way.
+    /// Tool's way.
     Sweep(Sweep),
-    /// Another region.
+    /// Change of the region.
     Region(RegionChange),
-    /// Other masks.
+    /// Change of the masks.
     Masks(MaskChange),
-    /// A refinement of the region.
+    /// Refinement of the region.
     Refine(Refinement),
     /// Loop's subdivision of the region, so many times.
     Loop(u32),
@@ -44,27 +44,27 @@ pub enum Stroke {
     Simplify(f64),
 }
 
-/// A change of all masks.
+/// Change of all masks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaskChange {
-    /// All are 0.
+    /// Sets all masks to 0.
     Clear,
-    /// All become 1 less what they were.
+    /// Replaces each mask m by 1 − m.
     Invert,
 }
 
-/// A tool that is moved along a path.
+/// Tool that is moved along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// What it does.
+    /// Effect on vertices inside the tool.
     pub action: Action,
     /// The tool.
     pub tool: Tool,
-    /// How motions fade over neighbours.
+    /// Function by which motions fade over neighbours.
     pub decay: Decay,
-    /// How far they reach, measured along edges; 0: neighbours stay.
+    /// Distance that motions reach, measured along edges; 0: neighbours stay.
     pub range: f64,
-    /// A limit on the direction of motions.
+    /// Limit on the direction of motions.
     pub constraint: Option<Constraint>,
     /// `true` if it touches vertices of the region only; neighbours of these may still follow.
     pub only_region: bool,
@@ -88,7 +88,7 @@ impl Sweep {
     }
 }
 
-/// What a tool does.
+/// Effect of a tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Vertices inside the tool are driven out, along the ray from its centre onto its surface.
@@ -105,26 +105,26 @@ pub enum Action {
     Region(Choice),
 }
 
-/// A limit on the direction of motions.
+/// Limit on the direction of motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constraint {
     /// Along each vertex's normal.
     Normal,
-    /// Across it.
+    /// Perpendicular to the normal.
     Tangent,
 }
 
-/// A place of a tool's centre.
+/// Place of a tool's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathPoint {
-    /// Where.
+    /// Place of the centre.
     pub position: DVec3,
     /// Share of the effect, 0 … 1: the pressure of a pen.
     pub pressure: f64,
 }
 
 impl PathPoint {
-    /// A point with full pressure.
+    /// Returns a point with full pressure.
     #[must_use]
     pub fn new(position: DVec3) -> Self {
         Self {

@@ -9,19 +9,19 @@ use mesh::{Aabb, PolygonSoup};
 /// The basic form of a tool: exponents that it has unless others are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// A box with slightly rounded edges.
+    /// Box with slightly rounded edges.
     Box,
-    /// A cylinder along z with slightly rounded edges.
+    /// Cylinder along z with slightly rounded edges.
     Cylinder,
     /// An ellipsoid.
     Sphere,
 }
 
 impl Form {
-    /// All of them.
+    /// The forms, in the order of the manual.
     pub const ALL: [Self; 3] = [Self::Box, Self::Cylinder, Self::Sphere];
 
-    /// The word for it.
+    /// Returns the word for it in texts of strokes.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -42,8 +42,9 @@ impl Form {
     }
 }
 
-/// A superquadric ellipsoid (Barr 1981) about the origin, turned about the axes:
-/// `(|x/a|^(2/e₂) + |y/b|^(2/e₂))^(e₂/e₁) + |z/c|^(2/e₁) = 1` with semi-axes a, b, c and exponents e₁, e₂.
+/// Superquadric ellipsoid (Barr 1981) about the origin, turned about the axes:
+/// `(|x/a|^(2/e₂) + |y/b|^(2/e₂))^(e₂/e₁) + |z/c|^(2/e₁) = 1` with semi-axes a, b, c and exponents
+/// e₁, e₂.
 ///
 /// ```
 /// use glam::DVec3;
@@ -58,11 +59,12 @@ impl Form {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
-    /// Its basic form, which tells how it is drawn.
+    /// Basic form, which tells how the tool is drawn.
     pub form: Form,
     /// Semi-axes, > 0.
     pub semi_axes: DVec3,
-    /// The exponents e₁ and e₂, in [`Tool::EXPONENTS`]: 1 is round, the smaller the squarer, 2 an octahedron.
+    /// The exponents e₁ and e₂, in [`Tool::EXPONENTS`]: 1 is round, the smaller the squarer, 2 an
+    /// octahedron.
     pub exponents: [f64; 2],
     /// Rotations about x, then y, then z, degrees.
     pub turn: DVec3,
@@ -72,7 +74,7 @@ impl Tool {
     /// Range of the exponents.
     pub const EXPONENTS: [f64; 2] = [0.05, 2.0];
 
-    /// A tool with the exponents of its form, not turned.
+    /// Returns a tool with the exponents of its form, not turned.
     #[must_use]
     pub fn new(form: Form, semi_axes: DVec3) -> Self {
         Self {
@@ -103,8 +105,8 @@ impl Tool {
         about_z * about_y * about_x
     }
 
-    /// The distance of a point from the centre, as a multiple of the surface's along the same ray: below 1 inside.
-    /// It is the nested norm `‖(‖(x/a, y/b)‖, z/c)‖` with powers 2/e₂ and 2/e₁.
+    /// The distance of a point from the centre, as a multiple of the surface's along the same ray:
+    /// below 1 inside. It is the nested norm `‖(‖(x/a, y/b)‖, z/c)‖` with powers 2/e₂ and 2/e₁.
     #[must_use]
     pub fn gauge(&self, point: DVec3) -> f64 {
         self.gauge_along(self.axes(), point)
@@ -116,13 +118,15 @@ impl Tool {
         norm(norm(local.x, local.y, east), local.z, north)
     }
 
-    /// The inside–outside function: below 1 inside, 1 on the surface; the gauge to the power of 2/e₁.
+    /// The inside–outside function: below 1 inside, 1 on the surface; the gauge to the power of
+    /// 2/e₁.
     #[must_use]
     pub fn inside_outside(&self, point: DVec3) -> f64 {
         libm::pow(self.gauge(point), 2.0 / self.exponents[0])
     }
 
-    /// The polyhedron by which the tool is drawn: its form's start mesh with n divisions, put on the superquadric.
+    /// The polyhedron by which the tool is drawn: its form's start mesh with n divisions, put on
+    /// the superquadric.
     #[must_use]
     pub fn polyhedron(&self, n: u32) -> PolygonSoup {
         let shape = match self.form {
@@ -150,7 +154,7 @@ impl Tool {
     }
 }
 
-/// A tool with its axes worked out.
+/// Tool with its axes worked out.
 struct Placed {
     tool: Tool,
     axes: DMat3,
@@ -173,7 +177,7 @@ impl Solid for Placed {
         self.tool.gauge_along(self.axes, point) < 1.0
     }
 
-    fn driven_out(&self, point: DVec3) -> Option<DVec3> {
+    fn drive_out(&self, point: DVec3) -> Option<DVec3> {
         let gauge = self.tool.gauge_along(self.axes, point);
         let surface = point / gauge;
         (gauge < 1.0 && surface.is_finite()).then_some(surface)

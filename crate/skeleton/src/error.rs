@@ -2,22 +2,22 @@
 use crate::{LARGEST, MOST_CURVES, MOST_LEVELS, MOST_NODES, MOST_SEGMENTS};
 use core::fmt;
 
-/// A mistake in a skeleton, or a limit that it passes.
+/// Mistake in a skeleton, or a limit that it passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// So many nodes.
+    /// Skeleton of this many nodes, more than [`MOST_NODES`].
     Nodes(usize),
-    /// So many curves.
+    /// Skeleton of this many curves, more than [`MOST_CURVES`].
     Curves(usize),
-    /// So many levels of subdivision.
+    /// Subdivision to this many levels, more than [`MOST_LEVELS`].
     Levels(u32),
-    /// Too many segments.
+    /// Polyline of more than [`MOST_SEGMENTS`] segments.
     Segments,
-    /// The node of this index has a coordinate or a radius that is not usable.
+    /// Node of this index with a coordinate or a radius that is not usable.
     Node(usize),
-    /// The curve of this index has fewer than two nodes.
+    /// Curve of this index with fewer than two nodes.
     Short(usize),
-    /// The curve of this index names a node that there is not.
+    /// Curve of this index that names a node which does not exist.
     Unknown(usize),
 }
 
@@ -26,11 +26,13 @@ impl fmt::Display for Error {
         match self {
             Self::Nodes(count) => write!(
                 f,
-                "a skeleton has at most {MOST_NODES} nodes, this one has {count}: make several skeletons of it"
+                "a skeleton has at most {MOST_NODES} nodes, this one has {count}: make several \
+                 skeletons of it"
             ),
             Self::Curves(count) => write!(
                 f,
-                "a skeleton has at most {MOST_CURVES} curves, this one has {count}: make several skeletons of it"
+                "a skeleton has at most {MOST_CURVES} curves, this one has {count}: make several \
+                 skeletons of it"
             ),
             Self::Levels(levels) => write!(
                 f,
@@ -38,11 +40,13 @@ impl fmt::Display for Error {
             ),
             Self::Segments => write!(
                 f,
-                "a skeleton has at most {MOST_SEGMENTS} segments: subdivide it less, or make several skeletons of it"
+                "a skeleton has at most {MOST_SEGMENTS} segments: subdivide it less, or make \
+                 several skeletons of it"
             ),
             Self::Node(index) => write!(
                 f,
-                "node {index}: coordinates must be numbers up to {LARGEST:e}, and the radius one from 0 to {LARGEST:e}"
+                "node {index}: coordinates must be numbers up to {LARGEST:e}, and the radius one \
+                 from 0 to {LARGEST:e}"
             ),
             Self::Short(index) => write!(f, "curve {index} needs two nodes or more"),
             Self::Unknown(index) => write!(f, "curve {index} names a node that there is not"),

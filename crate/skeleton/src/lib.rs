@@ -1,16 +1,18 @@
 //! Skeletons: curves on a graph of nodes, refined by subdivision to polylines.
 //!
-//! A [`Skeleton`] has nodes, each with a position and a radius, and curves, each a control polygon through two or more
-//! nodes. Curves that share a node branch there. [`Skeleton::polyline`] refines them by a [`Scheme`] and returns a
-//! [`Polyline`]: a graph of short segments that knows radii, arc lengths and neighbours.
+//! A [`Skeleton`] has nodes, each with a position and a radius, and curves, each a control polygon
+//! through two or more nodes. Curves that share a node branch there. [`Skeleton::polyline`] refines
+//! them by a [`Scheme`] and returns a [`Polyline`]: a graph of short segments that knows radii, arc
+//! lengths and neighbours.
 //!
-//! - A curve begins and ends at its end nodes, and passes through each node that it shares with another curve (or that
-//!   it visits twice), with a continuous tangent. A curve whose first and last node are the same is closed, and passes
-//!   through that node so, too. All other nodes attract it only, except in the four-point scheme, which passes
-//!   through every node.
-//! - All vertices lie on the scheme's limit curve, at every level: a level of detail is a coarser or finer polygon of the
-//!   same curve.
-//! - Radii are refined as a fourth coordinate, and kept between the least and the greatest radius of the curve's nodes.
+//! - A curve begins and ends at its end nodes, and passes through each node that it shares with
+//!   another curve (or that it visits twice), with a continuous tangent. A curve whose first and
+//!   last node are the same is closed, and passes through that node so, too. All other nodes
+//!   attract it only, except in the four-point scheme, which passes through every node.
+//! - All vertices lie on the scheme's limit curve, at every level: a level of detail is a coarser
+//!   or finer polygon of the same curve.
+//! - Radii are refined as a fourth coordinate, and kept between the least and the greatest radius
+//!   of the curve's nodes.
 //!
 //! Only `+ − × ÷ √` are used: results have the same bits on every platform.
 //!
@@ -56,10 +58,10 @@ pub const LARGEST: f64 = 1e100;
 /// The least weight of a node that counts.
 const LEAST_WEIGHT: f64 = 1e-6;
 
-/// A node of a skeleton.
+/// Node of a skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Node {
-    /// Its place.
+    /// Place in space.
     pub position: DVec3,
     /// The radius of the flesh there, at least 0.
     pub radius: f64,
@@ -70,16 +72,16 @@ pub struct Node {
 pub struct Skeleton {
     /// The nodes.
     pub nodes: Vec<Node>,
-    /// For each curve the indices of its nodes, at least two.
+    /// Indices of each curve's nodes, at least two.
     pub curves: Vec<Vec<usize>>,
 }
 
 impl Skeleton {
-    /// The curves after some levels of subdivision. Each level doubles the number of segments.
+    /// Refines the curves by some levels of subdivision. Each level doubles the number of segments.
     ///
     /// # Errors
-    /// If a curve has fewer than two nodes or names one that there is not, if a coordinate or a radius is not
-    /// usable, or if a limit is passed; nothing is computed then.
+    /// If a curve has fewer than two nodes or names one that there is not, if a coordinate or a
+    /// radius is not usable, or if a limit is passed; nothing is computed then.
     pub fn polyline(&self, scheme: Scheme, levels: u32) -> Result<Polyline, Error> {
         self.check(scheme, levels)?;
         let visits = self.visits();
@@ -91,8 +93,9 @@ impl Skeleton {
         Ok(Polyline::new(self, curves.collect()))
     }
 
-    /// For each vertex of [`Self::polyline`] the nodes whose places it is a mean of, with their weights, which add up to 1. Those of
-    /// nodes that lie behind others on the way may be negative. It takes a third as many refinements as there are nodes.
+    /// Computes for each vertex of [`Self::polyline`] the nodes whose places it is a mean of, with
+    /// their weights, which add up to 1. Weights of nodes that lie behind others on the way may be
+    /// negative. Takes a third as many refinements as there are nodes.
     ///
     /// ```
     /// use glam::DVec3;
@@ -113,7 +116,8 @@ impl Skeleton {
     pub fn weights(&self, scheme: Scheme, levels: u32) -> Result<Vec<Vec<(usize, f64)>>, Error> {
         let count = self.nodes.len();
         let mut weights: Vec<Vec<(usize, f64)>> = Vec::new();
-        // Refinement is linear in the nodes' places, so that it is told by three nodes at a time being moved along the axes.
+        // Refinement is linear in the nodes' places, so that it is told by three nodes at a time
+        // being moved along the axes.
         for start in (0..count).step_by(3) {
             let nodes = (0..count).map(|i| Node {
                 position: match i.checked_sub(start) {
@@ -145,8 +149,8 @@ impl Skeleton {
         Ok(weights)
     }
 
-    /// How often each node is visited. The last node of a closed curve is its first one again, and counts once more,
-    /// so that it is passed through.
+    /// Counts the visits of each node. The last node of a closed curve is its first one again, and
+    /// counts once more, so that the curve passes through it.
     fn visits(&self) -> Vec<u32> {
         let mut visits = vec![0; self.nodes.len()];
         for &node in self.curves.iter().flatten() {

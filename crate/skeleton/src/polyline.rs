@@ -3,42 +3,44 @@ use crate::Skeleton;
 use crate::scheme::Refined;
 use glam::{DVec3, DVec4};
 
-/// A point of a polyline.
+/// Point of a polyline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// Its place.
+    /// Place in space.
     pub position: DVec3,
     /// The radius there.
     pub radius: f64,
-    /// The skeleton's node that it is at, if any. Curves that pass through the same node have one vertex there.
+    /// The skeleton's node that it is at, if any. Curves that pass through the same node have one
+    /// vertex there.
     pub node: Option<usize>,
 }
 
-/// A piece of a polyline between two vertices.
+/// Piece of a polyline between two vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// The indices of its vertices, in the direction of its curve.
     pub ends: [usize; 2],
-    /// Its curve.
+    /// Index of the curve.
     pub curve: usize,
-    /// Its place in the control polygon: it comes from between the curve's nodes of this number and the next.
+    /// Place in the control polygon: the segment comes from between the curve's nodes of this
+    /// number and the next.
     pub span: usize,
     /// Arc length of the curve up to it.
     pub start: f64,
-    /// Its length. 0 where nodes coincide.
+    /// Length of the segment. 0 where nodes coincide.
     pub length: f64,
 }
 
-/// A graph of segments, curve by curve and along each.
+/// Graph of segments, curve by curve and along each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polyline {
     /// The vertices.
     pub vertices: Vec<Vertex>,
     /// The segments. None joins a vertex to itself.
     pub segments: Vec<Segment>,
-    /// For each curve the arc length of its polyline.
+    /// Arc length of each curve's polyline.
     pub lengths: Vec<f64>,
-    /// Where each vertex's segments begin in `incident`, and the end.
+    /// Start of each vertex's segments in `incident`, and the end of all.
     first: Vec<usize>,
     incident: Vec<usize>,
 }
@@ -100,8 +102,8 @@ impl Polyline {
         }
     }
 
-    /// The segments that end at a vertex, in increasing order. Their number is the vertex's valence: 1 at a free end,
-    /// 2 along a curve, 3 or more at a branch, 0 at no vertex.
+    /// Returns the segments that end at a vertex, in increasing order. Their number is the vertex's
+    /// valence: 1 at a free end, 2 along a curve, 3 or more at a branch, 0 at no vertex.
     ///
     /// # Panics
     /// If there is no such vertex.
@@ -122,7 +124,7 @@ impl Polyline {
     }
 }
 
-/// For each vertex its segments, one list after the other.
+/// Lists the segments of each vertex, one list after the other, and the start of each list.
 fn incidence(vertices: usize, segments: &[Segment]) -> (Vec<usize>, Vec<usize>) {
     let mut first = vec![0; vertices + 1];
     for end in segments.iter().flat_map(|segment| segment.ends) {

@@ -1,42 +1,42 @@
-//! One curve, from a control polygon to points on the limit curve of a subdivision scheme.
+//! Subdivision of a curve, from a control polygon to points on the scheme's limit curve.
 //!
-//! Points have four coordinates, the last of which is the radius. A step of subdivision doubles the number of control
-//! points; after the last step each is moved to where further steps would take it (its limit position), so that all
-//! levels are polygons of the same curve.
+//! Points have four coordinates, the last of which is the radius. A step of subdivision doubles the
+//! number of control points; after the last step each is moved to where further steps would take it
+//! (its limit position), so that all levels are polygons of the same curve.
 use crate::Node;
 use glam::DVec4;
 use serde::{Deserialize, Serialize};
 
-/// A rule of subdivision.
+/// Rule of subdivision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Scheme {
     /// The uniform cubic B-spline, C². It has no curvature at its ends.
     #[default]
     Cubic,
-    /// Chaikin's corner cutting: the uniform quadratic B-spline, C¹. It is straight at its ends, up to the middle of
-    /// the first and the last side.
+    /// Chaikin's corner cutting: the uniform quadratic B-spline, C¹. It is straight at its ends, up
+    /// to the middle of the first and the last side.
     Chaikin,
-    /// Dyn, Levin and Gregory's interpolating scheme, C¹: the curve passes through all nodes, and is a cubic where
-    /// four or more lie on one at even steps.
+    /// Dyn, Levin and Gregory's interpolating scheme, C¹: the curve passes through all nodes, and
+    /// is a cubic where four or more lie on one at even steps.
     FourPoint,
 }
 
-/// A refined curve.
+/// Refined curve.
 pub struct Refined {
     /// Points, the first and the last of which are the same if the curve is closed.
     pub points: Vec<DVec4>,
-    /// For each of the curve's nodes the index of the point that is at it, if there is one.
+    /// Index of the point at each of the curve's nodes, if there is one.
     pub at_nodes: Vec<Option<usize>>,
-    /// For each segment between two points the index of the node before it.
+    /// Index of the node before each segment between two points.
     pub spans: Vec<usize>,
 }
 
-/// Steps that distribute the condition to pass through given nodes: each halves what is left, and 2⁻⁶⁰ is below the
-/// precision.
+/// Steps that distribute the condition to pass through given nodes: each halves what is left, and
+/// 2⁻⁶⁰ is below the precision.
 const SWEEPS: usize = 60;
 
-/// Refines the curve through `nodes`, and through those that are `fixed`; its ends are, in any case. The last node
-/// of a closed curve is the first one again.
+/// Refines the curve through `nodes`, and through those that are `fixed`; its ends are, in any
+/// case. The last node of a closed curve is the first one again.
 pub fn refine(
     scheme: Scheme,
     levels: u32,
@@ -56,14 +56,14 @@ pub fn refine(
                 control = split_cubic(&control, closed);
             }
             let points = limits_cubic(&control, closed);
-            stepped(points, levels, last, closed, &fixed)
+            even_steps(points, levels, last, closed, &fixed)
         }
         Scheme::FourPoint => {
             let mut points = ring.to_vec();
             for _ in 0..levels {
                 points = split_four_point(&points, closed);
             }
-            stepped(points, levels, last, closed, &|_| true)
+            even_steps(points, levels, last, closed, &|_| true)
         }
         Scheme::Chaikin => chaikin(ring, levels, last, closed, &fixed),
     };
@@ -84,8 +84,8 @@ pub fn refine(
     refined
 }
 
-/// A refined curve whose points are at even steps of the parameter from node to node.
-fn stepped(
+/// Makes the refined curve of points at even steps of the parameter from node to node.
+fn even_steps(
     mut points: Vec<DVec4>,
     levels: u32,
     last: usize,
@@ -104,24 +104,25 @@ fn stepped(
     }
 }
 
-/// The neighbours of a point of a polygon; of an end of an open one the other neighbour, mirrored at it.
+/// The neighbours of a point of a polygon; of an end of an open one the other neighbour, mirrored
+/// at it.
 fn neighbours(points: &[DVec4], i: usize, closed: bool) -> [DVec4; 2] {
     let n = points.len();
     if closed {
         return [points[(i + n - 1) % n], points[(i + 1) % n]];
     }
-    let mirrored = |j: usize| 2.0 * points[i] - points[j];
     match i {
-        0 => [mirrored(1), points[1]],
-        i if i + 1 == n => [points[i - 1], mirrored(i - 1)],
+        0 => [2.0 * points[0] - points[1], points[1]],
+        i if i + 1 == n => [points[i - 1], 2.0 * points[i] - points[i - 1]],
         i => [points[i - 1], points[i + 1]],
     }
 }
 
-/// The control polygon whose cubic B-spline passes through the fixed nodes; other nodes are its corners.
+/// The control polygon whose cubic B-spline passes through the fixed nodes; other nodes are its
+/// corners.
 ///
-/// The spline's point at a corner Q is `(P + 4Q + R)/6` with its neighbours P and R. Where that is to be a node B,
-/// `Q = (6B − P − R)/4`, by Gauss–Seidel iteration.
+/// The spline's point at a corner Q is `(P + 4Q + R)/6` with its neighbours P and R. Where that is
+/// to be a node B, `Q = (6B − P − R)/4`, by Gauss–Seidel iteration.
 fn interpolating(nodes: &[DVec4], fixed: &dyn Fn(usize) -> bool, closed: bool) -> Vec<DVec4> {
     let mut control = nodes.to_vec();
     let inner = if closed {
@@ -153,48 +154,51 @@ fn split_cubic(points: &[DVec4], closed: bool) -> Vec<DVec4> {
 }
 
 fn limits_cubic(points: &[DVec4], closed: bool) -> Vec<DVec4> {
-    let at = |i: usize| {
-        let [before, after] = neighbours(points, i, closed);
-        (before + 4.0 * points[i] + after) * (1.0 / 6.0)
-    };
-    (0..points.len()).map(at).collect()
+    (0..points.len())
+        .map(|i| {
+            let [before, after] = neighbours(points, i, closed);
+            (before + 4.0 * points[i] + after) * (1.0 / 6.0)
+        })
+        .collect()
 }
 
-/// Each new point is on the cubic through the four nearest ones; at the ends of an open curve through the first or
-/// the last four, or as many as there are.
+/// Puts a new point between each two, see [`between`].
 fn split_four_point(points: &[DVec4], closed: bool) -> Vec<DVec4> {
-    let n = points.len();
-    let between = |i: usize| {
-        let at = |j: usize| points[j % n];
-        if closed {
-            let [a, b, c, d] = [i + n - 1, i, i + 1, i + 2].map(at);
-            return (9.0 * (b + c) - (a + d)) * 0.0625;
-        }
-        // From the end nearer to the new point.
-        let from_end = |i: usize, at: &dyn Fn(usize) -> DVec4| match n {
-            2 => (at(0) + at(1)) * 0.5,
-            3 => (3.0 * at(i) + 6.0 * at(1) - at(2 - i)) * 0.125,
-            _ => (5.0 * at(0) + 15.0 * at(1) - 5.0 * at(2) + at(3)) * 0.0625,
-        };
-        match i {
-            0 => from_end(0, &at),
-            i if i + 2 == n => from_end(0, &|j| points[n - 1 - j]),
-            i => (9.0 * (at(i) + at(i + 1)) - (at(i - 1) + at(i + 2))) * 0.0625,
-        }
-    };
-    let mut split = Vec::with_capacity(2 * n);
+    let mut split = Vec::with_capacity(2 * points.len());
     for (i, &point) in points.iter().enumerate() {
         split.push(point);
-        if closed || i + 1 < n {
-            split.push(between(i));
+        if closed || i + 1 < points.len() {
+            split.push(between(points, i, closed));
         }
     }
     split
 }
 
-/// Corner cutting. The quadratic B-spline touches the middle of every side of its control polygon: those are the
-/// limit points. A fixed node is the middle of a side that stands in its place, as long and in the direction as the
-/// side that cutting its corner would give; at the ends of an open curve that side has no length.
+/// Returns the point in the middle of the cubic through the four points around the step from i to
+/// i + 1; at the ends of an open curve through the first or the last four, or as many as there are.
+fn between(points: &[DVec4], i: usize, closed: bool) -> DVec4 {
+    let n = points.len();
+    if closed {
+        let [a, b, c, d] = [i + n - 1, i, i + 1, i + 2].map(|j| points[j % n]);
+        return (9.0 * (b + c) - (a + d)) * 0.0625;
+    }
+    // From the end nearer to the new point.
+    let from_end = |at: &dyn Fn(usize) -> DVec4| match n {
+        2 => (at(0) + at(1)) * 0.5,
+        3 => (3.0 * at(0) + 6.0 * at(1) - at(2)) * 0.125,
+        _ => (5.0 * at(0) + 15.0 * at(1) - 5.0 * at(2) + at(3)) * 0.0625,
+    };
+    match i {
+        0 => from_end(&|j| points[j]),
+        i if i + 2 == n => from_end(&|j| points[n - 1 - j]),
+        i => (9.0 * (points[i] + points[i + 1]) - (points[i - 1] + points[i + 2])) * 0.0625,
+    }
+}
+
+/// Refines a curve by cutting corners. The quadratic B-spline touches the middle of every side of
+/// its control polygon: these are the limit points. A fixed node is the middle of a side that
+/// stands in its place, with the length and direction of the side that cutting its corner would
+/// give; at the ends of an open curve that side has no length.
 fn chaikin(
     nodes: &[DVec4],
     levels: u32,
@@ -256,7 +260,8 @@ fn chaikin(
     }
 }
 
-/// Chaikin's step. The first side of a closed polygon stays the one whose middle the curve begins at.
+/// Chaikin's step. The first side of a closed polygon stays the one whose middle the curve begins
+/// at.
 fn cut_corners(control: &[DVec4], closed: bool) -> Vec<DVec4> {
     let n = control.len();
     let sides = if closed { n } else { n - 1 };

@@ -6,11 +6,11 @@ use std::ops::Range;
 /// A `node` of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodeText {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// All of it, with its radius.
+    /// The whole node, with its radius.
     pub span: Range<usize>,
-    /// Its radius, if it has one of its own.
+    /// The radius, if the node has one of its own.
     pub radius: Option<Range<usize>>,
 }
 
@@ -19,23 +19,24 @@ pub struct NodeText {
 pub struct CurveText {
     /// Names of its nodes.
     pub names: Vec<(String, Range<usize>)>,
-    /// All of it.
+    /// The whole curve.
     pub span: Range<usize>,
 }
 
 /// The block of a `skeleton` command. All places are bytes of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block {
-    /// Its nodes, in the order of the text.
+    /// The nodes, in the order of the text.
     pub nodes: Vec<NodeText>,
-    /// Its curves, in the order of the text.
+    /// The curves, in the order of the text.
     pub curves: Vec<CurveText>,
     /// The `}` at its end.
     pub close: usize,
 }
 
 impl Block {
-    /// Reads the block of the command at `span` of a file. `None` if there is none, or it is no `skeleton`.
+    /// Reads the block of the command at `span` of a file. `None` if there is none, or it is no
+    /// `skeleton`.
     #[must_use]
     pub fn read(text: &str, span: Range<usize>) -> Option<Self> {
         let command = text.get(span.clone())?;
@@ -61,21 +62,20 @@ impl Block {
             curves: Vec::new(),
             close: tokens[close].start,
         };
-        let begins = |token: &Token| {
-            let word = word(token);
-            let is = |name| word.eq_ignore_ascii_case(name);
-            token.kind == TokenKind::Word && (is("node") || is("curve"))
-        };
-        // No node may be called as such a word.
-        let starts: Vec<usize> = (0..inside.len()).filter(|i| begins(&inside[*i])).collect();
+        let is = |token: &Token, name| word(token).eq_ignore_ascii_case(name);
+        // No node may have such a word as its name.
+        let starts = (0..inside.len()).filter(|i| {
+            let token = &inside[*i];
+            token.kind == TokenKind::Word && (is(token, "node") || is(token, "curve"))
+        });
+        let starts: Vec<usize> = starts.collect();
         for (i, &start) in starts.iter().enumerate() {
             let end = starts.get(i + 1).copied().unwrap_or(inside.len());
             let item = &inside[start..end];
             let span = item[0].start..item[item.len() - 1].end;
-            if word(&item[0]).eq_ignore_ascii_case("node") {
-                let own = |t: &&Token| word(t).eq_ignore_ascii_case("radius");
-                let at = item.iter().skip(2).position(|t| own(&t)).map(|at| at + 2);
-                let radius = at.and_then(|at| Some(item.get(at + 1)?.start..span.end));
+            if is(&item[0], "node") {
+                let at = item.iter().skip(2).position(|token| is(token, "radius"));
+                let radius = at.and_then(|at| Some(item.get(at + 3)?.start..span.end));
                 block.nodes.push(NodeText {
                     name: word(item.get(1)?).to_owned(),
                     span,

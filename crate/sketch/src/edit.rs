@@ -1,5 +1,5 @@
-//! Changes of a skeleton's text. Each gives the whole new text of the file; what it does not name stays as it is
-//! written.
+//! Changes of a skeleton's text. Each gives the whole new text of the file; what it does not name
+//! stays as it is written.
 
 use crate::block::Block;
 use rats::TextEdit;
@@ -7,41 +7,41 @@ use skeleton::{Node, Skeleton};
 use std::fmt::Write;
 use std::ops::Range;
 
-/// Where a new curve begins.
+/// The beginning of a new curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Start {
-    /// At a node of its own.
+    /// A node of its own.
     Free,
-    /// At a node that is there.
+    /// A node that is there.
     Node(usize),
-    /// At a node that is there. If that is the end of a single curve then this one is made longer.
+    /// A node that is there. If that is the end of a single curve then this one is made longer.
     End(usize),
-    /// On a curve between two of its nodes, where it gets a new one.
+    /// A new node on a curve, between two of its nodes.
     Between {
         /// The curve's index.
         curve: usize,
         /// The new node comes behind the curve's node of this number.
         span: usize,
-        /// How far from that node to the next one, 0 … 1: the order of several new nodes there.
+        /// The place from that node to the next one, 0 … 1, which orders several new nodes there.
         share: f64,
         /// The new node.
         node: Node,
     },
-    /// Where the new curve before this one begins.
+    /// The beginning of the new curve before this one.
     Same,
 }
 
 /// A new curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limb {
-    /// Its beginning.
+    /// The beginning.
     pub start: Start,
-    /// Its nodes; unless it begins at a node of its own, without the first one.
+    /// The nodes; without the first one, unless that is a node of its own.
     pub nodes: Vec<Node>,
 }
 
-/// Adds curves to the skeleton whose command is at `span`. `grain` is a length that counts for little, to which
-/// coordinates are rounded. `None` if there is no such skeleton, node or curve.
+/// Adds curves to the skeleton whose command is at `span`. `grain` is a length that counts for
+/// little, to which coordinates are rounded. `None` if there is no such skeleton, node or curve.
 #[must_use]
 pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Option<String> {
     let block = Block::read(text, span)?;
@@ -100,7 +100,7 @@ pub fn extend(text: &str, span: Range<usize>, limbs: &[Limb], grain: f64) -> Opt
         before = Some(first);
     }
     edits.push((0.0, at_end(text, &block, added.replace('\n', end_of_line))));
-    Some(applied(text, edits))
+    Some(apply(text, edits))
 }
 
 /// A text with a new skeleton at its end. `None` if no limb has two nodes of its own to begin with.
@@ -131,8 +131,8 @@ pub fn create(
     (!block.curves.is_empty()).then_some(text)
 }
 
-/// Takes a node away, from its curves as well; a curve of a single node goes with it. Without a curve the whole command
-/// goes. `None` if there is no such node.
+/// Takes a node away, from its curves as well; a curve of a single node goes with it. Without a
+/// curve the whole command goes. `None` if there is no such node.
 #[must_use]
 pub fn remove(text: &str, span: Range<usize>, node: usize) -> Option<String> {
     let block = Block::read(text, span.clone())?;
@@ -186,7 +186,7 @@ pub fn widen(
 ) -> Option<String> {
     let block = Block::read(text, span)?;
     let node = block.nodes.get(node)?;
-    let number = rounded(radius.max(0.0), grain);
+    let number = decimal(radius.max(0.0), grain);
     let edit = match &node.radius {
         Some(range) => TextEdit::new(0, range.clone(), number),
         None => put(node.span.end, format!(" radius {number}")),
@@ -194,7 +194,8 @@ pub fn widen(
     Some(TextEdit::apply(text, [&edit]))
 }
 
-/// Gives a curve a new node behind its node of number `behind`. It becomes the block's last one. `None` if there is no such place.
+/// Gives a curve a new node behind its node of number `behind`. It becomes the block's last one.
+/// `None` if there is no such place.
 #[must_use]
 pub fn insert(
     text: &str,
@@ -222,7 +223,7 @@ pub fn insert(
     } else {
         last
     };
-    Some(applied(
+    Some(apply(
         text,
         vec![
             (0.0, put(place, format!(" {name}"))),
@@ -231,8 +232,8 @@ pub fn insert(
     ))
 }
 
-/// Takes a curve away, and nodes that no other curve goes along. Without a curve the whole command goes. `None` if there is no
-/// such curve.
+/// Takes a curve away, and nodes that no other curve goes along. Without a curve the whole command
+/// goes. `None` if there is no such curve.
 #[must_use]
 pub fn remove_curve(text: &str, span: Range<usize>, curve: usize) -> Option<String> {
     let block = Block::read(text, span.clone())?;
@@ -240,12 +241,14 @@ pub fn remove_curve(text: &str, span: Range<usize>, curve: usize) -> Option<Stri
     Some(without_curves(text, span, &block, &[curve], &[]))
 }
 
-/// Cuts a curve between its node of number `between` and the next one: what hangs on the shorter side falls off, with all
-/// curves that lead nowhere else. The other side ends at `end`; where its last node is nearer to the cut than the radius there, it
-/// ends at that node. If both sides still hang together another way, the curve only gets a gap there. Without a curve the whole
-/// command goes.
+/// Cuts a curve between its node of number `between` and the next one: what hangs on the shorter
+/// side falls off, with all curves that lead nowhere else. The other side ends at `end`; where its
+/// last node is nearer to the cut than the radius there, it ends at that node. If both sides still
+/// hang together another way, the curve only gets a gap there. Without a curve the whole command
+/// goes.
 ///
-/// `skeleton` is what the text makes. `None` if it does not belong to the text, or there is no such curve.
+/// `skeleton` is what the text makes. `None` if it does not belong to the text, or there is no such
+/// curve.
 #[must_use]
 pub fn cut(
     text: &str,
@@ -305,13 +308,11 @@ pub fn cut(
             &names[between + 1..]
         };
         let last = if first_stays { before } else { behind };
-        let falls_off = |along: &Vec<usize>| along.iter().all(|node| sides[falls][*node]);
-        let others = skeleton.curves.iter().enumerate();
-        gone.extend(
-            others
-                .filter(|(i, along)| *i != curve && falls_off(along))
-                .map(|(i, _)| i),
-        );
+        for (other, along) in skeleton.curves.iter().enumerate() {
+            if other != curve && along.iter().all(|node| sides[falls][*node]) {
+                gone.push(other);
+            }
+        }
         debug_assert!(!sides[stays][if first_stays { behind } else { before }]);
         let ends_there = near(last) <= end.radius.max(grain);
         if ends_there && kept.len() < 2 {
@@ -330,7 +331,7 @@ pub fn cut(
     // The curves that fall off keep their numbers while lines are added behind them.
     let added = added.replace('\n', end_of_line(text));
     edits.push((0.0, at_end(text, &block, added)));
-    let changed = applied(text, edits);
+    let changed = apply(text, edits);
     let end = (span.end + changed.len()).checked_sub(text.len())?;
     let span = span.start..end;
     let block = Block::read(&changed, span.clone())?;
@@ -338,7 +339,8 @@ pub fn cut(
     Some(without_curves(&changed, span, &block, &gone, &along))
 }
 
-/// The nodes that hang together with a node when the piece of a curve behind its node `between` is not there.
+/// The nodes that hang together with a node when the piece of a curve behind its node `between` is
+/// not there.
 fn side(skeleton: &Skeleton, curve: usize, between: usize, from: usize) -> Vec<bool> {
     let mut next: Vec<Vec<usize>> = vec![Vec::new(); skeleton.nodes.len()];
     for (number, along) in skeleton.curves.iter().enumerate() {
@@ -364,16 +366,18 @@ fn side(skeleton: &Skeleton, curve: usize, between: usize, from: usize) -> Vec<b
 
 /// The length of the control polygons between some nodes.
 fn length(skeleton: &Skeleton, nodes: &[bool]) -> f64 {
-    let place = |node: usize| skeleton.nodes[node].position;
     let pieces = skeleton.curves.iter().flat_map(|along| along.windows(2));
     pieces
         .filter(|ends| nodes[ends[0]] && nodes[ends[1]])
-        .map(|ends| place(ends[0]).distance(place(ends[1])))
+        .map(|ends| {
+            let [from, to] = [ends[0], ends[1]].map(|node| skeleton.nodes[node].position);
+            from.distance(to)
+        })
         .sum()
 }
 
-/// A text without some curves of a block, and without their nodes and others that no curve is left for. Nodes that no curve went along
-/// before stay.
+/// A text without some curves of a block, and without their nodes and others that no curve is left
+/// for. Nodes that no curve went along before stay.
 fn without_curves(
     text: &str,
     span: Range<usize>,
@@ -399,11 +403,12 @@ fn without_curves(
     without(text, &removed)
 }
 
-/// A text without some commands: each at its byte range.
+/// Returns a text without some commands, each at its byte range. `None` if a range is not in the
+/// text.
 #[must_use]
 pub fn without_commands(text: &str, spans: &[Range<usize>]) -> Option<String> {
-    let inside = |span: &Range<usize>| text.get(span.clone()).is_some();
-    spans.iter().all(inside).then(|| without(text, spans))
+    let are_inside = spans.iter().all(|span| text.get(span.clone()).is_some());
+    are_inside.then(|| without(text, spans))
 }
 
 /// A word that does not stand in any of the texts: `stem`, or `stem` with a number.
@@ -478,13 +483,13 @@ impl<'a> Names<'a> {
 }
 
 fn line(text: &mut String, indent: &str, name: &str, node: &Node, grain: f64) {
-    let [x, y, z] = node.position.to_array().map(|x| rounded(x, grain));
-    let radius = rounded(node.radius, grain);
+    let [x, y, z] = node.position.to_array().map(|x| decimal(x, grain));
+    let radius = decimal(node.radius, grain);
     let _ = writeln!(text, "{indent}node {name} <{x} {y} {z}> radius {radius}");
 }
 
-/// A number without the digits that are below a tenth of the grain.
-fn rounded(number: f64, grain: f64) -> String {
+/// Writes a number without the digits that are below a tenth of the grain.
+fn decimal(number: f64, grain: f64) -> String {
     let digits = -libm::floor(libm::log10(grain.max(1e-9)));
     let decimals = digits.clamp(0.0, 9.0) as usize;
     let text = format!("{number:.decimals$}");
@@ -499,7 +504,7 @@ fn rounded(number: f64, grain: f64) -> String {
     }
 }
 
-/// What stands before the block's lines.
+/// Returns the spaces before the block's lines.
 fn indent(text: &str, block: &Block) -> String {
     let items = block.nodes.iter().map(|node| node.span.start);
     let mut items = items.chain(block.curves.iter().map(|curve| curve.span.start));
@@ -531,7 +536,6 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
     for line in text.split_inclusive('\n') {
         let place = start..start + line.len();
         start = place.end;
-        let inside = |at: &usize| ranges.iter().any(|range| range.contains(at));
         let is_touched = ranges
             .iter()
             .any(|range| range.start < place.end && place.start < range.end);
@@ -541,9 +545,10 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
         }
         let content = line.trim_end_matches(['\n', '\r']);
         let end = &line[content.len()..];
-        let rest = content
-            .char_indices()
-            .filter(|(at, _)| !inside(&(place.start + at)));
+        let rest = content.char_indices().filter(|(at, _)| {
+            let at = place.start + at;
+            !ranges.iter().any(|range| range.contains(&at))
+        });
         let rest: String = rest.map(|(_, c)| c).collect();
         let left = rest.trim_start();
         if !left.is_empty() && !left.starts_with('#') {
@@ -554,13 +559,13 @@ fn without(text: &str, ranges: &[Range<usize>]) -> String {
     kept
 }
 
-/// Puts something in at a place. (There is one text here, so that the file does not matter.)
+/// Returns the edit that inserts a text at a place of the only file, which has the number 0.
 fn put(place: usize, text: String) -> TextEdit {
     TextEdit::new(0, place..place, text)
 }
 
-/// The text with changes made, each with its order among those at the same place.
-fn applied(text: &str, mut edits: Vec<(f64, TextEdit)>) -> String {
+/// Applies edits to a text, each with its order among those at the same place.
+fn apply(text: &str, mut edits: Vec<(f64, TextEdit)>) -> String {
     edits.sort_by(|(a, first), (b, second)| {
         let by_place = first.span.start.cmp(&second.span.start);
         by_place.then(a.total_cmp(b))

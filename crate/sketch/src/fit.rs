@@ -9,41 +9,45 @@ pub const MOST_NODES: usize = 24;
 const MOST_POINTS: usize = 160;
 /// Levels to which curves are refined to be measured.
 const LEVELS: u32 = 3;
-/// How often the points' places along the curve are found anew.
+/// Rounds in which the points' places along the curve are found anew.
 const ROUNDS: usize = 4;
-/// Weight of the nodes' second differences against the points: what points leave open stays straight.
+/// Weight of the nodes' second differences against the points: what points leave open stays
+/// straight.
 const STIFFNESS: f64 = 1e-4;
 
 /// A point of a stroke with the radius that is wanted there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Its place.
+    /// The place.
     pub position: DVec3,
     /// The radius there.
     pub radius: f64,
 }
 
-/// The nodes of a curve of the cubic scheme that passes all samples within `tolerance`, as few as possible but
-/// at most [`MOST_NODES`]. It begins at the first sample and ends at the last. `None` if the samples do not reach farther
-/// than the tolerance, or a number is not finite.
+/// Finds the nodes of a curve of the cubic scheme that passes all samples within `tolerance`, as
+/// few as possible but at most [`MOST_NODES`]. It begins at the first sample and ends at the last.
+/// `None` if the samples do not reach farther than the tolerance, or a number is not finite.
 ///
-/// For each number of nodes the sum of squared distances is made least: samples get places along the curve, the nodes
-/// follow by linear equations, the places are found anew. So the curve is smoother than the hand was.
+/// For each number of nodes the sum of squared distances is made least: samples get places along
+/// the curve, the nodes follow by linear equations, the places are found anew. So the curve is
+/// smoother than the hand was.
 #[must_use]
 pub fn fit(samples: &[Sample], tolerance: f64) -> Option<Vec<Node>> {
-    let finite = |s: &Sample| s.position.is_finite() && s.radius.is_finite() && s.radius >= 0.0;
-    if !samples.iter().all(finite) || !tolerance.is_finite() || tolerance <= 0.0 {
+    let is_usable = samples
+        .iter()
+        .all(|s| s.position.is_finite() && s.radius.is_finite() && s.radius >= 0.0);
+    if !is_usable || !tolerance.is_finite() || tolerance <= 0.0 {
         return None;
     }
     let samples = spread(samples);
     let first = samples.first()?;
-    let reach = |s: &Sample| s.position.distance(first.position);
-    if samples.iter().map(reach).fold(0.0, f64::max) <= tolerance {
+    let distances = samples.iter().map(|s| s.position.distance(first.position));
+    if distances.fold(0.0, f64::max) <= tolerance {
         return None;
     }
     let mut best: Option<(f64, Vec<Node>)> = None;
     for count in 2..=MOST_NODES.min(samples.len().max(2)) {
-        let (nodes, error) = with(&samples, count)?;
+        let (nodes, error) = fit_nodes(&samples, count)?;
         if best.as_ref().is_none_or(|(least, _)| error < *least) {
             best = Some((error, nodes));
         }
@@ -66,7 +70,7 @@ fn spread(samples: &[Sample]) -> Vec<Sample> {
         return samples.to_vec();
     }
     let count = (2 * samples.len()).clamp(16, MOST_POINTS);
-    let at = |i: usize| {
+    let even = (0..count).map(|i| {
         let wanted = length * i as f64 / (count - 1) as f64;
         let next = along.partition_point(|a| *a < wanted);
         let next = next.clamp(1, samples.len() - 1);
@@ -81,12 +85,13 @@ fn spread(samples: &[Sample]) -> Vec<Sample> {
             position: from.position.lerp(to.position, share),
             radius: from.radius + (to.radius - from.radius) * share,
         }
-    };
-    (0..count).map(at).collect()
+    });
+    even.collect()
 }
 
-/// The curve with so many nodes that is nearest to the samples, and the greatest distance of one.
-fn with(samples: &[Sample], count: usize) -> Option<(Vec<Node>, f64)> {
+/// Finds the curve with `count` nodes that is nearest to the samples. Returns its nodes and the
+/// greatest distance of a sample.
+fn fit_nodes(samples: &[Sample], count: usize) -> Option<(Vec<Node>, f64)> {
     let basis = Basis::new(count)?;
     let last = samples.len() - 1;
     let mut places: Vec<f64> = (0..samples.len()).map(|i| i as f64 / last as f64).collect();
@@ -123,11 +128,13 @@ fn with(samples: &[Sample], count: usize) -> Option<(Vec<Node>, f64)> {
 /// The mean radius of samples around a share of the stroke.
 fn radius(samples: &[Sample], share: f64, around: f64) -> f64 {
     let last = (samples.len() - 1) as f64;
-    let is_near = |i: usize| (i as f64 / last - share).abs() <= around;
-    let near = samples.iter().enumerate().filter(|(i, _)| is_near(*i));
-    let (sum, count) = near.fold((0.0, 0.0), |(sum, count), (_, s)| {
-        (sum + s.radius, count + 1.0)
-    });
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (i, sample) in samples.iter().enumerate() {
+        if (i as f64 / last - share).abs() <= around {
+            sum += sample.radius;
+            count += 1.0;
+        }
+    }
     if count > 0.0 {
         sum / count
     } else {
@@ -135,7 +142,8 @@ fn radius(samples: &[Sample], share: f64, around: f64) -> f64 {
     }
 }
 
-/// The place along a polyline, 0 … 1 by its vertices' numbers, that is nearest to a point, and how far that is.
+/// Finds the place along a polyline, 0 … 1 by its vertices' numbers, that is nearest to a point,
+/// and the distance there.
 fn nearest(curve: &[DVec3], point: DVec3) -> (f64, f64) {
     let pieces = (curve.len() - 1) as f64;
     let mut best = (0.0, f64::INFINITY);
@@ -155,10 +163,10 @@ fn nearest(curve: &[DVec3], point: DVec3) -> (f64, f64) {
     best
 }
 
-/// How much each node counts at the vertices of a curve's polyline.
+/// The weights of nodes at the vertices of a curve's polyline.
 struct Basis {
     count: usize,
-    /// Of each vertex the weights of all nodes.
+    /// The weights of all nodes, a row for each vertex.
     rows: Vec<Vec<f64>>,
 }
 
@@ -167,12 +175,12 @@ impl Basis {
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for node in 0..count {
             // The places of vertices depend linearly on those of nodes.
-            let unit = |i| Node {
+            let nodes = (0..count).map(|i| Node {
                 position: if i == node { DVec3::X } else { DVec3::ZERO },
                 radius: 0.0,
-            };
+            });
             let skeleton = Skeleton {
-                nodes: (0..count).map(unit).collect(),
+                nodes: nodes.collect(),
                 curves: vec![(0..count).collect()],
             };
             let polyline = skeleton.polyline(Scheme::Cubic, LEVELS).ok()?;
@@ -194,14 +202,15 @@ impl Basis {
     }
 
     fn curve(&self, nodes: &[DVec3]) -> Vec<DVec3> {
-        let point = |row: &Vec<f64>| {
+        let points = self.rows.iter().map(|row| {
             let parts = row.iter().zip(nodes).map(|(weight, node)| *node * *weight);
             parts.sum()
-        };
-        self.rows.iter().map(point).collect()
+        });
+        points.collect()
     }
 
-    /// The nodes whose curve comes nearest to the samples at their places. The ends are the samples'.
+    /// The nodes whose curve comes nearest to the samples at their places. The ends are the
+    /// samples'.
     fn nodes(&self, samples: &[Sample], places: &[f64]) -> Vec<DVec3> {
         let (first, last) = (samples[0].position, samples[samples.len() - 1].position);
         let free = self.count - 2;
@@ -225,14 +234,14 @@ impl Basis {
             add(&row, DVec3::ZERO, STIFFNESS * samples.len() as f64);
         }
         let mut nodes = vec![first];
-        nodes.extend(solved(matrix, right));
+        nodes.extend(solve(matrix, right));
         nodes.push(last);
         nodes
     }
 }
 
 /// Solves a system with a symmetric positive definite matrix.
-fn solved(mut matrix: Vec<Vec<f64>>, mut right: Vec<DVec3>) -> Vec<DVec3> {
+fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<DVec3>) -> Vec<DVec3> {
     let n = right.len();
     for k in 0..n {
         let (above, below) = matrix.split_at_mut(k + 1);
@@ -257,11 +266,11 @@ mod tests {
     use super::*;
 
     fn samples(points: impl Iterator<Item = DVec3>) -> Vec<Sample> {
-        let sample = |position| Sample {
+        let samples = points.map(|position| Sample {
             position,
             radius: 0.2,
-        };
-        points.map(sample).collect()
+        });
+        samples.collect()
     }
 
     fn farthest(nodes: &[Node], samples: &[Sample]) -> f64 {

@@ -1,7 +1,8 @@
 //! Strokes of a hand as curves of few nodes, and the text of a skeleton that is made of them.
 //!
-//! A [`Stroke`] gathers what a hand draws on the screen, [`fit()`] smooths it, [`create`] and [`extend`] write it into a text;
-//! [`remove`], [`remove_curve`], [`cut`] and [`widen`] change what is there.
+//! A [`Stroke`] gathers what a hand draws on the screen, [`fit()`] smooths it, [`create`] and
+//! [`extend`] write it into a text; [`remove`], [`remove_curve`], [`cut`] and [`widen`] change what
+//! is there.
 //!
 //! ```
 //! use glam::DVec3;

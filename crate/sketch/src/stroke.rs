@@ -6,14 +6,14 @@ pub const MOST_MARKS: usize = 8192;
 /// A point of a stroke on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
-    /// To the right and down, points of the screen.
+    /// The place to the right and down, points of the screen.
     pub at: [f32; 2],
-    /// Pressure of a pen, 0 … 1, if it tells.
+    /// Pressure of a pen, 0 … 1, if it is measured.
     pub pressure: Option<f32>,
 }
 
-/// A stroke that is being drawn. However long it becomes, it keeps at most 8192 points: of a longer one every second point is left
-/// out.
+/// A stroke that is being drawn. However long it becomes, it keeps at most 8192 points: of a longer
+/// one every second point is left out.
 ///
 /// ```
 /// use sketch::{Mark, Stroke};
@@ -77,7 +77,7 @@ impl Stroke {
         &self.marks
     }
 
-    /// The same stroke, drawn the other way.
+    /// Returns the stroke drawn the other way.
     #[must_use]
     pub fn reversed(&self) -> Self {
         let mut stroke = self.clone();
@@ -85,7 +85,7 @@ impl Stroke {
         stroke
     }
 
-    /// How far the hand went from the first point.
+    /// Returns the greatest distance from the first point, points of the screen.
     #[must_use]
     pub fn reach(&self) -> f32 {
         self.reach

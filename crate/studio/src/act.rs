@@ -305,7 +305,8 @@ impl App {
         }
     }
 
-    /// Takes a tool for drawing in hand. What begins on a page with nothing of one's own to draw on begins on an empty one.
+    /// Takes a tool for drawing in hand. What begins on a page with nothing of one's own to draw on
+    /// begins on an empty one.
     fn take_tool(&mut self, ctx: &Context, tool: Option<Tool>, now: f64) {
         let begins = tool.is_some() && self.pencil.tool().is_none();
         self.pencil.take(tool);
@@ -326,7 +327,8 @@ impl App {
         }
     }
 
-    /// Height of the picture to draw on, to its width: on a narrow page it has all the place between the bars.
+    /// Height of the picture to draw on, to its width: on a narrow page it has all the place
+    /// between the bars.
     fn ratio(&self, ctx: &Context) -> f64 {
         let size = ctx.content_rect().size();
         if size.y <= size.x {

@@ -1,8 +1,8 @@
-//! The draft where the processor draws the window: on a graphics card that the browser pretends to have,
-//! small, and read back into a texture of egui's.
+//! The draft where the processor draws the window: on a graphics card that the browser pretends to
+//! have, small, and read back into a texture of egui's.
 //!
-//! The processor has no time for it while a traced picture comes soon, so it is made ready only when it was
-//! wanted for [`PATIENCE`].
+//! The processor has no time for it while a traced picture comes soon, so it is made ready only
+//! when it was wanted for [`PATIENCE`].
 
 use crate::platform;
 use crate::session::Session;

@@ -1,7 +1,8 @@
 //! The app: ties the user's work, the tracer and the draft to the widgets.
 //!
 //! [`App::tick`] does the work of timers and messages and runs even while the tab is hidden;
-//! [`App::show`] (in `draw`) draws one frame. Widgets only list [`Command`]s, which are carried out afterwards.
+//! [`App::show`] (in `draw`) draws one frame. Widgets only list [`Command`]s, which are carried out
+//! afterwards.
 
 use crate::apart::Apart;
 use crate::asset_view::AssetView;
@@ -179,8 +180,8 @@ pub struct App {
     pub(crate) touch: Option<bool>,
 }
 
-/// Seconds that tiles wait to be shown where the processor that traces them draws the page, too: each time it does
-/// keeps the workers waiting.
+/// Seconds that tiles wait to be shown where the processor that traces them draws the page, too:
+/// each time it does keeps the workers waiting.
 const REST: f32 = 0.4;
 
 /// Frames after which what has its place keeps it: in the first ones a menu that opens grows.
@@ -427,7 +428,8 @@ impl App {
         }
     }
 
-    /// Begins the picture that is wanted, if its time has come, and takes in what the workers have done.
+    /// Begins the picture that is wanted, if its time has come, and takes in what the workers have
+    /// done.
     pub(crate) fn trace(&mut self, ctx: &Context, now: f64) {
         let size = self.size(ctx);
         let session = &self.work.session;
@@ -445,12 +447,14 @@ impl App {
         }
     }
 
-    /// Whether a picture is being traced by the processor that draws the window, too: what need not be drawn is not.
+    /// Whether a picture is being traced by the processor that draws the window, too: what need not
+    /// be drawn is not.
     pub(crate) fn is_short_of_time(&self) -> bool {
         self.rest > 0.0 && self.renderer.phase() == Phase::Tracing
     }
 
-    /// Answers scripts that wait for the picture if it is finished, and refuses if the lab keeps it waiting.
+    /// Answers scripts that wait for the picture if it is finished, and refuses if the lab keeps it
+    /// waiting.
     fn answer_finished(&mut self) {
         let result = if self.rests() {
             Ok(())

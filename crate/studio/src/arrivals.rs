@@ -23,8 +23,8 @@ impl App {
         }
     }
 
-    /// Fetches the text, the images and the meshes of an example, which is opened when all are here. An image or a mesh that does
-    /// not come is missed by the text, which says so.
+    /// Fetches the text, the images and the meshes of an example, which is opened when all are
+    /// here. An image or a mesh that does not come is missed by the text, which says so.
     pub(crate) fn fetch_example(&self, index: usize) {
         let Some(example) = examples::ALL.get(index) else {
             return;
@@ -115,8 +115,8 @@ impl App {
         ctx.request_repaint();
     }
 
-    /// Opens an archive of a whole work as a new one, or adds its images and meshes to the open one if it
-    /// has no texts.
+    /// Opens an archive of a whole work as a new one, or adds its images and meshes to the open one
+    /// if it has no texts.
     fn take_project(&mut self, ctx: &Context, file: Taken, now: f64) {
         let unpacked = file
             .bytes

@@ -19,7 +19,8 @@ pub struct AssetView {
 }
 
 impl AssetView {
-    /// Shows an image or a mesh in all the space of `ui`. Gives whether the user goes back to the text.
+    /// Shows an image or a mesh in all the space of `ui`. Gives whether the user goes back to the
+    /// text.
     pub fn show(&mut self, ui: &mut Ui, asset: &Asset, commands: &mut Vec<Command>) -> bool {
         let palette = theme::palette(ui.visuals());
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);

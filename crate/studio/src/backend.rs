@@ -7,8 +7,8 @@ pub enum Backend {
     WebGpu,
     /// WebGL2: window and draft.
     WebGl2,
-    /// Neither, or only pretended: the window is drawn on the processor, and a draft only where the traced picture
-    /// takes long.
+    /// Neither, or only pretended: the window is drawn on the processor, and a draft only where the
+    /// traced picture takes long.
     None,
 }
 

@@ -6,9 +6,9 @@
 //! [`Backend`] is probed, then tried, and when it fails the next one is tried on a fresh canvas (a
 //! canvas that once had a context of one kind never gives another).
 //!
-//! If the browser only pretends to have WebGL2 and computes it on the processor, the processor draws
-//! the window itself: it does so many times more quickly, as it draws what changed, and leaves the time to
-//! the workers.
+//! If the browser only pretends to have WebGL2 and computes it on the processor, the processor
+//! draws the window itself: it does so many times more quickly, as it draws what changed, and
+//! leaves the time to the workers.
 //!
 //! `?backend=webgpu|webgl|none` in the page's address says where to begin, for tests and support.
 

@@ -209,7 +209,8 @@ impl Command {
         Self::Edit { edits, step: true }
     }
 
-    /// The command that carries out a wish of the lab; `None` if it is to open an example that there is not.
+    /// The command that carries out a wish of the lab; `None` if it is to open an example that
+    /// there is not.
     #[must_use]
     pub fn of_lab(wish: lab::Command) -> Option<Self> {
         Some(match wish {

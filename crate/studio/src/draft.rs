@@ -34,8 +34,8 @@ impl Draft {
         }
     }
 
-    /// The draft of the session's scene, `size` pixels large, with a mesh in place of its soft elements if there is one; `None` before
-    /// there is a scene.
+    /// The draft of the session's scene, `size` pixels large, with a mesh in place of its soft
+    /// elements if there is one; `None` before there is a scene.
     pub fn texture(
         &mut self,
         session: &Session,

@@ -1,5 +1,6 @@
-//! The text editor: colours, line numbers, underlined mistakes, indentation, and what it knows about the
-//! language: completions, cards, the line that says how a command is written, definitions, renaming.
+//! The text editor: colours, line numbers, underlined mistakes, indentation, and what it knows
+//! about the language: completions, cards, the line that says how a command is written,
+//! definitions, renaming.
 
 mod answers;
 mod completion;
@@ -281,7 +282,8 @@ impl Editor {
         Some((rect, Place { file, byte }))
     }
 
-    /// Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Gives whether it changed.
+    /// Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Gives whether it
+    /// changed.
     fn keys(&mut self, ui: &Ui) -> bool {
         if !ui.memory(|memory| memory.has_focus(id())) {
             return false;
@@ -381,7 +383,8 @@ impl Editor {
         ui.ctx().request_repaint();
     }
 
-    /// The caret's place, which no arrow key puts into folded lines; any other way there opens them.
+    /// The caret's place, which no arrow key puts into folded lines; any other way there opens
+    /// them.
     fn out_of_folds(
         &mut self,
         ui: &Ui,

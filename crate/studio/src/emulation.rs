@@ -1,9 +1,9 @@
 //! A mistake of browsers that pretend to be a phone.
 //!
 //! The developer tools' phone view changes `devicePixelRatio`, but `devicePixelContentBoxSize`, by
-//! which eframe sizes the canvas, stays that of the real screen, and the page would come out half as
-//! large as it should be. Where the two contradict each other, the second one is taken away, so that
-//! eframe computes the size from the ratio.
+//! which eframe sizes the canvas, stays that of the real screen, and the page would come out half
+//! as large as it should be. Where the two contradict each other, the second one is taken away, so
+//! that eframe computes the size from the ratio.
 
 use js_sys::{Array, Promise, Reflect};
 use wasm_bindgen::prelude::*;

@@ -14,20 +14,22 @@ pub struct Example {
     pub name: &'static str,
     /// Address of its text, a file beside the page.
     pub path: &'static str,
-    /// Its text, where it must be there at once: that of the first visit, and of sculptures. All others are fetched when they are
-    /// opened, so that no visitor waits for them.
+    /// Its text, where it must be there at once: that of the first visit, and of sculptures. All
+    /// others are fetched when they are opened, so that no visitor waits for them.
     pub text: Option<&'static str>,
-    /// Address of its thumbnail, a PNG file beside the page: fetched when the gallery is opened, as few
-    /// visits open it.
+    /// Address of its thumbnail, a PNG file beside the page: fetched when the gallery is opened, as
+    /// few visits open it.
     pub thumbnail: &'static str,
     /// Names and texts of the strokes that its text uses.
     pub texts: &'static [(&'static str, &'static str)],
-    /// Addresses of the images and meshes that its text names, files beside the page: fetched when the example is opened.
+    /// Addresses of the images and meshes that its text names, files beside the page: fetched when
+    /// the example is opened.
     pub files: &'static [&'static str],
 }
 
 impl Example {
-    /// Whether all words of a search, in small letters, stand in its title, subject, group or file name.
+    /// Whether all words of a search, in small letters, stand in its title, subject, group or file
+    /// name.
     #[must_use]
     pub fn matches(&self, words: &[String]) -> bool {
         let text = [self.title, self.about, self.group, self.name].join(" ");
@@ -50,7 +52,8 @@ impl Example {
     }
 }
 
-/// The file name, without its extension, of the example that a fragment leads to, as in `#example=cowrie`; `None` if it leads to none.
+/// The file name, without its extension, of the example that a fragment leads to, as in
+/// `#example=cowrie`; `None` if it leads to none.
 #[must_use]
 pub fn of_hash(hash: &str) -> Option<&str> {
     hash.strip_prefix("#example=")

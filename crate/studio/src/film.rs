@@ -77,7 +77,8 @@ impl Default for Player {
 }
 
 impl Player {
-    /// Takes the rate of a work that has one of its own, and four seconds of it, unless a person has chosen others.
+    /// Takes the rate of a work that has one of its own, and four seconds of it, unless a person
+    /// has chosen others.
     pub fn follow(&mut self, rate: Option<f64>) {
         let Some(rate) = rate.filter(|_| !self.chosen) else {
             return;
@@ -108,7 +109,8 @@ impl Player {
         self.playing = None;
     }
 
-    /// The frame to show after `frame` if its time has come. `ready` is whether that one could be seen.
+    /// The frame to show after `frame` if its time has come. `ready` is whether that one could be
+    /// seen.
     pub fn next(&mut self, frame: u32, ready: bool, now: f64) -> Option<u32> {
         let came = self.playing?;
         if !ready || now - came < 1.0 / f64::from(self.rate.max(1)) {

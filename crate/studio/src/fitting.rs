@@ -1,7 +1,7 @@
 //! Fitting a mesh of the work to measured points and outlines, in a tools worker.
 //!
-//! The result is text: the `deform` of the mesh is written, or written anew, while the fit goes on, all as one undo step.
-//! Measured files are kept here, not in the work, until the page is closed.
+//! The result is text: the `deform` of the mesh is written, or written anew, while the fit goes on,
+//! all as one undo step. Measured files are kept here, not in the work, until the page is closed.
 
 use crate::report;
 use crate::session::Session;
@@ -15,7 +15,8 @@ use tools::{Controls, FitMesh, FitStep, ReadMeasured};
 
 /// Measured files that are kept.
 pub const MOST_FILES: usize = 8;
-/// Seconds between changes of the text, for small meshes and for those of more than [`LARGE`] triangles.
+/// Seconds between changes of the text, for small meshes and for those of more than [`LARGE`]
+/// triangles.
 const BETWEEN: [f64; 2] = [0.25, 3.0];
 const LARGE: usize = 8000;
 /// Points that are drawn over the picture.
@@ -250,8 +251,8 @@ impl Fitting {
         let elements = compiled.scene.elements.iter().zip(&compiled.placements);
         for (element, placement) in elements {
             let origin = element.origin;
-            // The triangles of a mesh are always repeated, as their command makes many; whether the command itself is, the
-            // compiler says when the fit begins.
+            // The triangles of a mesh are always repeated, as their command makes many; whether the
+            // command itself is, the compiler says when the fit begins.
             let is_mesh = match &element.shape {
                 Shape::Triangle { .. } | Shape::Patch { .. } => true,
                 Shape::Function(function) => {

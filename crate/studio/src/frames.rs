@@ -1,13 +1,14 @@
 //! Lets the page rest while nothing is to be drawn.
 //!
-//! eframe asks the browser for an animation frame after every one, drawn or not, which costs a processor 8 % of its
-//! time in Chromium (60 Hz, nothing ever drawn), at the expense of the workers or of a battery. So the page's
-//! `requestAnimationFrame` is replaced: what asks for a frame gets it when there may be something to draw, that is when
-//! egui has asked for it or one of the events came that eframe listens to, else a few times a second ([`QUIET`]), for
-//! what is told to nobody else, such as another colour scheme of the system.
+//! eframe asks the browser for an animation frame after every one, drawn or not, which costs a
+//! processor 8 % of its time in Chromium (60 Hz, nothing ever drawn), at the expense of the workers
+//! or of a battery. So the page's `requestAnimationFrame` is replaced: what asks for a frame gets
+//! it when there may be something to draw, that is when egui has asked for it or one of the events
+//! came that eframe listens to, else a few times a second ([`QUIET`]), for what is told to nobody
+//! else, such as another colour scheme of the system.
 //!
-//! egui draws twice more after each event, to let things settle. Where each frame keeps the tracer waiting, these come
-//! [`PACE`] apart, unless a pointer is at work ([`LIVELY`]).
+//! egui draws twice more after each event, to let things settle. Where each frame keeps the tracer
+//! waiting, these come [`PACE`] apart, unless a pointer is at work ([`LIVELY`]).
 
 use js_sys::{Function, Reflect};
 use std::cell::RefCell;
@@ -21,10 +22,12 @@ const QUIET: f64 = 250.0;
 /// Milliseconds between the frames that egui requests at once, while frames are slow.
 const PACE: f64 = 100.0;
 
-/// Milliseconds after an event of a pointer in which they count as cheap: scrolling and dragging must stay smooth.
+/// Milliseconds after an event of a pointer in which they count as cheap: scrolling and dragging
+/// must stay smooth.
 const LIVELY: f64 = 500.0;
 
-/// Frames that are given without delay once something happens: egui and eframe often want another after the first.
+/// Frames that are given without delay once something happens: egui and eframe often want another
+/// after the first.
 const TOGETHER: u32 = 3;
 
 /// Given frames that can still be cancelled, more than anyone waits for.
@@ -57,7 +60,8 @@ struct Frames {
     given: VecDeque<(i32, JsValue)>,
     /// Frames still to be given without delay.
     left: u32,
-    /// Time of the frame that egui requests next, in milliseconds of the page's clock; infinite without a request.
+    /// Time of the frame that egui requests next, in milliseconds of the page's clock; infinite
+    /// without a request.
     due: f64,
     /// Time at which waiting requests get their frame in any case.
     latest: f64,
@@ -101,7 +105,8 @@ pub fn rest() {
     let listen = |events: &str, act: fn(&mut Frames)| {
         let listener = Closure::<dyn FnMut()>::new(move || with(act)).into_js_value();
         for event in events.split_whitespace() {
-            // Before anyone who might keep it to himself. One that is missed is drawn a little later.
+            // Before anyone who might keep it to himself. One that is missed is drawn a little
+            // later.
             let listener = listener.unchecked_ref();
             let _ = window.add_event_listener_with_callback_and_bool(event, listener, true);
         }

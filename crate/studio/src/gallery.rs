@@ -274,7 +274,8 @@ fn ago(milliseconds: f64) -> String {
     }
 }
 
-/// The two strips of free space beside a picture in a place, each with the texture coordinates of the nearest column or row of the picture.
+/// The two strips of free space beside a picture in a place, each with the texture coordinates of
+/// the nearest column or row of the picture.
 fn strips(inner: Rect, place: Rect, size: egui::Vec2) -> [(Rect, Rect); 2] {
     let [column, row] = [0.5 / size.x, 0.5 / size.y];
     let edge = |from: [f32; 2], to: [f32; 2]| Rect::from_min_max(from.into(), to.into());

@@ -19,31 +19,35 @@
 //! | `sculpture()` | the sculpture that is worked on: `{name, counts: [vertices, faces], depth: [undo, redo]}`; null in the editor |
 //!
 //! `status()` gives `phase` (`"idle"`, `"waiting"` for a pause in typing, `"tracing"`, `"done"`,
-//! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null), `remaining`
-//! (seconds or null), `fresh` (whether the picture on the screen is of the present text and camera),
-//! `picture` (`{width, height}` or null), `errors` (how many), `elements` (how many the text makes),
-//! `diagnostics` (each `{severity, message, file, span, line, column, hint, related, command}`), `hot`
-//! (names of the sliders), `assets` (names of the images and meshes), `reading` (name of the mesh that is being read, or null), `fit` (`{running, iteration, residual, points, said}` of the panel that fits meshes, or null),
-//! `mesh` (`{running, shown, triangles, bytes, said}` of the open dialog with the model as a mesh, or null),
-//! `frame` (of an animated work, else
-//! null), `drawing` (the tool for drawing that is in hand: `"draw"`, `"move"`, `"cut"`, or null), `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died), `failure`,
-//! `timings` (seconds: `compile`, `coarse`, `done`), `stats` (`{primaryRays, shadowRays,
-//! fieldEvaluations}`), `revision` (rises with each change of the text), `name`, `saved` (whether all
-//! changes are in the browser's storage).
+//! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null),
+//! `remaining` (seconds or null), `fresh` (whether the picture on the screen is of the present text
+//! and camera), `picture` (`{width, height}` or null), `errors` (how many),
+//! `elements` (how many the text makes), `diagnostics` (each `{severity, message, file, span, line,
+//! column, hint, related, command}`), `hot` (names of the sliders), `assets` (names of the images
+//! and meshes), `reading` (name of the mesh that is being read, or null), `fit`
+//! (`{running, iteration, residual, points, said}` of the panel that fits meshes, or null),
+//! `mesh` (`{running, shown, triangles, bytes, said}` of the open dialog with the model as a mesh,
+//! or null), `frame` (of an animated work, else null),
+//! `drawing` (the tool for drawing that is in hand: `"draw"`, `"move"`, `"cut"`, or null),
+//! `backend` (`"webgpu"`, `"webgl2"`, `"none"`), `workers`, `replaced` (workers that died),
+//! `failure`, `timings` (seconds: `compile`, `coarse`, `done`), `stats`
+//! (`{primaryRays, shadowRays, fieldEvaluations}`),
+//! `revision` (rises with each change of the text), `name`, `saved` (whether all changes are in the
+//! browser's storage).
 //!
-//! `lab()` gives `lesson` (the word in its link, as in `#lab=kernels`), `title`, `waiting` (small
-//! pictures still to be traced), `drawn` (small pictures there), `refused` (texts that the language
-//! does not draw yet) and `readings` (`{name: number}`: what the lesson shows as numbers). While the
-//! lab is open no picture of the text is begun: `finished()` is rejected unless the picture is finished
-//! or being traced.
+//! `lab()` gives `lesson` (the word in its link, as in `#lab=kernels`), `title`,
+//! `waiting` (small pictures still to be traced), `drawn` (small pictures there), `refused` (texts
+//! that the language does not draw yet) and `readings` (`{name: number}`: what the lesson shows as
+//! numbers). While the lab is open no picture of the text is begun: `finished()` is rejected unless
+//! the picture is finished or being traced.
 //!
 //! `sinew.debug` is for tests of the page itself and may change at any time: `killWorker(i)`
-//! (whether there was such a worker),
-//! `rects()` (`{name: {x, y, w, h}}` of widgets in CSS pixels: `editor`, `picture`, `share`,
-//! `examples`, `undo`, `draw`, `tool draw`, `node NAME`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …),
-//! `still()` (promise, resolved when none of them moves any more),
-//! `pictureSize(w, h)`, which fixes the size of the traced picture (without arguments: back to what
-//! the user chose), and `panic()`, which stops the program as a mistake in it would.
+//! (whether there was such a worker), `rects()` (`{name: {x, y, w,
+//! h}}` of widgets in CSS pixels: `editor`, `picture`, `share`, `examples`, `undo`, `draw`, `tool
+//! draw`, `node NAME`, `sliders`, `slider NAME`, `problems`, `status`, `notice`, `dialog`, …),
+//! `still()` (promise, resolved when none of them moves any more), `pictureSize(w, h)`, which fixes
+//! the size of the traced picture (without arguments: back to what the user chose), and `panic()`,
+//! which stops the program as a mistake in it would.
 
 use crate::app::Parts;
 use crate::intake::Taken;

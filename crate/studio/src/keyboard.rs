@@ -1,20 +1,20 @@
 //! Keeps what a user does in order when much of it comes in one frame.
 //!
 //! A slow frame may bring a click, arrow keys, F2, "a" and Enter at once, and each of them is meant
-//! for what the one before has led to. Widgets see a frame's events all together, though, and some keys
-//! (Enter, Tab, undo …) are handled by us before egui's text field sees the rest. So
+//! for what the one before has led to. Widgets see a frame's events all together, though, and some
+//! keys (Enter, Tab, undo …) are handled by us before egui's text field sees the rest. So
 //! - such a key comes first in its frame, and keys after it wait for the next frame;
-//! - so do keys after a click or a key that may move the focus, and they wait a frame more, in which
-//!   a field that has opened takes the focus;
-//! - keys wait while the focus is new: a widget says only then which arrow keys it keeps. Those that
-//!   come before go from widget to widget, and take the focus along.
+//! - so do keys after a click or a key that may move the focus, and they wait a frame more, in
+//!   which a field that has opened takes the focus;
+//! - keys wait while the focus is new: a widget says only then which arrow keys it keeps. Those
+//!   that come before go from widget to widget, and take the focus along.
 //!
 //! Whatever comes after a key that waits waits with it.
 
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 
-/// Events that wait for the next frame. A plugin, as egui moves the focus by arrow keys and Tab before
-/// any widget is shown.
+/// Events that wait for the next frame. A plugin, as egui moves the focus by arrow keys and Tab
+/// before any widget is shown.
 #[derive(Default)]
 pub struct Keyboard {
     waiting: Vec<Event>,

@@ -8,7 +8,8 @@ use glam::DVec3;
 use rats::{Project, TextEdit};
 use scene::{Camera, Finish, Scene};
 
-/// Most ambient light at which a material counts as dark, in shares of its diffuse colour: what it has where the text says nothing.
+/// Most ambient light at which a material counts as dark, in shares of its diffuse colour: what it
+/// has where the text says nothing.
 const DARK: f32 = 1.01 * Finish::AMBIENT_SHARE;
 
 /// Whether nothing shines on a scene: no light, sky or cloud, and no element that glows by itself.
@@ -56,7 +57,8 @@ pub fn with_light(text: &str, camera: &Camera) -> String {
     format!("{text}{gap}{line}")
 }
 
-/// The project's first text with a light that shines; `None` if adding one does not help, as where a block is not closed.
+/// The project's first text with a light that shines; `None` if adding one does not help, as where
+/// a block is not closed.
 #[must_use]
 pub fn lit(session: &Session) -> Option<String> {
     let text = with_light(session.text(0), &session.camera());

@@ -313,7 +313,8 @@ fn reset_view(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
-/// Whether there is room for the tray below the picture: not where the keyboard takes half of a phone.
+/// Whether there is room for the tray below the picture: not where the keyboard takes half of a
+/// phone.
 fn has_tray(place: Rect, narrow: bool) -> bool {
     let height = tray::strip::height(narrow, false);
     place.height() > height + if narrow { 60.0 } else { 160.0 }

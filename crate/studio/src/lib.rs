@@ -1,8 +1,8 @@
 //! The page: an egui app that edits a dataset, shows the draft and the traced picture, and shares
 //! them.
 //!
-//! The user's work ([`session`], [`history`], [`picture`], [`storage`], [`share`]) does not depend on windows and is tested
-//! without one. [`app::App`] connects it to the widgets.
+//! The user's work ([`session`], [`history`], [`picture`], [`storage`], [`share`]) does not depend
+//! on windows and is tested without one. [`app::App`] connects it to the widgets.
 
 mod act;
 mod apart;

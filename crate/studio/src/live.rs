@@ -1,9 +1,10 @@
-//! A mesh of the model's true surface for the draft, while a hand turns the model or drags a part of it.
+//! A mesh of the model's true surface for the draft, while a hand turns the model or drags a part
+//! of it.
 //!
-//! A tools worker makes it, apart from the page's thread: coarsely while the text changes, and finely
-//! once nothing changes and no picture is traced. Until it is there, and where it would come too late
-//! to follow a hand, the draft shows the elements before they melt together. Nothing is made, nor
-//! fetched, before a hand turns or drags for the first time.
+//! A tools worker makes it, apart from the page's thread: coarsely while the text changes, and
+//! finely once nothing changes and no picture is traced. Until it is there, and where it would come
+//! too late to follow a hand, the draft shows the elements before they melt together. Nothing is
+//! made, nor fetched, before a hand turns or drags for the first time.
 
 use crate::session::Session;
 use pool::{Ticket, Tools};
@@ -190,7 +191,8 @@ impl LiveMesh {
         });
     }
 
-    /// The mesh to draw: that of the present scene, or while a hand drags and meshes are quick, the one before.
+    /// The mesh to draw: that of the present scene, or while a hand drags and meshes are quick, the
+    /// one before.
     #[must_use]
     pub fn shown(&self, session: &Session, now: f64) -> Option<&Made> {
         let follows = self.seconds <= QUICK && self.hopeless != Some(session.shape());

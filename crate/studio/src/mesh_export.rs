@@ -1,9 +1,9 @@
 //! The model as a mesh, for printers and other programs: the jobs of the tools worker, and scripts
 //! that ask for a file. The dialog is in `mesh_panel`.
 //!
-//! The mesh is made apart from the page's thread; until it is there a coat of the skeletons is seen.
-//! Another format or size only writes the mesh again. Of a model with a skeleton the motion is asked
-//! of the language frame by frame, some at each tick, so that the page stays responsive.
+//! The mesh is made apart from the page's thread; until it is there a coat of the skeletons is
+//! seen. Another format or size only writes the mesh again. Of a model with a skeleton the motion
+//! is asked of the language frame by frame, some at each tick, so that the page stays responsive.
 
 use crate::film::MAX_FRAMES;
 use crate::mesh_panel::Show;
@@ -533,7 +533,8 @@ impl MeshExport {
         State::Idle
     }
 
-    /// How much longer the model's lengths are in the present settings than in the facts of its mesh.
+    /// How much longer the model's lengths are in the present settings than in the facts of its
+    /// mesh.
     pub(crate) fn growth(&self, facts: &MeshFacts) -> f64 {
         let longest = facts.sides.into_iter().fold(0.0, f64::max);
         self.order.size / longest
@@ -741,7 +742,8 @@ mod tests {
         assert!(made_for_a_script(ARM, other).unwrap_err().contains("GLB"));
     }
 
-    /// Follows the settings until their file is there or cannot be had. Returns how many jobs were begun.
+    /// Follows the settings until their file is there or cannot be had. Returns how many jobs were
+    /// begun.
     fn follow(export: &mut MeshExport, session: &Session) -> usize {
         let film = Film { count: 5, rate: 12 };
         let deadline = Instant::now() + Duration::from_secs(120);

@@ -66,8 +66,8 @@ impl App {
         }
     }
 
-    /// Goes where the fragment of the address now leads: to a lesson, to an example, to a shared work, or
-    /// back to the editor.
+    /// Goes where the fragment of the address now leads: to a lesson, to an example, to a shared
+    /// work, or back to the editor.
     fn follow(&mut self, ctx: &Context, now: f64) {
         let hash = platform::hash();
         if let Some(lesson) = Lesson::of_hash(&hash) {

@@ -1,5 +1,6 @@
-//! Controls for a hot vector: a square in which dragging sets x and y, a slim slider beside it for z,
-//! and three fields for exact numbers. The wheel over the square and Page Up and Page Down move z too.
+//! Controls for a hot vector: a square in which dragging sets x and y, a slim slider beside it for
+//! z, and three fields for exact numbers. The wheel over the square and Page Up and Page Down move
+//! z too.
 
 use crate::{places, slider, theme};
 use egui::{

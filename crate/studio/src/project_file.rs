@@ -1,9 +1,9 @@
-//! A whole work as one file: a zip archive of its texts, images and meshes, which other programs unpack
-//! as well.
+//! A whole work as one file: a zip archive of its texts, images and meshes, which other programs
+//! unpack as well.
 //!
-//! Beside them the archive has a description, `sinew.json`, with the work's name, its view, and which
-//! members are texts, the one that is run first. Archives without one are read as well: their files count
-//! as if they were dropped on the page one by one.
+//! Beside them the archive has a description, `sinew.json`, with the work's name, its view, and
+//! which members are texts, the one that is run first. Archives without one are read as well: their
+//! files count as if they were dropped on the page one by one.
 
 use crate::asset::{Asset, MAX_ALL, MAX_ASSET, MAX_ASSETS};
 use crate::intake::{self, Sorted, Taken};
@@ -88,7 +88,8 @@ fn is_packed(name: &str) -> bool {
 /// The work in an archive, and of each file that was left out a sentence that says why.
 ///
 /// # Errors
-/// Why the archive cannot be read, or has nothing for a work: the end of a sentence that begins with "it".
+/// Why the archive cannot be read, or has nothing for a work: the end of a sentence that begins
+/// with "it".
 pub fn unpack(bytes: &[u8]) -> Result<(Project, Vec<String>), String> {
     let told = |error: Error| error.to_string();
     if bytes.len() > MAX_BYTES {

@@ -40,7 +40,8 @@ impl MeshReading {
     }
 
     /// Starts reading the meshes that the session waits for, gives up those it does not want any
-    /// more, and keeps those that are read. Returns whether one is, so that the session may compile.
+    /// more, and keeps those that are read. Returns whether one is, so that the session may
+    /// compile.
     pub fn tick(&mut self, session: &Session) -> bool {
         let mut any_read = false;
         self.files.retain_mut(|file| match file.ticket.result() {

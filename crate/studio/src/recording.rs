@@ -1,7 +1,7 @@
 //! A film on its way into a file, frame by frame.
 //!
-//! Frames are encoded as they come from the tracer. Those that a film shows a second time, on its way
-//! back, are kept as small as PNG files until then.
+//! Frames are encoded as they come from the tracer. Those that a film shows a second time, on its
+//! way back, are kept as small as PNG files until then.
 
 use crate::film::{MAX_FRAMES, Playback, Player};
 use crate::picture::Image;

@@ -1,5 +1,5 @@
-//! The reference in the help: every command of the language, by group, with a field that searches names
-//! and meanings.
+//! The reference in the help: every command of the language, by group, with a field that searches
+//! names and meanings.
 
 use crate::command::Command;
 use crate::{places, theme};

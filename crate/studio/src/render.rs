@@ -1,8 +1,8 @@
 //! When to trace, and the traced picture on its way to the screen.
 //!
-//! A change is traced at once where the workers soon have a coarse picture of it; else after a short pause,
-//! so that typing does not have a large scene prepared at every key. The running picture is given up at
-//! the change itself, which frees the workers for the next one.
+//! A change is traced at once where the workers soon have a coarse picture of it; else after a
+//! short pause, so that typing does not have a large scene prepared at every key. The running
+//! picture is given up at the change itself, which frees the workers for the next one.
 
 use crate::picture;
 use egui::{ColorImage, TextureHandle, TextureOptions};
@@ -259,8 +259,8 @@ impl Renderer {
         self.phase
     }
 
-    /// Whether the picture on the screen may stand in for one that is wanted: it has its size, and a coarse one is expected
-    /// within so many seconds of work, which are not over yet.
+    /// Whether the picture on the screen may stand in for one that is wanted: it has its size, and
+    /// a coarse one is expected within so many seconds of work, which are not over yet.
     #[must_use]
     pub fn is_near(&self, seconds: f64, now: f64) -> bool {
         let coming = match self.phase {

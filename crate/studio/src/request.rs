@@ -1,4 +1,5 @@
-//! Requests from outside the window: from scripts of the page (`handle`) and from the browser itself.
+//! Requests from outside the window: from scripts of the page (`handle`) and from the browser
+//! itself.
 
 use crate::asset::Asset;
 use crate::intake::Taken;
@@ -27,7 +28,8 @@ pub enum Request {
     Load(Project, Answer),
     /// Take in files that the user dropped or chose.
     Files(Vec<Taken>),
-    /// Open an example of the gallery with its text, `None` if that did not come, and its images and meshes, which were fetched.
+    /// Open an example of the gallery with its text, `None` if that did not come, and its images
+    /// and meshes, which were fetched.
     Example(usize, Option<String>, Vec<Asset>),
     /// Sculpt the mesh of the model, as a PLY file, or say why there is none.
     SculptModel(Result<Vec<u8>, String>),
@@ -39,8 +41,8 @@ pub enum Request {
     Picture(Viewer),
     /// Give the file of a mesh of the model.
     Mesh(Order, Taker),
-    /// Answer when the picture of the present text and camera is finished, or was stopped. It is refused, with
-    /// the reason, while the lab keeps the picture waiting.
+    /// Answer when the picture of the present text and camera is finished, or was stopped. It is
+    /// refused, with the reason, while the lab keeps the picture waiting.
     Finished(Answer),
     /// Answer when nothing in the window changes its place any more. For tests.
     Still(Box<dyn FnOnce()>),

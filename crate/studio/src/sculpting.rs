@@ -1,4 +1,5 @@
-//! Sculpting in the page: which text of strokes is open in the place (crate `modeling`), how one begins, and what it writes.
+//! Sculpting in the page: which text of strokes is open in the place (crate `modeling`), how one
+//! begins, and what it writes.
 
 use crate::app::{App, Dialog, Tab};
 use crate::asset::{self, Kind};
@@ -70,7 +71,8 @@ fn shown(text: &str, file: &str, diffuse: &str) -> String {
     format!("surface {name}, diffuse {diffuse}, specular White, shine 20\nmesh {name} {file}\n")
 }
 
-/// A text whose `mesh` command for a file shows it in another way; `None` if it has no such command.
+/// A text whose `mesh` command for a file shows it in another way; `None` if it has no such
+/// command.
 fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
     let bare = file.rsplit('/').next().unwrap_or(file);
     let is_it = |line: &&str| {
@@ -88,7 +90,8 @@ fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
         let digits = (2.0 - libm::floor(libm::log10(x.max(1e-9)))).clamp(0.0, 9.0) as usize;
         format!("{x:.digits$}")
     };
-    // Materials that flesh was grown of have names of their own, so that it can be taken away again.
+    // Materials that flesh was grown of have names of their own, so that it can be taken away
+    // again.
     let hard = old
         .strip_suffix("Flesh")
         .filter(|name| !name.is_empty())
@@ -124,7 +127,8 @@ impl App {
         self.sculpting.is_some()
     }
 
-    /// Goes on with the text of strokes in the editor, or the first of the work, or asks how to begin.
+    /// Goes on with the text of strokes in the editor, or the first of the work, or asks how to
+    /// begin.
     pub(crate) fn show_sculpt(&mut self) {
         let files = &self.work.session.project().files;
         let shown = files
@@ -237,7 +241,8 @@ impl App {
             .make_for(session, film, "model", order, taker);
     }
 
-    /// Puts the mesh of the model in the place of its texts, to be sculpted: one step, which undo takes back.
+    /// Puts the mesh of the model in the place of its texts, to be sculpted: one step, which undo
+    /// takes back.
     pub(crate) fn sculpt_mesh(&mut self, result: Result<Vec<u8>, String>, now: f64) {
         let session = &mut self.work.session;
         let put = result.and_then(|bytes| {
@@ -261,7 +266,8 @@ impl App {
         });
         match put {
             Ok(()) => {
-                // The clay is as large as the shapes that one may begin with, wherever the model was looked at from.
+                // The clay is as large as the shapes that one may begin with, wherever the model
+                // was looked at from.
                 session.set_camera(None);
                 self.editor.open(0);
                 self.hands.clear();

@@ -1,10 +1,9 @@
 //! The user's work without any window: the project, its undo steps, what the compiler
 //! says about it, the last scene that could be drawn, and the camera chosen by hand.
 //!
-//! Three counters tell others what changed: [`Session::revision`] rises with every change of the text,
-//! [`Session::generation`] with every change of what is to be drawn, [`Session::shape`] with those
-//! that are no mere turn of the camera.
-//! Times are seconds on any clock that never goes back.
+//! Three counters tell others what changed: [`Session::revision`] rises with every change of the
+//! text, [`Session::generation`] with every change of what is to be drawn, [`Session::shape`] with
+//! those that are no mere turn of the camera. Times are seconds on any clock that never goes back.
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
@@ -141,8 +140,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Starts with what was kept. The project gets at least one file. With `compile` false nothing is
-    /// ever compiled before [`Session::enable`] is called.
+    /// Starts with what was kept. The project gets at least one file. With `compile` false nothing
+    /// is ever compiled before [`Session::enable`] is called.
     #[must_use]
     pub fn new(kept: Kept, compile: bool) -> Self {
         let mut session = Self {
@@ -225,8 +224,8 @@ impl Session {
         Ok(())
     }
 
-    /// Changes a text as a step of its own. If the last step led here from just that state, or the next
-    /// one leads there, it is undone or redone: whoever goes back, there is one history.
+    /// Changes a text as a step of its own. If the last step led here from just that state, or the
+    /// next one leads there, it is undone or redone: whoever goes back, there is one history.
     ///
     /// # Errors
     /// If the project would become too long; then nothing changes.
@@ -358,8 +357,8 @@ impl Session {
         free
     }
 
-    /// Adds images and meshes; one whose name is taken replaces what was there. Undo does not know of
-    /// them.
+    /// Adds images and meshes; one whose name is taken replaces what was there. Undo does not know
+    /// of them.
     ///
     /// # Errors
     /// If there would be too many or they would be too large; then nothing changes.
@@ -372,7 +371,8 @@ impl Session {
             }
         }
         check_assets(&all)?;
-        // The same content in other memory is taken over, too: a file whose reading failed may be put again.
+        // The same content in other memory is taken over, too: a file whose reading failed may be
+        // put again.
         let is_same = |(new, old): (&Asset, &Asset)| {
             new.name == old.name && Arc::ptr_eq(&new.bytes, &old.bytes)
         };
@@ -607,8 +607,8 @@ impl Session {
         self.enabled = true;
     }
 
-    /// Large meshes that the text names and that are not read yet. Until [`rats::keep_mesh`] was called
-    /// for each, [`Session::compile`] waits.
+    /// Large meshes that the text names and that are not read yet. Until [`rats::keep_mesh`] was
+    /// called for each, [`Session::compile`] waits.
     pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
         let files = &self.project.files;
         // A text in the same folder may leave the folder out.
@@ -621,9 +621,9 @@ impl Session {
         })
     }
 
-    /// Compiles the present text if it changed since the last call and all large meshes it names are
-    /// read. Call it after the text was stored, so that nothing typed is lost if the compiler stops the
-    /// program.
+    /// Compiles the present text if it changed since the last call and all large meshes it names
+    /// are read. Call it after the text was stored, so that nothing typed is lost if the compiler
+    /// stops the program.
     pub fn compile(&mut self) {
         if !self.enabled || !self.stale || self.unread_meshes().next().is_some() {
             return;

@@ -8,7 +8,8 @@ use crate::render::{Phase, Renderer, pass_label};
 use crate::theme;
 use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, vec2};
 
-/// The state of the work in a few words. `reading` is the mesh file that is being read, with the fraction done.
+/// The state of the work in a few words. `reading` is the mesh file that is being read, with the
+/// fraction done.
 #[must_use]
 pub fn summary(renderer: &Renderer, enabled: bool, reading: Option<(&str, f32)>) -> String {
     let progress = renderer.progress();

@@ -1,5 +1,5 @@
-//! The strip under the picture of an animated work: play, go to a frame, save the film. While a film is
-//! saved it shows how far that is.
+//! The strip under the picture of an animated work: play, go to a frame, save the film. While a
+//! film is saved it shows how far that is.
 
 use crate::app::App;
 use crate::command::Command;

@@ -45,7 +45,8 @@ pub struct Scenery<'a> {
 /// What the pointer does beside moving the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Grasp {
-    /// The first button and a single finger draw; other buttons, the space bar and two fingers turn.
+    /// The first button and a single finger draw; other buttons, the space bar and two fingers
+    /// turn.
     pub draws: bool,
     /// The wheel does something else.
     pub wheel: bool,
@@ -53,8 +54,9 @@ pub struct Grasp {
     pub pinch: bool,
 }
 
-/// The largest rectangle of the frame's proportions in the middle of a place. It lies on whole pixels of the screen, and a
-/// picture made to fit it ([`crate::size::pixels`]) has as many, so that it is shown as sharp as it was traced.
+/// The largest rectangle of the frame's proportions in the middle of a place. It lies on whole
+/// pixels of the screen, and a picture made to fit it ([`crate::size::pixels`]) has as many, so
+/// that it is shown as sharp as it was traced.
 #[must_use]
 pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
     let frame = vec2(frame[0].max(1) as f32, frame[1].max(1) as f32);
@@ -63,8 +65,9 @@ pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
         .max(0.0);
     let size = frame * (scale * pixels_per_point);
     let shorter = (size.min_elem() + 1e-3).floor();
-    // From the shorter side, which the longer one's rounding does not change when it is computed from that again. If that is
-    // very short then the other would be far from what there is room for.
+    // From the shorter side, which the longer one's rounding does not change when it is computed
+    // from that again. If that is very short then the other would be far from what there is room
+    // for.
     let size = if shorter >= SHORT {
         (frame * (shorter / frame.min_elem())).round()
     } else {
@@ -75,8 +78,9 @@ pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
     Rect::from_min_size(min.round_to_pixels(pixels_per_point), size)
 }
 
-/// Whether the draft is to be drawn at all. `slow`: the processor draws it, for which the workers have to wait. Then the
-/// last picture stands in for it where a coarse one comes [`SOON`], and none is faded out.
+/// Whether the draft is to be drawn at all. `slow`: the processor draws it, for which the workers
+/// have to wait. Then the last picture stands in for it where a coarse one comes [`SOON`], and none
+/// is faded out.
 #[must_use]
 pub fn needs_draft(
     show: Show,

@@ -3,8 +3,8 @@
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 use glam::{DVec2, DVec3};
 
-/// A point of the unit disc, evenly spread if (a, b) is over [0, 1)²: squares around the middle become circles
-/// (Shirley and Chiu's map), so that near points stay near.
+/// Returns a point of the unit disc, evenly spread if (a, b) is over [0, 1)²: squares around the
+/// middle become circles (Shirley and Chiu's map), so that near points stay near.
 #[must_use]
 pub fn disc(sample: [f64; 2]) -> DVec2 {
     let [x, y] = sample.map(|s| 2.0 * s - 1.0);
@@ -20,7 +20,7 @@ pub fn disc(sample: [f64; 2]) -> DVec2 {
     radius * DVec2::new(c, s)
 }
 
-/// A direction, evenly spread over the unit sphere.
+/// Returns a direction, evenly spread over the unit sphere.
 #[must_use]
 pub fn direction(sample: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * sample[0];
@@ -29,8 +29,8 @@ pub fn direction(sample: [f64; 2]) -> DVec3 {
     DVec3::new(around * c, around * s, z)
 }
 
-/// A direction of the half of the unit sphere around a unit `axis`, spread as the cosine of its angle to it: what
-/// falls evenly from a sky onto a surface.
+/// Returns a direction of the half of the unit sphere around a unit `axis`, spread as the cosine of
+/// its angle to it: what falls evenly from a sky onto a surface.
 #[must_use]
 pub fn cosine(axis: DVec3, sample: [f64; 2]) -> DVec3 {
     let [first, second] = frame(axis);
@@ -39,7 +39,7 @@ pub fn cosine(axis: DVec3, sample: [f64; 2]) -> DVec3 {
     (at.x * first + at.y * second + up * axis).normalize_or(axis)
 }
 
-/// Two unit vectors across a unit vector and each other.
+/// Returns two unit vectors perpendicular to a unit vector and to each other.
 #[must_use]
 pub fn frame(axis: DVec3) -> [DVec3; 2] {
     let size = axis.abs();
@@ -54,8 +54,9 @@ pub fn frame(axis: DVec3) -> [DVec3; 2] {
     [first, axis.cross(first)]
 }
 
-/// A point of a spherical light of a radius, seen from `from`: on the disc through its centre that faces the viewer.
-/// Its share that is seen past an edge is the light's share that falls there, up to (radius/distance)².
+/// Returns a point of a spherical light of a radius, seen from `from`: on the disc through its
+/// centre that faces the viewer. Its share that is seen past an edge is the light's share that
+/// falls there, up to (radius/distance)².
 #[must_use]
 pub fn light(center: DVec3, radius: f64, from: DVec3, sample: [f64; 2]) -> DVec3 {
     let [first, second] = frame((center - from).normalize_or(DVec3::Z));
@@ -63,12 +64,13 @@ pub fn light(center: DVec3, radius: f64, from: DVec3, sample: [f64; 2]) -> DVec3
     center + at.x * first + at.y * second
 }
 
-/// A ray of a thin lens: origin on the lens and unit direction.
+/// Returns a ray of a thin lens: origin on the lens and unit direction.
 ///
-/// The pinhole's ray goes from `eye` along `direction`. All rays of the lens meet in the point where it meets the
-/// plane of focus, `focus` in front of the eye, measured along the unit vector `forward`. `right` and `up` are unit
-/// vectors in the lens, `aperture` is its radius. A point at the distance z in front of the eye is thus blurred to a
-/// circle whose radius, on the plane of focus, is `aperture·|focus − z|/z`.
+/// The pinhole's ray goes from `eye` along `direction`. All rays of the lens meet in the point
+/// where it meets the plane of focus, `focus` in front of the eye, measured along the unit vector
+/// `forward`. `right` and `up` are unit vectors in the lens, `aperture` is its radius. A point at
+/// the distance z in front of the eye is thus blurred to a circle whose radius, on the plane of
+/// focus, is `aperture·|focus − z|/z`.
 #[must_use]
 pub fn lens(
     eye: DVec3,

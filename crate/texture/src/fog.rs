@@ -14,14 +14,15 @@ use glam::{DVec3, Vec3};
 pub struct Fog {
     /// Distance over which light falls by 1/e, > 0; of fog with a height, at y = 0.
     pub distance: f64,
-    /// Height over which the fog's density falls by 1/e, > 0; below y = 0 it is as dense as there. `None`: it is
-    /// equally dense everywhere.
+    /// Height over which the fog's density falls by 1/e, > 0; below y = 0 it is as dense as there.
+    /// `None`: it is equally dense everywhere.
     pub height: Option<f64>,
 }
 
 impl Fog {
-    /// Share of light, 0 to 1, that passes along `length` of the ray from `origin` in the unit `direction`: e to the
-    /// power of minus the density's integral, in closed form. The length may be infinite.
+    /// Share of light, 0 to 1, that passes along `length` of the ray from `origin` in the unit
+    /// `direction`: e to the power of minus the density's integral, in closed form. The length may
+    /// be infinite.
     #[must_use]
     pub fn passes(&self, origin: DVec3, direction: DVec3, length: f64) -> f64 {
         if !(self.distance > 0.0 && length > 0.0) {
@@ -41,7 +42,7 @@ impl Fog {
         }
     }
 
-    /// Light that arrives of `light`, seen through the fog of a colour.
+    /// Returns the part of `light` that passes, plus the colour of the fog for the rest.
     #[must_use]
     pub fn veil(
         &self,

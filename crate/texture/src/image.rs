@@ -1,9 +1,10 @@
 //! Images as textures.
 
+use crate::solid::mix;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A picture that textures read. Row 0 is at the top.
+/// Picture that textures read. Row 0 is at the top.
 pub trait Image {
     /// Width and height in texels; if one is 0 the image textures nothing.
     fn size(&self) -> [u32; 2];
@@ -11,7 +12,8 @@ pub trait Image {
     fn texel(&self, x: u32, y: u32) -> [f32; 3];
 }
 
-/// An image of three bytes a texel, rows from the top. Bytes are shares of 255; nothing is done about gamma.
+/// An image of three bytes a texel, rows from the top. Bytes are shares of 255; nothing is done
+/// about gamma.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rgb8 {
     /// Width and height.
@@ -31,17 +33,17 @@ impl Image for Rgb8 {
     }
 }
 
-/// How an image continues beyond its edges.
+/// Continuation of an image beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
-    /// It begins again.
+    /// The image is repeated.
     Wrap,
-    /// Its outermost texels go on.
+    /// The outermost texels are continued.
     Hold,
 }
 
-/// Colour of an image at (u, v): interpolated linearly between the middles of four texels. (0, 0) is the lower
-/// left corner, (1, 1) the upper right one. `None` if the image is empty.
+/// Colour of an image at (u, v): interpolated linearly between the middles of four texels. (0, 0)
+/// is the lower left corner, (1, 1) the upper right one. `None` if the image is empty.
 ///
 /// ```
 /// use glam::DVec2;
@@ -56,31 +58,29 @@ pub fn sample(image: &dyn Image, uv: DVec2, edge: Edge) -> Option<[f64; 3]> {
     if size[0] == 0 || size[1] == 0 {
         return None;
     }
-    let place = |t: f64, size: u32| {
-        let t = if t.is_finite() { t } else { 0.0 };
-        let t = match edge {
-            Edge::Wrap => t - t.floor(),
-            Edge::Hold => t.clamp(0.0, 1.0),
-        };
-        let at = t * f64::from(size) - 0.5;
-        let low = at.floor();
-        // −1 to size − 1, and the next.
-        let (low, share) = (low as i64, at - low);
-        let size = i64::from(size);
-        let index = |i: i64| match edge {
-            Edge::Wrap => i.rem_euclid(size),
-            Edge::Hold => i.clamp(0, size - 1),
-        } as u32;
-        ([index(low), index(low + 1)], share)
-    };
-    let ([x0, x1], s) = place(uv.x, size[0]);
-    let ([y0, y1], t) = place(1.0 - uv.y, size[1]);
-    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-    let texel = |x, y| image.texel(x, y).map(f64::from);
-    let corners = [texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)];
+    let [([x0, x1], s), ([y0, y1], t)] =
+        [(uv.x, size[0]), (1.0 - uv.y, size[1])].map(|(t, size)| {
+            let t = if t.is_finite() { t } else { 0.0 };
+            let t = match edge {
+                Edge::Wrap => t - t.floor(),
+                Edge::Hold => t.clamp(0.0, 1.0),
+            };
+            let at = t * f64::from(size) - 0.5;
+            let low = at.floor();
+            // −1 to size − 1, and the next.
+            let (low, share) = (low as i64, at - low);
+            let size = i64::from(size);
+            let texels = [low, low + 1].map(|i| match edge {
+                Edge::Wrap => i.rem_euclid(size),
+                Edge::Hold => i.clamp(0, size - 1),
+            } as u32);
+            (texels, share)
+        });
+    let corners = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)];
+    let corners = corners.map(|(x, y)| image.texel(x, y).map(f64::from));
     Some([0, 1, 2].map(|i| {
-        let row = |k: usize| mix(corners[k][i], corners[k + 1][i], s);
-        let value = mix(row(0), row(2), t);
+        let [a, b, c, d] = corners.map(|corner| corner[i]);
+        let value = mix(mix(a, b, s), mix(c, d, s), t);
         if value.is_nan() {
             0.0
         } else {
@@ -89,36 +89,38 @@ pub fn sample(image: &dyn Image, uv: DVec2, edge: Edge) -> Option<[f64; 3]> {
     }))
 }
 
-/// Where an image is thrown onto a part of a surface: a point is textured if it lies in the box and the line from
-/// it along its outward normal meets the rectangle. There it reads the image, whose lower left corner is at the
-/// first corner, lower right at the second, upper right at the third, upper left at the fourth.
+/// Region of space in which an image is projected onto a surface: a point is textured if it lies in
+/// the box and the line from it along its outward normal meets the rectangle. There it reads the
+/// image, whose lower left corner is at the first corner, lower right at the second, upper right at
+/// the third, upper left at the fourth.
 ///
-/// A rectangle that stands before a face thus spreads the image over all that looks at it, around bulges as well,
-/// as a flat sheet wrapped over the face would; what looks elsewhere stays plain.
+/// A rectangle that stands before a face thus spreads the image over all that looks at it, around
+/// bulges as well, as a flat sheet wrapped over the face would; what looks elsewhere stays plain.
 ///
 /// ```
 /// use glam::{DVec2, DVec3};
 /// use texture::Region;
-/// let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, 2.0));
+/// let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+/// let square = square.map(|(x, y)| DVec3::new(x, y, 2.0));
 /// let region = Region { min: DVec3::splat(-1.0), max: DVec3::splat(1.0), corners: square };
 /// assert_eq!(region.uv(DVec3::Z, DVec3::Z), Some(DVec2::splat(0.5)));
 /// assert_eq!(region.uv(DVec3::X, DVec3::X), None); // looks past the square
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Region {
-    /// A corner of the box.
+    /// Corner of the box.
     pub min: DVec3,
     /// The opposite corner; the two may be given in any order.
     pub max: DVec3,
-    /// The rectangle's corners in order around it. The third follows from the others: P3 = P2 + P4 − P1 (see
-    /// [`Region::is_rectangle`]); a parallelogram serves as well.
+    /// The rectangle's corners in order around it. The third follows from the others: P3 = P2 + P4
+    /// − P1 (see [`Region::is_rectangle`]); a parallelogram serves as well.
     pub corners: [DVec3; 4],
 }
 
 impl Region {
-    /// Where the line from a point along its outward unit normal meets the rectangle, in shares of its sides.
-    /// `None` if the point is outside the box, or the line misses the rectangle, runs away from it or beside it,
-    /// or if the rectangle has no area.
+    /// Returns the place where the line from a point along its outward unit normal meets the
+    /// rectangle, in shares of its sides. `None` if the point is outside the box, or the line
+    /// misses the rectangle, runs away from it or beside it, or if the rectangle has no area.
     #[must_use]
     pub fn uv(&self, point: DVec3, normal: DVec3) -> Option<DVec2> {
         let (low, high) = (self.min.min(self.max), self.min.max(self.max));
@@ -143,7 +145,8 @@ impl Region {
         (uv.cmpge(DVec2::ZERO).all() && uv.cmple(DVec2::ONE).all()).then_some(uv)
     }
 
-    /// Whether the four corners are those of a parallelogram with an area, up to a thousandth of its longer side.
+    /// Whether the four corners are those of a parallelogram with an area, up to a thousandth of
+    /// its longer side.
     #[must_use]
     pub fn is_rectangle(&self) -> bool {
         let [a, b, c, d] = self.corners;

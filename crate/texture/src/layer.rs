@@ -38,25 +38,26 @@ pub enum Target {
     Pigment,
     /// [`Surface::normal`]: bumps.
     Normal,
-    /// The strength of the field along a bone. That is a profile, part of the shape: it changes no surface here.
+    /// The strength of the field along a bone. That is a profile, part of the shape: it changes no
+    /// surface here.
     Strength,
 }
 
-/// How an image lies on a surface.
+/// Mapping of an image to a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Mapping {
-    /// By u and v; it repeats where they leave [0, 1].
+    /// Read by u and v; the image repeats where they leave [0, 1].
     Plain,
-    /// Thrown onto a part.
+    /// Projected onto a part of the surface.
     Region(Region),
 }
 
-/// Where a texture's values come from.
+/// Source of a texture's values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Method {
-    /// A pattern of space.
+    /// Pattern of space.
     Solid(Solid),
-    /// One colour.
+    /// Constant colour.
     Colour(DVec3),
     /// The product of a wave of u and a wave of v.
     Waves([Wave; 2]),
@@ -64,13 +65,13 @@ pub enum Method {
     Image(usize, Mapping),
 }
 
-/// One layer of texture.
+/// Layer of texture.
 ///
-/// Its **argument** q is `scale · (p − translate)`, where p is the point for solids and (u, v) for all others; of
-/// images with a region it is the place in the rectangle. Its **value** is
-/// `times · (low + (high − low)·pattern(q))` per channel, with the two `bounds`: so black and white of the pattern
-/// become the two colours. Colour targets take all three channels, targets of one number the first; patterns in
-/// colour (images, paint) give these their luminance.
+/// Its **argument** q is `scale · (p − translate)`, where p is the point for solids and (u, v) for
+/// all others; of images with a region it is the place in the rectangle. Its **value** is
+/// `times · (low + (high − low)·pattern(q))` per channel, with the two `bounds`: so black and white
+/// of the pattern become the two colours. Colour targets take all three channels, targets of one
+/// number the first; patterns in colour (images, paint) give these their luminance.
 ///
 /// ```
 /// use glam::{DVec3, Vec3};
@@ -86,13 +87,14 @@ pub enum Method {
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Texture {
-    /// Parameter that it changes.
+    /// Parameter of shading that the texture changes.
     pub target: Target,
-    /// Where its values come from.
+    /// Source of the values.
     pub method: Method,
     /// Shifts the pattern, in units of the object (of u and v for all but solids).
     pub translate: DVec3,
-    /// Factors on the argument: the larger, the finer the pattern. 0 makes it the same all along that axis.
+    /// Factors on the argument: the larger, the finer the pattern. 0 makes it the same all along
+    /// that axis.
     pub scale: DVec3,
     /// Factors on the values.
     pub times: DVec3,
@@ -100,24 +102,25 @@ pub struct Texture {
     pub bounds: [DVec3; 2],
     /// Noise of solids.
     pub grain: Grain,
-    /// Which tiles are textured; empty: all. The argument's unit squares of x and y (u and v) are numbered along x
-    /// first, X to a row, Y rows, X and Y being the scale's magnitudes, rounded up; then they repeat.
+    /// Tiles that are textured (`true`) or not; empty: all are. The argument's unit squares of x
+    /// and y (u and v) are numbered along x first, X to a row, Y rows, X and Y being the scale's
+    /// magnitudes, rounded up; then they repeat.
     pub mask: Vec<bool>,
-    /// Whether the values take the place of the target's; else they scale it. Bumps add up, but with `replace` they
-    /// undo those of the layers before.
+    /// Whether the values take the place of the target's; else they scale it. Bumps add up, but
+    /// with `replace` they undo those of the layers before.
     pub replace: bool,
 }
 
 /// Error in a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A number is not finite or larger than [`MAX_NUMBER`].
+    /// Number that is not finite or larger than [`MAX_NUMBER`].
     Number,
-    /// The mask has another number of entries than this: columns times rows.
+    /// Mask with another number of entries than its columns times its rows, which are given.
     Mask(usize, usize),
-    /// The mask would have more than [`MAX_MASK`] entries.
+    /// Mask that would have more than [`MAX_MASK`] entries.
     LargeMask,
-    /// The four corners of a region are not those of a rectangle.
+    /// Region whose four corners are not those of a rectangle.
     Region,
     /// More than [`MAX_LAYERS`] layers.
     Layers,
@@ -179,7 +182,7 @@ struct Place {
 }
 
 impl Texture {
-    /// A texture with the default options.
+    /// Returns a texture with the default options.
     #[must_use]
     pub fn new(target: Target, method: Method) -> Self {
         Self {
@@ -198,20 +201,19 @@ impl Texture {
     /// Columns and rows of a mask.
     #[must_use]
     pub fn tiles(&self) -> [usize; 2] {
-        let count = |scale: f64| {
+        [self.scale.x, self.scale.y].map(|scale| {
             let scale = if scale.is_finite() { scale.abs() } else { 1.0 };
             // Saturates; a scale of 2.0000000001 still means two.
             ((scale - 1e-6).ceil().max(1.0)) as usize
-        };
-        [count(self.scale.x), count(self.scale.y)]
+        })
     }
 
-    /// Whether the texture is as it should be. Evaluation of one that is not still gives finite numbers.
+    /// Whether the texture is as it should be. Evaluation of one that is not still gives finite
+    /// numbers.
     ///
     /// # Errors
     /// Says what is wrong.
     pub fn check(&self) -> Result<(), Fault> {
-        let fits = |x: DVec3| x.abs().cmple(DVec3::splat(MAX_NUMBER)).all();
         let vectors = [
             self.translate,
             self.scale,
@@ -252,7 +254,8 @@ impl Texture {
         }
     }
 
-    /// Where to look; `None` where the surface is not textured.
+    /// Returns the place at which the pattern is evaluated; `None` where the surface is not
+    /// textured.
     fn place(&self, site: &Site) -> Option<Place> {
         let (raw, directions) = match self.method {
             Method::Solid(_) => (site.point, [DVec3::ZERO; 2]),
@@ -268,27 +271,27 @@ impl Texture {
         let to = |p: DVec3| sane(scale * (sane(p) - sane(self.translate)));
         if !self.mask.is_empty() {
             // The far edge of the last tile belongs to it.
-            let inner = |x: f64| if flat && x == 1.0 { 1.0 - 1e-9 } else { x };
-            let at = to(DVec3::new(inner(raw.x), inner(raw.y), raw.z));
+            let [x, y] = [raw.x, raw.y].map(|x| if flat && x == 1.0 { 1.0 - 1e-9 } else { x });
+            let at = to(DVec3::new(x, y, raw.z));
             let [columns, rows] = self.tiles();
-            let tile = |x: f64, count: usize| {
-                (x.floor() as i64).rem_euclid(i64::try_from(count).unwrap_or(1).max(1))
-            };
-            let index = (tile(at.y, rows) as usize)
-                .saturating_mul(columns)
-                .saturating_add(tile(at.x, columns) as usize);
+            let [row, column] = [(at.y, rows), (at.x, columns)].map(|(x, count)| {
+                (x.floor() as i64).rem_euclid(i64::try_from(count).unwrap_or(1).max(1)) as usize
+            });
+            let index = row.saturating_mul(columns).saturating_add(column);
             if !self.mask.get(index).copied().unwrap_or(true) {
                 return None;
             }
         }
-        let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        let unit = |d: DVec3| sane(d).normalize_or_zero();
         Some(Place {
             argument: to(raw),
-            directions: [
-                sign(scale.x) * unit(directions[0]),
-                sign(scale.y) * unit(directions[1]),
-            ],
+            directions: [0, 1].map(|i| {
+                let sign = if scale[i] == 0.0 {
+                    0.0
+                } else {
+                    scale[i].signum()
+                };
+                sign * sane(directions[i]).normalize_or_zero()
+            }),
         })
     }
 
@@ -310,14 +313,14 @@ impl Texture {
         }
     }
 
-    /// Value per channel, for a pattern's.
+    /// Returns the texture's value per channel for a value of its pattern.
     fn stretch(&self, pattern: DVec3) -> DVec3 {
         let [low, high] = self.bounds.map(sane);
         sane(self.times) * (low + (high - low) * pattern)
     }
 
-    /// The texture's values at a place. `None` where it textures nothing: a tile that is masked out, outside its
-    /// region, or without its image.
+    /// The texture's values at a place. `None` where it textures nothing: a tile that is masked
+    /// out, outside its region, or without its image.
     #[must_use]
     pub fn value(&self, site: &Site, images: &[&dyn Image]) -> Option<DVec3> {
         let place = self.place(site)?;
@@ -331,12 +334,14 @@ impl Texture {
         Some(self.stretch(DVec3::splat(grey)).x)
     }
 
-    /// Slope of the texture as a bump: the gradient of its height along the surface, in texture space.
+    /// Slope of the texture as a bump: the gradient of its height along the surface, in texture
+    /// space.
     ///
-    /// A texture that is scaled down has smaller bumps, not steeper ones: heights are in units of the argument, of
-    /// which `times` and `bounds` make more or less. For solids they are [`Solid::relief`], whose slope is measured by
-    /// central differences over ±1/1024 of the argument; for waves the waves themselves, by their derivatives; white
-    /// of an image stands out by 1/32 of the image's width.
+    /// A texture that is scaled down has smaller bumps, not steeper ones: heights are in units of
+    /// the argument, of which `times` and `bounds` make more or less. For solids they are
+    /// [`Solid::relief`], whose slope is measured by central differences over ±1/1024 of the
+    /// argument; for waves the waves themselves, by their derivatives; white of an image stands out
+    /// by 1/32 of the image's width.
     #[must_use]
     pub fn slope(&self, site: &Site, images: &[&dyn Image]) -> Option<DVec3> {
         let place = self.place(site)?;
@@ -391,11 +396,16 @@ impl Texture {
     }
 }
 
+/// Whether no component is larger than [`MAX_NUMBER`], or NaN.
+fn fits(v: DVec3) -> bool {
+    v.abs().cmple(DVec3::splat(MAX_NUMBER)).all()
+}
+
 fn luminance(colour: DVec3) -> f64 {
     colour.dot(DVec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// The colour of an image of the list.
+/// Returns the colour at (u, v) of an image of the list; `None` if there is no such image.
 fn look(images: &[&dyn Image], index: usize, mapping: Mapping, uv: DVec2) -> Option<[f64; 3]> {
     let edge = match mapping {
         Mapping::Plain => Edge::Wrap,
@@ -404,7 +414,8 @@ fn look(images: &[&dyn Image], index: usize, mapping: Mapping, uv: DVec2) -> Opt
     sample(*images.get(index)?, uv, edge)
 }
 
-/// A colour times values, or the values themselves; never negative, and finite if the colour is.
+/// Returns the colour times values, or the values themselves; never negative, and finite if the
+/// colour is.
 fn tint(colour: Vec3, values: DVec3, replace: bool) -> Vec3 {
     let old = colour.as_dvec3();
     let new = if replace { values } else { old * values };
@@ -416,11 +427,12 @@ fn sum(colour: Vec3) -> f64 {
     f64::from(colour.x) + f64::from(colour.y) + f64::from(colour.z)
 }
 
-/// A surface with layers of texture, the first one at the bottom. Where a layer textures nothing (see
-/// [`Texture::value`]) the surface stays as it is.
+/// Puts layers of texture on a surface, the first one at the bottom. Where a layer textures
+/// nothing (see [`Texture::value`]) the surface stays as it is.
 ///
-/// `pigment` that replaces gives the values to diffuse, and to ambient in the ratio of the sums of the two before;
-/// where diffuse was black, ambient stays. An index that would be 0 or less stays as it was.
+/// `pigment` that replaces gives the values to diffuse, and to ambient in the ratio of the sums of
+/// the two before; where diffuse was black, ambient stays. An index that would be 0 or less stays
+/// as it was.
 #[must_use]
 pub fn apply(layers: &[Texture], surface: Surface, site: &Site, images: &[&dyn Image]) -> Surface {
     layers.iter().fold(surface, |surface, layer| {

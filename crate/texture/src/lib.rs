@@ -1,8 +1,8 @@
 //! Textures: what a surface looks like from point to point; and small closed forms of shading.
 //!
-//! Pure functions from a place on a surface ([`Site`]: a point of the object's own space, its normal, u and v) to the
-//! parameters of shading ([`Surface`]). This crate knows no scene, no field and no language. Every result has the same
-//! bits on every machine.
+//! Pure functions from a place on a surface ([`Site`]: a point of the object's own space, its
+//! normal, u and v) to the parameters of shading ([`Surface`]). This crate knows no scene, no field
+//! and no language. Every result has the same bits on every machine.
 //!
 //! A [`Texture`] is a target, a method and options; [`apply`] puts layers of them on a surface:
 //!
@@ -27,8 +27,9 @@
 //! assert!(wood.normal.is_normalized());
 //! ```
 //!
-//! On a soft surface each element near the point has texture coordinates of its own ([`uv`]): texture each element's
-//! surface by itself, then [`blend`] them by the elements' shares of the field.
+//! On a soft surface each element near the point has texture coordinates of its own ([`uv`]):
+//! texture each element's surface by itself, then [`blend`] them by the elements' shares of the
+//! field.
 //!
 //! | looking for | go to |
 //! |---|---|

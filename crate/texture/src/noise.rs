@@ -1,9 +1,10 @@
-//! Gradient noise on the integer lattice, with the same bits on every machine: 32-bit integer hashes, `f64`
-//! additions and multiplications, no fused ones.
+//! Gradient noise on the integer lattice, with the same bits on every machine: 32-bit integer
+//! hashes, `f64` additions and multiplications, no fused ones.
 //!
-//! At each lattice point stands one of the twelve vectors from a cube's middle to its edges, chosen by a hash.
-//! The noise is their scalar products with the offsets, mixed over a cell by the polynomial 6t⁵ − 15t⁴ + 10t³,
-//! so that value, gradient and second derivatives are continuous (Perlin, *Improving Noise*, 2002).
+//! At each lattice point stands one of the twelve vectors from a cube's middle to its edges, chosen
+//! by a hash. The noise is their scalar products with the offsets, mixed over a cell by the
+//! polynomial 6t⁵ − 15t⁴ + 10t³, so that value, gradient and second derivatives are continuous
+//! (Perlin, *Improving Noise*, 2002).
 
 use glam::{DMat3, DVec3};
 
@@ -13,10 +14,12 @@ const LIMIT: f64 = (1_u64 << 30) as f64;
 /// The largest number of octaves that is summed.
 pub const MAX_OCTAVES: f64 = 32.0;
 
-/// Makes the noise's extremes ±1: products of the lattice's vectors with offsets, mixed, reach ±1.0364.
+/// Makes the noise's extremes ±1: products of the lattice's vectors with offsets, mixed, reach
+/// ±1.0364.
 const NORM: f64 = 1.0 / 1.0364;
 
-/// Turns each octave against the one before, so that the lattices' planes do not coincide. Orthonormal.
+/// Turns each octave against the one before, so that the lattices' planes do not coincide.
+/// Orthonormal.
 const TURN: DMat3 = DMat3::from_cols_array(&[
     2.0 / 3.0,
     2.0 / 3.0,
@@ -32,17 +35,16 @@ const TURN: DMat3 = DMat3::from_cols_array(&[
 /// Shifts each octave, so that the origin is not a zero of all.
 const SHIFT: DVec3 = DVec3::new(17.31, -9.73, 5.19);
 
-/// A point with finite coordinates: NaN becomes 0, and magnitudes are cut to 2³⁰.
+/// Returns a point with finite coordinates: NaN becomes 0, and magnitudes are cut to 2³⁰.
 #[must_use]
 pub fn sane(p: DVec3) -> DVec3 {
-    let cut = |x: f64| {
+    DVec3::from_array(p.to_array().map(|x| {
         if x.is_nan() {
             0.0
         } else {
             x.clamp(-LIMIT, LIMIT)
         }
-    };
-    DVec3::new(cut(p.x), cut(p.y), cut(p.z))
+    }))
 }
 
 /// Mixes the bits of a number.
@@ -55,7 +57,7 @@ pub fn scramble(mut h: u32) -> u32 {
     h ^ (h >> 16)
 }
 
-/// A hash of a lattice point.
+/// Returns a hash of a lattice point.
 #[must_use]
 pub fn lattice(cell: [i32; 3], seed: u32) -> u32 {
     let [x, y, z] = cell.map(i32::cast_unsigned);
@@ -64,7 +66,7 @@ pub fn lattice(cell: [i32; 3], seed: u32) -> u32 {
     scramble(h ^ z.wrapping_mul(0xc2b2_ae3d))
 }
 
-/// A number in [0, 1) from a hash.
+/// Returns a number in [0, 1) from a hash.
 #[must_use]
 pub fn unit(hash: u32) -> f64 {
     f64::from(hash) / 4_294_967_296.0
@@ -73,9 +75,8 @@ pub fn unit(hash: u32) -> f64 {
 /// The lattice cell of a point (modulo 2³²) and the position in it, in [0, 1)³.
 pub(crate) fn cell(p: DVec3) -> ([i32; 3], DVec3) {
     let floor = p.floor();
-    let wrap = |x: f64| (x as i64) as i32;
     (
-        [wrap(floor.x), wrap(floor.y), wrap(floor.z)],
+        floor.to_array().map(|x| (x as i64) as i32),
         (p - floor).clamp(DVec3::ZERO, DVec3::ONE),
     )
 }
@@ -87,8 +88,7 @@ pub(crate) fn offset(cell: [i32; 3], by: [i32; 3]) -> [i32; 3] {
 
 /// The vector at a lattice point: of length √2, to the middle of an edge of the cube [−1, 1]³.
 fn arrow(hash: u32) -> DVec3 {
-    let sign = |bit: u32| if hash >> bit & 1 == 0 { 1.0 } else { -1.0 };
-    let (a, b) = (sign(0), sign(1));
+    let [a, b] = [hash, hash >> 1].map(|bits| if bits & 1 == 0 { 1.0 } else { -1.0 });
     match (hash >> 8) % 3 {
         0 => DVec3::new(a, b, 0.0),
         1 => DVec3::new(a, 0.0, b),
@@ -105,8 +105,8 @@ fn fade(t: f64) -> (f64, f64) {
     )
 }
 
-/// Gradient noise: a smooth random function with features about 1 wide, in [−1, 1], 0 at lattice points.
-/// Coordinates that are not finite count as 0 or as the largest number.
+/// Gradient noise: a smooth random function with features about 1 wide, in [−1, 1], 0 at lattice
+/// points. Coordinates that are not finite count as 0 or as the largest number.
 ///
 /// ```
 /// use glam::DVec3;
@@ -142,8 +142,8 @@ pub fn noise_jet(p: DVec3) -> (f64, DVec3) {
     (NORM * value, NORM * gradient)
 }
 
-/// The sum of octaves of `signal(noise)`: each has half the amplitude and half the size of the one before; of a
-/// fractional number of octaves the last counts as that fraction.
+/// The sum of octaves of `signal(noise)`: each has half the amplitude and half the size of the one
+/// before; of a fractional number of octaves the last counts as that fraction.
 fn octaves(p: DVec3, octaves: f64, signal: impl Fn(f64) -> f64) -> f64 {
     let mut left = if octaves.is_nan() {
         0.0
@@ -160,7 +160,8 @@ fn octaves(p: DVec3, octaves: f64, signal: impl Fn(f64) -> f64) -> f64 {
     sum
 }
 
-/// Fractal sum of noise: `Σ 2⁻ᵏ noise(2ᵏ p)`, in (−2, 2). A fractional number of octaves fades the last one.
+/// Fractal sum of noise: `Σ 2⁻ᵏ noise(2ᵏ p)`, in (−2, 2). A fractional number of octaves fades the
+/// last one.
 ///
 /// ```
 /// use glam::DVec3;
@@ -179,7 +180,7 @@ pub fn turbulence(p: DVec3, octaves: f64) -> f64 {
     self::octaves(p, octaves, f64::abs)
 }
 
-/// Three independent fractal sums, for shifting points.
+/// Returns three independent fractal sums, for shifting points.
 pub(crate) fn warp(p: DVec3, octaves: f64) -> DVec3 {
     DVec3::new(
         fractal(p, octaves),
@@ -188,8 +189,9 @@ pub(crate) fn warp(p: DVec3, octaves: f64) -> DVec3 {
     )
 }
 
-/// A random point in each unit cell: calls `visit` with a hash and the point's position for the cell of `p` and
-/// its 26 neighbours, in a fixed order. Points that were not visited are at least 1 away.
+/// Scatters a random point into each unit cell: calls `visit` with a hash and the point's position
+/// for the cell of `p` and its 26 neighbours, in a fixed order. Points that were not visited are at
+/// least 1 away.
 pub(crate) fn scatter(p: DVec3, seed: u32, mut visit: impl FnMut(u32, DVec3)) {
     let p = sane(p);
     let (base, at) = cell(p);
@@ -211,7 +213,8 @@ pub(crate) fn scatter(p: DVec3, seed: u32, mut visit: impl FnMut(u32, DVec3)) {
 mod tests {
     use super::*;
 
-    /// The largest value that any choice of the lattice's vectors gives, on a grid: the norm's reason.
+    /// The largest value that any choice of the lattice's vectors gives, on a grid: the norm's
+    /// reason.
     #[test]
     fn extremes_are_one() {
         let steps = 40;

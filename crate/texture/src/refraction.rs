@@ -1,7 +1,9 @@
-//! Mirrors and glass: directions of reflected and refracted rays, and the shares of light they carry.
+//! Mirrors and glass: directions of reflected and refracted rays, and the shares of light they
+//! carry.
 //!
-//! As in RATS the shares are the material's `reflective` and `transparent`, whatever the angle: there is no Fresnel
-//! term. Where a ray is totally reflected, the share that would have passed is mirrored as well ([`shares`]).
+//! As in RATS the shares are the material's `reflective` and `transparent`, whatever the angle:
+//! there is no Fresnel term. Where a ray is totally reflected, the share that would have passed is
+//! mirrored as well ([`shares`]).
 
 use glam::{DVec3, Vec3};
 
@@ -14,9 +16,9 @@ pub fn reflect(direction: DVec3, normal: DVec3) -> DVec3 {
     direction - 2.0 * direction.dot(normal) * normal
 }
 
-/// Direction of a ray beyond a surface (Snell's law). `direction` and `normal` have length 1; the normal may point to
-/// either side. `ratio` is the index on the side the ray comes from over the index beyond. `None` at total reflection,
-/// and if the ratio is not a positive number.
+/// Direction of a ray beyond a surface (Snell's law). `direction` and `normal` have length 1; the
+/// normal may point to either side. `ratio` is the index on the side the ray comes from over the
+/// index beyond. `None` at total reflection, and if the ratio is not a positive number.
 ///
 /// ```
 /// use glam::DVec3;
@@ -44,9 +46,9 @@ pub fn refract(direction: DVec3, normal: DVec3, ratio: f64) -> Option<DVec3> {
     (rest > 0.0).then(|| (along - rest.sqrt() * normal).normalize())
 }
 
-/// Indices for red, green and blue of a material of index `index` and `dispersion`: by Cauchy's law n = A + B/λ² at
-/// [`WAVELENGTHS`], with A and B such that green has the index itself, and blue's is larger than red's by the
-/// dispersion. A result that is not positive is replaced by the index.
+/// Indices for red, green and blue of a material of index `index` and `dispersion`: by Cauchy's law
+/// n = A + B/λ² at [`WAVELENGTHS`], with A and B such that green has the index itself, and blue's
+/// is larger than red's by the dispersion. A result that is not positive is replaced by the index.
 ///
 /// ```
 /// let [red, green, blue] = texture::refraction::dispersed(1.5, 0.02);
@@ -62,7 +64,8 @@ pub fn dispersed(index: f64, dispersion: f64) -> [f64; 3] {
     })
 }
 
-/// Shares of the light from the mirrored and from the refracted direction, where the ray is totally reflected or not.
+/// Shares of the light from the mirrored and from the refracted direction, where the ray is totally
+/// reflected or not.
 #[must_use]
 pub fn shares(reflective: Vec3, transparent: Vec3, total_reflection: bool) -> [Vec3; 2] {
     if total_reflection {

@@ -1,19 +1,19 @@
 //! Ten solid methods: patterns that fill space, as if the object were carved from a block.
 //!
 //! Every pattern takes a point of texture space and gives a value in [0, 1] per channel; all but
-//! [`Solid::Paint`] are grey, to be coloured by what they scale or by a texture's bounds. At scale 1 they suit
-//! objects about two units across.
+//! [`Solid::Paint`] are grey, to be coloured by what they scale or by a texture's bounds. At scale
+//! 1 they suit objects about two units across.
 
 mod cut;
 mod spots;
 mod stone;
 mod timber;
 
-use crate::noise::sane;
+use crate::noise::{MAX_OCTAVES, sane};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A pattern that fills space.
+/// Pattern that fills space.
 ///
 /// ```
 /// use glam::DVec3;
@@ -32,8 +32,8 @@ pub enum Solid {
     Granite,
     /// Craters of all sizes up to a third of a unit, and dark plains.
     Moon,
-    /// Shells around the origin, four a unit, with thin dark skins and fine lines from pole to pole of the y
-    /// axis.
+    /// Shells around the origin, four a unit, with thin dark skins and fine lines from pole to pole
+    /// of the y axis.
     Onion,
     /// Growth rings around the z axis, four a unit, and fibres along it.
     Wood,
@@ -47,7 +47,7 @@ pub enum Solid {
     Paint,
 }
 
-/// How noisy a pattern is.
+/// Amount and fineness of a pattern's noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Grain {
     /// Amount of noise: 0 none, 1 full. What is not finite counts as 0.
@@ -66,7 +66,7 @@ impl Default for Grain {
 }
 
 impl Solid {
-    /// All solids.
+    /// The solids, in the order of the manual.
     pub const ALL: [Self; 10] = [
         Self::Marble,
         Self::Agate,
@@ -80,8 +80,8 @@ impl Solid {
         Self::Paint,
     ];
 
-    /// Red, green and blue of the pattern at a point of texture space, each in [0, 1]. Coordinates that are not
-    /// finite count as 0 or as the largest number.
+    /// Red, green and blue of the pattern at a point of texture space, each in [0, 1]. Coordinates
+    /// that are not finite count as 0 or as the largest number.
     #[must_use]
     pub fn pattern(self, q: DVec3, grain: Grain) -> [f64; 3] {
         let (q, grain) = (sane(q), grain.sane());
@@ -100,8 +100,8 @@ impl Solid {
         [grey.clamp(0.0, 1.0); 3]
     }
 
-    /// Height of the pattern as a bump, in units of texture space, with slopes of about 1 at most: what is bright
-    /// stands out, but craters are as deep as craters are, paint lies on, and
+    /// Height of the pattern as a bump, in units of texture space, with slopes of about 1 at most:
+    /// what is bright stands out, but craters are as deep as craters are, paint lies on, and
     /// checkers have bevelled edges (a face that lies on a border of cubes is flat).
     #[must_use]
     pub fn relief(self, q: DVec3, grain: Grain) -> f64 {
@@ -116,7 +116,7 @@ impl Solid {
             Self::Granite | Self::Sandal => 0.015,
             Self::Agate => 0.02,
             Self::Wood => 0.04,
-            Self::Checker => return 0.05 * cut::bevelled(q),
+            Self::Checker => return 0.05 * cut::checker_height(q),
             Self::Marble | Self::Onion => 0.05,
         };
         depth * self.pattern(q, grain)[0]
@@ -125,16 +125,17 @@ impl Solid {
 
 impl Grain {
     fn sane(self) -> Self {
-        let cut = |x: f64, most: f64| {
+        let limits = [(self.turbulence, 1e6), (self.octaves, MAX_OCTAVES)];
+        let [turbulence, octaves] = limits.map(|(x, most)| {
             if x.is_finite() {
                 x.clamp(-most, most)
             } else {
                 0.0
             }
-        };
+        });
         Self {
-            turbulence: cut(self.turbulence, 1e6),
-            octaves: cut(self.octaves, crate::noise::MAX_OCTAVES),
+            turbulence,
+            octaves,
         }
     }
 }
@@ -145,7 +146,7 @@ fn smooth(from: f64, to: f64, x: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// `from` at 0, `to` at 1.
-fn mix(from: f64, to: f64, t: f64) -> f64 {
+/// Interpolates linearly: `from` at t = 0, `to` at t = 1.
+pub(crate) fn mix(from: f64, to: f64, t: f64) -> f64 {
     from + (to - from) * t
 }

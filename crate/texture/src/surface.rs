@@ -41,8 +41,8 @@ impl Default for Surface {
     }
 }
 
-/// Where a texture is evaluated, in texture space: the coordinates of the object to which the texture belongs, before
-/// the object's own transforms.
+/// Place at which a texture is evaluated, in texture space: the coordinates of the object to which
+/// the texture belongs, before the object's own transforms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Site {
     /// The point.
@@ -53,9 +53,19 @@ pub struct Site {
     pub uv: Uv,
 }
 
-/// Mixes surfaces by weights: every parameter is the weighted mean, index and shine included, and the normal is the
-/// mean of the normals, of length 1 (thesis, section 4.2.5). Weights need not sum to 1; those that are negative or not
-/// finite count as 0, and if none is left all surfaces count alike. `None` if there are no surfaces.
+/// Returns a weight as it counts in [`blend`]: 0 if it is negative or not finite.
+fn counts(weight: f64) -> f64 {
+    if weight > 0.0 && weight.is_finite() {
+        weight
+    } else {
+        0.0
+    }
+}
+
+/// Mixes surfaces by weights: every parameter is the weighted mean, index and shine included, and
+/// the normal is the mean of the normals, of length 1 (thesis, section 4.2.5). Weights need not sum
+/// to 1; those that are negative or not finite count as 0, and if none is left all surfaces count
+/// alike. `None` if there are no surfaces.
 ///
 /// ```
 /// use texture::{Surface, blend};
@@ -69,13 +79,6 @@ pub fn blend(parts: &[(f64, Surface)]) -> Option<Surface> {
     if parts.len() == 1 {
         return Some(*first);
     }
-    let counts = |weight: f64| {
-        if weight > 0.0 && weight.is_finite() {
-            weight
-        } else {
-            0.0
-        }
-    };
     let most = parts.iter().map(|&(w, _)| counts(w)).fold(0.0, f64::max);
     // Divided by the largest first, so that no sum is infinite.
     let share = |weight: f64| {

@@ -5,9 +5,10 @@ use glam::Vec3;
 /// Light up to here stays as it is.
 const KNEE: f32 = 0.6;
 
-/// A shoulder like film's: light up to 0.6 stays as it is; above, with t = (x − 0.6)/0.4, it becomes
-/// `0.6 + 0.4·t/(1 + t)`, which goes on with the same slope and tends to 1. Each channel by itself, so that very bright
-/// colours turn white. Negative and undefined light becomes 0.
+/// Compresses light with a shoulder like film's: light up to 0.6 stays as it is; above, with t = (x
+/// − 0.6)/0.4, it becomes `0.6 + 0.4·t/(1 + t)`, which goes on with the same slope and tends to 1.
+/// Each channel by itself, so that very bright colours turn white. Negative and undefined light
+/// becomes 0.
 ///
 /// ```
 /// use glam::Vec3;

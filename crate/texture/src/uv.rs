@@ -1,23 +1,26 @@
 //! Texture coordinates u, v of points on or near primitives, with their gradients.
 //!
-//! A soft primitive's texture coordinates are those of its bounding volume; they are functions of space, so a point
-//! of a blended surface has coordinates for each element near it.
+//! A soft primitive's texture coordinates are those of its bounding volume; they are functions of
+//! space, so a point of a blended surface has coordinates for each element near it.
 //!
-//! | primitive | u | v | seams |
-//! |---|---|---|---|
-//! | sphere | longitude about y, to the right as seen from outside; ½ towards +z | latitude, 0 at −y, 1 at +y | u towards −z; the poles |
-//! | segment, capsule, cylinder, cone | along the axis, base 0, apex 1, cut beyond | around it, ½ towards its front | v at the back |
-//! | arc, torus, piece of a torus | along the arc, cut in the gap | around the tube, ½ away from the centre | v towards the centre; u where the gap, or the arc's ends, are |
-//! | triangle, prism | share of the second corner, cut | share of the third, cut | – |
-//! | plane, slab, polygon | along world x made perpendicular to the normal N (y if N ∥ x) | along N × that | – |
-//! | box | across each face | up each face | the edges |
+//! - Sphere: u is the longitude about y, to the right as seen from outside, ½ towards +z; v is the
+//!   latitude, 0 at −y, 1 at +y. Seams: u towards −z, and the poles.
+//! - Segment, capsule, cylinder, cone: u runs along the axis, base 0, apex 1, cut beyond; v around
+//!   it, ½ towards its front. Seam: v at the back.
+//! - Arc, torus, piece of a torus: u runs along the arc, cut in the gap; v around the tube, ½ away
+//!   from the centre. Seams: v towards the centre; u where the gap, or the arc's ends, are.
+//! - Triangle, prism: u is the share of the second corner, v of the third, both cut.
+//! - Plane, slab, polygon: u runs along world x made perpendicular to the normal N (y if N ∥ x), v
+//!   along N × that.
+//! - Box: u runs across each face, v up each face. Seams: the edges.
 //!
-//! u runs along a bone, as it does for profiles of its strength. The *front* of an axis is the direction +z made
-//! perpendicular to it, or +y if it is parallel to z. An image on an upright sphere thus stands upright and faces a
-//! viewer at +z; on an upright cylinder it lies on its side, as its width runs along the axis.
+//! u runs along a bone, as it does for profiles of its strength. The *front* of an axis is the
+//! direction +z made perpendicular to it, or +y if it is parallel to z. An image on an upright
+//! sphere thus stands upright and faces a viewer at +z; on an upright cylinder it lies on its side,
+//! as its width runs along the axis.
 //!
-//! No function returns NaN for finite input; where a direction is undefined (at poles, on axes) the gradient is 0
-//! and the coordinate ½.
+//! No function returns NaN for finite input; where a direction is undefined (at poles, on axes) the
+//! gradient is 0 and the coordinate ½.
 
 use core::f64::consts::{PI, TAU};
 use glam::{DVec2, DVec3};
@@ -31,7 +34,7 @@ pub struct Uv {
     pub gradient: [DVec3; 2],
 }
 
-/// A coordinate and its gradient.
+/// Coordinate and its gradient.
 type Coordinate = (f64, DVec3);
 
 impl Uv {
@@ -54,12 +57,11 @@ impl Uv {
 
 /// `direction` made perpendicular to a unit `axis`, of length 1; `other` if the two are parallel.
 fn upright(direction: DVec3, other: DVec3, axis: DVec3) -> DVec3 {
-    let across = |d: DVec3| d - axis * d.dot(axis);
-    let first = across(direction);
+    let [first, second] = [direction, other].map(|d| d - axis * d.dot(axis));
     if first.length_squared() > 1e-12 {
         first.normalize()
     } else {
-        across(other).normalize_or(other)
+        second.normalize_or(other)
     }
 }
 
@@ -74,7 +76,8 @@ fn cut((x, gradient): Coordinate) -> Coordinate {
     }
 }
 
-/// The angle of (x, y) from the x axis, divided by 2π, plus ½; x and y are given with their gradients.
+/// The angle of (x, y) from the x axis, divided by 2π, plus ½; x and y are given with their
+/// gradients.
 fn turn(x: Coordinate, y: Coordinate) -> Coordinate {
     let square = x.0 * x.0 + y.0 * y.0;
     if !(square > f64::MIN_POSITIVE && square < f64::INFINITY) {
@@ -114,7 +117,8 @@ pub fn sphere(center: DVec3, point: DVec3) -> Uv {
     Uv::new(u, v)
 }
 
-/// Along and around the segment from `base` to `apex`; of one without length u is 0 and v goes around y.
+/// Along and around the segment from `base` to `apex`; of one without length u is 0 and v goes
+/// around y.
 ///
 /// ```
 /// use glam::{DVec2, DVec3};
@@ -152,7 +156,8 @@ pub struct Arc {
     pub angle: f64,
 }
 
-/// Along and around an arc. u jumps from 1 to 0 in the middle of the gap, or where a whole circle closes.
+/// Along and around an arc. u jumps from 1 to 0 in the middle of the gap, or where a whole circle
+/// closes.
 #[must_use]
 pub fn arc(arc: &Arc, point: DVec3) -> Uv {
     let d = point - arc.center;
@@ -180,8 +185,8 @@ pub fn arc(arc: &Arc, point: DVec3) -> Uv {
     Uv::new(u, turn((around - arc.sweep, outward), (z, axis)))
 }
 
-/// Barycentric shares of the second and third corner, of the point's foot in the triangle's plane. 0 if the triangle
-/// has no area.
+/// Barycentric shares of the second and third corner, of the point's foot in the triangle's plane.
+/// 0 if the triangle has no area.
 #[must_use]
 pub fn triangle(corners: [DVec3; 3], point: DVec3) -> Uv {
     let [a, b, c] = corners;
@@ -209,17 +214,18 @@ pub fn plane(origin: DVec3, normal: DVec3, point: DVec3) -> Uv {
     Uv::new((d.dot(right), right), (d.dot(up), up))
 }
 
-/// A flat sheet whose coordinates are those of [`plane`], stretched so that they go from 0 to 1 over the rectangle
-/// around given corners.
+/// Flat sheet whose coordinates are those of [`plane`], stretched so that they go from 0 to 1 over
+/// the rectangle around given corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
-    /// Where u and v are 0.
+    /// Point at which u and v are 0.
     origin: DVec3,
     gradient: [DVec3; 2],
 }
 
 impl Sheet {
-    /// The sheet around a polygon's corners. `None` if there are no corners or they have no extent in one direction.
+    /// The sheet around a polygon's corners. `None` if there are no corners or they have no extent
+    /// in one direction.
     #[must_use]
     pub fn around(corners: &[DVec3], normal: DVec3) -> Option<Self> {
         let first = *corners.first()?;
@@ -247,9 +253,10 @@ impl Sheet {
     }
 }
 
-/// Coordinates from 0 to 1 over each face of a box, the points `center + Σ sᵢ·axisᵢ`, −1 ≤ sᵢ ≤ 1. The face is
-/// the one nearest in shares of the axes; seen from outside, with the second axis up, u goes to the right. On the
-/// faces of the second axis the third goes down. 0 if the axes span no volume.
+/// Coordinates from 0 to 1 over each face of a box, the points `center + Σ sᵢ·axisᵢ`, −1 ≤ sᵢ ≤ 1.
+/// The face is the one nearest in shares of the axes; seen from outside, with the second axis up, u
+/// goes to the right. On the faces of the second axis the third goes down. 0 if the axes span no
+/// volume.
 #[must_use]
 pub fn cuboid(center: DVec3, axes: [DVec3; 3], point: DVec3) -> Uv {
     let [a, b, c] = axes;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A wave with values in [0, 1]. The same shapes as the profiles of a field's strength, so that a colour and a
-/// profile with the same words keep step.
+/// Wave with values in [0, 1]. The same shapes as the profiles of a field's strength, so that a
+/// colour and a profile with the same words keep step.
 ///
 /// ```
 /// use texture::Wave;
@@ -32,7 +32,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// All waves.
+    /// The waves, in the order of the manual.
     pub const ALL: [Self; 9] = [
         Self::One,
         Self::X,
@@ -45,7 +45,8 @@ impl Wave {
         Self::Cos2,
     ];
 
-    /// Value and slope. Jumps have the slope beside them; a parameter that is not finite counts as 0.
+    /// Value and slope. Jumps have the slope beside them; a parameter that is not finite counts as
+    /// 0.
     #[must_use]
     pub fn jet(self, x: f64) -> (f64, f64) {
         let x = if x.is_finite() { x } else { 0.0 };

@@ -14,7 +14,7 @@ pub struct CoatScene {
     pub scene: Arc<Scene>,
     /// Largest |f − T| in the middle of an edge.
     pub bound: f64,
-    /// Coatings of the last job, to start from; empty at first.
+    /// What the last job gave, to start from; empty at first.
     pub coatings: Vec<Coating>,
 }
 
@@ -23,7 +23,7 @@ pub struct CoatScene {
 pub struct Coated {
     /// A mesh for each body with its name, in units of the scene.
     pub parts: Vec<(String, TriangleMesh)>,
-    /// Start of the next job.
+    /// For the next job.
     pub coatings: Vec<Coating>,
 }
 
@@ -36,11 +36,12 @@ impl Job for CoatScene {
         if !is_sound {
             return Err("the bound must be a positive number".into());
         }
+        let mut report = |step: mesher::Step| progress.report(step.fraction);
         let bodies = mesher::coat_scene(
             &self.scene,
             self.bound,
             &mut self.coatings,
-            &mut mesher::Progress::new(&mut |step| progress.report(step.fraction)),
+            &mut mesher::Progress::new(&mut report),
         )
         .map_err(|error| error.to_string())?;
         let parts = bodies.into_iter().map(|body| (body.name, body.coat.mesh));

@@ -11,26 +11,26 @@ use serde::{Deserialize, Serialize};
 pub struct FitMesh {
     /// The mesh's vertices.
     pub positions: Vec<DVec3>,
-    /// Triangles of the mesh.
+    /// Its triangles.
     pub triangles: Vec<[u32; 3]>,
-    /// Control points of the fit.
+    /// Its control points.
     pub controls: Controls,
-    /// Points and lines of sight that it is fitted to.
+    /// What it is fitted to.
     pub observations: Observations,
-    /// Options of the fit.
+    /// How.
     pub options: Options,
 }
 
 /// The control points of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Controls {
-    /// Places of control points, each with the move that the fit begins with.
+    /// These, each with the move that the fit begins with.
     Given(Vec<[DVec3; 2]>),
     /// About this number of points around the mesh.
     Around(u32),
 }
 
-/// Moment of a fit.
+/// A moment of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FitStep {
     /// Iterations done.

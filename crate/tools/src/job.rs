@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 ///
 /// A job depends on nothing but its own data, so that another worker can repeat it.
 pub trait Job: Into<Work> {
-    /// The result, and what there is of it before the end.
+    /// Its result, and what there is of that before the end.
     type Output: Serialize + DeserializeOwned + 'static;
-    /// Length of the job, by which its worker is chosen.
+    /// How long it takes, and so which worker does it.
     const PACE: Pace;
 
     /// Carries it out.
@@ -25,24 +25,24 @@ pub trait Job: Into<Work> {
     fn run(self, progress: &mut Progress<'_, Self::Output>) -> Result<Self::Output, String>;
 }
 
-/// Length of a job. Each has a worker of its own, as none can be interrupted.
+/// How long a job takes. Each pace has a worker of its own, as none can be interrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// Moments, for which a hand waits.
     Quick,
-    /// Minutes at most.
+    /// Up to minutes.
     Long,
 }
 
 impl Pace {
-    /// Every pace, in the order of the declaration.
+    /// All of them, in the order of the declaration.
     pub const ALL: [Self; 2] = [Self::Quick, Self::Long];
 }
 
 /// Writes the type of a message that any of these jobs can be.
 macro_rules! jobs {
     ($($job:ident),+) => {
-        /// Job of any type, as it is sent to a worker.
+        /// A job of any type, as it is sent to a worker.
         #[derive(Debug, Serialize, Deserialize)]
         pub enum Work {
             $(
@@ -88,7 +88,7 @@ type Outlet<'a> = dyn FnMut(Vec<u8>) -> ControlFlow<()> + 'a;
 pub enum News<T> {
     /// The fraction done, 0 … 1.
     Fraction(f32),
-    /// The result so far.
+    /// What there is of the result.
     Part(T),
 }
 

@@ -61,7 +61,7 @@ pub struct Written {
     pub frames: usize,
 }
 
-/// Mesh of a scene, as files and for the eye.
+/// A scene's mesh as files and for the eye.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Meshed {
     /// The files; none if no format was wanted.
@@ -164,7 +164,7 @@ impl Job for MeshScene {
             Some(format) => {
                 let export = Export {
                     name,
-                    parts: export_parts(parts),
+                    parts: named(parts),
                     millimetres,
                 };
                 let written = write_export(&export, format, rig.as_ref())?;
@@ -197,7 +197,7 @@ impl Job for WriteMesh {
         let bounds = bounds.fold(Aabb::EMPTY, |all, own| all.union(&own));
         let export = Export {
             name,
-            parts: export_parts(parts),
+            parts: named(parts),
             millimetres: size / bounds.size().max_element(),
         };
         write_export(&export, format, rig.as_ref())
@@ -220,11 +220,9 @@ fn check(size: f64, format: Option<Format>, rig: Option<&Poses>) -> Result<(), S
     Ok(())
 }
 
-fn export_parts(parts: Vec<(String, TriangleMesh)>) -> Vec<Part> {
-    parts
-        .into_iter()
-        .map(|(name, mesh)| Part { name, mesh })
-        .collect()
+fn named(parts: Vec<(String, TriangleMesh)>) -> Vec<Part> {
+    let part = |(name, mesh)| Part { name, mesh };
+    parts.into_iter().map(part).collect()
 }
 
 fn write_export(

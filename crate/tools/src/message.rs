@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 /// The trouble of a page and a worker that do not understand each other.
 pub const DIFFERENT_VERSIONS: &str = "page and worker are of different versions; reload the page";
 
-/// Message to a worker. Jobs run one after the other, in the order of their messages.
+/// A message to a worker. Jobs run one after the other, in the order of their messages.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Request {
     /// Number of the job, given back with its answers.
@@ -15,34 +15,34 @@ pub struct Request {
     pub work: Work,
 }
 
-/// Message from a worker. Behind a [`Answer::Part`] or [`Answer::Done`] follows an output of the
+/// A message from a worker. Behind a [`Answer::Part`] or [`Answer::Done`] follows an output of the
 /// job's type.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Answer {
     /// The worker runs and takes requests. Sent once.
     Started,
-    /// Progress of a job, and a sign of life: a worker that is silent for long is replaced.
+    /// A job is being worked at. Also a sign of life: a worker that is silent for long is replaced.
     Progress {
         /// Number of the job.
         id: u64,
         /// Fraction done, 0 … 1.
         fraction: f32,
     },
-    /// Head of a part of a job's result, which follows.
+    /// A job has a part of its result, which follows.
     Part {
         /// Number of the job.
         id: u64,
     },
-    /// Head of a job's result, which follows.
+    /// A job is over, and its result follows.
     Done {
         /// Number of the job.
         id: u64,
     },
-    /// End of a job without a result.
+    /// A job is over without a result.
     Refused {
         /// Number of the job.
         id: u64,
-        /// Message for the user.
+        /// A message for the user.
         trouble: String,
     },
     /// The worker cannot continue, for this reason. The page replaces it.

@@ -1,5 +1,6 @@
-//! A quick mesh of a surface for the eye: it is followed from cell to cell of a grid, and in each cell it is taken to be flat between the
-//! edges that it crosses (marching tetrahedra); its vertices are brought onto it by one step of Newton's method.
+//! A quick mesh of a surface for the eye: it is followed from cell to cell of a grid, and in each
+//! cell it is taken to be flat between the edges that it crosses (marching tetrahedra); its
+//! vertices are brought onto it by one step of Newton's method.
 //!
 //! Nothing is proved: parts thinner than a cell are missed, as are those that no seed lies on.
 
@@ -9,8 +10,8 @@ use mesh::TriangleMesh;
 use std::collections::{HashMap, HashSet};
 use wide::f32x8;
 
-/// A cell's corners on the way from its lowest to its highest corner, one axis after the other: each order of the axes is a tetrahedron,
-/// and those of neighbouring cells share their faces.
+/// A cell's corners on the way from its lowest to its highest corner, one axis after the other:
+/// each order of the axes is a tetrahedron, and those of neighbouring cells share their faces.
 const ORDERS: [[IVec3; 4]; 6] = {
     const fn way(a: IVec3, b: IVec3) -> [IVec3; 4] {
         let ab = IVec3::new(a.x + b.x, a.y + b.y, a.z + b.z);
@@ -55,7 +56,8 @@ fn is_inside(value: f32) -> bool {
     value > THRESHOLD as f32
 }
 
-/// Follows the surface of a function through the cells of a grid with this step, from the cells around the seeds.
+/// Follows the surface of a function through the cells of a grid with this step, from the cells
+/// around the seeds.
 ///
 /// # Errors
 /// If it goes through more than `most` cells.

@@ -32,9 +32,9 @@ const HALVINGS: usize = 5;
 /// The closeness of the mesh of a [`ViewScene`] to the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Detail {
-    /// The best that can be had while a hand moves.
+    /// As near as can be had while a hand moves.
     Coarse,
-    /// The best that the eye sees.
+    /// As near as the eye sees.
     Fine,
 }
 
@@ -43,14 +43,14 @@ pub enum Detail {
 pub struct ViewScene {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// Parameters of each of its finishes that the view shows, 0 … 1, mixed by the shares of the
-    /// elements: ambient, diffuse and specular colours, and the shine.
+    /// For each of its finishes the parameters that the view shows, 0 … 1, which are mixed by the
+    /// shares of the elements: ambient, diffuse and specular colours, and the shine.
     pub looks: Vec<[f32; 10]>,
     /// The closeness wanted.
     pub detail: Detail,
 }
 
-/// Mesh for the eye: bytes as a GPU takes them.
+/// A mesh for the eye: bytes as a GPU takes them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ViewMesh {
     /// The origin of the vertices' positions in the scene.
@@ -141,7 +141,8 @@ fn radius(spoke: &Spoke) -> f64 {
     2.0 * spoke.step
 }
 
-/// Returns where rays first leave the inside of a function, as far as they begin there and leave.
+/// Returns where rays first leave the inside of a function, as far as they begin inside and leave
+/// it.
 fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
     /// Rays of a cage that are looked at: the surface is followed from each.
     const RAYS: usize = 8;

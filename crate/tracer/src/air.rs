@@ -1,4 +1,5 @@
-//! What rays pass and see beside surfaces: background, sky, fog, clouds of light, and the plane of the ground.
+//! What rays pass and see beside surfaces: background, sky, fog, clouds of light, and the plane of
+//! the ground.
 //!
 //! Everything here is in the world's coordinates.
 use core::f64::consts::TAU;
@@ -9,8 +10,8 @@ use texture::{Edge, Rgb8};
 
 /// Sine of the angle from the horizon between which and its negative a gradient changes.
 const GRADIENT: f64 = 0.5;
-/// Where the ground begins and has ceased to be seen, in halves of the scene's size from its middle: it fades into the
-/// background between them.
+/// Where the ground begins and has ceased to be seen, in halves of the scene's size from its
+/// middle: it fades into the background between them.
 const GROUND: [f64; 2] = [4.0, 16.0];
 
 /// Air and surroundings.
@@ -47,7 +48,8 @@ pub(crate) struct GroundPoint {
 }
 
 impl Air {
-    /// Prepares a scene's air. `lowest` is the scene's least height, `middle` and `size` its middle and half its size.
+    /// Prepares a scene's air. `lowest` is the scene's least height, `middle` and `size` its middle
+    /// and half its size.
     pub fn new(scene: &Scene, lowest: f64, middle: DVec3, size: f64) -> Self {
         let image = match scene.background {
             Background::Image(index) => scene.images.get(index as usize).cloned(),
@@ -150,8 +152,8 @@ impl Air {
         })
     }
 
-    /// Share of light that is left of what a ray sees at a distance, and the light that the air adds on the way. Clouds
-    /// shine through the fog before them.
+    /// Share of light that is left of what a ray sees at a distance, and the light that the air
+    /// adds on the way. Clouds shine through the fog before them.
     pub fn passes(&self, origin: DVec3, direction: DVec3, length: f64) -> (f32, Vec3) {
         let (mut share, mut glow) = (1.0, Vec3::ZERO);
         if let Some(fog) = &self.fog {

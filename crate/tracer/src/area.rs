@@ -114,8 +114,8 @@ impl Area {
         }
     }
 
-    /// The pixels whose first samples are needed to make an area smooth in a picture of `size` pixels: those of the packets in
-    /// it and of all around them.
+    /// The pixels whose first samples are needed to make an area smooth in a picture of `size`
+    /// pixels: those of the packets in it and of all around them.
     pub fn around(self, size: [u32; 2]) -> Self {
         let packets = self.packets(size);
         let [across, down] = PACKET_SIZE;

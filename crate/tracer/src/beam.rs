@@ -1,4 +1,5 @@
-//! Beams: cones that bound a bundle of rays, so that a proof for the beam holds for each of its rays.
+//! Beams: cones that bound a bundle of rays, so that a proof for the beam holds for each of its
+//! rays.
 use crate::ray::Ray;
 use field::Cut;
 use glam::DVec3;
@@ -60,8 +61,9 @@ impl Beam {
         self.radius + self.spread * t
     }
 
-    /// Largest distance, along the axis, of rays from the axis' point at a parameter: the projection of a unit vector on another is
-    /// shorter than 1 by half the square of their difference.
+    /// Largest distance, along the axis, of rays from the axis' point at a parameter: the
+    /// projection of a unit vector on another is shorter than 1 by half the square of their
+    /// difference.
     #[must_use]
     pub fn lag(&self, t: f64) -> f64 {
         self.ahead + 0.5 * self.spread * self.spread * t
@@ -106,8 +108,9 @@ impl Beam {
         let across = (square - along * along - SQUARES * square).at_least(0.0);
         let d = d.abs();
         let reach = (radius + self.radius) * (1.0 + BOUND_SLACK) + BOUND_SLACK * (d.x + d.y + d.z);
-        // The distance from the axis' point at t less the beam's growth, sqrt(across² + (along−t)²) − spread·t, is least where
-        // its derivative vanishes, at t = along + across·spread/slope, if that is ≥ 0. Squares avoid roots: trees call this often.
+        // The distance from the axis' point at t less the beam's growth, sqrt(across² + (along−t)²)
+        // − spread·t, is least where its derivative vanishes, at t = along + across·spread/slope,
+        // if that is ≥ 0. Squares avoid roots: trees call this often.
         let spread = self.spread * self.spread;
         let slope = 1.0 - spread;
         let (apart, reach) = if along > 0.0 || across * spread > along * along * slope {

@@ -2,12 +2,12 @@
 use crate::beam::Beam;
 use core::cell::OnceCell;
 
-/// How a beam is divided: `narrow(n)` gives the n-th beam, where 0 is the whole and the halves of beam
-/// i are 2i+1 and 2i+2.
+/// How a beam is divided: `narrow(n)` gives the n-th beam, where 0 is the whole and the halves of
+/// beam i are 2i+1 and 2i+2.
 type Narrow<'a> = dyn Fn(usize) -> Beam + 'a;
 
-/// A binary tree of beams, the halves of beam i at 2i+1 and 2i+2, whose last level has one beam for each
-/// packet of rays. Beams are made at first use.
+/// A binary tree of beams, the halves of beam i at 2i+1 and 2i+2, whose last level has one beam for
+/// each packet of rays. Beams are made at first use.
 pub struct Beams<'a> {
     made: Vec<OnceCell<Beam>>,
     narrow: Box<Narrow<'a>>,
@@ -45,8 +45,8 @@ impl<'a> Beams<'a> {
         (self.made.len() + 1).ilog2() - (beam + 1).ilog2() - 1
     }
 
-    /// Returns the quarter of a beam that contains a packet (the half, if that is not divided further), and its number among
-    /// the beam's quarters. `None` if the beam is not divided.
+    /// Returns the quarter of a beam that contains a packet (the half, if that is not divided
+    /// further), and its number among the beam's quarters. `None` if the beam is not divided.
     #[must_use]
     pub fn quarter(&self, beam: usize, packet: usize) -> Option<(usize, usize)> {
         let deeper = self.levels_below(beam).min(2);

@@ -1,16 +1,18 @@
 //! Certified ray marching: finds the first crossing of eight rays with a surface of blobs.
 //!
-//! For a blob the largest value on any interval of a ray and the largest −f″ there have closed forms (`field::blob`). So a ray
-//! outside the surface may step from `from` to `to`
+//! For a blob the largest value on any interval of a ray and the largest −f″ there have closed
+//! forms (`field::blob`). So a ray outside the surface may step from `from` to `to`
 //!
 //! - if the largest values on that interval add up to less than T, or
-//! - if the field is below T at both ends, and the chord between them plus the parabola `(N/2 + K/h)·x(h−x)` stays below T,
-//!   where h is the length, N ≥ −F″ on the interval, and K bounds the drop of the slope in kinks. With `P = h²/2·N + h·K` and D
-//!   the difference of the values at the ends, the sum is largest at an end if P ≤ D; else it exceeds that by (P−D)²/4P.
+//! - if the field is below T at both ends, and the chord between them plus the parabola
+//!   `(N/2 + K/h)·x(h−x)` stays below T, where h is the length, N ≥ −F″ on the interval, and K
+//!   bounds the drop of the slope in kinks. With `P = h²/2·N + h·K` and D the difference of the
+//!   values at the ends, the sum is largest at an end if P ≤ D; else it exceeds that by (P−D)²/4P.
 //!
-//! If F(to) ≥ T there is a crossing on the interval, and when `N·h² + 2K·h < 2(T − F(from))` it is the only one: an earlier one
-//! would need a larger −F″. Newton's method then refines it. Otherwise the step is shortened, but to no less than the tolerance.
-//! The eight rays are computed together, each with its own intervals.
+//! If F(to) ≥ T there is a crossing on the interval, and when `N·h² + 2K·h < 2(T − F(from))` it is
+//! the only one: an earlier one would need a larger −F″. Newton's method then refines it. Otherwise
+//! the step is shortened, but to no less than the tolerance. The eight rays are computed together,
+//! each with its own intervals.
 use crate::lanes::least;
 use field::far_field::DEGREE;
 use field::{BlobOnRay, Limits, Real};
@@ -21,7 +23,8 @@ use wide::f32x8;
 pub struct RayBlob {
     /// Field along the rays.
     pub on_ray: BlobOnRay<f32x8>,
-    /// Squared distance, in kernel widths, up to which the blob is strong: a step that fails is cut there ([`Sum::closer`]).
+    /// Squared distance, in kernel widths, up to which the blob is strong: a step that fails is cut
+    /// there ([`Sum::closer`]).
     pub strong: f32,
     /// Index in the list of nearby blobs.
     pub index: u32,
@@ -50,14 +53,16 @@ pub struct RayInterval {
     pub blob: u32,
 }
 
-/// The blobs that a packet's rays may meet. Only the small intervals are sorted, not the large blobs.
+/// The blobs that a packet's rays may meet. Only the small intervals are sorted, not the large
+/// blobs.
 #[derive(Clone, Copy, Debug)]
 pub struct RayBlobs<'a> {
     /// The blobs, in any order.
     pub blobs: &'a [RayBlob],
     /// One interval for each blob, in order of `from`.
     pub intervals: &'a [RayInterval],
-    /// Whether all are Gaussian points, the most common case, for which the march is compiled separately.
+    /// Whether all are Gaussian points, the most common case, for which the march is compiled
+    /// separately.
     pub plain: bool,
 }
 
@@ -82,8 +87,8 @@ pub struct MarchRays {
     pub to: f32x8,
     /// Estimate of the crossing; infinite without one …
     pub guess: f32x8,
-    /// … and the end of the first step, at or before it, from which the rest up to the estimate can be proved to hold at most
-    /// one crossing.
+    /// … and the end of the first step, at or before it, from which the rest up to the estimate can
+    /// be proved to hold at most one crossing.
     pub first: f32x8,
     /// The rays to follow, a bit each.
     pub alive: u32,
@@ -216,20 +221,24 @@ const DEEP: f32 = 1.5;
 
 /// Where the field is larger than this and rises, a step is no longer than …
 const NEARLY: f32 = 0.15;
-/// … this multiple of the step along the tangent to T: Gaussians are convex where they rise, and reach T before.
+/// … this multiple of the step along the tangent to T: Gaussians are convex where they rise, and
+/// reach T before.
 const TANGENT: f32 = 1.1;
 
 /// Length down to which intervals that rounding leaves in doubt are shortened.
 const DOUBTFUL: f32 = 1e-3;
 
-/// After a failed step of length h the next one is chosen for `N·h²` = this times T − F; the chord's proof needs at most 8 …
+/// After a failed step of length h the next one is chosen for `N·h²` = this times T − F; the
+/// chord's proof needs at most 8 …
 const SERVES: f32 = 6.0;
-/// … or, where the field falls at the start, this times the length on which the bend can turn the slope; …
+/// … or, where the field falls at the start, this times the length on which the bend can turn the
+/// slope; …
 const FALLS: f32 = 1.8;
 /// … but at least this fraction of the failed step, since N is smaller on a shorter one.
 const LEAST: f32 = 0.1;
 
-/// Evaluations after which a packet is given up; packets of the published scenes need a few thousand.
+/// Evaluations after which a packet is given up; packets of the published scenes need a few
+/// thousand.
 const MOST_EVALUATIONS: u64 = 1 << 24;
 /// Rounds after which a packet is given up.
 const MOST_ROUNDS: u32 = 400;
@@ -245,8 +254,8 @@ struct Sum {
     between: [f32; 2],
 }
 
-/// Marches rays to their first crossings. `None` if a ray starts inside or a limit on the work is reached; the caller then takes
-/// the general way. `tops` is working space.
+/// Marches rays to their first crossings. `None` if a ray starts inside or a limit on the work is
+/// reached; the caller then takes the general way. `tops` is working space.
 #[must_use]
 pub fn march(blobs: RayBlobs<'_>, rays: &MarchRays, tops: &mut Vec<f32x8>) -> Option<Marched> {
     if tops.len() < blobs.intervals.len() {
@@ -444,9 +453,9 @@ pub fn values<const PLAIN: bool, B: Behind>(
     (value, slope)
 }
 
-/// Returns a parameter before the crossing below `high`, so near to it that the rest can be proved to hold no other; from deep
-/// inside by a Newton step for the field's logarithm, which for Gaussians leads just outside. Value, slope and bend are those at
-/// `high`.
+/// Returns a parameter before the crossing below `high`, so near to it that the rest can be proved
+/// to hold no other; from deep inside by a Newton step for the field's logarithm, which for
+/// Gaussians leads just outside. Value, slope and bend are those at `high`.
 #[inline(always)]
 fn before_crossing(low: f32x8, high: f32x8, [value, slope, bend]: [f32x8; 3], going: u32) -> f32x8 {
     let near = high - (f32x8::splat(1.4) / bend).sqrt();
@@ -460,7 +469,8 @@ fn before_crossing(low: f32x8, high: f32x8, [value, slope, bend]: [f32x8; 3], go
 }
 
 impl Sum {
-    /// Adds up the blobs between two parameters. Each blob's contribution to `most` is written to `tops`.
+    /// Adds up the blobs between two parameters. Each blob's contribution to
+    /// `most` is written to `tops`.
     #[inline(always)]
     fn on<const PLAIN: bool, B: Behind>(
         blobs: RayBlobs<'_>,
@@ -515,8 +525,8 @@ impl Sum {
         sum
     }
 
-    /// Returns an upper bound on the field on a step of some length that starts with `low_value`: chord plus parabola (see the
-    /// module). Infinite where it is unknown.
+    /// Returns an upper bound on the field on a step of some length that starts with `low_value`:
+    /// chord plus parabola (see the module). Infinite where it is unknown.
     #[inline(always)]
     fn chord(&self, low_value: f32x8, length: f32x8) -> f32x8 {
         let (zero, far) = (f32x8::splat(0.0), f32x8::splat(f32::INFINITY));
@@ -531,8 +541,8 @@ impl Sum {
             .select(low_value.fast_max(self.value) + bulge, far)
     }
 
-    /// Returns the length of the step after one of some length that was proved: twice that, or, where the field rises towards T,
-    /// along the tangent to a little beyond the crossing.
+    /// Returns the length of the step after one of some length that was proved: twice that, or,
+    /// where the field rises towards T, along the tangent to a little beyond the crossing.
     #[inline(always)]
     fn longer(&self, step: f32x8, length: f32x8, tolerance: f32x8) -> f32x8 {
         let doubled = f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance));
@@ -543,7 +553,8 @@ impl Sum {
         rises.select(doubled.fast_min(tangent), doubled)
     }
 
-    /// Returns the length of the step after a failed one of some length, by the bend on it ([`SERVES`], [`FALLS`], [`LEAST`]).
+    /// Returns the length of the step after a failed one of some length, by the bend on it
+    /// ([`SERVES`], [`FALLS`], [`LEAST`]).
     #[inline(always)]
     fn shorter(&self, low_value: f32x8, low_slope: f32x8, length: f32x8) -> f32x8 {
         let room = f32x8::splat(LEVEL) - low_value.fast_max(self.value);
@@ -555,8 +566,8 @@ impl Sum {
             .fast_max(f32x8::splat(LEAST) * length)
     }
 
-    /// Returns the end of a shorter step after a failed one: where the largest blob begins to be strong, or where it ceases to be,
-    /// or else `served`.
+    /// Returns the end of a shorter step after a failed one: where the largest blob begins to be
+    /// strong, or where it ceases to be, or else `served`.
     #[inline(never)]
     fn closer(
         &self,
@@ -598,8 +609,8 @@ fn tops_of<'a>(
     blobs.between(first, last).zip(tops)
 }
 
-/// Refines bracketed crossings by Newton steps, or by the secant and halving where those leave the bracket. Value, slope and bend
-/// at the far end are given.
+/// Refines bracketed crossings by Newton steps, or by the secant and halving where those leave the
+/// bracket. Value, slope and bend at the far end are given.
 #[inline(never)]
 fn polish<const PLAIN: bool, B: Behind>(
     blobs: RayBlobs<'_>,
@@ -627,8 +638,8 @@ fn polish<const PLAIN: bool, B: Behind>(
         let next = fits.select(newton, low + (high - low) * between);
         let length = next - at;
         at = next;
-        // The error of this step, which the shading's evaluation corrects. −F″ is at most `bend`; F″ may be larger, for Gaussians
-        // about the slope squared over the value.
+        // The error of this step, which the shading's evaluation corrects. −F″ is at most `bend`;
+        // F″ may be larger, for Gaussians about the slope squared over the value.
         let up = slope * slope / value.fast_max(level);
         let left = (bend + up) * length * length;
         let near = fits & left.simd_lt(f32x8::splat(REFINED));
@@ -744,7 +755,8 @@ mod tests {
             .collect()
     }
 
-    /// The first crossing of a ray, by very many samples in double precision, with how near the field comes to T before.
+    /// The first crossing of a ray, by very many samples in double precision, with how near the
+    /// field comes to T before.
     fn scan(primitives: &[Primitive], origin: DVec3, direction: DVec3) -> (Option<f64>, f64) {
         let mut nearest = f64::INFINITY;
         for i in 0..20_000 {
@@ -805,7 +817,8 @@ mod tests {
         assert!(hits > count(40) && misses > count(40), "{hits} {misses}");
     }
 
-    /// Where the field comes nearer to T than it is known a ray that passes is in doubt, and nowhere else.
+    /// Where the field comes nearer to T than it is known a ray that passes is in doubt, and
+    /// nowhere else.
     #[test]
     fn rays_that_noise_may_have_kept_outside_are_in_doubt() {
         // Kept, as it is between packets.

@@ -6,15 +6,15 @@ use field::{Blob, ChainBlob, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root isolation, which uses those
-/// lists.
+/// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root
+/// isolation, which uses those lists.
 pub const NEXT_TO_NOTHING: f64 = 1e-10;
 
 /// Field, as a fraction of T divided by the number of primitives, at which a blob's reach ends.
 const BLOBS_LEFT_OUT: f64 = 2e-6;
 
-/// [`NearBlob::lead`] in kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T` is about what the march's proof
-/// allows ([`climb`](mod@crate::blob_march)).
+/// [`NearBlob::lead`] in kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T`
+/// is about what the march's proof allows ([`climb`](mod@crate::blob_march)).
 const LEAD: f64 = 0.6;
 
 /// The blobs of each of a scene's primitives: itself, its blob chain, or none.
@@ -40,7 +40,8 @@ const MOST_OTHERS: usize = 16;
 const MOST_CHAINED: usize = 1 << 17;
 
 impl BlobSet {
-    /// Collects the blobs of a scene's primitives, given their finishes and the bodies' ranges of primitives.
+    /// Collects the blobs of a scene's primitives, given their finishes and the bodies' ranges of
+    /// primitives.
     #[must_use]
     pub fn new(primitives: &[Primitive], finish: &[u32], bodies: &[Range<u32>]) -> Self {
         let mut chain = 0;
@@ -135,7 +136,8 @@ impl BlobSet {
         })
     }
 
-    /// Whether one of a primitive's blobs may exceed `level` in a ball; true for primitives without blobs.
+    /// Whether one of a primitive's blobs may exceed `level` in a ball; true for primitives without
+    /// blobs.
     #[must_use]
     pub fn counts(&self, primitive: usize, center: DVec3, radius: f64, level: f64) -> bool {
         let items = self.of(primitive);
@@ -148,9 +150,9 @@ impl BlobSet {
         items.is_empty() || items.iter().any(more)
     }
 
-    /// Lists the blobs near a beam, up to a parameter, and the other primitives there. Returns false if those are more than 16.
-    /// `tree` holds the balls of all primitives; `reach` returns the distance from its bone at which a primitive's reach ends, given
-    /// its ball's radius.
+    /// Lists the blobs near a beam, up to a parameter, and the other primitives there. Returns
+    /// false if those are more than 16. `tree` holds the balls of all primitives; `reach` returns
+    /// the distance from its bone at which a primitive's reach ends, given its ball's radius.
     pub fn list(
         &self,
         tree: &Hierarchy,
@@ -210,7 +212,8 @@ impl BlobSet {
     }
 }
 
-/// Packs a parameter ≥ 0, rounded down to single precision, and an index into a sort key: ordered by parameter, then index.
+/// Packs a parameter ≥ 0, rounded down to single precision, and an index into a sort key: ordered
+/// by parameter, then index.
 fn key(parameter: f64, index: u32) -> u64 {
     // Not −0.
     let parameter = parameter + 0.0;

@@ -1,8 +1,8 @@
 //! Groups of neighbouring primitives with common bounds by distance.
 //!
-//! Groups form a binary tree. Each has a ball that holds its members' skeletons, and a table of bounds on the sums of the members'
-//! fields and of their fourth derivatives, by distance from the ball. So a distant group is dropped or interpolated as a whole,
-//! however many members it has.
+//! Groups form a binary tree. Each has a ball that holds its members' skeletons, and a table of
+//! bounds on the sums of the members' fields and of their fourth derivatives, by distance from the
+//! ball. So a distant group is dropped or interpolated as a whole, however many members it has.
 use crate::hierarchy::Hierarchy;
 use field::Cut;
 use field::bound::{Bound, Nearness, SpanLength};
@@ -10,11 +10,13 @@ use glam::DVec3;
 
 /// Entries in an octave of distances.
 const STEPS: usize = 4;
-/// The first entry stands for distances from 0 on, the second for those from 2 to the power of this on …
+/// The first entry stands for distances from 0 on, the second for those from 2 to the power of this
+/// on …
 const FIRST: i32 = -10;
 /// … and the number of octaves: the scene's size is between 2 and 4.
 const OCTAVES: usize = 12;
-/// Farther entries, each for twice the distance of the one before: kernels that fall slowly have surfaces far from all elements.
+/// Farther entries, each for twice the distance of the one before: kernels that fall slowly have
+/// surfaces far from all elements.
 const FAR_ENTRIES: usize = 12;
 /// The entry for the distance at which these octaves end.
 const LAST: usize = 1 + OCTAVES * STEPS;
@@ -71,13 +73,15 @@ pub enum Members<'a> {
     Primitives(&'a [u32]),
 }
 
-/// Ratio of distance to radius below which a group is near, unless the ball that it is seen from is much larger than the group.
+/// Ratio of distance to radius below which a group is near, unless the ball that it is seen from is
+/// much larger than the group.
 const NEAR: f64 = 2.0;
 /// See [`NEAR`].
 const WIDE_VIEW: f64 = 0.3;
 
 impl Clusters {
-    /// Builds the groups of primitives, given as (number, centre, radius) of balls that hold their skeletons.
+    /// Builds the groups of primitives, given as (number, centre, radius) of balls that hold their
+    /// skeletons.
     #[must_use]
     pub fn new(balls: Vec<(u32, DVec3, f64)>, bounds: &[Bound]) -> Self {
         let tree = Hierarchy::with_leaves(balls, GROUP_SIZE);
@@ -275,7 +279,8 @@ mod tests {
                 let sum: f64 = all.map(|&i| primitives[i as usize].value(at)).sum();
                 assert!(sum <= view.magnitude, "{sum} {view:?}");
                 if group == 0 && far > 2.0 && far < 1e4 {
-                    // Of the kernels here the inverse counts most, and falls to a half from one far entry to the next.
+                    // Of the kernels here the inverse counts most, and falls to a half from one far
+                    // entry to the next.
                     assert!(view.magnitude < 8.0 * sum, "{sum} {view:?}");
                 }
                 assert!(place(entry(view.distance)) <= view.distance, "{view:?}");

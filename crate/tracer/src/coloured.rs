@@ -11,8 +11,8 @@ use glam::Vec3;
 const MOST_PASSED: u32 = 64;
 
 impl World {
-    /// The share of light that passes along some rays up to their ends: the product of the transparencies of all surfaces there. Light
-    /// is not bent.
+    /// The share of light that passes along some rays up to their ends: the product of the
+    /// transparencies of all surfaces there. Light is not bent.
     pub fn coloured(
         &self,
         rich: &Rich,

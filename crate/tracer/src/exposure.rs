@@ -1,7 +1,9 @@
-//! Pixels behind a lens and an open shutter: rays that differ in more than their place in the pixel.
+//! Pixels behind a lens and an open shutter: rays that differ in more than their place in the
+//! pixel.
 //!
-//! Each of a pixel's n×n rays has its own cell of the pixel, point of the lens and moment. The points are well spread
-//! ([`texture::sequence`]), and each moment gets as many of the rays as any other, or one more.
+//! Each of a pixel's n×n rays has its own cell of the pixel, point of the lens and moment. The
+//! points are well spread ([`texture::sequence`]), and each moment gets as many of the rays as any
+//! other, or one more.
 use crate::area::Area;
 use crate::free::FreeRay;
 use crate::lamps::Draw;
@@ -54,7 +56,8 @@ struct Shot {
 }
 
 impl Exposure {
-    /// Prepares a scene's; `None` if it has a pinhole and nothing moves. `unit` is that of the scene.
+    /// Prepares a scene's; `None` if it has a pinhole and nothing moves. `unit` is that of the
+    /// scene.
     pub fn of(scene: &Scene, unit: &Unit, size: [u32; 2]) -> Option<Self> {
         let lens = ThinLens::of(scene, unit);
         if lens.aperture == 0.0 && scene.moments.is_empty() {
@@ -137,7 +140,8 @@ impl Sampler {
         sums
     }
 
-    /// Which of so many moments each of a pixel's rays is at: all equally often, in an order of the pixel's own.
+    /// Which of so many moments each of a pixel's rays is at: all equally often, in an order of the
+    /// pixel's own.
     fn turns(&self, pixel: [u32; 2], count: usize) -> Vec<usize> {
         let all = (self.samples * self.samples) as usize;
         let times: Vec<f64> = (0..all)

@@ -1,8 +1,10 @@
-//! Surface samples at a packet's hits: the refined parameter, the field's gradient, and the finishes' shares.
+//! Surface samples at a packet's hits: the refined parameter, the field's gradient, and the
+//! finishes' shares.
 //!
-//! Spans give approximate crossings; Newton steps refine them. Shared interpolants stand for their primitives if their error moves
-//! a hit by less than the tolerance; else the primitives are evaluated. Where the rounding of single precision may move it by more,
-//! the last steps are in double precision.
+//! Spans give approximate crossings; Newton steps refine them. Shared interpolants stand for their
+//! primitives if their error moves a hit by less than the tolerance; else the primitives are
+//! evaluated. Where the rounding of single precision may move it by more, the last steps are in
+//! double precision.
 use crate::blob_march::mask;
 use crate::lanes::Lanes;
 use crate::layout::PACKET;
@@ -38,7 +40,8 @@ struct Hits<'a> {
 }
 
 impl Soft {
-    /// Returns the crossings of a bundle with a body's surface, by traversing the slabs of its beam.
+    /// Returns the crossings of a bundle with a body's surface, by traversing the slabs of its
+    /// beam.
     pub fn walk(
         &self,
         body: u32,
@@ -55,8 +58,9 @@ impl Soft {
         found
     }
 
-    /// Moves the hits of a packet onto the surface and samples it there; the result is `scratch.flesh`. Lanes without a hit are
-    /// meaningless. Ray parameters are counted from `base`.
+    /// Moves the hits of a packet onto the surface and samples it there; the result is
+    /// `scratch.flesh`. Lanes without a hit are meaningless. Ray parameters are counted from
+    /// `base`.
     pub fn flesh(
         &self,
         slabs: &Slabs<'_>,
@@ -135,7 +139,8 @@ impl Soft {
         }
     }
 
-    /// Returns the hits that an error of the field may move by more than half the tolerance, a bit each.
+    /// Returns the hits that an error of the field may move by more than half the tolerance, a bit
+    /// each.
     fn off(
         &self,
         hits: &Hits<'_>,
@@ -153,7 +158,8 @@ impl Soft {
         })
     }
 
-    /// Bounds the rounding error of the field at each hit, with shared interpolants or with all primitives.
+    /// Bounds the rounding error of the field at each hit, with shared interpolants or with all
+    /// primitives.
     #[cold]
     #[inline(never)]
     fn noise(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) -> [f64; PACKET] {
@@ -185,7 +191,8 @@ impl Soft {
         noise.to_array().map(f64::from)
     }
 
-    /// Refines a hit on the surface of some primitives by Newton steps in double precision; `start` where no step improves it.
+    /// Refines a hit on the surface of some primitives by Newton steps in double precision; `start`
+    /// where no step improves it.
     #[cold]
     fn refine_exactly(
         &self,
@@ -292,8 +299,8 @@ impl Soft {
     }
 }
 
-/// Evaluations at the hits. A Newton step from near the surface is exact to single precision, but normal and colours are those of
-/// its start.
+/// Evaluations at the hits. A Newton step from near the surface is exact to single precision, but
+/// normal and colours are those of its start.
 const MOST_POLISHING: usize = 3;
 /// Most primitives with which hits are refined in double precision.
 const MOST_EXACT: usize = 1 << 16;

@@ -1,4 +1,5 @@
-//! First hits of rays that run in any directions, as secondary ones do: those that run together are followed as a packet.
+//! First hits of rays that run in any directions, as secondary ones do: those that run together are
+//! followed as a packet.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::layout::PACKET;

@@ -2,11 +2,11 @@
 //! rays.
 //!
 //! On a piece of a ray with the middle m and the half-length h Taylor's theorem says
-//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2 + J·|x|`, where C bounds the curvature in the ball around the
-//! piece, and J the jumps of the gradient. So a piece has no crossing if the function's range in that
-//! ball leaves the threshold out, or if `|f(m) − T| > (|f′(m)| + J)·h + C·h²/2`; and at most one if
-//! `|f′(m)| > C·h + J`, which the signs at its ends then tell. Any other piece is halved, down to a
-//! resolution.
+//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2 + J·|x|`, where C bounds the curvature in the ball around
+//! the piece, and J the jumps of the gradient. So a piece has no crossing if the function's range
+//! in that ball leaves the threshold out, or if `|f(m) − T| > (|f′(m)| + J)·h + C·h²/2`; and at
+//! most one if `|f′(m)| > C·h + J`, which the signs at its ends then tell. Any other piece is
+//! halved, down to a resolution.
 use crate::body::Body;
 use crate::ray::Ray;
 use crate::roots::bracketed;

@@ -49,8 +49,9 @@ impl Hierarchy {
         }
     }
 
-    /// Returns the same tree with enlarged balls. The function returns the new radius of an item, at least the old one, from its
-    /// number, centre and radius. A node's ball grows as much as the one below it that grows most.
+    /// Returns the same tree with enlarged balls. The function returns the new radius of an item,
+    /// at least the old one, from its number, centre and radius. A node's ball grows as much as the
+    /// one below it that grows most.
     #[must_use]
     pub fn enlarged(&self, radius: impl Fn(u32, DVec3, f64) -> f64) -> Self {
         let mut tree = self.clone();

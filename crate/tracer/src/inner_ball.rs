@@ -1,8 +1,9 @@
 //! A ball that is wholly inside a body, to leave out the start of rays that begin there.
 //!
-//! Many elements whose kernel has a pole have a surface far from all of them. Between them the field is thousands of times T, and so
-//! is the error of its interpolants, so that it takes long to prove that it does not cross T. But these kernels are bounded from
-//! below by their distance, which proves it for a whole ball at once.
+//! Many elements whose kernel has a pole have a surface far from all of them. Between them the
+//! field is thousands of times T, and so is the error of its interpolants, so that it takes long to
+//! prove that it does not cross T. But these kernels are bounded from below by their distance,
+//! which proves it for a whole ball at once.
 use crate::beam::Beam;
 use field::{Bound, Cut, THRESHOLD};
 use glam::DVec3;
@@ -22,8 +23,9 @@ const STEPS: u32 = 24;
 const LARGEST: f64 = 1e12;
 
 impl InnerBall {
-    /// The ball around a body's skeletons, enlarged, given the bounds of its terms and a ball that holds their skeletons. `None` if the
-    /// field is not known to be above T even there, or if some term carves: near its pole nothing is inside.
+    /// The ball around a body's skeletons, enlarged, given the bounds of its terms and a ball that
+    /// holds their skeletons. `None` if the field is not known to be above T even there, or if some
+    /// term carves: near its pole nothing is inside.
     #[must_use]
     pub fn new(bounds: &[Bound], (center, skeletons): (DVec3, f64)) -> Option<Self> {
         let is_inside = |radius: f64| {
@@ -48,7 +50,8 @@ impl InnerBall {
         Some(Self { center, radius })
     }
 
-    /// Returns a parameter up to which all rays of a beam are in the ball; 0 if not all start there.
+    /// Returns a parameter up to which all rays of a beam are in the ball; 0 if not all start
+    /// there.
     #[must_use]
     pub fn left_at(&self, beam: &Beam) -> f64 {
         let away = beam.axis.origin - self.center;
@@ -115,7 +118,8 @@ mod tests {
         }
         let outside = DVec3::X * (ball.radius + 4.0);
         assert!(value(outside) < THRESHOLD, "{outside}");
-        // Other kernels have no bound from below, and what carves is stronger than all near its pole.
+        // Other kernels have no bound from below, and what carves is stronger than all near its
+        // pole.
         for (kernel, carving) in [(Kernel::Cauchy, 1.0), (Kernel::Inverse, -0.1)] {
             let primitives = body(kernel, carving, &mut numbers);
             let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();

@@ -5,7 +5,8 @@ use field::{Kink, Primitive};
 #[derive(Debug, Default)]
 pub struct Kinks(Vec<(u32, Vec<Kink>)>);
 
-/// Most primitives of a body whose kinks are collected: crossings of a ray that meets one are isolated with all primitives.
+/// Most primitives of a body whose kinks are collected: crossings of a ray that meets one are
+/// isolated with all primitives.
 const MOST_PRIMITIVES: usize = 16;
 
 impl Kinks {

@@ -1,7 +1,8 @@
 //! First samples in a form that workers exchange, so that none is traced twice.
 //!
-//! Which pixels get more rays depends on the samples around them: the smooth pass of a tile needs those at its neighbours' edges,
-//! and all of its own if another worker traced it before. Samples are the same wherever they are traced.
+//! Which pixels get more rays depends on the samples around them: the smooth pass of a tile needs
+//! those at its neighbours' edges, and all of its own if another worker traced it before. Samples
+//! are the same wherever they are traced.
 use crate::Tile;
 use crate::area::{Area, Samples};
 use crate::sample::Sample;
@@ -17,7 +18,8 @@ const LARGEST_SIDE: u32 = 64;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Known {
     tile: Tile,
-    /// Samples row by row, or a single one if all are equal, as in empty tiles; each as colour, key, depth and cost, little-endian.
+    /// Samples row by row, or a single one if all are equal, as in empty tiles; each as colour,
+    /// key, depth and cost, little-endian.
     #[serde(with = "serde_bytes")]
     bytes: Vec<u8>,
 }
@@ -73,7 +75,8 @@ impl Known {
         })
     }
 
-    /// Whether these are well-formed samples of at most a tile of a picture of this size: the bytes come from a message.
+    /// Whether these are well-formed samples of at most a tile of a picture of this size: the bytes
+    /// come from a message.
     #[must_use]
     pub fn is_of(&self, size: [u32; 2]) -> bool {
         let area = Area::from(self.tile);
@@ -126,7 +129,8 @@ fn sample(bytes: &[u8; BYTES]) -> Sample {
     }
 }
 
-/// Returns the pixels whose first samples the smooth pass of a tile needs, in a picture of `size` pixels: its own and some around it.
+/// Returns the pixels whose first samples the smooth pass of a tile needs, in a picture of `size`
+/// pixels: its own and some around it.
 #[must_use]
 pub fn around(tile: Tile, size: [u32; 2]) -> Tile {
     Area::from(tile).around(size).into()

@@ -52,7 +52,8 @@ pub(crate) struct Received {
 }
 
 impl Received {
-    /// The share of its light that the ground shows: that which nothing shadows, all where no light reaches at all.
+    /// The share of its light that the ground shows: that which nothing shadows, all where no light
+    /// reaches at all.
     pub fn of_ground(&self) -> Vec3 {
         let share = self.light / self.free.max(Vec3::splat(1e-6));
         Vec3::select(self.free.cmpgt(Vec3::ZERO), share, Vec3::ONE)

@@ -38,7 +38,8 @@ impl Lanes for f64 {
     }
 }
 
-/// Returns the least of eight numbers. By lanes: a scalar minimum compiles to an unpredictable branch in wasm.
+/// Returns the least of eight numbers. By lanes: a scalar minimum compiles to an unpredictable
+/// branch in wasm.
 #[inline(always)]
 #[must_use]
 pub fn least(x: f32x8) -> f32 {

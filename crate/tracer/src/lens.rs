@@ -1,9 +1,10 @@
 //! The rays of a square's pixels in single precision, eight at a time.
 //!
-//! The direction through a pixel is that through the square's middle and a small deviation from it. Of a view
-//! `w = w₀ + δ`, where δ is across the view's plane, `w/|w| − w₀/|w₀| = a·g + ε(1+g)` with the axis a = w₀/|w₀|,
-//! ε = δ/|w₀|, e = |w|²/|w₀|² − 1 = 2a·ε + ε·ε and `g = 1/√(1+e) − 1 = −e/(√(1+e)·(1 + √(1+e)))`: nothing
-//! cancels, so single precision gives the deviation to its own last digits, wherever the eye is.
+//! The direction through a pixel is that through the square's middle and a small deviation from it.
+//! Of a view `w = w₀ + δ`, where δ is across the view's plane, `w/|w| − w₀/|w₀| = a·g + ε(1+g)`
+//! with the axis a = w₀/|w₀|, ε = δ/|w₀|, e = |w|²/|w₀|² − 1 = 2a·ε + ε·ε and
+//! `g = 1/√(1+e) − 1 = −e/(√(1+e)·(1 + √(1+e)))`: nothing cancels, so single precision gives the
+//! deviation to its own last digits, wherever the eye is.
 use crate::area::Area;
 use crate::beam::Beam;
 use crate::lanes::least;

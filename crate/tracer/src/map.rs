@@ -1,13 +1,15 @@
 //! The map of costs (`map on`): the work of each pixel.
 //!
-//! The unit of cost is one evaluation of one primitive's field at one point; each ray, to the eye or to
-//! a light, counts as one more. Rays of a packet share the evaluations that are made for all of
-//! them at once; those that are made for the packets of a whole square, or of a patch in the light, are not counted, as it
-//! depends on the tile which packet asks for them first. A pixel shows the mean of its rays. Work is counted and not timed, so that a
-//! map is the same wherever it is made.
+//! The unit of cost is one evaluation of one primitive's field at one point; each ray, to the eye
+//! or to a light, counts as one more. Rays of a packet share the evaluations that are made for all
+//! of them at once; those that are made for the packets of a whole square, or of a patch in the
+//! light, are not counted, as it depends on the tile which packet asks for them first. A pixel
+//! shows the mean of its rays. Work is counted and not timed, so that a map is the same wherever it
+//! is made.
 //!
-//! White is the cost of the most expensive pixel. As tiles are traced independently, each determines it from the same sample, one
-//! packet in every 16×16 pixels; even more expensive pixels are white as well.
+//! White is the cost of the most expensive pixel. As tiles are traced independently, each
+//! determines it from the same sample, one packet in every 16×16 pixels; even more expensive pixels
+//! are white as well.
 use crate::area::Area;
 use crate::layout::PACKET_SIZE;
 use crate::sample::Sample;
@@ -37,7 +39,8 @@ impl Map {
         }
     }
 
-    /// Returns the cost that is shown as white. `None` if `stop` returned true before it was determined.
+    /// Returns the cost that is shown as white. `None` if `stop` returned true before it was
+    /// determined.
     pub fn dearest(&self, sampler: &Sampler, stop: &dyn Fn() -> bool) -> Option<f32> {
         if let Some(dearest) = self.dearest.get() {
             return Some(*dearest);

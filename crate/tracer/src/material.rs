@@ -1,5 +1,5 @@
-//! Materials at points of surfaces: finishes with their textures, each in the coordinates of its object, mixed by the
-//! shares of the elements.
+//! Materials at points of surfaces: finishes with their textures, each in the coordinates of its
+//! object, mixed by the shares of the elements.
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use scene::{Element, Finish, Scene, Shape, Skip};
 use std::sync::Arc;
@@ -56,7 +56,8 @@ struct Painted {
 }
 
 impl Painted {
-    /// The colour at a point of the triangle: the corners' mixed by barycentric shares, which are cut to the triangle.
+    /// The colour at a point of the triangle: the corners' mixed by barycentric shares, which are
+    /// cut to the triangle.
     fn color(&self, uv: &Uv) -> Vec3 {
         let [second, third] = uv.at.as_vec2().to_array();
         let shares = [(1.0 - second - third).max(0.0), second, third];
@@ -194,7 +195,8 @@ impl Materials {
         look
     }
 
-    /// The material where some elements, each given with its finish and its share, make a surface; shares need not sum to
+    /// The material where some elements, each given with its finish and its share, make a surface;
+    /// shares need not sum to
     /// 1. Rays pass by as the element with the largest share says.
     pub fn mixed(&self, shares: &[(u32, u32, f64)], point: DVec3, normal: DVec3) -> Option<Look> {
         let most = shares.iter().map(|s| s.2).fold(0.0, f64::max);
@@ -390,7 +392,8 @@ impl Chart {
     }
 }
 
-/// Coordinates along and around a Bézier curve: those of the nearest of straight pieces between evenly spaced parameters.
+/// Coordinates along and around a Bézier curve: those of the nearest of straight pieces between
+/// evenly spaced parameters.
 fn along_curve([a, b, c, d]: &[DVec3; 4], point: DVec3) -> Uv {
     let parameter = |i: u32| f64::from(i) / f64::from(CURVE_PIECES);
     let at = |i: u32| {

@@ -44,7 +44,8 @@ impl Media {
         self.count == 0
     }
 
-    /// Crosses the surface of a body, told from others by its key, which is made of a substance of this index and dispersion.
+    /// Crosses the surface of a body, told from others by its key, which is made of a substance of
+    /// this index and dispersion.
     pub fn cross(&self, key: u32, way: Way, index: f32, dispersion: f32) -> Sides {
         let place = self.inner[..self.count].iter().position(|m| m.key == key);
         let own = || dispersed(f64::from(index), f64::from(dispersion));

@@ -1,7 +1,8 @@
 //! From rays to the surface points that they meet first.
 //!
-//! The nearest crossing wins, whatever it belongs to: hard elements, the convolution surface of each body, and the surfaces of
-//! bodies that are met ray by ray are asked one after the other, each only as far as the rays still go.
+//! The nearest crossing wins, whatever it belongs to: hard elements, the convolution surface of
+//! each body, and the surfaces of bodies that are met ray by ray are asked one after the other,
+//! each only as far as the rays still go.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::hard::Crossing;
@@ -71,8 +72,8 @@ pub(crate) struct PacketRays<'r> {
 pub(crate) const ALL: u32 = (1 << PACKET) - 1;
 
 impl World {
-    /// Finds what the rays of the packet in a column and row of a square meet first, and says so in `seen`, with the rays if they
-    /// meet anything.
+    /// Finds what the rays of the packet in a column and row of a square meet first, and says so in
+    /// `seen`, with the rays if they meet anything.
     pub fn meet(
         &self,
         square: &mut Square<'_>,
@@ -143,7 +144,8 @@ impl World {
         work.general = general;
     }
 
-    /// The points on bodies near which a packet meets nothing but lumps; those bodies that take the general way are passed over.
+    /// The points on bodies near which a packet meets nothing but lumps; those bodies that take the
+    /// general way are passed over.
     #[expect(clippy::too_many_arguments, reason = "each is something else")]
     fn meet_lumps(
         &self,
@@ -204,7 +206,8 @@ impl World {
         }
     }
 
-    /// The same for rays that are made, of some lanes. Gives the bodies for which this is not the way.
+    /// The same for rays that are made, of some lanes. Gives the bodies for which this is not the
+    /// way.
     #[expect(clippy::too_many_arguments, reason = "each is something else")]
     pub fn meet_lumps_by(
         &self,
@@ -252,8 +255,8 @@ impl World {
             .quick_each(near, &general, lanes, wide, asked, quick, tell)
     }
 
-    /// Replaces what the rays of some lanes meet by nearer points on the surface of a body of very many points that never end.
-    /// Returns false if this is not the way.
+    /// Replaces what the rays of some lanes meet by nearer points on the surface of a body of very
+    /// many points that never end. Returns false if this is not the way.
     pub fn meet_far(&self, body: u32, alive: u32, seen: &mut Seen, scratch: &mut Scratch) -> bool {
         let limits = seen.limits();
         let met = self.soft.far_first(
@@ -273,8 +276,8 @@ impl World {
         true
     }
 
-    /// The points where the rays of some lanes meet the surface of a body, by the slabs of a beam around the rays, which start at
-    /// parameter `base`.
+    /// The points where the rays of some lanes meet the surface of a body, by the slabs of a beam
+    /// around the rays, which start at parameter `base`.
     pub fn meet_slabs(
         &self,
         body: u32,
@@ -368,7 +371,8 @@ impl World {
         }
     }
 
-    /// Replaces what rays meet by points on the surfaces of bodies that are met ray by ray and are nearer.
+    /// Replaces what rays meet by points on the surfaces of bodies that are met ray by ray and are
+    /// nearer.
     pub fn meet_others(&self, seen: &mut Seen, alive: u32, scratch: &mut Scratch) {
         for body in &self.others {
             for (lane, (ray, hit)) in seen.rays.iter().zip(&mut seen.hits).enumerate() {

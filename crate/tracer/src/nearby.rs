@@ -1,8 +1,9 @@
 //! Lists of blobs near a beam of rays, and their restriction to narrower beams.
 //!
-//! Lists are in order of the distance at which a blob may first be met. Positions are relative to a point in the beam, so that
-//! single precision suffices; eight blobs are tested at a time. The distance of a blob's bone from the beam bounds its field there:
-//! blobs with a negligible bound are left out, and a beam in which all bounds add up to less than T meets no surface.
+//! Lists are in order of the distance at which a blob may first be met. Positions are relative to a
+//! point in the beam, so that single precision suffices; eight blobs are tested at a time. The
+//! distance of a blob's bone from the beam bounds its field there: blobs with a negligible bound
+//! are left out, and a beam in which all bounds add up to less than T meets no surface.
 use crate::beam::Beam;
 use field::{Blob, Ceiling, Cut};
 use glam::DVec3;
@@ -86,8 +87,8 @@ const NOWHERE: f32 = -1e30;
 /// Largest relative error of squared distances, as positions are rounded to single precision.
 const SQUARE_ROUNDING: f32 = 2e-6;
 
-/// Squared sine of the angle between a segment and a beam below which the segment counts as parallel: its nearest point is then
-/// not computed.
+/// Squared sine of the angle between a segment and a beam below which the segment counts as
+/// parallel: its nearest point is then not computed.
 const ALONG: f32 = 1e-4;
 
 /// Bound on the field below which there is no surface: T less rounding.
@@ -207,8 +208,9 @@ impl Nearby {
         &self.blobs[index]
     }
 
-    /// Copies the blobs that a ray of a beam may meet into another list, leaving out no more than `left_out` of the field in all.
-    /// The list stays empty if they cannot add up to T. The beam's parameters start at [`Nearby::base`].
+    /// Copies the blobs that a ray of a beam may meet into another list, leaving out no more than
+    /// `left_out` of the field in all. The list stays empty if they cannot add up to T. The beam's
+    /// parameters start at [`Nearby::base`].
     pub fn narrow(&self, beam: &Beam, left_out: f32, into: &mut Self) {
         into.begin(self.middle, self.base);
         let mut marks = Marks::new();
@@ -219,8 +221,8 @@ impl Nearby {
         }
     }
 
-    /// Marks the blobs that a ray of a beam may meet, leaving out no more than `left_out` of the field in all. Returns false, and no
-    /// marks, if they cannot add up to T.
+    /// Marks the blobs that a ray of a beam may meet, leaving out no more than `left_out` of the
+    /// field in all. Returns false, and no marks, if they cannot add up to T.
     pub fn mark(&self, beam: &Beam, left_out: f32, marks: &mut Marks) -> bool {
         if self.has_segments {
             self.mark_blocks::<true>(beam, left_out, marks)
@@ -256,8 +258,8 @@ impl Nearby {
             let there = radius.simd_ge(zero);
             let square = x * x + y * y + z * z;
             let along = x * ax + y * ay + z * az;
-            // A ray's point at t is within radius + spread·t of the axis' point, so in the ball t is at most
-            // (along + reach)/(1 − spread).
+            // A ray's point at t is within radius + spread·t of the axis' point, so in the ball t
+            // is at most (along + reach)/(1 − spread).
             let ahead = along + radius + wide;
             let mut across = square - along * along;
             let mut slack = wide + grow * ahead.fast_max(zero);

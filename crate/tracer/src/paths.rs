@@ -1,8 +1,9 @@
 //! Shading where rays are reflected, refracted, textured, fogged: waves of paths.
 //!
-//! A path is a ray with the share of its light that reaches the eye. [`World::illuminate`] follows the paths of some packets in
-//! waves: each surface point adds its own light to its sample, and asks for further rays, which make the next wave. What a point adds
-//! depends on nothing but the path and the point.
+//! A path is a ray with the share of its light that reaches the eye. [`World::illuminate`] follows
+//! the paths of some packets in waves: each surface point adds its own light to its sample, and
+//! asks for further rays, which make the next wave. What a point adds depends on nothing but the
+//! path and the point.
 use crate::air::GroundPoint;
 use crate::free::FreeRay;
 use crate::lamps::{Draw, Receiver};
@@ -76,7 +77,8 @@ struct Stop {
 }
 
 impl World {
-    /// What the rays of some packets see, with everything that a rich scene has. The samples are left in the working space.
+    /// What the rays of some packets see, with everything that a rich scene has. The samples are
+    /// left in the working space.
     pub fn illuminate(
         &self,
         rich: &Rich,
@@ -134,7 +136,8 @@ impl World {
         work.samples = samples;
     }
 
-    /// Adds to the samples what the paths of a wave see where they end; returns the reflected paths and those that go on.
+    /// Adds to the samples what the paths of a wave see where they end; returns the reflected paths
+    /// and those that go on.
     fn shade(
         &self,
         rich: &Rich,
@@ -210,8 +213,9 @@ impl World {
         [mirrored, passed]
     }
 
-    /// Adds what a ray sees on its way, and behind it if it meets nothing, times a share, which the ray loses light from up to the ground.
-    /// Returns the ground where that is nearer than its hit, and the share of the hit's light that is left.
+    /// Adds what a ray sees on its way, and behind it if it meets nothing, times a share, which the
+    /// ray loses light from up to the ground. Returns the ground where that is nearer than its hit,
+    /// and the share of the hit's light that is left.
     pub fn through_air(
         &self,
         rich: &Rich,

@@ -10,7 +10,8 @@ use scene::{Scene, Surface, surface};
 
 /// A scene made ready for single rays.
 ///
-/// It takes much less time and room to prepare than a [`Picture`](crate::Picture), and more for each ray.
+/// It takes much less time and room to prepare than a [`Picture`](crate::Picture), and more for
+/// each ray.
 ///
 /// ```
 /// use glam::DVec3;
@@ -51,8 +52,9 @@ impl Picker {
         }
     }
 
-    /// The first crossing of a ray at t > 0. On a convolution surface the element is the one that adds most to the field there.
-    /// `None` where the ray meets nothing, is not finite or has no direction.
+    /// The first crossing of a ray at t > 0. On a convolution surface the element is the one that
+    /// adds most to the field there. `None` where the ray meets nothing, is not finite or has no
+    /// direction.
     #[must_use]
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let ray = Ray {

@@ -31,8 +31,8 @@ pub struct Hit {
     pub normal: DVec3,
     /// The scene's body whose surface it is; `None` for a hard element.
     pub body: Option<u32>,
-    /// The scene's element whose surface it is; on a soft surface the one that adds most to the field there. `None` on the
-    /// surface of an added function.
+    /// The scene's element whose surface it is; on a soft surface the one that adds most to the
+    /// field there. `None` on the surface of an added function.
     pub element: Option<u32>,
 }
 
@@ -68,7 +68,8 @@ pub struct Picture {
 
 impl Picture {
     /// Prepares a scene, whose convolution surfaces are found in the certified way, whatever its
-    /// settings say ([`Picture::find_with`]). `size` is the picture's width and height in pixels, each > 0.
+    /// settings say ([`Picture::find_with`]). `size` is the picture's width and height in pixels,
+    /// each > 0.
     #[must_use]
     pub fn new(scene: &Scene, size: [u32; 2]) -> Self {
         let size = size.map(|n| n.max(1));
@@ -98,27 +99,28 @@ impl Picture {
         self.sampler.world.soft.has_far_cells()
     }
 
-    /// Moves the far fields of an earlier scene's picture into this one, before it is traced. Where few elements differ its first tiles
-    /// are traced sooner; all pixels stay the same.
+    /// Moves the far fields of an earlier scene's picture into this one, before it is traced. Where
+    /// few elements differ its first tiles are traced sooner; all pixels stay the same.
     pub fn follow(&mut self, before: &mut Self) {
         let soft = &mut self.sampler.world.soft;
         soft.take_over(&mut before.sampler.world.soft);
     }
 
-    /// Adds a body whose surface is that of any implicit function, in the world's coordinates, and gives its number among the
-    /// scene's bodies. `finish` tells the finish, an index into [`Scene::finishes`], of each of the function's elements.
+    /// Adds a body whose surface is that of any implicit function, in the world's coordinates, and
+    /// gives its number among the scene's bodies. `finish` tells the finish, an index into
+    /// [`Scene::finishes`], of each of the function's elements.
     pub fn add_function(&mut self, function: Arc<dyn Implicit>, finish: Vec<u32>) -> u32 {
         self.sampler.world.add(function, finish)
     }
 
-    /// Has the convolution surfaces found by another root finder from now on, ray by ray and hit for
-    /// hit as it says, errors and all.
+    /// Has the convolution surfaces found by another root finder from now on, ray by ray and hit
+    /// for hit as it says, errors and all.
     pub fn find_with(&mut self, finder: &Arc<dyn RootFinder>) {
         self.sampler.world.find_with(finder);
     }
 
-    /// From now on each soft primitive is followed by itself wherever it counts, without groups and without
-    /// interpolants that rays share: slower, for comparison.
+    /// From now on each soft primitive is followed by itself wherever it counts, without groups and
+    /// without interpolants that rays share: slower, for comparison.
     pub fn forgo_hierarchy(&mut self) {
         self.sampler.world.soft.precision.shared = 0.0;
     }
@@ -137,8 +139,9 @@ impl Picture {
         self.trace_with(tile, pass, &mut SampleCache::default(), stop, stats)
     }
 
-    /// The same with a cache of this picture's first samples ([`Picture::cache`]): those that it has are not taken again,
-    /// others are kept in it. Nothing is done with one for another size, or for a tile that reaches beyond the picture.
+    /// The same with a cache of this picture's first samples ([`Picture::cache`]): those that it
+    /// has are not taken again, others are kept in it. Nothing is done with one for another size,
+    /// or for a tile that reaches beyond the picture.
     #[must_use]
     pub fn trace_with(
         &self,
@@ -200,15 +203,16 @@ impl Picture {
         Some(pixels.rgba)
     }
 
-    /// A cache for this picture's first samples that keeps at most `room` squares of 64×64 pixels, 100 kB
-    /// each; none if no pass needs samples of an earlier one.
+    /// A cache for this picture's first samples that keeps at most `room` squares of 64×64 pixels,
+    /// 100 kB each; none if no pass needs samples of an earlier one.
     #[must_use]
     pub fn cache(&self, room: usize) -> SampleCache {
         let room = if self.sampler.samples > 1 { room } else { 0 };
         SampleCache::new(self.sampler.view.size, room)
     }
 
-    /// Takes more samples where the first ones, of an area and of what is around it, differ, and writes the area's RGBA bytes.
+    /// Takes more samples where the first ones, of an area and of what is around it, differ, and
+    /// writes the area's RGBA bytes.
     pub(crate) fn smooth(
         &self,
         area: Area,
@@ -225,8 +229,8 @@ impl Picture {
         Some(pixels.rgba)
     }
 
-    /// All crossings of a ray with surfaces, soft and hard, in order of t > 0, found exactly: with nothing cut off and nothing
-    /// shared.
+    /// All crossings of a ray with surfaces, soft and hard, in order of t > 0, found exactly: with
+    /// nothing cut off and nothing shared.
     #[must_use]
     pub fn hits(&self, origin: DVec3, direction: DVec3) -> Vec<Hit> {
         let world = &self.sampler.world;
@@ -238,9 +242,9 @@ impl Picture {
         crossings.iter().map(hit).collect()
     }
 
-    /// What each ray (origin, direction) hits first at t > 0, with the arithmetic and the tolerance of
-    /// pictures. Neighbouring rays of the list make packets: the nearer together they
-    /// are, the faster it goes.
+    /// What each ray (origin, direction) hits first at t > 0, with the arithmetic and the tolerance
+    /// of pictures. Neighbouring rays of the list make packets: the nearer together they are, the
+    /// faster it goes.
     #[must_use]
     pub fn cast(&self, rays: &[(DVec3, DVec3)]) -> Vec<Option<Hit>> {
         let world = &self.sampler.world;
@@ -264,9 +268,10 @@ impl Picture {
         }
     }
 
-    /// The largest distance that a hit at `t` is meant to have from the true surface, and the greatest
-    /// thickness, along the ray, of what may go unseen (for what is not so yet, see the limits of this crate): the smaller of 10⁻⁴ of the scene's size and a
-    /// fifth of the width of a pixel there; but never less than 10⁻⁶ of the scene's size.
+    /// The largest distance that a hit at `t` is meant to have from the true surface, and the
+    /// greatest thickness, along the ray, of what may go unseen (for what is not so yet, see the
+    /// limits of this crate): the smaller of 10⁻⁴ of the scene's size and a fifth of the width of a
+    /// pixel there; but never less than 10⁻⁶ of the scene's size.
     #[must_use]
     pub fn tolerance(&self, t: f64) -> f64 {
         // The unit scene is between 2 and 4 large.

@@ -1,5 +1,6 @@
-//! Shading where a scene has surroundings (a background of several colours, ground, fog, clouds, a tone) but no ray leaves a surface
-//! except straight to the lights: packets keep their beams, as in [`shadows`](crate::shadows), and no paths are followed.
+//! Shading where a scene has surroundings (a background of several colours, ground, fog, clouds, a
+//! tone) but no ray leaves a surface except straight to the lights: packets keep their beams, as in
+//! [`shadows`](crate::shadows), and no paths are followed.
 //!
 //! Colours are those of [`World::illuminate`], in the same order of operations.
 use crate::lamps::Received;
@@ -35,8 +36,9 @@ struct LitPoint {
 }
 
 impl World {
-    /// What the rays of some packets see, in a scene whose light needs no paths ([`Rich::is_direct`]), lit from the middles of lights. `across` is as in
-    /// [`World::shine`]. The samples are left in the working space.
+    /// What the rays of some packets see, in a scene whose light needs no paths
+    /// ([`Rich::is_direct`]), lit from the middles of lights. `across` is as in [`World::shine`].
+    /// The samples are left in the working space.
     pub fn shine_in_air(
         &self,
         rich: &Rich,
@@ -165,8 +167,9 @@ impl World {
         })
     }
 
-    /// The colours of a surface point of a scene without textures. Where materials blend they are mixed as paths mix them, so that a scene does not
-    /// change its colours as soon as one thing in it is a mirror.
+    /// The colours of a surface point of a scene without textures. Where materials blend they are
+    /// mixed as paths mix them, so that a scene does not change its colours as soon as one thing in
+    /// it is a mirror.
     fn direct_finish(&self, rich: &Rich, hit: &SurfacePoint) -> Finish {
         let is_even = match self.owner_of(hit.surface) {
             Owner::Solid(number) => rich.materials.is_even(self.solids.finish(number) as u32),

@@ -1,7 +1,9 @@
-//! The fast path to the soft surface, for packets near nothing but blobs: points, Gaussian segments, and blob chains.
+//! The fast path to the soft surface, for packets near nothing but blobs: points, Gaussian
+//! segments, and blob chains.
 //!
-//! The blobs near a square of pixels are listed once, those near each of its parts when a packet there first needs them, those
-//! near a packet for each; then [`march`](crate::blob_march::march) follows the packet's rays.
+//! The blobs near a square of pixels are listed once, those near each of its parts when a packet
+//! there first needs them, those near a packet for each; then [`march`](crate::blob_march::march)
+//! follows the packet's rays.
 use crate::beam::Beam;
 use crate::blob_march::{MarchRays, Marched, RayBlob, RayBlobs, RayInterval, extremes, march};
 use crate::lanes::least;
@@ -20,7 +22,8 @@ pub const LEFT_OUT_OF_PARTS: f32 = 3e-6;
 /// … and that a packet's list may leave out.
 const LEFT_OUT_OF_PACKETS: f32 = 5e-6;
 
-/// A blob is strong up to this fraction of the way from its own surface to the end of its reach, in squared distances.
+/// A blob is strong up to this fraction of the way from its own surface to the end of its reach, in
+/// squared distances.
 const STRONG: f32 = 0.15;
 
 /// Working space of one thread.
@@ -34,7 +37,8 @@ pub struct Quick {
     tops: Vec<f32x8>,
     pub(crate) list: Nearby,
     marks: Marks,
-    /// Blobs near a packet, without those of excluded bodies: body and index, in one number that orders them so.
+    /// Blobs near a packet, without those of excluded bodies: body and index, in one number that
+    /// orders them so.
     members: Vec<u64>,
     /// Surface samples at the hits of the last packet; parameters are counted from its list's base.
     pub flesh: SurfaceSamples,
@@ -63,8 +67,8 @@ impl Quick {
         }
     }
 
-    /// Collects those of some blobs of a list, given in its order, that the rays meet, without those that all rays meet only
-    /// inside of others.
+    /// Collects those of some blobs of a list, given in its order, that the rays meet, without
+    /// those that all rays meet only inside of others.
     #[inline(always)]
     fn collect(
         &mut self,
@@ -166,8 +170,8 @@ pub struct Looked {
 const MOST_REFINING: usize = 12;
 /// Rounding of the field near T in single precision.
 const FIELD_ROUNDING: f32 = 2e-6;
-/// Largest error of the field, in T: everything that lists leave out, primitives that are no blobs, the error of blob chains, and
-/// rounding.
+/// Largest error of the field, in T: everything that lists leave out, primitives that are no blobs,
+/// the error of blob chains, and rounding.
 const LOST: f32 = 2.5e-5;
 /// Largest noise that is allowed for; tiny, distant blobs would need more.
 const NOISIEST: f32 = 2e-3;
@@ -255,9 +259,10 @@ fn around(places: [f32x8; 3]) -> (DVec3, f64) {
 }
 
 impl Soft {
-    /// Finds the first crossings of rays that make a packet of their own with the surface of a body, up to their limits; for
-    /// [`Quest::Entry`] only whether there is one. `None` if the packet is near anything but blobs or the march gives up; the caller
-    /// then takes the general way.
+    /// Finds the first crossings of rays that make a packet of their own with the surface of a
+    /// body, up to their limits; for [`Quest::Entry`] only whether there is one. `None` if the
+    /// packet is near anything but blobs or the march gives up; the caller then takes the general
+    /// way.
     pub fn quick_alone(
         &self,
         body: u32,
@@ -297,9 +302,10 @@ impl Soft {
         looked.map(|looked| (looked, base))
     }
 
-    /// Finds the first crossing, from outside to inside, of the rays of a packet with the surface of the only body; for
-    /// [`Quest::Entry`] only whether there is one. No other primitives may be near the rays ([`Soft::meets_any`]). `exact` returns
-    /// the rays in double precision. `None` if the march gives up ([`march`]).
+    /// Finds the first crossing, from outside to inside, of the rays of a packet with the surface
+    /// of the only body; for [`Quest::Entry`] only whether there is one. No other primitives may be
+    /// near the rays ([`Soft::meets_any`]). `exact` returns the rays in double precision. `None` if
+    /// the march gives up ([`march`]).
     pub fn quick(
         &self,
         near: &Nearby,
@@ -337,9 +343,9 @@ impl Soft {
         looked
     }
 
-    /// [`Soft::quick`] for several bodies except those in `pass_over`, the nearest first as far as the list tells. Calls `tell` with
-    /// each result; it returns the rays' new limits and the rays to follow from then on. Returns the bodies that need the general
-    /// way.
+    /// [`Soft::quick`] for several bodies except those in `pass_over`, the nearest first as far as
+    /// the list tells. Calls `tell` with each result; it returns the rays' new limits and the rays
+    /// to follow from then on. Returns the bodies that need the general way.
     #[expect(clippy::too_many_arguments, reason = "each is something else")]
     pub fn quick_each(
         &self,
@@ -465,7 +471,8 @@ impl Soft {
         Some(Looked { body, ..looked })
     }
 
-    /// Repeats the search on the doubtful intervals of rays, in double precision and with all primitives.
+    /// Repeats the search on the doubtful intervals of rays, in double precision and with all
+    /// primitives.
     #[cold]
     #[inline(never)]
     fn isolate_doubts(
@@ -507,7 +514,8 @@ impl Soft {
         marched.between = between.map(f32x8::new);
     }
 
-    /// Tolerance for the blobs of a list, none of which is nearer to the rays' origins than the list's base.
+    /// Tolerance for the blobs of a list, none of which is nearer to the rays' origins than the
+    /// list's base.
     fn tolerance(&self, list: &Nearby) -> f64 {
         (0.1 * self.pixel * list.base).clamp(FINEST, COARSEST_OF_BLOBS)
     }

@@ -1,8 +1,8 @@
 //! Rays.
 use glam::DVec3;
 
-/// Rays whose directions differ by more than this, or whose origins by more than this part of half the scene's size, are not
-/// followed together.
+/// Rays whose directions differ by more than this, or whose origins by more than this part of half
+/// the scene's size, are not followed together.
 const WIDEST: f64 = 0.15;
 
 /// The points `origin + t·direction`, t > 0, in double precision.
@@ -15,7 +15,8 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// Whether a beam around the two rays is narrow enough to follow them together, in units of half the scene's size.
+    /// Whether a beam around the two rays is narrow enough to follow them together, in units of
+    /// half the scene's size.
     pub(crate) fn runs_with(&self, other: &Self) -> bool {
         self.direction.distance(other.direction) <= WIDEST
             && self.origin.distance(other.origin) <= WIDEST

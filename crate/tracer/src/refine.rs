@@ -2,8 +2,9 @@
 //!
 //! Every pixel has had one ray. A pixel that differs from a neighbour is sampled again on a regular
 //! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
-//! samples only, so it does not matter in which order, or in which tile, pixels are treated. Where lights have a size, or there
-//! is a sky, all pixels that see a surface get them; behind a lens or an open shutter all do (`exposure`).
+//! samples only, so it does not matter in which order, or in which tile, pixels are treated. Where
+//! lights have a size, or there is a sky, all pixels that see a surface get them; behind a lens or
+//! an open shutter all do (`exposure`).
 use crate::area::{Area, Samples};
 use crate::lamps::Draw;
 use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
@@ -26,13 +27,15 @@ const PACKETS: [u32; 2] = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
 struct Closer {
     /// The first of these are in use: as many as there are owners.
     seen: Vec<Seen>,
-    /// The number of each one's pixel, the first ray's number in it, and how many of the rays count.
+    /// The number of each one's pixel, the first ray's number in it, and how many of the rays
+    /// count.
     owners: Vec<(usize, u32, usize)>,
 }
 
 impl Sampler {
-    /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n. The area consists of
-    /// whole packets, and `samples` must hold the pixels around it too. `None` when asked to stop.
+    /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n.
+    /// The area consists of whole packets, and `samples` must hold the pixels around it too. `None`
+    /// when asked to stop.
     pub fn refine(
         &self,
         area: Area,
@@ -112,8 +115,8 @@ impl Sampler {
         Some(())
     }
 
-    /// Sends a pixel's n×n rays, eight by eight. Those that hit something are added to `closer`; of the others the sum of what
-    /// they see, and of what they cost.
+    /// Sends a pixel's n×n rays, eight by eight. Those that hit something are added to `closer`; of
+    /// the others the sum of what they see, and of what they cost.
     fn look_closer<'a>(
         &'a self,
         block: Area,
@@ -224,8 +227,9 @@ impl Sampler {
         }
     }
 
-    /// How many pixels of an area differ from the next one on the right or below: about half of those that
-    /// [`Sampler::refine`] will take more rays for, at a quarter of the cost of asking for each.
+    /// How many pixels of an area differ from the next one on the right or below: about half of
+    /// those that [`Sampler::refine`] will take more rays for, at a quarter of the cost of asking
+    /// for each.
     pub fn edges(&self, samples: &Samples) -> u64 {
         let area = samples.area();
         let slope = self.slope();
@@ -242,8 +246,9 @@ impl Sampler {
         count
     }
 
-    /// The slope, difference of distance by distance, that neighbours on one surface stay below: on a plane seen at 80° from
-    /// its normal, neighbouring pixels' distances differ by tan 80° times the pixel's size.
+    /// The slope, difference of distance by distance, that neighbours on one surface stay below: on
+    /// a plane seen at 80° from its normal, neighbouring pixels' distances differ by tan 80° times
+    /// the pixel's size.
     fn slope(&self) -> f32 {
         5.7 * self.view.pixel() as f32
     }

@@ -9,7 +9,8 @@ use crate::workspace::Workspace;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Side in pixels of the parts of a picture whose smooth passes run one after the other; the first samples of one take 100 MB.
+/// Side in pixels of the parts of a picture whose smooth passes run one after the other; the first
+/// samples of one take 100 MB.
 const SHEET: u32 = 2048;
 
 /// Renders a picture with several threads and returns RGBA bytes (rows from the top).
@@ -48,8 +49,8 @@ pub fn render(
             stats += shared_out(&tiles, threads, trace, &mut show, &step);
             continue;
         }
-        // The first samples of all pixels come first, so that only those at the borders of sheets are traced twice, whatever the
-        // number of threads.
+        // The first samples of all pixels come first, so that only those at the borders of sheets
+        // are traced twice, whatever the number of threads.
         let mut cache = picture.cache(tiles.len());
         let none = SampleCache::default();
         let sample = |tile, work: &mut Workspace, stats: &mut Stats| {

@@ -1,4 +1,5 @@
-//! What pictures need beyond Phong's model on a background of one colour; scenes that do without are drawn without.
+//! What pictures need beyond Phong's model on a background of one colour; scenes that do without
+//! are drawn without.
 use crate::air::Air;
 use crate::material::{Materials, is_plain, lets_light_through};
 use crate::soft::{MakeUp, Soft};
@@ -28,11 +29,13 @@ pub(crate) struct Rich {
     tone: Tone,
     /// For each soft body what its materials are made of.
     pub make_up: Vec<MakeUp>,
-    /// For each solid that encloses no space, its medium's key: the same for all with one finish in one object.
+    /// For each solid that encloses no space, its medium's key: the same for all with one finish in
+    /// one object.
     pub sheets: Vec<Option<u32>>,
 }
 
-/// Whether surfaces get light from lights only and are of even materials that neither mirror nor let light pass.
+/// Whether surfaces get light from lights only and are of even materials that neither mirror nor
+/// let light pass.
 fn is_direct(scene: &Scene) -> bool {
     scene.finishes.iter().all(is_plain) && scene.sky.is_none()
 }

@@ -1,12 +1,15 @@
-//! Root isolation along single rays in double precision, where the spans of a packet leave a ray in doubt.
+//! Root isolation along single rays in double precision, where the spans of a packet leave a ray in
+//! doubt.
 //!
-//! Where a ray grazes the surface, the field comes nearer to T than the error of single precision spans. On such an interval the
-//! field is interpolated by one cubic, and the interval is halved until the error bound isolates the crossings, or the pieces are
-//! shorter than the resolution. A primitive whose own error on a piece is negligible is *resolved* there: its cubic is kept, and
+//! Where a ray grazes the surface, the field comes nearer to T than the error of single precision
+//! spans. On such an interval the field is interpolated by one cubic, and the interval is halved
+//! until the error bound isolates the crossings, or the pieces are shorter than the resolution. A
+//! primitive whose own error on a piece is negligible is *resolved* there: its cubic is kept, and
 //! the halves do not evaluate it again. At kinks and jumps of profiles the ray is cut.
 //!
-//! Among very many primitives most are far away and have shared interpolants already. Their error seldom matters, so isolation is
-//! first tried with these interpolants in place of the far primitives ([`KnownPart`]).
+//! Among very many primitives most are far away and have shared interpolants already. Their error
+//! seldom matters, so isolation is first tried with these interpolants in place of the far
+//! primitives ([`KnownPart`]).
 use crate::kinks::Kinks;
 use crate::ray::Ray;
 use crate::roots::bracketed;
@@ -18,12 +21,13 @@ use field::{Bound, Cut, Primitive, THRESHOLD};
 
 /// Most pieces of all rays of a packet; on the rest the signs at the ends decide.
 const MOST_PIECES: u32 = 1 << 16;
-/// An interval may use the remaining pieces over this: a ray that runs along the surface would use up any number, and later
-/// intervals need some.
+/// An interval may use the remaining pieces over this: a ray that runs along the surface would use
+/// up any number, and later intervals need some.
 const AT_ONCE: u32 = 4;
-/// Of an interval's pieces, one over this is kept for the parts after the next one (from kink to kink, or the near half of a
-/// piece). A larger reserve would starve small parts of long intervals, as each halving takes its share; pieces that a part does
-/// not use go to those after it in any case.
+/// Of an interval's pieces, one over this is kept for the parts after the next one (from kink to
+/// kink, or the near half of a piece). A larger reserve would starve small parts of long intervals,
+/// as each halving takes its share; pieces that a part does not use go to those after it in any
+/// case.
 const KEPT: u32 = 8;
 /// Fewest pieces for a part, if there are as many left: enough to isolate a few crossings.
 const FEWEST_PIECES: u32 = 256;
@@ -35,9 +39,10 @@ const PRIMITIVES_A_PIECE: u32 = 64;
 const RESOLVED: f64 = 1e-9;
 /// Rounding of a field in double precision, relative to the sizes of its terms.
 const SUM_ROUNDING: f64 = 1e-12;
-/// The slope of a Hermite cubic is off by at most four times its error bound over its length (for bounds
-/// by the second derivative; for the fourth it is 3.08), and the slope's own Bernstein coefficients are 3/length times the
-/// differences of the cubic's. So the field is monotone where those are larger than the bound times this.
+/// The slope of a Hermite cubic is off by at most four times its error bound over its length (for
+/// bounds by the second derivative; for the fourth it is 3.08), and the slope's own Bernstein
+/// coefficients are 3/length times the differences of the cubic's. So the field is monotone where
+/// those are larger than the bound times this.
 pub const STEEP: f64 = 1.34;
 
 /// Error of the [`KnownPart`]; 0 without one.
@@ -113,8 +118,8 @@ pub struct Along<'a> {
 }
 
 impl RootIsolator {
-    /// Calls `tell` with the start of an interval and whether it is inside the surface, and then with each crossing
-    /// and whether it enters, in order, until `tell` returns false.
+    /// Calls `tell` with the start of an interval and whether it is inside the surface, and then
+    /// with each crossing and whether it enters, in order, until `tell` returns false.
     pub fn crossings(
         &mut self,
         along: &Along<'_>,
@@ -125,8 +130,8 @@ impl RootIsolator {
         self.follow(along, interval, &|_| Node::zero(), tell);
     }
 
-    /// Crossings of the sum of a known part and the listed primitives, as of [`RootIsolator::crossings`]. `None` if the known part's
-    /// error leaves one in doubt.
+    /// Crossings of the sum of a known part and the listed primitives, as of
+    /// [`RootIsolator::crossings`]. `None` if the known part's error leaves one in doubt.
     pub fn crossings_with(
         &mut self,
         along: &Along<'_>,
@@ -206,7 +211,8 @@ impl RootIsolator {
         }
     }
 
-    /// Returns the kinks of the listed primitives between two parameters, and the second parameter, in order.
+    /// Returns the kinks of the listed primitives between two parameters, and the second parameter,
+    /// in order.
     fn kinks(&self, along: &Along<'_>, [from, to]: [f64; 2]) -> Vec<f64> {
         let mut found = vec![to];
         if along.sight.kinks.is_empty() {
@@ -359,7 +365,8 @@ impl RootIsolator {
         self.between(along, share, far, tell)
     }
 
-    /// Decides a piece that is not halved further: by the signs at its ends, unless the known part's error leaves it in doubt.
+    /// Decides a piece that is not halved further: by the signs at its ends, unless the known
+    /// part's error leaves it in doubt.
     fn give_up(
         &mut self,
         along: &Along<'_>,
@@ -421,8 +428,8 @@ mod tests {
     use field::{BlobScale, Kernel, Shaping, Skeleton};
     use glam::DVec3;
 
-    /// Crossings with a known part are those of the field, whatever the error within the bound; where the error decides there is no
-    /// answer.
+    /// Crossings with a known part are those of the field, whatever the error within the bound;
+    /// where the error decides there is no answer.
     #[test]
     fn a_known_part_hides_no_crossing() {
         const OFF: f64 = 1e-2;
@@ -515,7 +522,8 @@ mod tests {
             },
             resolution: 1e-7,
         };
-        // `slope·u − off·sin 2u`, u = t − 1, crosses T three times where the slope is less than 2·off.
+        // `slope·u − off·sin 2u`, u = t − 1, crosses T three times where the slope is less than
+        // 2·off.
         for (slope, told) in [(0.015, None), (0.03, Some(2)), (1.0, Some(2))] {
             let known = KnownPart {
                 node: &|t| Node {

@@ -1,8 +1,9 @@
 //! Cache of the first samples of a picture's pixels, so that none is traced twice.
 //!
-//! Which pixels get more rays depends on the samples around them ([`refine`](crate::refine)), so the smooth pass of a tile needs
-//! those at its neighbours' edges; and the pass with one ray a pixel comes first. Without a cache all of these would be traced
-//! again. Cached samples have the bits of traced ones, as packets are always traced whole.
+//! Which pixels get more rays depends on the samples around them ([`refine`](crate::refine)), so
+//! the smooth pass of a tile needs those at its neighbours' edges; and the pass with one ray a
+//! pixel comes first. Without a cache all of these would be traced again. Cached samples have the
+//! bits of traced ones, as packets are always traced whole.
 use crate::Tile;
 use crate::area::{Area, Samples};
 use crate::known::Known;
@@ -37,8 +38,8 @@ pub(crate) struct Kept {
 const _: () = assert!(COLUMNS == u16::BITS);
 
 impl SampleCache {
-    /// An empty cache for a picture of `size` pixels that keeps at most `room` squares; samples of further
-    /// squares are not kept.
+    /// An empty cache for a picture of `size` pixels that keeps at most `room` squares; samples of
+    /// further squares are not kept.
     #[must_use]
     pub(crate) fn new(size: [u32; 2], room: usize) -> Self {
         let [across, down] = size.map(|n| n.div_ceil(SQUARE) as usize);
@@ -88,16 +89,16 @@ impl SampleCache {
         Some(Known::new(tile, &samples))
     }
 
-    /// Adds samples from another cache of this picture, as far as they are whole packets; each square that they touch takes up room.
-    /// Samples outside the picture are ignored.
+    /// Adds samples from another cache of this picture, as far as they are whole packets; each
+    /// square that they touch takes up room. Samples outside the picture are ignored.
     pub fn learn(&mut self, known: &Known) {
         if let Some(samples) = known.samples(self.size) {
             self.keep(&samples, known.tile().into());
         }
     }
 
-    /// Adds the samples of whole packets in their area. Squares outside `tile` get samples only if they have some already: strips
-    /// along its edges are not worth a square's room.
+    /// Adds the samples of whole packets in their area. Squares outside `tile` get samples only if
+    /// they have some already: strips along its edges are not worth a square's room.
     pub(crate) fn keep(&mut self, samples: &Samples, tile: Area) {
         let [right, bottom] = self.size;
         let picture = Area {
@@ -136,7 +137,8 @@ impl Default for Kept {
 }
 
 impl Kept {
-    /// Adds the packets of a square that lie in the samples' area, apart from pixels outside the picture.
+    /// Adds the packets of a square that lie in the samples' area, apart from pixels outside the
+    /// picture.
     fn keep(&mut self, square: Area, picture: Area, samples: &Samples) {
         let area = samples.area();
         let columns = whole(
@@ -189,7 +191,8 @@ impl Kept {
         all
     }
 
-    /// Copies the samples of a square's packet, given by its column and row, into `samples`; returns whether they are present.
+    /// Copies the samples of a square's packet, given by its column and row, into `samples`;
+    /// returns whether they are present.
     pub fn tell(&self, [column, row]: [u32; 2], square: Area, samples: &mut Samples) -> bool {
         let known = self.known[row as usize] >> column & 1 == 1;
         if known {
@@ -205,8 +208,8 @@ fn index(square: Area, x: u32, y: u32) -> usize {
     ((y - square.top) * SQUARE + (x - square.left)) as usize
 }
 
-/// Returns the packets of a square, each of `size` pixels along an axis, whose pixels before `end` all lie within `pixels`. The
-/// square begins at `start`.
+/// Returns the packets of a square, each of `size` pixels along an axis, whose pixels before `end`
+/// all lie within `pixels`. The square begins at `start`.
 fn whole(pixels: Range<u32>, start: u32, end: u32, size: u32) -> Range<u32> {
     let first = (pixels.start.max(start) - start).div_ceil(size);
     let to = pixels.end.min(start + SQUARE);

@@ -18,9 +18,10 @@ use field::Real;
 use glam::Vec3;
 use wide::f32x8;
 
-/// Rays a block apart hit so far from each other that a beam from all their hits to a light would be wide all along: only hits
-/// within this part of the packet's width share one. Measured: the coarse pass takes 0.6 of the time that it took with 1 for
-/// hermite-crab and coral-crab, 0.8 for generators; 1.1 for shell-3.
+/// Rays a block apart hit so far from each other that a beam from all their hits to a light would
+/// be wide all along: only hits within this part of the packet's width share one. Measured: the
+/// coarse pass takes 0.6 of the time that it took with 1 for hermite-crab and coral-crab, 0.8 for
+/// generators; 1.1 for shell-3.
 const SPARSE: f64 = 0.25;
 
 /// A scene seen by a camera.
@@ -29,7 +30,8 @@ pub(crate) struct Sampler {
     pub world: World,
     /// Lens and shutter, if rays depend on them.
     pub exposure: Option<Exposure>,
-    /// Whether lights have a size or there is a sky: all pixels that see a surface need many samples.
+    /// Whether lights have a size or there is a sky: all pixels that see a surface need many
+    /// samples.
     pub soft_light: bool,
     /// Samples of a pixel where there is contrast: this many across and down.
     pub samples: u32,
@@ -38,8 +40,8 @@ pub(crate) struct Sampler {
 }
 
 impl Sampler {
-    /// One sample at the centre of each cell of an area, in units of cells of `scale` pixels. The cache, which is of single
-    /// pixels, is asked first.
+    /// One sample at the centre of each cell of an area, in units of cells of `scale` pixels. The
+    /// cache, which is of single pixels, is asked first.
     pub fn sample(
         &self,
         area: Area,
@@ -167,7 +169,8 @@ impl Sampler {
         }
     }
 
-    /// The surroundings of a square of pixels, divided into columns and rows (powers of two) of packets.
+    /// The surroundings of a square of pixels, divided into columns and rows (powers of two) of
+    /// packets.
     pub fn square(&self, area: Area, packets: [u32; 2]) -> Square<'_> {
         Square::new(&self.world, &self.view, area, packets)
     }

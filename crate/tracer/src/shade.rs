@@ -114,8 +114,8 @@ pub fn bytes(colour: Vec3, gamma: f32) -> [u8; 3] {
     [red, green, blue]
 }
 
-/// Each channel between 0 and 1; 0 for what is no number. By lanes: as wasm, a choice between two single numbers is a jump, and
-/// these cannot be foreseen.
+/// Each channel between 0 and 1; 0 for what is no number. By lanes: as wasm, a choice between two
+/// single numbers is a jump, and these cannot be foreseen.
 #[must_use]
 pub fn clamped(colour: Vec3) -> Vec3 {
     let [zero, one] = [0.0, 1.0].map(f32x4::splat);

@@ -1,7 +1,8 @@
 //! Light and shadow on what packets of rays hit.
 //!
-//! The hits of several packets are looked at together, so that their rays to a light can share what is known of the
-//! way: the rays from one patch of the surface have one list of lumps, or the slabs of one beam.
+//! The hits of several packets are looked at together, so that their rays to a light can share what
+//! is known of the way: the rays from one patch of the surface have one list of lumps, or the slabs
+//! of one beam.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::layout::PACKET;
@@ -25,9 +26,10 @@ use scene::LightKind;
 const PATCH: f64 = 3.0;
 
 impl World {
-    /// What the rays of some packets see. Their hits may share beams to the lights: they must be the same packets
-    /// whatever the tiles. `across` is how wide they are together, per unit of distance, or less, if only nearer hits are to share. The samples are left in the
-    /// working space.
+    /// What the rays of some packets see. Their hits may share beams to the lights: they must be
+    /// the same packets whatever the tiles. `across` is how wide they are together, per unit of
+    /// distance, or less, if only nearer hits are to share. The samples are left in the working
+    /// space.
     pub fn shine(&self, seen: &[Seen], across: f64, work: &mut Workspace, stats: &mut Stats) {
         let mut samples = core::mem::take(&mut work.samples);
         samples.clear();
@@ -126,7 +128,8 @@ impl World {
         }
     }
 
-    /// Finds out which rays, in any directions, have something between them and their ends: those that run together share a beam.
+    /// Finds out which rays, in any directions, have something between them and their ends: those
+    /// that run together share a beam.
     pub fn look_for_shadows_apart(
         &self,
         shadows: &mut [Shadow],
@@ -148,7 +151,8 @@ impl World {
         }
     }
 
-    /// Darkens the rays that meet a hard element, or enter a body that is met ray by ray, before their ends.
+    /// Darkens the rays that meet a hard element, or enter a body that is met ray by ray, before
+    /// their ends.
     fn look_for_others(&self, shadows: &mut [Shadow], work: &mut Workspace, stats: &mut Stats) {
         for shadow in shadows {
             shadow.cost = 1.0;
@@ -282,7 +286,8 @@ impl World {
         work.general = general;
     }
 
-    /// Lists the lumps near the rays of a patch, and the bodies that take the general way; whether any body is left to the lumps.
+    /// Lists the lumps near the rays of a patch, and the bodies that take the general way; whether
+    /// any body is left to the lumps.
     pub fn general_from_a_patch(
         &self,
         beam: &Beam,
@@ -330,8 +335,8 @@ impl World {
         self.soft.slabs(body, beam, divided, furthest, spaces)
     }
 
-    /// The rays of a packet that enter the surface of a body near which they meet nothing but lumps, a bit each, and the bodies for
-    /// which this is not the way to tell.
+    /// The rays of a packet that enter the surface of a body near which they meet nothing but
+    /// lumps, a bit each, and the bodies for which this is not the way to tell.
     fn darkened_by_lumps(
         &self,
         near: &Nearby,

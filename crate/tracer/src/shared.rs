@@ -1,10 +1,11 @@
 //! Interpolants of the sum of many primitives on a piece of a beam, shared by all its rays.
 //!
-//! A box along the beam's axis encloses the piece. At its eight corners all the primitives are evaluated once,
-//! side by side, with their gradients; in between values and slopes are interpolated: linearly across from the
-//! corners, and along each edge by the cubic with the values and slopes of its ends (Adini's element in three
-//! dimensions). Cubic polynomials are reproduced, and the error is bounded by the fourth derivative, so that
-//! distant primitives, whose sum is smooth, cost a ray almost nothing however many they are.
+//! A box along the beam's axis encloses the piece. At its eight corners all the primitives are
+//! evaluated once, side by side, with their gradients; in between values and slopes are
+//! interpolated: linearly across from the corners, and along each edge by the cubic with the values
+//! and slopes of its ends (Adini's element in three dimensions). Cubic polynomials are reproduced,
+//! and the error is bounded by the fourth derivative, so that distant primitives, whose sum is
+//! smooth, cost a ray almost nothing however many they are.
 use crate::beam::Beam;
 use crate::lanes::{Lanes, least};
 use field::{Cut, Primitive};
@@ -58,13 +59,14 @@ impl Cell {
         0.5 * DVec3::from_array(self.size).length() * (1.0 + 1e-9)
     }
 
-    /// Factor from a bound on the fourth derivative along any line in the box to the error of the cubic Hermite span of the interpolant
-    /// along a ray.
+    /// Factor from a bound on the fourth derivative along any line in the box to the error of the
+    /// cubic Hermite span of the interpolant along a ray.
     ///
-    /// With A = 1 − L and C = 1 − H the errors of linear and cubic interpolation along an axis, the interpolant's error is
-    /// `ΣC₁L₂L₃ + ΣA₁A₂L₃ + A₁A₂A₃`, where |C| ≤ h⁴/384, |A| ≤ h²/8 times a derivative, and |L| ≤ 1. Along a ray that
-    /// moves across by s the interpolant is not quite cubic: the changes of its quadratic and cubic parts from edge to
-    /// edge, times s over the box's width, are its fourth derivative.
+    /// With A = 1 − L and C = 1 − H the errors of linear and cubic interpolation along an axis, the
+    /// interpolant's error is `ΣC₁L₂L₃ + ΣA₁A₂L₃ + A₁A₂A₃`, where |C| ≤ h⁴/384, |A| ≤ h²/8 times a
+    /// derivative, and |L| ≤ 1. Along a ray that moves across by s the interpolant is not quite
+    /// cubic: the changes of its quadratic and cubic parts from edge to edge, times s over the
+    /// box's width, are its fourth derivative.
     #[must_use]
     pub fn roughness(&self) -> f64 {
         let [b, _, h] = self.size;
@@ -130,7 +132,8 @@ pub struct Shared {
 struct Row {
     /// The value, as a polynomial.
     value: [f32; 4],
-    /// Slope along y less that of the straight line, times the edge's length: at the start, and its change.
+    /// Slope along y less that of the straight line, times the edge's length: at the start, and its
+    /// change.
     y: [f32; 2],
     /// The same for the slope along z.
     z: [f32; 2],
@@ -219,7 +222,8 @@ impl Shared {
         let [values, x, y, z] = sum.0.map(f32x8::to_array);
         let gradient =
             |lane: usize| DVec3::new(f64::from(x[lane]), f64::from(y[lane]), f64::from(z[lane]));
-        // Slopes along each axis at the corners less those of the straight edges, times the edges' lengths.
+        // Slopes along each axis at the corners less those of the straight edges, times the edges'
+        // lengths.
         let excess: [[f32; 8]; 3] = core::array::from_fn(|axis| {
             core::array::from_fn(|lane| {
                 let slope = gradient(lane).dot(cell.axes[axis]) * cell.size[axis];
@@ -328,7 +332,8 @@ impl<L: Lanes> Bend<L> {
         }
     }
 
-    /// The cubic with the values f and g at the ends and the excess slopes a and b: `f + (g−f)x + x(1−x)(a − (a+b)x)`, given a+b.
+    /// The cubic with the values f and g at the ends and the excess slopes a and b:
+    /// `f + (g−f)x + x(1−x)(a − (a+b)x)`, given a+b.
     #[inline(always)]
     fn value(&self, f: L, g: L, a: L, both: L) -> L {
         f + (g - f) * self.x + (a - both * self.x) * self.bulge
@@ -375,7 +380,8 @@ mod tests {
         Primitive::new(skeleton, &shaping, None).expect("flesh")
     }
 
-    /// The interpolant is smooth and has the values and gradients at the corners, for any cubics along the edges.
+    /// The interpolant is smooth and has the values and gradients at the corners, for any cubics
+    /// along the edges.
     #[test]
     fn gradients_are_derivatives() {
         let mut random = Random::new(8);
@@ -410,7 +416,8 @@ mod tests {
         }
     }
 
-    /// Along rays of a beam, the error of the cubic between the interpolant's ends is within its bound.
+    /// Along rays of a beam, the error of the cubic between the interpolant's ends is within its
+    /// bound.
     #[test]
     fn no_ray_is_further_off_than_the_bound() {
         let mut random = Random::new(3);

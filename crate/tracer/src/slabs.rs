@@ -1,16 +1,20 @@
-//! Slabs: a binary subdivision of a beam that decides on which intervals primitives are interpolated by Hermite spans.
+//! Slabs: a binary subdivision of a beam that decides on which intervals primitives are
+//! interpolated by Hermite spans.
 //!
-//! The part of the beam that the soft surface can reach is halved recursively. In each slab a primitive is *resolved* when the
-//! error of one Hermite span over the slab is certified to be small enough for all rays of the beam; else it is *pending* and is
-//! handed to the halves. Primitives that are smooth across the beam are interpolated once for all its rays: *shared*, if that is
-//! so accurate that it is never refined, or *joined*, in place of spans and as accurate as they. Negligible primitives are
-//! *dropped* and count as error. So broad or distant primitives get few long spans and sharp near ones many short spans. The tree
-//! grows on demand and is used by all rays of the beam.
+//! The part of the beam that the soft surface can reach is halved recursively. In each slab a
+//! primitive is *resolved* when the error of one Hermite span over the slab is certified to be
+//! small enough for all rays of the beam; else it is *pending* and is handed to the halves.
+//! Primitives that are smooth across the beam are interpolated once for all its rays: *shared*, if
+//! that is so accurate that it is never refined, or *joined*, in place of spans and as accurate as
+//! they. Negligible primitives are *dropped* and count as error. So broad or distant primitives get
+//! few long spans and sharp near ones many short spans. The tree grows on demand and is used by all
+//! rays of the beam.
 //!
-//! Where a slab is shorter than its beam is wide, halving it further would not bring its rays closer together: the beam is then
-//! divided into narrower ones, and each packet of rays continues in its own. Beams wider than a block of four packets have no
-//! spans, which would be made for rays that do not meet their primitives, and beams wider than four blocks no joined interpolants:
-//! they only find empty space.
+//! Where a slab is shorter than its beam is wide, halving it further would not bring its rays
+//! closer together: the beam is then divided into narrower ones, and each packet of rays continues
+//! in its own. Beams wider than a block of four packets have no spans, which would be made for rays
+//! that do not meet their primitives, and beams wider than four blocks no joined interpolants: they
+//! only find empty space.
 use crate::beams::Beams;
 use crate::clusters::{Clusters, Members};
 use crate::kinks::Kinks;
@@ -30,7 +34,8 @@ pub struct Precision {
     pub first: f64,
     /// … and in a slab whose crossings are decided.
     pub last: f64,
-    /// Largest additional error of all shared interpolants, which are never refined. 0: no shared interpolants and no groups.
+    /// Largest additional error of all shared interpolants, which are never refined. 0: no shared
+    /// interpolants and no groups.
     pub shared: f64,
     /// Rounding of coordinates, and of values relative to a primitive's field.
     pub rounding: f64,
@@ -39,8 +44,8 @@ pub struct Precision {
 }
 
 impl Precision {
-    /// Precision of pictures: near the surface the field changes by about T over a radius, so the surface
-    /// of the spans is within about 1/2000 of a radius of the true one.
+    /// Precision of pictures: near the surface the field changes by about T over a radius, so the
+    /// surface of the spans is within about 1/2000 of a radius of the true one.
     pub const PICTURE: Self = Self {
         first: 3.2e-2,
         last: 5e-4,
@@ -103,7 +108,8 @@ pub struct Terms<'a> {
     pub finishes: &'a [u32],
     /// Kinks of their profiles.
     pub kinks: &'a Kinks,
-    /// The bounded primitives in groups; a beam's list then consists of groups. `None`: of single primitives.
+    /// The bounded primitives in groups; a beam's list then consists of groups. `None`: of single
+    /// primitives.
     pub clusters: Option<&'a Clusters>,
     /// Field at which a primitive is left out.
     pub left_out: f64,
@@ -226,7 +232,8 @@ pub struct Slab {
     pub pending_above: f64,
     /// … and minus a lower bound.
     pub pending_below: f64,
-    /// Bound on the error of all spans over this slab: its own, and those of the slabs that contain it, with rounding.
+    /// Bound on the error of all spans over this slab: its own, and those of the slabs that contain
+    /// it, with rounding.
     pub error: f64,
     /// Parts of `error`.
     pub spent: Spent,
@@ -280,14 +287,16 @@ struct Rounding {
 }
 
 impl Rounding {
-    /// Adds a term with a bound on its size, one on its relative rounding, and the loss of its formula.
+    /// Adds a term with a bound on its size, one on its relative rounding, and the loss of its
+    /// formula.
     fn add(&mut self, magnitude: f64, part: f64, cancelled: f64) {
         self.sum += magnitude.at_most(self.largest()) * part;
         self.part = self.part.at_least(part);
         self.cancelled += cancelled;
     }
 
-    /// Bound on the total where the field is T: there positive terms are at most T plus the negative ones.
+    /// Bound on the total where the field is T: there positive terms are at most T plus the
+    /// negative ones.
     fn most(&self) -> f64 {
         self.cancelled + self.sum.at_most(self.largest() * self.part)
     }
@@ -320,7 +329,8 @@ struct SlabGeometry {
     spread: f64,
     /// Levels of division below the beam.
     levels_below: u32,
-    /// Factor from a fourth derivative to the error of a shared interpolant; infinite without shared interpolants.
+    /// Factor from a fourth derivative to the error of a shared interpolant; infinite without
+    /// shared interpolants.
     roughness: f64,
     length: SpanLength,
     /// Rounding of coordinates.
@@ -337,8 +347,8 @@ struct Sizes {
     total: f64,
 }
 
-/// The part of the error budget that is left to a candidate: half of the rest is shared out evenly, half by size. The shares
-/// add up to no more than the rest.
+/// The part of the error budget that is left to a candidate: half of the rest is shared out evenly,
+/// half by size. The shares add up to no more than the rest.
 #[derive(Clone, Copy)]
 struct Share {
     even: f64,
@@ -405,8 +415,8 @@ const DROPPED_SHARE: f64 = 0.5;
 /// Fewest primitives for a common interpolant: fewer cost a ray about as much as its evaluation.
 const FEWEST: u32 = 3;
 
-/// Distance, in units of half the scene's size, beyond which slabs are halved rather than lose digits; only infinitely wide
-/// primitives have such slabs.
+/// Distance, in units of half the scene's size, beyond which slabs are halved rather than lose
+/// digits; only infinitely wide primitives have such slabs.
 const REMOTE: f64 = 16.0;
 
 /// Ratio of a beam's width to a slab's length from which narrower beams take over …
@@ -422,7 +432,8 @@ const JOINED_LEVELS: u32 = 4;
 /// Factor by which refining a slab divides its error.
 const FINER: f64 = 8.0;
 
-/// Largest term that bounds on rounding assume: where the field is T, larger ones occur only with negative terms.
+/// Largest term that bounds on rounding assume: where the field is T, larger ones occur only with
+/// negative terms.
 pub const LARGE_TERM: f64 = 4.0 * THRESHOLD;
 
 /// Most primitives in a slab whose crossings are isolated at once where rounding is as large as T.
@@ -463,7 +474,8 @@ impl Slab {
 }
 
 impl<'a> Slabs<'a> {
-    /// Starts the slabs of beams between two parameters. `list` holds the primitives near them; the groups are added.
+    /// Starts the slabs of beams between two parameters. `list` holds the primitives near them; the
+    /// groups are added.
     #[must_use]
     pub fn new(
         terms: Terms<'a>,
@@ -561,8 +573,8 @@ impl<'a> Slabs<'a> {
         self.list[local as usize]
     }
 
-    /// Discards all but the first slab if there are very many; they are made again on demand, with the same result. To be called
-    /// between packets only.
+    /// Discards all but the first slab if there are very many; they are made again on demand, with
+    /// the same result. To be called between packets only.
     pub fn tidy(&mut self) {
         if self.nodes.len() > LARGE.0 || self.ids.len() > LARGE.1 {
             self.nodes.truncate(1);
@@ -575,7 +587,8 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Whether bounds prove, in a few steps and without evaluating rays, that no ray of a packet meets the surface.
+    /// Whether bounds prove, in a few steps and without evaluating rays, that no ray of a packet
+    /// meets the surface.
     pub fn is_empty_for(&mut self, packet: usize) -> bool {
         self.tidy();
         self.is_empty_from(self.root(), packet, 0.0, &mut 0)
@@ -613,7 +626,8 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Returns the interpolant of a slab's shared or joined primitives, made at first use; `None` if it has none.
+    /// Returns the interpolant of a slab's shared or joined primitives, made at first use; `None`
+    /// if it has none.
     pub fn block(&mut self, index: u32, which: Which) -> Option<&Interpolant> {
         let slab = &self.nodes[index as usize];
         if slab.together(which).is_empty() {
@@ -660,7 +674,8 @@ impl<'a> Slabs<'a> {
         });
     }
 
-    /// Calls `f` with a slab and those above it, and whether all of its terms count, or only the shared and dropped ones.
+    /// Calls `f` with a slab and those above it, and whether all of its terms count, or only the
+    /// shared and dropped ones.
     fn up(&self, index: u32, mut f: impl FnMut(&Slab, bool)) {
         let (mut at, mut whole) = (index, true);
         while at != NONE {
@@ -720,9 +735,9 @@ impl<'a> Slabs<'a> {
         index
     }
 
-    /// Whether rounding (also of pending primitives) is as large as T, so that spans prove nothing, and the primitives are so few
-    /// that crossings are isolated at once. Slabs that end far out are halved first, as their far part would use up the pieces for
-    /// the near one.
+    /// Whether rounding (also of pending primitives) is as large as T, so that spans prove nothing,
+    /// and the primitives are so few that crossings are isolated at once. Slabs that end far out
+    /// are halved first, as their far part would use up the pieces for the near one.
     #[must_use]
     pub fn is_blurred(&self, index: u32) -> bool {
         let slab = self.slab(index);
@@ -734,8 +749,9 @@ impl<'a> Slabs<'a> {
         count <= MOST_BLURRED
     }
 
-    /// Whether the beam is so near a pole that bounds say nothing, and the slab so short that only single rays are farther from it.
-    /// Halving would go on for the rays beside the surface of a body that is as thin as the beam.
+    /// Whether the beam is so near a pole that bounds say nothing, and the slab so short that only
+    /// single rays are farther from it. Halving would go on for the rays beside the surface of a
+    /// body that is as thin as the beam.
     #[must_use]
     pub fn is_polar(&self, index: u32, packet: usize) -> bool {
         let slab = self.slab(index);
@@ -760,7 +776,8 @@ impl<'a> Slabs<'a> {
         self.precision.resolution
     }
 
-    /// Returns the same slab with a smaller error, made again from all its primitives but the shared ones.
+    /// Returns the same slab with a smaller error, made again from all its primitives but the
+    /// shared ones.
     pub fn finer(&mut self, index: u32) -> u32 {
         if self.nodes[index as usize].finer == 0 {
             let start = self.ids.len() as u32;
@@ -798,7 +815,8 @@ impl<'a> Slabs<'a> {
         self.nodes[index as usize].finer
     }
 
-    /// Calls `f` with each primitive that counts in a slab; with `all` also with the shared and dropped ones.
+    /// Calls `f` with each primitive that counts in a slab; with `all` also with the shared and
+    /// dropped ones.
     pub fn each(&self, index: u32, all: bool, mut f: impl FnMut(u32)) {
         let mut each = |range: &Range<u32>| {
             for &id in self.locals(range) {
@@ -842,8 +860,8 @@ impl<'a> Slabs<'a> {
         count
     }
 
-    /// Lists the primitives that count in a slab, without the dropped ones and those in accurate shared interpolants; returns these
-    /// interpolants.
+    /// Lists the primitives that count in a slab, without the dropped ones and those in accurate
+    /// shared interpolants; returns these interpolants.
     pub fn near(&self, index: u32, list: &mut Vec<u32>) -> Afar {
         self.each(index, false, |p| list.push(p));
         let mut blocks = Vec::new();
@@ -881,15 +899,17 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Whether a primitive of the list has a pole, and it is near. Faces of the inverse kernel have a small field and none; those of
-    /// the squared one grow by a logarithm alone, so that their field does not tell.
+    /// Whether a primitive of the list has a pole, and it is near. Faces of the inverse kernel have
+    /// a small field and none; those of the squared one grow by a logarithm alone, so that their
+    /// field does not tell.
     fn is_at_pole(&self, id: u32, magnitude: f64, touches: bool) -> bool {
         let primitive = self.list[id as usize] as usize;
         let kernel = self.terms.primitives[primitive].kernel;
         kernel.has_pole() && (magnitude >= POLAR || touches && kernel != Kernel::Inverse)
     }
 
-    /// Estimate of a list entry's largest slope over its size, at a distance ([`Bound::relative_slope`]).
+    /// Estimate of a list entry's largest slope over its size, at a distance
+    /// ([`Bound::relative_slope`]).
     fn relative_slope(&self, id: u32, distance: f64) -> f64 {
         match self.terms.clusters {
             Some(clusters) if id & GROUP != 0 => clusters.relative_slope(id & !GROUP, distance),
@@ -900,7 +920,8 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Pushes a group's two parts onto the stack, or, for one of the smallest groups, its members' local numbers.
+    /// Pushes a group's two parts onto the stack, or, for one of the smallest groups, its members'
+    /// local numbers.
     fn open(&mut self, clusters: &Clusters, group: u32) {
         match clusters.members(group) {
             Members::Groups(parts) => self.stack.extend(parts.map(|part| part | GROUP)),
@@ -992,7 +1013,8 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Collects the candidates of a new slab in `scratch`, without negligible ones; near groups are opened.
+    /// Collects the candidates of a new slab in `scratch`, without negligible ones; near groups are
+    /// opened.
     fn gather(&mut self, candidates: Range<u32>, place: &SlabGeometry) -> Sizes {
         let mut sizes = Sizes::default();
         self.scratch.clear();
@@ -1020,7 +1042,8 @@ impl<'a> Slabs<'a> {
         sizes
     }
 
-    /// Returns a group as a candidate; `None` if it is negligible, or if its parts are candidates instead.
+    /// Returns a group as a candidate; `None` if it is negligible, or if its parts are candidates
+    /// instead.
     #[inline(always)]
     fn group(
         &mut self,
@@ -1070,8 +1093,8 @@ impl<'a> Slabs<'a> {
         Some(Candidate {
             id,
             magnitude: estimate.magnitude,
-            // A span is between the values' and slopes' extremes, so its error is never larger than the bound; NaN counts
-            // as a large error.
+            // A span is between the values' and slopes' extremes, so its error is never larger than
+            // the bound; NaN counts as a large error.
             span: estimate.error,
             shared: estimate.fourth * place.roughness,
             distance: near.distance,
@@ -1108,7 +1131,8 @@ impl<'a> Slabs<'a> {
             resolves: place.levels_below <= BLOCK_LEVELS,
             // A packet's own spans cost as little as joined interpolants.
             joins: (1..=JOINED_LEVELS).contains(&place.levels_below),
-            // Most of a slab that ends far out is nearer than its end, and its halves are rounded less.
+            // Most of a slab that ends far out is nearer than its end, and its halves are rounded
+            // less.
             remote: is_remote(place.from, place.to),
         };
         let joinable = || self.scratch.iter().filter(|c| plan.is_joinable(c)).count();
@@ -1193,8 +1217,8 @@ impl<'a> Slabs<'a> {
         sorted
     }
 
-    /// Appends `lists` to `ids`; returns the start and the ends of the lists there. Groups to resolve are replaced by their
-    /// members.
+    /// Appends `lists` to `ids`; returns the start and the ends of the lists there. Groups to
+    /// resolve are replaced by their members.
     fn store_lists(&mut self) -> [u32; 6] {
         let lists = core::mem::take(&mut self.lists);
         let mut ends = [self.ids.len() as u32; 6];
@@ -1246,7 +1270,8 @@ mod tests {
         Soft::new(scene, surfaces)
     }
 
-    /// The bound on rounding holds for terms that add up to T, whatever the sum of the negative ones.
+    /// The bound on rounding holds for terms that add up to T, whatever the sum of the negative
+    /// ones.
     #[test]
     fn rounding_of_positive_and_negative_terms_is_bounded() {
         const PART: f64 = 1e-3;
@@ -1272,7 +1297,8 @@ mod tests {
         }
     }
 
-    /// The listed primitives and the interpolants of the rest add up to the field within the bound told, on all rays of the beam.
+    /// The listed primitives and the interpolants of the rest add up to the field within the bound
+    /// told, on all rays of the beam.
     #[test]
     fn near_primitives_and_interpolants_add_up_to_the_field() {
         let (mut seen, mut shared, mut noisy, mut largest) = (0, 0, 0, 0.0f64);
@@ -1305,7 +1331,8 @@ mod tests {
                 let afar = slabs.near(index, &mut list);
                 let told = afar.blocks.len();
                 if told > 0 {
-                    // Rounding of the interpolants is part of the bound. It is far below its own bound here: a larger one is set.
+                    // Rounding of the interpolants is part of the bound. It is far below its own
+                    // bound here: a larger one is set.
                     let noise = slabs.nodes[index as usize].noise_of_shared;
                     slabs.nodes[index as usize].noise_of_shared = SHARP_INTERPOLANT;
                     let louder = slabs.near(index, &mut Vec::new());

@@ -1,4 +1,5 @@
-//! The convolution surfaces of all bodies, prepared: finds the primitives near a beam, and where its rays cross a body's surface.
+//! The convolution surfaces of all bodies, prepared: finds the primitives near a beam, and where
+//! its rays cross a body's surface.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::blob_set::{BlobSet, NEXT_TO_NOTHING};
@@ -22,8 +23,8 @@ use std::sync::{Mutex, OnceLock};
 
 /// The convolution surfaces of a scene's bodies.
 ///
-/// The primitives of all bodies stand in one list, body by body, so that the blobs near a beam are found in one search
-/// however many bodies there are.
+/// The primitives of all bodies stand in one list, body by body, so that the blobs near a beam are
+/// found in one search however many bodies there are.
 pub struct Soft {
     pub(crate) primitives: Vec<Primitive>,
     /// Finish of each primitive.
@@ -57,7 +58,8 @@ pub(crate) struct SoftBody {
     range: Range<u32>,
     /// Primitives without a bounding ball.
     everywhere: Vec<u32>,
-    /// Whether all primitives have kernels that end or fall as the Gaussian, so that a lone ray has few near it.
+    /// Whether all primitives have kernels that end or fall as the Gaussian, so that a lone ray has
+    /// few near it.
     is_local: bool,
     /// Ball outside which none of them counts; `None` if some count everywhere.
     pub ball: Option<(DVec3, f64)>,
@@ -112,8 +114,8 @@ const MOST_STRIDES: usize = 32;
 const CLOSE_BEAM: f64 = 0.05;
 
 impl Soft {
-    /// Collects the primitives of a scene's convolution surfaces. The scene is dropped before their bounds are made, which saves
-    /// memory.
+    /// Collects the primitives of a scene's convolution surfaces. The scene is dropped before their
+    /// bounds are made, which saves memory.
     #[must_use]
     pub fn new(scene: Scene, surfaces: Vec<SoftSurface>) -> Self {
         let count: usize = surfaces.iter().map(|s| s.element.len()).sum();
@@ -199,8 +201,8 @@ impl Soft {
         after as u32 - 1
     }
 
-    /// Lists the bodies that a ray of a beam may meet before a parameter, each with the least parameter at which it may, in this
-    /// order.
+    /// Lists the bodies that a ray of a beam may meet before a parameter, each with the least
+    /// parameter at which it may, in this order.
     pub fn bodies_along(&self, beam: &Beam, limit: f64, list: &mut Vec<(f64, u32)>) {
         list.clear();
         for (number, body) in (0..).zip(&self.bodies) {
@@ -269,7 +271,8 @@ impl Soft {
         self.primitives.is_empty()
     }
 
-    /// Calls `f` with each primitive of a body whose reach a ray may meet, its bounds and its number, in no order.
+    /// Calls `f` with each primitive of a body whose reach a ray may meet, its bounds and its
+    /// number, in no order.
     pub fn along<'a>(
         &'a self,
         body: u32,
@@ -299,10 +302,11 @@ impl Soft {
         gradient
     }
 
-    /// Returns the slabs of a body along a beam up to a parameter, and the parameter at which they start. `None` if no primitive
-    /// reaches the beam, or their sum stays below T.
+    /// Returns the slabs of a body along a beam up to a parameter, and the parameter at which they
+    /// start. `None` if no primitive reaches the beam, or their sum stays below T.
     ///
-    /// `beams` divides the beam, given the parameter at which to start; `spaces` holds allocations to reuse.
+    /// `beams` divides the beam, given the parameter at which to start; `spaces` holds allocations
+    /// to reuse.
     pub fn slabs<'a>(
         &'a self,
         body: u32,
@@ -333,7 +337,8 @@ impl Soft {
         if from.is_nan() || to.is_nan() || from >= to {
             return None;
         }
-        // Parameters start at the first primitive's reach, so that single precision does not lose digits to a distant eye.
+        // Parameters start at the first primitive's reach, so that single precision does not lose
+        // digits to a distant eye.
         let range = [0.0, to - from];
         let mut clusters = Some(&groups.clusters);
         let is_alone = beam.radius == 0.0 && beam.spread == 0.0;
@@ -386,7 +391,8 @@ impl Soft {
             .any(|body| matches!(body.far.get(), Some(Some(_))))
     }
 
-    /// Moves the far fields of an earlier scene into this one, whose own are made sooner with their help and are the same.
+    /// Moves the far fields of an earlier scene into this one, whose own are made sooner with their
+    /// help and are the same.
     pub fn take_over(&mut self, before: &mut Self) {
         for (body, old) in self.bodies.iter_mut().zip(&mut before.bodies) {
             body.earlier = Mutex::new(old.far.take().flatten());
@@ -398,9 +404,10 @@ impl Soft {
         self.far(&self.bodies[body as usize]).is_some()
     }
 
-    /// Finds the first crossings of rays with the surface of a body of very many points that never end; for [`Quest::Entry`] only
-    /// whether there is one. Returns the rays that cross, a bit each, with the surface there in `work`, whose parameters are the
-    /// rays' own. `None` if the body is no such one, or this is not the way for these rays.
+    /// Finds the first crossings of rays with the surface of a body of very many points that never
+    /// end; for [`Quest::Entry`] only whether there is one. Returns the rays that cross, a bit
+    /// each, with the surface there in `work`, whose parameters are the rays' own. `None` if the
+    /// body is no such one, or this is not the way for these rays.
     pub fn far_first(
         &self,
         body: u32,
@@ -479,8 +486,8 @@ impl Soft {
         }
     }
 
-    /// Lists the blobs near a beam, up to a parameter, and the other primitives there. Returns false if those are more than 16, or
-    /// the only body counts everywhere.
+    /// Lists the blobs near a beam, up to a parameter, and the other primitives there. Returns
+    /// false if those are more than 16, or the only body counts everywhere.
     pub fn list_blobs(&self, beam: &Beam, limit: f64, list: &mut Nearby) -> bool {
         let finite = beam.axis.origin.is_finite() && beam.axis.direction.is_finite();
         let everywhere = self.bodies.len() == 1 && self.is_everywhere(0);
@@ -496,7 +503,8 @@ impl Soft {
         self.blob_set.list(&self.tree, beam, limit, reach, list)
     }
 
-    /// Whether a ray of a beam may come within the reach of one of some primitives, up to a parameter.
+    /// Whether a ray of a beam may come within the reach of one of some primitives, up to a
+    /// parameter.
     pub fn meets_any<'o>(
         &self,
         others: impl IntoIterator<Item = &'o Other>,
@@ -528,7 +536,8 @@ impl Soft {
         true
     }
 
-    /// Adds the bodies of those of some primitives whose reach a ray of a beam may meet, up to a parameter.
+    /// Adds the bodies of those of some primitives whose reach a ray of a beam may meet, up to a
+    /// parameter.
     pub fn bodies_met(&self, others: &[Other], beam: &Beam, limit: f64, bodies: &mut Vec<u32>) {
         for other in others {
             let body = self.body_of(other.primitive);
@@ -538,8 +547,9 @@ impl Soft {
         }
     }
 
-    /// Returns where a ray first enters a body's surface on a short interval, in double precision, and the number of evaluations. The
-    /// interval's start, if it is inside; `None` if there is no entry. Primitives without blobs count within their reach.
+    /// Returns where a ray first enters a body's surface on a short interval, in double precision,
+    /// and the number of evaluations. The interval's start, if it is inside; `None` if there is no
+    /// entry. Primitives without blobs count within their reach.
     pub fn entry(&self, body: u32, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
         let (center, radius) = (ray.at(0.5 * (from + to)), 0.5 * (to - from));
         let body = &self.bodies[body as usize];
@@ -575,8 +585,8 @@ impl Soft {
         (found, isolator.evaluations)
     }
 
-    /// Returns all crossings of a ray with a body's surface in double precision, with no term left out: pairs (t, gradient), in
-    /// order of t > 0.
+    /// Returns all crossings of a ray with a body's surface in double precision, with no term left
+    /// out: pairs (t, gradient), in order of t > 0.
     #[must_use]
     pub fn crossings(&self, body: u32, ray: &Ray) -> Vec<(f64, DVec3)> {
         let body = &self.bodies[body as usize];
@@ -628,8 +638,8 @@ impl Soft {
             &mut Memories::default(),
         )
         .run();
-        // The field's sign between neighbouring approximate crossings; where it changes from one such place to the next, a crossing is
-        // refined.
+        // The field's sign between neighbouring approximate crossings; where it changes from one
+        // such place to the next, a crossing is refined.
         let excess = |t: f64| {
             let jet = field::sum(&self.primitives[own.clone()], based.at(t).to_array());
             (jet.value - THRESHOLD, DVec3::from_array(jet.gradient))

@@ -77,7 +77,8 @@ impl Solids {
         self.of[number as usize][1]
     }
 
-    /// Returns the nearest crossing with 0 < t < limit, and its solid; of front faces only, if asked for; `None` without one.
+    /// Returns the nearest crossing with 0 < t < limit, and its solid; of front faces only, if
+    /// asked for; `None` without one.
     pub fn first(
         &self,
         ray: &Ray,

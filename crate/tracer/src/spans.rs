@@ -107,7 +107,8 @@ impl<L: Lanes> Span<L> {
 const ROOT_ACCURACY: f64 = 1e-13;
 
 impl Span<f64> {
-    /// Returns the x in 0..=1 (the interval's ends) where the cubic crosses a level, ascending; none if a coefficient is NaN.
+    /// Returns the x in 0..=1 (the interval's ends) where the cubic crosses a level, ascending;
+    /// none if a coefficient is NaN.
     #[must_use]
     pub fn crossings(self, level: f64) -> Roots {
         let [a, b, c, d] = self.0;
@@ -151,8 +152,9 @@ impl Span<f64> {
 pub struct KnownPart<'a> {
     /// Value and slope at a parameter.
     pub node: &'a dyn Fn(f64) -> Node<f64>,
-    /// Bound on the error of the cubic between the interval's ends, and so, times about four over the length, on that of its slope.
-    /// Left out terms may have a larger slope: where the field is within `off` of T, it may cross T three times instead of once.
+    /// Bound on the error of the cubic between the interval's ends, and so, times about four over
+    /// the length, on that of its slope. Left out terms may have a larger slope: where the field is
+    /// within `off` of T, it may cross T three times instead of once.
     pub off: f64,
 }
 

@@ -16,7 +16,8 @@ use crate::world::World;
 /// Parts of a square in each direction.
 const PARTS: u32 = 4;
 
-/// Length of a list from which the parts get no lists of their own, which would need much space where blobs are large.
+/// Length of a list from which the parts get no lists of their own, which would need much space
+/// where blobs are large.
 const MANY: usize = 1 << 15;
 
 /// The convolution surfaces near a square of pixels, divided into columns and rows of packets.
@@ -27,7 +28,8 @@ pub(crate) struct Square<'a> {
     packets: [u32; 2],
     /// Blobs near the square; `None` if all bodies take the general way.
     blobs: Option<Blobs>,
-    /// Bodies that take the general way in every packet, each with the least parameter at which a ray may meet it.
+    /// Bodies that take the general way in every packet, each with the least parameter at which a
+    /// ray may meet it.
     general: Vec<(f64, u32)>,
     /// Slabs of each body, with the parameter at which they start; made at the first use.
     slabs: Vec<(u32, Option<(Slabs<'a>, f64)>)>,
@@ -75,8 +77,9 @@ impl<'a> Square<'a> {
         square
     }
 
-    /// Lists the bodies that take the general way in a packet, given by its column and row: those with primitives near it that are
-    /// no blobs, each with the least parameter at which a ray may meet it.
+    /// Lists the bodies that take the general way in a packet, given by its column and row: those
+    /// with primitives near it that are no blobs, each with the least parameter at which a ray may
+    /// meet it.
     pub fn general(&mut self, place: [u32; 2], bodies: &mut Vec<(f64, u32)>) {
         bodies.clear();
         let several = self.soft.bodies.len() > 1;
@@ -112,8 +115,9 @@ impl<'a> Square<'a> {
         bodies.extend(met.into_iter().map(|body| (0.0, body)));
     }
 
-    /// Returns the blobs near the part that holds a packet, given by its column and row, and the lens for single precision rays
-    /// (`None` if the square is too wide); `None` if there are none, or all bodies take the general way.
+    /// Returns the blobs near the part that holds a packet, given by its column and row, and the
+    /// lens for single precision rays (`None` if the square is too wide); `None` if there are none,
+    /// or all bodies take the general way.
     pub fn blobs(&mut self, [column, row]: [u32; 2]) -> Option<(&Nearby, Option<&Lens>)> {
         let [columns, rows] = self.packets;
         let (view, area) = (self.view, self.area);
@@ -136,8 +140,9 @@ impl<'a> Square<'a> {
         Some((part, lens.as_ref()))
     }
 
-    /// Returns the slabs of a body, the parameter at which they start, and the packet's number among the divisions of their beam;
-    /// `None` if no ray of the packet, given by its column and row, can meet the body.
+    /// Returns the slabs of a body, the parameter at which they start, and the packet's number
+    /// among the divisions of their beam; `None` if no ray of the packet, given by its column and
+    /// row, can meet the body.
     pub fn slabs(
         &mut self,
         body: u32,

@@ -12,8 +12,8 @@ pub struct Stats {
     pub secondary_rays: u64,
     /// Evaluations of one primitive's field at one point.
     pub field_evaluations: u64,
-    /// Pixels of a full pass that differ from the next one on the right or below, if there is a smooth pass: it takes more
-    /// rays for about twice as many.
+    /// Pixels of a full pass that differ from the next one on the right or below, if there is a
+    /// smooth pass: it takes more rays for about twice as many.
     pub edges: u64,
 }
 

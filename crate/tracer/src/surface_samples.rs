@@ -1,15 +1,17 @@
-//! Data of the surface samples at a packet's hits; [`flesh`](crate::flesh) and [`quick`](crate::quick) fill them.
+//! Data of the surface samples at a packet's hits;
+//! [`flesh`](crate::flesh) and [`quick`](crate::quick) fill them.
 use crate::layout::PACKET;
 use crate::slabs::Slabs;
 use glam::DVec3;
 use wide::f32x8;
 
-/// Half the least tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), in units of the scene.
+/// Half the least tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)), in
+/// units of the scene.
 pub const FINEST: f64 = 1e-6;
 /// Half the largest tolerance of pictures, or less, for blobs.
 pub const COARSEST_OF_BLOBS: f64 = 5e-5;
-/// Difference of the field from T within which normal and colours are those of the surface: they change by about 0.1 % on the way
-/// there, less than a picture shows.
+/// Difference of the field from T within which normal and colours are those of the surface: they
+/// change by about 0.1 % on the way there, less than a picture shows.
 pub const NEAR_ENOUGH: f32 = 1e-3;
 
 /// Samples of the surface at the hits of a packet.
@@ -42,7 +44,8 @@ pub(crate) struct ActivePrimitives {
 }
 
 impl ActivePrimitives {
-    /// Lists the primitives that count in some slabs, each for its lanes; with `shared` also those that interpolants stand for.
+    /// Lists the primitives that count in some slabs, each for its lanes; with `shared` also those
+    /// that interpolants stand for.
     pub fn collect(
         &mut self,
         slabs: &Slabs<'_>,

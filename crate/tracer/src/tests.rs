@@ -83,8 +83,9 @@ fn pictures_with_profiles_show_the_exact_surface() {
     assert!(worst[0] < 0.03 && worst[1] < 0.02, "{worst:?}");
 }
 
-/// Where rounding leaves rays among very many primitives in doubt, root isolation uses the interpolants of the far ones: the picture
-/// is the same, with far fewer evaluations than with all primitives for each ray.
+/// Where rounding leaves rays among very many primitives in doubt, root isolation uses the
+/// interpolants of the far ones: the picture is the same, with far fewer evaluations than with all
+/// primitives for each ray.
 #[test]
 fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     let mut numbers = trials::Random::new(9);
@@ -130,7 +131,8 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     );
 }
 
-/// Scenes without secondary rays are shaded without paths, and look as they do with them, whatever else is in the air.
+/// Scenes without secondary rays are shaded without paths, and look as they do with them, whatever
+/// else is in the air.
 #[test]
 fn light_without_paths_is_the_same_as_with_them() {
     let mut lit = 0;

@@ -41,7 +41,8 @@ impl Unit {
     };
 
     /// The map that fits a scene, and the scene mapped. Elements with coordinates that are not
-    /// finite, which no ray can meet, are made hard balls of radius 0, which have no surface: so all keep their numbers.
+    /// finite, which no ray can meet, are made hard balls of radius 0, which have no surface: so
+    /// all keep their numbers.
     #[must_use]
     pub fn fit(scene: &Scene) -> (Self, Scene) {
         let mut mapped = scene.clone();

@@ -60,8 +60,8 @@ impl View {
     }
 }
 
-/// The part of a rectangle, divided into columns and rows of packets, that a number in the binary tree of
-/// its divisions stands for: the halves of i are 2i+1 (left or upper) and 2i+2.
+/// The part of a rectangle, divided into columns and rows of packets, that a number in the binary
+/// tree of its divisions stands for: the halves of i are 2i+1 (left or upper) and 2i+2.
 pub(crate) fn division(area: Area, mut packets: [u32; 2], number: usize) -> Area {
     let path = number + 1;
     let mut part = area;

@@ -1,9 +1,11 @@
 //! Traversal of a beam's slabs by a packet: finds where its rays cross the soft surface.
 //!
-//! The rays visit the slabs of their beam together, front to back. Each slab adds its resolved primitives' spans to the cubics
-//! of the longer slabs that contain it. Where the cubics and the bounds on pending primitives prove that every ray stays outside
-//! (or inside) the surface, the slab is left at once; where nothing is pending, the cubics' roots are the crossings. The traversal
-//! ends when every ray has its crossing, so that nothing behind the first hit is interpolated.
+//! The rays visit the slabs of their beam together, front to back. Each slab adds its resolved
+//! primitives' spans to the cubics of the longer slabs that contain it. Where the cubics and the
+//! bounds on pending primitives prove that every ray stays outside (or inside) the surface, the
+//! slab is left at once; where nothing is pending, the cubics' roots are the crossings. The
+//! traversal ends when every ray has its crossing, so that nothing behind the first hit is
+//! interpolated.
 use crate::lanes::Lanes;
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator, STEEP};
@@ -124,7 +126,8 @@ impl<L: Lanes> Memories<L> {
 /// Largest depth of slabs that are halved: lengths of 2⁻⁴⁰ of the beam's.
 const DEEPEST_SLAB: u32 = 40;
 
-/// Most primitives in a slab with which crossings are isolated directly, without shared interpolants …
+/// Most primitives in a slab with which crossings are isolated directly, without shared
+/// interpolants …
 const FEW_PRIMITIVES: usize = 64;
 /// … as they are where the near primitives are more than one over this of all.
 const WORTH: usize = 4;
@@ -132,9 +135,10 @@ const WORTH: usize = 4;
 /// Number of halvings of a slab's cubics to isolate their crossings.
 const CUTS: u32 = 4;
 
-/// Most list entries that one packet's traversal looks at, or [`MOST_VISITS`] times the scene's primitives. After that, slabs are
-/// not halved further; crossings in them are isolated ray by ray, within limits, so that no scene takes unlimited time or memory.
-/// A packet of the published scenes looks at a few hundred. The limit must not depend on the work of other packets of the beam,
+/// Most list entries that one packet's traversal looks at, or [`MOST_VISITS`] times the scene's
+/// primitives. After that, slabs are not halved further; crossings in them are isolated ray by ray,
+/// within limits, so that no scene takes unlimited time or memory. A packet of the published scenes
+/// looks at a few hundred. The limit must not depend on the work of other packets of the beam,
 /// which differs with the tiles.
 const MOST_WORK: usize = 1 << 17;
 /// Visits of each primitive, see [`MOST_WORK`].
@@ -175,7 +179,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// Runs the traversal. Returns the crossings, in order of t for each lane, and the number of evaluations.
+    /// Runs the traversal. Returns the crossings, in order of t for each lane, and the number of
+    /// evaluations.
     #[must_use]
     pub fn run(mut self) -> (Vec<Found>, u64) {
         let root = self.slabs.root();
@@ -183,7 +188,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         (self.found, self.evaluations)
     }
 
-    /// Visits a slab, given the sums of the shared and of the resolved primitives of the longer slabs that contain it.
+    /// Visits a slab, given the sums of the shared and of the resolved primitives of the longer
+    /// slabs that contain it.
     fn visit(&mut self, index: u32, mut shared: Span<L>, mut base: Span<L>) {
         let slab = self.slabs.slab(index);
         let (error, depth, from) = (slab.error, slab.depth, slab.from);
@@ -316,12 +322,14 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// Rays whose cubics do not prove the number of crossings in this slab: on each piece of it none, or exactly one.
+    /// Rays whose cubics do not prove the number of crossings in this slab: on each piece of it
+    /// none, or exactly one.
     fn doubtful(&self, span: Span<L>, error: f64) -> u32 {
         Self::open(self.alive, span, error, STEEP * error, CUTS)
     }
 
-    /// Those of some rays that are in doubt on a piece, on which differences of coefficients have the error `steep`.
+    /// Those of some rays that are in doubt on a piece, on which differences of coefficients have
+    /// the error `steep`.
     fn open(lanes: u32, span: Span<L>, error: f64, steep: f64, cuts: u32) -> u32 {
         let [a, b, c, d] = span.0;
         let level = L::splat(THRESHOLD);
@@ -369,15 +377,16 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 self.arrive(index, t, side(!inside), side(inside), true);
                 self.alive & bit != 0
             });
-            // Isolation counts as work, too: it takes far longer in many short slabs than in a few long ones.
+            // Isolation counts as work, too: it takes far longer in many short slabs than in a few
+            // long ones.
             self.work += isolator.evaluations as usize;
             self.evaluations += core::mem::take(&mut isolator.evaluations);
             self.isolator = isolator;
         }
     }
 
-    /// Isolates crossings with shared interpolants in place of far primitives, where that saves most of the work. Returns the rays
-    /// for which they decide.
+    /// Isolates crossings with shared interpolants in place of far primitives, where that saves
+    /// most of the work. Returns the rays for which they decide.
     fn isolate_near(&mut self, index: u32, lanes: u32) -> u32 {
         let all = self.slabs.count(index);
         if all <= FEW_PRIMITIVES {

@@ -27,8 +27,8 @@ impl Workspace {
         self.scratch.alone = [0; PACKET];
     }
 
-    /// The cost of each of the packet's first rays: the ray itself, its share of the evaluations made for all, and those made for it
-    /// alone (see [`map`](crate::map)).
+    /// The cost of each of the packet's first rays: the ray itself, its share of the evaluations
+    /// made for all, and those made for it alone (see [`map`](crate::map)).
     pub(crate) fn costs(&self, rays: usize) -> [f32; PACKET] {
         let Scratch {
             evaluations, alone, ..

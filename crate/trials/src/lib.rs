@@ -1,11 +1,11 @@
 //! Random inputs for tests: how many, and which.
 //!
-//! Every test that draws its inputs asks [`count`] how many, and takes them from [`Random`] or, where
-//! bytes are to be anything at all, from [`trials`]. They are the same on every machine and in every
-//! run, so that a test that has passed passes again (a library that spends a budget of time, as
-//! `arbtest` does, cannot promise that). `SINEW_TRIALS`, a number, asks for so many times as many:
-//! `cargo xtask test quick` sets 0.1, `cargo xtask test all` sets 10. `SINEW_SEED`, a whole number,
-//! asks for other inputs.
+//! Every test that draws its inputs asks [`count`] how many, and takes them from [`Random`] or,
+//! where bytes are to be anything at all, from [`trials`]. They are the same on every machine and
+//! in every run, so that a test that has passed passes again (a library that spends a budget of
+//! time, as `arbtest` does, cannot promise that). `SINEW_TRIALS`, a number, asks for so many times
+//! as many: `cargo xtask test quick` sets 0.1, `cargo xtask test all` sets 10. `SINEW_SEED`, a
+//! whole number, asks for other inputs.
 //!
 //! ```
 //! use trials::{Random, count};
@@ -19,8 +19,8 @@
 //!
 //! Outputs whose bits must not change are hashed and compared with kept hashes: [`bits`].
 //!
-//! With the feature `field` there are random skeletons, with `scene` random scenes; the crate `oracle`
-//! has rays through them and their judge.
+//! With the feature `field` there are random skeletons, with `scene` random scenes; the crate
+//! `oracle` has rays through them and their judge.
 //!
 //! [`WorkClock`] is for tests that something does not take long.
 
@@ -49,9 +49,9 @@ pub struct Trials<P: FnMut(&mut Unstructured<'_>) -> Result<()>> {
     cases: u32,
 }
 
-/// Tests a property on many inputs of bytes, short ones first: it panics where it does not hold, and
-/// gives an error where an input is too short for it. A failure tells its input, and `SINEW_CASE`
-/// runs that input alone.
+/// Tests a property on many inputs of bytes, short ones first: it panics where it does not hold,
+/// and gives an error where an input is too short for it. A failure tells its input, and
+/// `SINEW_CASE` runs that input alone.
 ///
 /// ```
 /// use trials::trials;
@@ -109,7 +109,8 @@ impl<P: FnMut(&mut Unstructured<'_>) -> Result<()>> Drop for Trials<P> {
     }
 }
 
-/// A clock of the work of one thread: what other threads and programs do does not count, so that limits on it hold on a busy machine.
+/// A clock of the work of one thread: what other threads and programs do does not count, so that
+/// limits on it hold on a busy machine.
 #[derive(Clone, Copy, Debug)]
 pub struct WorkClock(Option<Duration>);
 
@@ -119,7 +120,8 @@ impl WorkClock {
         Self(worked())
     }
 
-    /// The processor time that this thread has taken since. Zero where the system does not tell, which is everywhere but on Linux.
+    /// The processor time that this thread has taken since. Zero where the system does not tell,
+    /// which is everywhere but on Linux.
     pub fn elapsed(self) -> Duration {
         let now = worked().zip(self.0);
         now.map_or(Duration::ZERO, |(now, start)| now - start)

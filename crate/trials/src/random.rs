@@ -29,7 +29,8 @@ impl Random {
         Self(seed, Step::SplitMix)
     }
 
-    /// Returns a linear congruential generator: scenes of earlier faults were found with its numbers.
+    /// Returns a linear congruential generator: scenes of earlier faults were found with its
+    /// numbers.
     pub fn linear(start: u64) -> Self {
         Self(start, Step::Linear)
     }

@@ -82,7 +82,8 @@ impl Random {
     }
 }
 
-/// Returns an element with the flesh and the finish of an index; hard, if the scene has no such flesh.
+/// Returns an element with the flesh and the finish of an index; hard, if the scene has no such
+/// flesh.
 pub fn element(shape: Shape, index: u32) -> Element {
     Element {
         flesh: Some(index),

@@ -30,7 +30,7 @@ use std::fmt;
 pub use mp4::mp4;
 pub use webm::webm;
 
-/// How a video is encoded.
+/// The encoding of a video.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Codec {
     /// VP8, for WebM.
@@ -44,7 +44,7 @@ pub enum Codec {
     },
 }
 
-/// How the numbers of a frame mean colours, by the code points of ITU-T H.273.
+/// The meaning of a frame's numbers as colours, by the code points of ITU-T H.273.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colours {
     /// Colour primaries.
@@ -58,7 +58,7 @@ pub struct Colours {
 }
 
 impl Colours {
-    /// Those of high-definition television.
+    /// The colours of high-definition television.
     pub const BT709: Self = Self {
         primaries: 1,
         transfer: 1,
@@ -70,7 +70,7 @@ impl Colours {
 /// A frame as the encoder gives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// When it is shown, microseconds from the beginning.
+    /// The time at which it is shown, microseconds from the beginning.
     pub time: u64,
     /// Whether it can be decoded without those before.
     pub is_key: bool,
@@ -81,13 +81,13 @@ pub struct Packet {
 /// An encoded video.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Video {
-    /// How it is encoded.
+    /// The encoding.
     pub codec: Codec,
     /// Width and height, pixels.
     pub size: [u16; 2],
-    /// How long a frame is shown, microseconds.
+    /// The time for which a frame is shown, microseconds.
     pub frame_time: u64,
-    /// What its colours mean.
+    /// The meaning of its colours.
     pub colours: Colours,
     /// The frames, in the order in which they are decoded.
     pub packets: Vec<Packet>,
@@ -96,13 +96,13 @@ pub struct Video {
 /// Why a file cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// There are no frames, or the first one cannot be decoded by itself.
+    /// The first frame is missing, or cannot be decoded by itself.
     NoStart,
     /// Width, height or the time of a frame is 0.
     Empty,
     /// The file would have 4 GiB, or the video would last more than a day.
     TooLong,
-    /// This kind of file is not made of videos that are encoded like this.
+    /// A file of this kind is not made of videos that are encoded like this.
     Codec,
 }
 
@@ -137,7 +137,7 @@ impl Video {
         Ok(())
     }
 
-    /// When the last frame ends, microseconds.
+    /// Returns the time at which the last frame ends, microseconds.
     fn end(&self) -> u64 {
         let last = self.packets.iter().map(|packet| packet.time).max();
         last.unwrap_or(0).saturating_add(self.frame_time)

@@ -5,7 +5,7 @@ use crate::{Codec, Error, Video};
 /// Units of time in a second.
 const SECOND: u64 = 1_000_000;
 
-/// No turning: the matrix of a picture that is shown as it is.
+/// The matrix of a picture that is shown as it is, not turned.
 const UPRIGHT: [u32; 9] = [0x1_0000, 0, 0, 0, 0x1_0000, 0, 0, 0, 0x4000_0000];
 
 /// An MP4 file of a video in H.264. The description stands before the frames, so that players can
@@ -123,7 +123,7 @@ fn samples(video: &Video, configuration: &[u8], start: u32) -> Vec<u8> {
     atom(b"stbl", &tables)
 }
 
-/// How the frames are encoded.
+/// Returns the sample entry, which says how the frames are encoded.
 fn entry(video: &Video, configuration: &[u8]) -> Vec<u8> {
     let [width, height] = video.size.map(u16::to_be_bytes);
     let colours = video.colours;

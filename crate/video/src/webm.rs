@@ -15,7 +15,7 @@ const SIMPLE_BLOCK: u32 = 0xa3;
 /// Nanoseconds of the file's unit of time.
 const UNIT: u64 = 1_000_000;
 
-/// Most units from a cluster's start to its frames, which tell theirs in 16 bits.
+/// Most units from a cluster's start to its frames, whose offsets have 16 bits.
 const LONGEST: u64 = 30_000;
 
 /// A WebM file of a video in VP8 or VP9.
@@ -121,17 +121,17 @@ fn clusters(video: &Video) -> Vec<(u64, Vec<u8>)> {
         .collect()
 }
 
-/// Where clusters are: their times, and bytes from the segment's start.
+/// Returns the index of clusters, from their times and places, bytes from the segment's start.
 fn cues(places: &[(u64, u64)]) -> Vec<u8> {
-    let cue = |(time, place): &(u64, u64)| {
+    let points = places.iter().flat_map(|(time, place)| {
         let position = [number(0xf7, 1), element(0xf1, &place.to_be_bytes())];
         let point = [
             element(0xb3, &time.to_be_bytes()),
             element(0xb7, &position.concat()),
         ];
         element(0xbb, &point.concat())
-    };
-    element(CUES, &places.iter().flat_map(cue).collect::<Vec<u8>>())
+    });
+    element(CUES, &points.collect::<Vec<u8>>())
 }
 
 /// An element: its identifier, its length in eight bytes, its content.

@@ -5,10 +5,10 @@ use crate::surface::Surface;
 use crate::view::{NEAR, View};
 use glam::{DVec3, Mat3, Vec3};
 
-/// What is drawn besides the mesh, and how.
+/// The light, the colours, and the things that are drawn besides the mesh.
 #[derive(Clone, Debug)]
 pub struct Look<'a> {
-    /// Where the light comes from, in coordinates of the mesh.
+    /// The direction towards the light, in coordinates of the mesh.
     pub light: Vec3,
     /// Whether the edges are drawn.
     pub wireframe: bool,
@@ -54,7 +54,7 @@ pub struct Found {
 pub struct Frame {
     size: [usize; 2],
     rgba: Vec<u8>,
-    /// One over the depth of each pixel; 0 where nothing is.
+    /// The reciprocal of the depth of each pixel; 0 where nothing is.
     near: Vec<f32>,
     /// The triangle of each pixel.
     owner: Vec<u32>,
@@ -66,7 +66,7 @@ pub struct Frame {
 struct Corner {
     x: f32,
     y: f32,
-    /// One over the depth; 0 behind the eye.
+    /// The reciprocal of the depth; 0 behind the eye.
     near: f32,
     front: [f32; 3],
     back: [f32; 3],
@@ -75,7 +75,7 @@ struct Corner {
 const NOTHING: u32 = u32::MAX;
 
 impl Frame {
-    /// An empty image of so many pixels, at least one.
+    /// An empty image of at least one pixel.
     #[must_use]
     pub fn new(size: [usize; 2]) -> Self {
         let mut frame = Self::default();
@@ -83,7 +83,7 @@ impl Frame {
         frame
     }
 
-    /// Its width and height.
+    /// Returns width and height in pixels.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
         self.size
@@ -223,7 +223,7 @@ impl Frame {
         }
         let colors = [a, b, c].map(|v| if is_front { v.front } else { v.back });
         let colors = match is_chosen {
-            true => colors.map(|color| mixed(color, look.accent.map(|c| 255.0 * c), 0.42)),
+            true => colors.map(|color| mix(color, look.accent.map(|c| 255.0 * c), 0.42)),
             false => colors,
         };
         let [w, h] = self.size;
@@ -234,9 +234,8 @@ impl Frame {
         // Shares of a and b grow linearly; that of c is the rest.
         let (ux, uy) = ((b.y - c.y) * inverse, (c.x - b.x) * inverse);
         let (vx, vy) = ((c.y - a.y) * inverse, (a.x - c.x) * inverse);
-        let at = |x: usize, y: usize| (x as f32 + 0.5 - c.x, y as f32 + 0.5 - c.y);
         for y in ys {
-            let (dx, dy) = at(xs.start, y);
+            let (dx, dy) = (xs.start as f32 + 0.5 - c.x, y as f32 + 0.5 - c.y);
             let (mut u, mut v) = (ux * dx + uy * dy, vx * dx + vy * dy);
             for i in y * w + xs.start..y * w + xs.end {
                 let t = 1.0 - u - v;
@@ -258,7 +257,7 @@ impl Frame {
         }
     }
 
-    /// Darkens what is in a shadow.
+    /// Darkens the pixels in a shadow.
     fn darken(&mut self, camera: &Camera, shadow: &Shadow) {
         let w = self.size[0];
         for (i, near) in self.near.iter().enumerate() {
@@ -280,8 +279,10 @@ impl Frame {
             return;
         }
         let [w, h] = self.size.map(|side| side as f32);
-        let outside = |p: f32, q: f32, most: f32| p.max(q) < 0.0 || p.min(q) >= most;
-        if outside(a.x, b.x, w) || outside(a.y, b.y, h) {
+        let is_outside = [(a.x, b.x, w), (a.y, b.y, h)]
+            .iter()
+            .any(|(p, q, side)| p.max(*q) < 0.0 || p.min(*q) >= *side);
+        if is_outside {
             return;
         }
         let steps = (b.x - a.x)
@@ -320,7 +321,7 @@ impl Frame {
             end[(axis + 1) % 3] = half * s;
             end[(axis + 2) % 3] = half * t;
         }
-        let corner = |p: Vec3| {
+        let corners = ends.map(|p| {
             let [x, y, near] = camera.place(p);
             Corner {
                 x,
@@ -328,8 +329,7 @@ impl Frame {
                 near,
                 ..Corner::default()
             }
-        };
-        let corners = ends.map(corner);
+        });
         self.veil([corners[0], corners[1], corners[2]], color, [0.1, 0.02]);
         self.veil([corners[0], corners[2], corners[3]], color, [0.1, 0.02]);
         for i in 0..4 {
@@ -339,23 +339,20 @@ impl Frame {
 
     /// The tool, which can be seen through: more so where it is behind the mesh.
     fn glass(&mut self, camera: &Camera, tool: &Surface, place: Vec3, look: &Look<'_>) {
-        let corner = |(p, n): (&Vec3, &Vec3)| {
-            let [x, y, near] = camera.place(*p + place);
-            let eye = (camera.eye - *p - place).normalize_or(Vec3::Z);
-            let rim = 1.0 - n.dot(eye).abs();
-            Corner {
-                x,
-                y,
-                near,
-                front: [rim; 3],
-                ..Corner::default()
-            }
-        };
-        let corners: Vec<Corner> = tool
-            .positions
-            .iter()
-            .zip(&tool.normals)
-            .map(corner)
+        let vertices = tool.positions.iter().zip(&tool.normals);
+        let corners: Vec<Corner> = vertices
+            .map(|(p, n)| {
+                let [x, y, near] = camera.place(*p + place);
+                let eye = (camera.eye - *p - place).normalize_or(Vec3::Z);
+                let rim = 1.0 - n.dot(eye).abs();
+                Corner {
+                    x,
+                    y,
+                    near,
+                    front: [rim; 3],
+                    ..Corner::default()
+                }
+            })
             .collect();
         for triangle in &tool.triangles {
             let [a, b, c] = triangle.map(|i| corners[i as usize]);
@@ -369,7 +366,8 @@ impl Frame {
         }
     }
 
-    /// Mixes a colour into the pixels of a triangle: by one share in front of what was drawn, by another behind it.
+    /// Mixes a colour into the pixels of a triangle: by one share in front of what was drawn, by
+    /// another behind it.
     fn veil(&mut self, [a, b, c]: [Corner; 3], color: [f32; 3], shares: [f32; 2]) {
         let area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
         if a.near <= 0.0 || b.near <= 0.0 || c.near <= 0.0 || area.abs() < 1e-9 {
@@ -464,11 +462,11 @@ fn shade(base: [f32; 3], normal: Vec3, light: Vec3, eye: Vec3, up: Vec3) -> [f32
     base.map(|c| 255.0 * (c * lit + 0.1 * gloss * direct))
 }
 
-fn mixed(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
+fn mix(a: [f32; 3], b: [f32; 3], share: f32) -> [f32; 3] {
     core::array::from_fn(|k| a[k] + (b[k] - a[k]) * share)
 }
 
-/// Rounds to a channel; what is beyond its range is cut.
+/// Rounds a value to a channel, 0 … 255.
 fn byte(value: f32) -> u8 {
     (value + 0.5) as u8
 }

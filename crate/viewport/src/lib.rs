@@ -1,5 +1,5 @@
-//! Draws a mesh that is worked on into an image on the processor, so that it looks the same with and without a graphics
-//! card, and finds what is under the pointer. Knows triangles, no windows.
+//! Draws a mesh that is worked on into an image on the processor, so that it looks the same with
+//! and without a graphics card, and finds what is under the pointer. Knows triangles, no windows.
 //!
 //! - [`View`]: a camera that turns about a movable centre, by a virtual trackball.
 //! - [`Surface`]: triangles with normals and colours.
@@ -10,7 +10,7 @@
 //! use viewport::{Frame, Look, Surface, View};
 //!
 //! let surface = Surface {
-//!     positions: vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)],
+//!     positions: [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]].map(Vec3::from).to_vec(),
 //!     normals: vec![Vec3::Z; 3],
 //!     colors: vec![[0.7, 0.5, 0.4]; 3],
 //!     triangles: vec![[0, 1, 2]],

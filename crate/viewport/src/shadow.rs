@@ -6,7 +6,7 @@ use glam::Vec3;
 /// Cells along each side.
 const SIDE: usize = 160;
 
-/// Where a surface keeps the light from what is behind it.
+/// The map of the shadow that a surface casts.
 pub struct Shadow {
     axes: [Vec3; 3],
     /// The middle, and cells of a length.
@@ -67,7 +67,7 @@ impl Shadow {
         }
     }
 
-    /// How much light is kept from a point, 0 … 1, soft at the edges.
+    /// Returns the share of light that is kept from a point, 0 … 1, soft at the edges.
     pub fn at(&self, point: Vec3) -> f32 {
         let [x, y, z] = self.local(point - self.middle);
         let most = SIDE as f32 - 2.0;

@@ -7,11 +7,11 @@ use glam::Vec3;
 pub struct Surface {
     /// Vertices.
     pub positions: Vec<Vec3>,
-    /// Their normals, of length 1.
+    /// Normals of the vertices, of length 1.
     pub normals: Vec<Vec3>,
-    /// Their colours as shown, 0 … 1.
+    /// Colours of the vertices as shown, 0 … 1.
     pub colors: Vec<[f32; 3]>,
-    /// Three indices each, counter-clockwise seen from outside.
+    /// Triangles of three indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The triangles that stand out, if any do.
     pub chosen: Vec<bool>,
@@ -42,7 +42,7 @@ impl Surface {
     #[must_use]
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         let first = *self.positions.first()?;
-        let grown = |[low, high]: [Vec3; 2], p: &Vec3| [low.min(*p), high.max(*p)];
-        Some(self.positions.iter().fold([first; 2], grown))
+        let points = self.positions.iter();
+        Some(points.fold([first; 2], |[low, high], p| [low.min(*p), high.max(*p)]))
     }
 }

@@ -19,9 +19,9 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 pub struct View {
     /// The centre of rotation, in the middle of the image.
     pub center: DVec3,
-    /// From the camera's axes (right, up, towards the eye) to the mesh's.
+    /// The rotation from the camera's axes (right, up, towards the eye) to the mesh's.
     pub rotation: DQuat,
-    /// From the eye to the centre.
+    /// The distance from the eye to the centre.
     pub distance: f64,
 }
 
@@ -61,11 +61,12 @@ impl View {
         [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| self.rotation * axis)
     }
 
-    /// The rotation of a trackball (after Chen 1988) between two places, in halves of the image's lesser side from its
-    /// middle, y up: in coordinates of the mesh. Outside the ball it rolls.
+    /// Computes the rotation of a trackball (after Chen 1988), in coordinates of the mesh. The
+    /// pointer's places `from` and `to` are in halves of the image's lesser side from its middle,
+    /// y up; outside the ball the image rolls.
     #[must_use]
-    pub fn rolled(&self, from: [f64; 2], to: [f64; 2]) -> DQuat {
-        let on_ball = |[x, y]: [f64; 2]| {
+    pub fn roll(&self, from: [f64; 2], to: [f64; 2]) -> DQuat {
+        let [from, to] = [from, to].map(|[x, y]| {
             let p = DVec2::new(x, y) / RADIUS;
             let squared = p.length_squared();
             if squared <= 0.5 {
@@ -74,18 +75,17 @@ impl View {
                 // A hyperbolic sheet goes on from the ball without a kink.
                 p.extend(0.5 / squared.sqrt()).normalize()
             }
-        };
-        let own = DQuat::from_rotation_arc(on_ball(from), on_ball(to));
-        self.rotation * own * self.rotation.inverse()
+        });
+        self.rotation * DQuat::from_rotation_arc(from, to) * self.rotation.inverse()
     }
 
-    /// Turns what is seen by the trackball.
+    /// Turns the image by the trackball.
     pub fn turn(&mut self, from: [f64; 2], to: [f64; 2]) {
-        let rolled = self.rolled(from, to);
+        let rolled = self.roll(from, to);
         self.rotation = (rolled.inverse() * self.rotation).normalize();
     }
 
-    /// Moves what is seen by pixels, x to the right and y down, in an image of this size.
+    /// Moves the image by pixels, x to the right and y down, in an image of this size.
     pub fn shift(&mut self, [x, y]: [f64; 2], size: [usize; 2]) {
         let [right, up, _] = self.axes();
         let pixel = self.distance / self.focal(size);

@@ -22,7 +22,7 @@ pub enum Icon {
     Frame,
     /// A plus.
     Add,
-    /// Three dots.
+    /// A row of three dots.
     More,
     /// A cross.
     Close,
@@ -30,7 +30,7 @@ pub enum Icon {
     Lines,
     /// A triangle to the right.
     Play,
-    /// Two bars.
+    /// A pair of bars.
     Pause,
     /// A folder.
     Open,
@@ -48,7 +48,7 @@ pub enum Icon {
     Move,
     /// Scissors: cut.
     Scissors,
-    /// Two halves beside a line: mirror.
+    /// A pair of halves beside a line: mirror.
     Mirror,
     /// A drop: colour.
     Drop,

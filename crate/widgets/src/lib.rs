@@ -1,6 +1,7 @@
-//! The look of the page, shared by its editor and its lab: two palettes ([`theme`]), two fonts ([`fonts`]), drawn
-//! icons ([`icon`]), sliders ([`slider`]), the width below which a page is narrow ([`screen`]), a [`clock`], and the
-//! places of widgets for tests that click them ([`places`]).
+//! The look of the page, shared by its editor and its lab: two palettes ([`theme`]), two fonts
+//! ([`fonts`]), drawn icons ([`icon`]), sliders ([`slider`]), the width below which a page is
+//! narrow ([`screen`]), a [`clock`], and the places of widgets for tests that click them
+//! ([`places`]).
 //!
 //! ```
 //! use widgets::{icon, places, theme};

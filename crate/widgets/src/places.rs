@@ -1,5 +1,5 @@
-//! Places of the widgets: parts of the page that keep their identity, and where widgets are, for tests
-//! that drive the page from outside: a canvas has no elements that they could look for.
+//! Places of the widgets: parts of the page that keep their identity, and where widgets are, for
+//! tests that drive the page from outside: a canvas has no elements that they could look for.
 
 use egui::{Context, Id, Rect, UiBuilder};
 use std::collections::BTreeMap;
@@ -11,10 +11,10 @@ fn id() -> Id {
     Id::unique("places")
 }
 
-/// Returns a builder for a part of the page. egui tells widgets from each other by their order, so that
-/// one that comes or goes (a spinner, a strip) would give those after it another identity, and a click
-/// that has begun on one of them would be lost. Widgets in a part of its own are counted apart.
-#[must_use]
+/// Returns a builder for a part of the page. egui tells widgets from each other by their order, so
+/// that one that comes or goes (a spinner, a strip) would give those after it another identity, and
+/// a click that has begun on one of them would be lost. Widgets in a part of its own are counted
+/// apart.
 pub fn part(name: &str, place: Rect) -> UiBuilder {
     UiBuilder::new()
         .scope_id(Id::unique(("part", name)))
@@ -34,7 +34,7 @@ pub fn note(ctx: &Context, name: impl Into<String>, rect: Rect) {
     });
 }
 
-/// All places of the last frame.
+/// Returns the places of the last frame.
 #[must_use]
 pub fn all(ctx: &Context) -> Places {
     ctx.data(|data| data.get_temp::<Places>(id()))

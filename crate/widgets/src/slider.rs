@@ -49,17 +49,18 @@ pub fn counts(value: f64) -> bool {
     value.abs() >= 20.0 && value.fract() == 0.0
 }
 
-/// The nearest of the numbers that lie whole steps above `low`, without digits that no hand could set.
+/// Returns the number nearest to `value` that lies a whole number of steps above `low`, without
+/// digits that no hand could set.
 #[must_use]
 pub fn stepped(value: f64, low: f64, step: Option<f64>, decimals: usize) -> f64 {
     match step {
-        Some(step) if step > 0.0 => rounded(low + ((value - low) / step).round() * step, 9),
-        _ => rounded(value, decimals),
+        Some(step) if step > 0.0 => shorten(low + ((value - low) / step).round() * step, 9),
+        _ => shorten(value, decimals),
     }
 }
 
-/// A number without the digits that no hand could set.
-fn rounded(value: f64, decimals: usize) -> f64 {
+/// Shortens a number to the digits that a hand can set.
+fn shorten(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$}").parse().unwrap_or(value)
 }
 
@@ -69,8 +70,8 @@ mod tests {
 
     #[test]
     fn numbers_have_no_digits_that_no_hand_could_set() {
-        assert_eq!(rounded(0.1 + 0.2, 4), 0.3);
-        assert_eq!(rounded(1234.56, 0), 1235.0);
+        assert_eq!(shorten(0.1 + 0.2, 4), 0.3);
+        assert_eq!(shorten(1234.56, 0), 1235.0);
         assert!(counts(100.0) && counts(-20.0));
         assert!(!counts(-2.0) && !counts(254.8) && !counts(f64::NAN));
     }

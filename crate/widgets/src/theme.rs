@@ -1,4 +1,4 @@
-//! How the page looks: two calm palettes, slate and paper, with one warm accent for what acts.
+//! The look of the page: two calm palettes, slate and paper, with one warm accent for what acts.
 
 use egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme,
@@ -34,9 +34,9 @@ impl From<Choice> for egui::ThemePreference {
 pub struct Palette {
     /// Bars and panels.
     pub panel: Color32,
-    /// Behind the text.
+    /// The ground behind the text.
     pub paper: Color32,
-    /// Behind the picture.
+    /// The ground behind the picture.
     pub stage: Color32,
     /// Menus and windows.
     pub raised: Color32,
@@ -273,7 +273,7 @@ pub fn label(choice: Choice) -> &'static str {
     }
 }
 
-/// The other palette than the one on the screen.
+/// Returns the palette that is not on the screen.
 #[must_use]
 pub fn other(ui: &egui::Ui) -> Choice {
     if ui.visuals().dark_mode {

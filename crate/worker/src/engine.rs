@@ -84,7 +84,7 @@ pub type Tracer = dyn Fn(Tile, &dyn Fn() -> bool) -> Option<Vec<u8>>;
 
 /// A scene made ready for what is wanted of it.
 pub enum Prepared {
-    /// With the first samples of its pixels, for the tiles that are made smooth.
+    /// The picture with the first samples of its pixels, for the tiles that are made smooth.
     Colours(Box<Picture>, SampleCache),
     /// Something else than colours.
     Other(Box<Tracer>),
@@ -100,7 +100,7 @@ impl Prepared {
 }
 
 /// Prepares a scene of which convolution surfaces are found in the tracer's own way.
-fn certified(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, String> {
+fn prepare(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, String> {
     if scene.settings.digger != Digger::Hermite || kind != Kind::Colours {
         return Err(String::from("this worker has no other root finders"));
     }
@@ -108,16 +108,17 @@ fn certified(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, Stri
 }
 
 impl Default for Engine {
-    /// An engine that finds convolution surfaces in the tracer's own way, and refuses other scenes.
+    /// Returns an engine that finds convolution surfaces in the tracer's own way, and refuses other
+    /// scenes.
     fn default() -> Self {
-        Self::new(certified)
+        Self::new(prepare)
     }
 }
 
 /// Outcome of a step.
 #[derive(Debug, PartialEq)]
 pub enum Step {
-    /// There was nothing to do.
+    /// Nothing was to be done.
     Idle,
     /// A part of a tile was traced.
     Part,

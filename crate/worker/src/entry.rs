@@ -19,7 +19,7 @@ struct Desk {
     engine: Engine,
     /// Answers not sent yet.
     answers: Vec<Answer>,
-    /// When answers were last sent.
+    /// The time at which answers were last sent, seconds.
     sent: f64,
     /// Whether a message to ourselves is on its way.
     ticking: bool,

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::sync::Arc;
 use tracer::{Known, Pass, Stats, Tile};
 
-/// One tile to trace.
+/// A tile to trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Order {
     /// The picture it belongs to.
     pub generation: u64,
-    /// Which pixels.
+    /// The pixels.
     pub tile: Tile,
-    /// How finely.
+    /// The pass: coarse, full or smooth.
     pub pass: Pass,
 }
 
@@ -22,7 +22,7 @@ pub enum Kind {
     /// Colours, as RGBA.
     #[default]
     Colours,
-    /// How far off the scene's digger is, as the crate `digger` says.
+    /// Errors of the scene's digger, as the crate `digger` says.
     Errors,
 }
 
@@ -31,7 +31,7 @@ pub enum Kind {
 pub enum Request {
     /// A new picture begins: whatever is queued is forgotten.
     Begin {
-        /// Its number, larger than those before.
+        /// The picture's number, larger than those before.
         generation: u64,
         /// Scene to draw.
         scene: Arc<Scene>,
@@ -44,7 +44,7 @@ pub enum Request {
         /// Whether others trace it, too, and want to hear of the first samples that were taken.
         shared: bool,
     },
-    /// Others took these first samples, which are not to be taken again.
+    /// First samples that others took, which are not to be taken again.
     Learn {
         /// The picture.
         generation: u64,
@@ -69,7 +69,7 @@ pub enum Answer {
     /// A [`Request::Begin`] or [`Request::Stop`] was taken note of: whatever the worker was at
     /// before is over. Left out if another one has come in meanwhile.
     Noted {
-        /// Its number.
+        /// The number of the request.
         generation: u64,
     },
     /// The picture is ready for tracing. Sent once for each [`Request::Begin`] that was not

@@ -41,7 +41,8 @@ fn weigh(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Bytes of a file after brotli, as static hosts compress it. Node.js has an implementation, so that none is compiled here.
+/// Bytes of a file after brotli, as static hosts compress it. Node.js has an implementation, so
+/// that none is compiled here.
 fn compressed(file: &Path) -> Option<usize> {
     const SCRIPT: &str = "\
         const { brotliCompressSync, constants } = require('zlib'); \

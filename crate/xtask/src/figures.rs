@@ -1,5 +1,5 @@
-//! `cargo xtask figures`: the page `www/figures.html`, which shows the figures of Sherstyuk's thesis as this renderer draws them, each
-//! with a link that opens its dataset.
+//! `cargo xtask figures`: the page `www/figures.html`, which shows the figures of Sherstyuk's
+//! thesis as this renderer draws them, each with a link that opens its dataset.
 
 use crate::pictures::{draw, fitted, program, read_picture};
 use crate::shell::{command, files, read, root, target};
@@ -7,8 +7,9 @@ use anyhow::{Context, Result};
 use std::fs;
 use std::path::Path;
 
-/// The figures, apart by empty lines: number and title, what the thesis says about it in short, and lines `EXAMPLE: LABEL`.
-/// Of an example whose name ends with [`OFFSET`] the offset surface is drawn in place of the convolution surface.
+/// The figures, apart by empty lines: number and title, what the thesis says about it in short, and
+/// lines `EXAMPLE: LABEL`. Of an example whose name ends with [`OFFSET`] the offset surface is
+/// drawn in place of the convolution surface.
 const FIGURES: &str = include_str!("../figures.txt");
 const OFFSET: &str = "-offset";
 /// The head of the page.

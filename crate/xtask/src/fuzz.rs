@@ -8,7 +8,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 /// Times as many inputs as the tests have, in each round.
 const TIMES: &str = "10";
 
-/// Runs the random tests with fresh seeds, the fuzzer of the language, and each target of cargo-fuzz, each for so many minutes.
+/// Runs the random tests with fresh seeds, the fuzzer of the language, and each target of
+/// cargo-fuzz, each for so many minutes.
 pub fn fuzz(minutes: u64) -> Result<()> {
     let seconds = 60 * minutes;
     tests(Duration::from_secs(seconds))?;
@@ -60,7 +61,8 @@ pub fn guided(seconds: u64) -> Result<()> {
     run(&mut command("rustup", &nightly)).context("cargo-fuzz needs a nightly compiler")?;
     for target in files(&root().join("fuzz/fuzz_targets"), "rs")? {
         let name = target.file_stem().unwrap_or_default().to_string_lossy();
-        // The cargo that runs this program is not rustup's, and would not know of the other compiler.
+        // The cargo that runs this program is not rustup's, and would not know of the other
+        // compiler.
         let line = format!("run nightly cargo fuzz run {name} -- -max_total_time={seconds}");
         run(&mut command("rustup", &words(&line)))
             .with_context(|| format!("the target {name} found something"))?;

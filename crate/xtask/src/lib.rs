@@ -1,6 +1,6 @@
-//! Builds, serves, packs and tests Sinew. Every command installs what it lacks where that can be done without asking (Rust's
-//! wasm target, node packages, on Debian and Ubuntu the browser), says what it runs, and otherwise fails with a sentence that
-//! says what to install.
+//! Builds, serves, packs and tests Sinew. Every command installs what it lacks where that can be
+//! done without asking (Rust's wasm target, node packages, on Debian and Ubuntu the browser), says
+//! what it runs, and otherwise fails with a sentence that says what to install.
 
 pub mod check;
 pub mod dist;

@@ -29,10 +29,12 @@ enum Command {
     Test {
         /// Only this part.
         part: Option<check::Part>,
-        /// Only this package (a folder in crate/), or tests or files of browser tests with this in their names.
+        /// Only this package (a folder in crate/), or tests or files of browser tests with this in
+        /// their names.
         filter: Option<String>,
     },
-    /// Run the random tests with fresh seeds, the fuzzer of the language and the targets of cargo-fuzz, each for some minutes.
+    /// Run the random tests with fresh seeds, the fuzzer of the language and the targets of
+    /// cargo-fuzz, each for some minutes.
     Fuzz {
         /// Minutes for each.
         #[arg(default_value_t = 10)]
@@ -52,8 +54,8 @@ enum Command {
     Figures,
     /// Write the reference page, www/reference.html, and draw the pictures of its examples.
     Reference,
-    /// Renew tests/pins.txt, the hashes that pictures are held to, after a change of the pictures that is meant, and show
-    /// the old and the new pictures.
+    /// Renew tests/pins.txt, the hashes that pictures are held to, after a change of the pictures
+    /// that is meant, and show the old and the new pictures.
     Pins,
 }
 

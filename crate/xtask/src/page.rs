@@ -24,7 +24,8 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     tools::target(tools::WASM)?;
     let made = target().join("modules");
     tell("Building the page: some minutes the first time, then as long as what has changed takes.");
-    // For a release each has a folder of its own to build in, and is optimised by one core; else they share what is compiled.
+    // For a release each has a folder of its own to build in, and is optimised by one core; else
+    // they share what is compiled.
     let work = MODULES.map(|module| {
         let made = &made;
         move || in_lane(module.name, || make(&module, build, made))
@@ -68,8 +69,9 @@ fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// How hard wasm-opt tries. Harder is slower for what a worker runs: with -O3 flakes take a tenth longer, as numbers
-/// side by side are moved about more. The app is no smaller after brotli with -Oz.
+/// How hard wasm-opt tries. Harder is slower for what a worker runs: with -O3 flakes take a tenth
+/// longer, as numbers side by side are moved about more. The app is no smaller after brotli with
+/// -Oz.
 const LEVEL: &str = "-O1";
 
 /// Has wasm-opt make a wasm of another.

@@ -17,8 +17,8 @@ pub fn sinew(build: Option<Build>) -> Result<PathBuf> {
     Ok(program.with_extension(std::env::consts::EXE_EXTENSION))
 }
 
-/// The program `sinew` that draws pictures: built for speed, or the one that the variable `SINEW` of the environment names, as each
-/// build draws the same.
+/// The program `sinew` that draws pictures: built for speed, or the one that the variable `SINEW`
+/// of the environment names, as each build draws the same.
 pub fn program() -> Result<PathBuf> {
     std::env::var_os("SINEW").map_or_else(|| sinew(None), |path| Ok(path.into()))
 }
@@ -86,8 +86,8 @@ pub fn difference(a: &[u8], b: &[u8], channels: usize) -> (usize, u8) {
     (pixels.filter(|(a, b)| a != b).count(), most.unwrap_or(0))
 }
 
-/// Writes a picture anew with a palette, which takes less than half the bytes: pictures travel inside the app, where every kB
-/// counts.
+/// Writes a picture anew with a palette, which takes less than half the bytes: pictures travel
+/// inside the app, where every kB counts.
 fn reduce(path: &Path) -> Result<()> {
     let (info, pixels) = read_picture(path)?;
     if (info.color_type, info.bit_depth) != (ColorType::Rgba, BitDepth::Eight) {
@@ -101,9 +101,10 @@ fn reduce(path: &Path) -> Result<()> {
 /// Differences between a colour and the nearest of the palette that are not seen, of 255.
 const UNSEEN: f32 = 3.0;
 
-/// Indices of a palette for a picture's RGBA bytes. Where the palette has no colour near enough, as on a wide gradient of many hues, the
-/// difference is handed on to the neighbours (Floyd and Steinberg 1976), so that no blotches are seen; elsewhere the bytes
-/// stay even, which makes the file small.
+/// Indices of a palette for a picture's RGBA bytes. Where the palette has no colour near enough, as
+/// on a wide gradient of many hues, the difference is handed on to the neighbours (Floyd and
+/// Steinberg 1976), so that no blotches are seen; elsewhere the bytes stay even, which makes the
+/// file small.
 fn dithered(palette: &NeuQuant, width: usize, pixels: &[u8]) -> Vec<u8> {
     let colours = palette.color_map_rgb();
     // What the rest of the picture has been handed, with a column on either side and a row below.
@@ -154,7 +155,8 @@ mod tests {
         let pixels: Vec<u8> = (0..64 * 64).flat_map(ramp).collect();
         let palette = NeuQuant::new(1, 64, &pixels);
         let colours = palette.color_map_rgb();
-        // How far the sums of red in squares of 4 by 4 pixels are off, so that blotches would be seen.
+        // How far the sums of red in squares of 4 by 4 pixels are off, so that blotches would be
+        // seen.
         let off = |indices: Vec<u8>| {
             let mut sums = [0; 256];
             for (i, index) in indices.into_iter().enumerate() {

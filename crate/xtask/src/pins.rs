@@ -1,8 +1,8 @@
-//! `cargo xtask pins`: renews `tests/pins.txt`, the hashes that pictures are held to, and shows what has changed since the
-//! commit that renewed them last.
+//! `cargo xtask pins`: renews `tests/pins.txt`, the hashes that pictures are held to, and shows
+//! what has changed since the commit that renewed them last.
 //!
-//! The repository keeps no pictures: the old ones are drawn by that commit, checked out in a folder of its own.
-//! New and old ones come from the same test, `crate/worker/tests/it/pins.rs`.
+//! The repository keeps no pictures: the old ones are drawn by that commit, checked out in a folder
+//! of its own. New and old ones come from the same test, `crate/worker/tests/it/pins.rs`.
 
 use crate::pictures::{difference, write_picture};
 use crate::shell::{cargo, command, read, root, run, run_and_read, target, words};
@@ -21,7 +21,8 @@ const HEAD: &str = "\
 /// Hashes (`SIDE HASH`) by picture (`NAME PASS`).
 type Pins = BTreeMap<String, String>;
 
-/// Draws all pictures, writes their hashes, and old and new pictures side by side where they differ.
+/// Draws all pictures, writes their hashes, and old and new pictures side by side where they
+/// differ.
 pub fn renew() -> Result<()> {
     let folder = target().join("pins");
     if folder.exists() {
@@ -96,7 +97,8 @@ fn draw(checkout: &Path, folder: &Path) -> Result<String> {
     Ok(lines)
 }
 
-/// Writes the old picture, the new one and their difference side by side, and says how much they differ.
+/// Writes the old picture, the new one and their difference side by side, and says how much they
+/// differ.
 fn show(folder: &Path, name: &str) -> Result<String> {
     let file = name.replace(['/', ' '], "-");
     let read = |which: &str| {

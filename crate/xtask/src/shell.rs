@@ -30,13 +30,15 @@ pub struct Build {
     pub flags: &'static str,
 }
 
-/// For any processor of this one's kind, where `.cargo/config.toml` asks for all that this one can do: the same bits, later.
+/// For any processor of this one's kind, where `.cargo/config.toml` asks for all that this one can
+/// do: the same bits, later.
 pub const PORTABLE: Build = Build {
     folder: "portable",
     flags: "-C target-cpu=x86-64",
 };
 
-/// For this processor, which may round a product and a sum once instead of twice: other bits, sooner.
+/// For this processor, which may round a product and a sum once instead of twice: other bits,
+/// sooner.
 pub const FUSED: Build = Build {
     folder: "fused",
     flags: "-C target-cpu=native -C llvm-args=-fp-contract=fast",
@@ -77,8 +79,8 @@ pub fn words(line: &str) -> Vec<&str> {
 }
 
 thread_local! {
-    /// A thread's lane: what stands before each line that it and its programs write; empty where nothing else runs at the same
-    /// time.
+    /// A thread's lane: what stands before each line that it and its programs write; empty where
+    /// nothing else runs at the same time.
     static LANE: Cell<&'static str> = const { Cell::new("") };
 }
 
@@ -117,12 +119,14 @@ pub fn run(command: &mut Command) -> Result<()> {
     run_and_read(command).map(|_| ())
 }
 
-/// Runs a command, passes on what it writes, line by line as it comes, and gives its standard output.
+/// Runs a command, passes on what it writes, line by line as it comes, and gives its standard
+/// output.
 pub fn run_and_read(command: &mut Command) -> Result<String> {
     pass_on(command, true)
 }
 
-/// Does several things, as many at a time as there are cores, in their order, and gives what comes of them in that order.
+/// Does several things, as many at a time as there are cores, in their order, and gives what comes
+/// of them in that order.
 pub fn at_once<T: Send>(work: Vec<impl FnOnce() -> T + Send>) -> Vec<T> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (next, lane) = (Mutex::new(work.into_iter().enumerate()), LANE.get());
@@ -150,7 +154,8 @@ fn succeeded(command: &Command, status: std::io::Result<ExitStatus>) -> Result<(
     Ok(())
 }
 
-/// Runs a command, passes on what it writes to standard error, and to standard output if that is `shown`, and gives the latter.
+/// Runs a command, passes on what it writes to standard error, and to standard output if that is
+/// `shown`, and gives the latter.
 fn pass_on(command: &mut Command, shown: bool) -> Result<String> {
     say(command);
     let lane = LANE.get();
@@ -194,7 +199,8 @@ pub fn read(command: &mut Command) -> Option<String> {
     output.status.success().then(|| text.trim().to_owned())
 }
 
-/// Returns the artifacts that a cargo command with `--message-format json-render-diagnostics` reports.
+/// Returns the artifacts that a cargo command with `--message-format json-render-diagnostics`
+/// reports.
 pub fn artifacts(command: &mut Command) -> Result<Vec<serde_json::Value>> {
     let output = pass_on(command, false)?;
     let messages = output

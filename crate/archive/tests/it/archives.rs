@@ -1,11 +1,13 @@
-//! Archives: there and back, as others read and write them, and everything that may be wrong with them.
+//! Archives: there and back, as others read and write them, and everything that may be wrong with
+//! them.
 
 use archive::{Archive, Error, Member, write};
 use std::path::PathBuf;
 use std::process::Command;
 use trials::trials;
 
-/// An archive of the program `zip` with a folder, a packed text, and a stored one with another name's letters.
+/// An archive of the program `zip` with a folder, a packed text, and a stored one with another
+/// name's letters.
 fn foreign() -> Option<(PathBuf, Vec<u8>)> {
     let folder = std::env::temp_dir().join(format!("sinew-archive-{}", std::process::id()));
     std::fs::create_dir_all(folder.join("in")).ok()?;

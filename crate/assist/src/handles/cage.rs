@@ -7,7 +7,8 @@ use rats::limits::MAX_MAGNITUDE;
 use rats::provenance::{Number, Source};
 use rats::{Deform, Project, TextEdit};
 
-/// The handles of the control points of a deformation, in their order: each stands where its point is moved to.
+/// The handles of the control points of a deformation, in their order: each stands where its point
+/// is moved to.
 #[must_use]
 pub fn cage(deform: &Deform) -> Vec<Handle> {
     let count = deform.controls.len();
@@ -44,8 +45,9 @@ pub fn cage(deform: &Deform) -> Vec<Handle> {
     deform.controls.iter().enumerate().map(handle).collect()
 }
 
-/// The change of the text that moves a control point of a deformation to a place; a move is written behind a point that
-/// has none. `grain` as for [`drag`](super::drag()). `None` if the point is fixed, or as near already.
+/// The change of the text that moves a control point of a deformation to a place; a move is written
+/// behind a point that has none. `grain` as for [`drag`](super::drag()). `None` if the point is
+/// fixed, or as near already.
 ///
 /// ```
 /// use glam::DVec3;

@@ -7,12 +7,13 @@ use rats::TextEdit;
 use rats::limits::MAX_MAGNITUDE;
 use rats::provenance::{Number, Source};
 
-/// The changes of the texts that bring a handle to `to`, or as near as its numbers allow. `grain`, a
-/// length of the world above 0 (say, that of a pixel), says how exactly: numbers get no more digits than
-/// that needs, and a number that is that near already stays as it is written.
+/// The changes of the texts that bring a handle to `to`, or as near as its numbers allow. `grain`,
+/// a length of the world above 0 (say, that of a pixel), says how exactly: numbers get no more
+/// digits than that needs, and a number that is that near already stays as it is written.
 ///
-/// The changes are in the order of the text, apart from each other; made from the last to the first, no
-/// range moves under another. There are none if the handle is fixed, or a number would be out of range.
+/// The changes are in the order of the text, apart from each other; made from the last to the
+/// first, no range moves under another. There are none if the handle is fixed, or a number would be
+/// out of range.
 #[must_use]
 pub fn drag(handle: &Handle, to: DVec3, grain: f64) -> Vec<TextEdit> {
     if matches!(handle.edit, Editable::Fixed { .. }) || !to.is_finite() {

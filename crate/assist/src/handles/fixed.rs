@@ -55,8 +55,8 @@ pub fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
     places.into_iter().map(handle).collect()
 }
 
-/// Why the numbers of a command that made an element differ from one element to the next, if they may.
-/// Copies by `instance` share theirs.
+/// Why the numbers of a command that made an element differ from one element to the next, if they
+/// may. Copies by `instance` share theirs.
 pub fn why_repeated(project: &Project, origin: Origin) -> Option<String> {
     let file = project.files.get(origin.file as usize)?;
     let mut symbols = Symbols::default();

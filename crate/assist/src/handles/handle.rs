@@ -1,4 +1,5 @@
-//! A handle: a place in the world, the numbers that it stands for, and how the one follows from the others.
+//! A handle: a place in the world, the numbers that it stands for, and how the one follows from the
+//! others.
 
 use super::decimal::write;
 use glam::{DAffine3, DMat3, DVec3};
@@ -21,7 +22,8 @@ pub enum Kind {
 /// Whether a handle can be moved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Editable {
-    /// Yes: these numbers can change, each in a file (an index of [`Project::files`]) at a byte range.
+    /// Yes: these numbers can change, each in a file (an index of [`Project::files`]) at a byte
+    /// range.
     Literal {
         /// The places.
         spans: Vec<(usize, Range<usize>)>,

@@ -7,8 +7,8 @@ use rats::commands::{Kind as Takes, Role};
 use rats::provenance::{Operand, Provenance};
 use scene::{Element, Flesh, Scene, Shape};
 
-/// Makes the handles of one element: its scene, itself, how it came from its command, the axes of the view,
-/// and from where the numbers of its command come.
+/// Makes the handles of one element: its scene, itself, how it came from its command, the axes of
+/// the view, and from where the numbers of its command come.
 pub struct Maker<'a> {
     pub scene: &'a Scene,
     pub element: &'a Element,
@@ -18,8 +18,8 @@ pub struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// The handles of all operands that stand for places, radii and angles, and of the material's radius if
-    /// that counts.
+    /// The handles of all operands that stand for places, radii and angles, and of the material's
+    /// radius if that counts.
     pub fn handles(&self) -> Vec<Handle> {
         let mut handles = Vec::new();
         for (index, operand) in self.seen.operands.iter().enumerate() {
@@ -56,8 +56,8 @@ impl Maker<'_> {
         handles
     }
 
-    /// The knob of the radius of a shape that a loop or a defined command makes, if the number is written
-    /// out or is a variable from outside: then all that is made so follows it.
+    /// The knob of the radius of a shape that a loop or a defined command makes, if the number is
+    /// written out or is a variable from outside: then all that is made so follows it.
     pub fn shared_radius(&self) -> Option<Handle> {
         let mut handle = self.handles().into_iter().find(|handle| {
             let is_radius = handle.label.contains("radius") && !handle.label.contains("sweep");
@@ -182,8 +182,8 @@ impl Maker<'_> {
         self.element.shape.radius() == 0.0 || self.scene.radius_of_flesh(self.element).is_some()
     }
 
-    /// Where the knob of the shape's radius is: on the rim, across the view. `end` is the end of a cone
-    /// or limb that tapers, 0 or 1.
+    /// Where the knob of the shape's radius is: on the rim, across the view. `end` is the end of a
+    /// cone or limb that tapers, 0 or 1.
     fn radius(&self, end: f64) -> Moves {
         let view = self.view;
         let (right, towards) = (view.x_axis, view.z_axis);

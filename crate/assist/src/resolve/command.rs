@@ -10,8 +10,8 @@ use std::ops::Range;
 use std::rc::Rc;
 
 impl<'p, 's> Resolver<'p, 's> {
-    /// One command: notes the names that it uses, then those that it makes. Returns the files that it reads,
-    /// the last one first.
+    /// One command: notes the names that it uses, then those that it makes. Returns the files that
+    /// it reads, the last one first.
     pub(super) fn command(&mut self, file: usize, command: &'s Command) -> Vec<usize> {
         let text = self.text(file);
         let syntaxes: &'s [Syntax] = self.syntaxes;
@@ -77,8 +77,8 @@ impl<'p, 's> Resolver<'p, 's> {
         }
     }
 
-    /// Notes what an operand names: a thing, a file or a parameter. Returns the file that the command reads
-    /// there, if it is `read` and the file is one of the project's.
+    /// Notes what an operand names: a thing, a file or a parameter. Returns the file that the
+    /// command reads there, if it is `read` and the file is one of the project's.
     pub(super) fn use_operand(
         &mut self,
         file: usize,

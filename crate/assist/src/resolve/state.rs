@@ -1,4 +1,5 @@
-//! The state of the search for names: the things found so far, and what can be seen at this point of the texts.
+//! The state of the search for names: the things found so far, and what can be seen at this point
+//! of the texts.
 
 use crate::grammar::Grammar;
 use crate::index::{Entity, Here, Occurrence, Place, SymbolKind};
@@ -63,8 +64,8 @@ pub struct Resolver<'p, 's> {
     pub open: Vec<Open>,
     /// The commands that have been defined so far.
     pub defines: HashMap<&'p str, Rc<Own<'p>>>,
-    /// All commands that are defined anywhere, by file and byte; those that are called before they are
-    /// defined in the text, by name.
+    /// All commands that are defined anywhere, by file and byte; those that are called before they
+    /// are defined in the text, by name.
     pub all_defines: HashMap<(usize, usize), Rc<Own<'p>>>,
     pub later: HashMap<&'p str, Rc<Own<'p>>>,
     /// The parameters of all commands, by the names of both.
@@ -77,7 +78,8 @@ pub struct Resolver<'p, 's> {
     pub leaky: Vec<(&'p str, usize)>,
     /// Things that are the same if the project has a variable of this name.
     pub same_as_global: Vec<(usize, &'p str)>,
-    /// The places in which files have been read: the file, the call, the loop, its number of variables.
+    /// The places in which files have been read: the file, the call, the loop, its number of
+    /// variables.
     pub contexts: HashSet<(usize, Option<usize>, Option<usize>, usize)>,
     /// How many more names may be compared where files are read again.
     pub work_left: usize,

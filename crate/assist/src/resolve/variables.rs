@@ -120,8 +120,8 @@ impl<'p> Resolver<'p, '_> {
             .or_else(|| frame.locals.get(name).map(|local| local.entity))
     }
 
-    /// Whether a word means a colour or a constant here, as no variable of that name has been set so far. Only
-    /// in the first file and outside of loops and commands is that certain.
+    /// Whether a word means a colour or a constant here, as no variable of that name has been set
+    /// so far. Only in the first file and outside of loops and commands is that certain.
     pub(super) fn is_not_set_yet(&self, name: &str) -> bool {
         let is_plain = matches!(&self.frames[..], [frame] if frame.loops.is_empty());
         is_plain

@@ -69,7 +69,8 @@ fn spaces() {
     check("", "");
 }
 
-/// Formatting is idempotent, also with signs next to each other: a space after one must not change the tokens behind it.
+/// Formatting is idempotent, also with signs next to each other: a space after one must not change
+/// the tokens behind it.
 #[test]
 fn signs_that_run_into_each_other() {
     check("var a+=*=b", "var a+=*=b\n");
@@ -178,7 +179,8 @@ fn without_places(compiled: &Compiled) -> scene::Scene {
     scene
 }
 
-/// The messages, with their places as the number of letters before them, since only space may change.
+/// The messages, with their places as the number of letters before them, since only space may
+/// change.
 fn said(project: &Project, compiled: &Compiled) -> Vec<String> {
     let mut said = Vec::new();
     for d in &compiled.diagnostics {

@@ -11,12 +11,12 @@ fn any_nearly_right_text() {
         let project = check::project(&text, "sphere m0 1 0 0 0\n");
         let compiled = compile(&project);
         let byte = u.int_in_range(0..=text.len() + 2)?;
-        let sound = check::compiled(&project, &compiled)
-            .and_then(|()| check::helped(&project, &compiled, byte))
+        let sound = check::result(&project, &compiled)
+            .and_then(|()| check::help(&project, &compiled, byte))
             .and_then(|()| check::unrun(&text))
             .and_then(|()| check::repeats(&project, &compiled))
-            .and_then(|()| check::laid_out(&project, &compiled))
-            .and_then(|()| check::sent(&project));
+            .and_then(|()| check::layout(&project, &compiled))
+            .and_then(|()| check::sharing(&project));
         assert_eq!(sound, Ok(()), "{text}");
         Ok(())
     })

@@ -1,7 +1,7 @@
 //! The reference page, `www/reference.html`, is made from the table of commands.
 //!
-//! `UPDATE_EXPECT=1 cargo test -p assist --test it reference::` writes it anew; the test fails while it is not
-//! what the table says.
+//! `UPDATE_EXPECT=1 cargo test -p assist --test it reference::` writes it anew; the test fails
+//! while it is not what the table says.
 
 use std::path::Path;
 

@@ -5,8 +5,8 @@ use glam::DVec3;
 use scene::{Body, Camera, Element, Flesh, Light, LightKind, Scene, Shape};
 
 /// Balls of a kernel spread evenly through a cube of side 2, by the additive sequence of the three
-/// powers of 1/φ₃, φ₃ ≈ 1.2207 being the root of x⁴ = x + 1. Their mean distance is `apart` radii: at 3
-/// many touch and melt together.
+/// powers of 1/φ₃, φ₃ ≈ 1.2207 being the root of x⁴ = x + 1. Their mean distance is `apart` radii:
+/// at 3 many touch and melt together.
 pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
     const PHI: f64 = 1.220_744_084_605_759_5;
     let step = DVec3::new(1.0 / PHI, 1.0 / (PHI * PHI), 1.0 / (PHI * PHI * PHI));
@@ -45,8 +45,8 @@ pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
     scene
 }
 
-/// Molecules of three balls that melt together, in the places of the balls of [`scene`]: all in one body, or each in a body of
-/// its own.
+/// Molecules of three balls that melt together, in the places of the balls of [`scene`]: all in one
+/// body, or each in a body of its own.
 pub fn triples(count: u32, kernel: Kernel, apart: f64, in_bodies: bool) -> Scene {
     let mut scene = scene(count, kernel, apart);
     let middles = core::mem::take(&mut scene.elements);

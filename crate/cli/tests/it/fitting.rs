@@ -1,6 +1,6 @@
 //! `sinew scan` and `sinew fit`, end to end.
 
-use crate::common::{Folder, printed, sinew};
+use crate::common::{Folder, sinew, stdout};
 use serde_json::Value;
 
 const HEAD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../www/examples/head.obj");
@@ -15,27 +15,23 @@ const BENT: &str =
 fn cage() -> String {
     let (corners, mut text) = ([[-1.5, 1.5], [-1.2, 0.9], [-1.9, 1.8]], String::new());
     for i in 0..8 {
-        let at = |axis: usize| corners[axis][i >> axis & 1];
-        text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+        let [x, y, z] = [0, 1, 2].map(|axis| corners[axis][i >> axis & 1]);
+        text += &format!("v {x} {y} {z}\n");
     }
     for axis in 0..3 {
         for side in 0..2 {
-            let at = |k: usize| {
-                if k == axis {
-                    corners[k][side]
-                } else {
-                    0.5 * (corners[k][0] + corners[k][1])
-                }
-            };
-            text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+            let mut middle = corners.map(|[low, high]| 0.5 * (low + high));
+            middle[axis] = corners[axis][side];
+            let [x, y, z] = middle;
+            text += &format!("v {x} {y} {z}\n");
         }
     }
     for axis in 0..3 {
         for side in 0..2_usize {
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            let corner = |a: usize, b: usize| 1 + (side << axis) + (a << u) + (b << v);
             let middle = 9 + 2 * axis + side;
-            let ring = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            let ring = [[0, 0], [1, 0], [1, 1], [0, 1]]
+                .map(|[a, b]| 1 + (side << axis) + (a << u) + (b << v));
             for k in 0..4 {
                 text += &format!("f {middle} {} {}\n", ring[k], ring[(k + 1) % 4]);
             }
@@ -45,7 +41,7 @@ fn cage() -> String {
 }
 
 /// A folder with the head, its cage, and a scan of the bent head.
-fn prepared(name: &str) -> Folder {
+fn prepare(name: &str) -> Folder {
     let folder = Folder::new(name);
     std::fs::copy(HEAD, folder.path("head.obj")).expect("copied");
     folder.write("cage.obj", &cage());
@@ -77,8 +73,8 @@ fn prepared(name: &str) -> Folder {
 }
 
 #[test]
-fn bent_head_is_found_again_and_written_as_text_and_mesh() {
-    let folder = prepared("fit");
+fn a_bent_head_is_found_again_and_written_as_text_and_mesh() {
+    let folder = prepare("fit");
     let [mesh, cage] = ["head.obj", "cage.obj"].map(|name| folder.path(name));
     let output = sinew(
         &[
@@ -102,7 +98,7 @@ fn bent_head_is_found_again_and_written_as_text_and_mesh() {
     );
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    let told: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     let residual = told["residual"].as_f64().expect("a number");
     assert!(residual < 0.02, "{told}");
     assert_eq!(told["controls"], 14);
@@ -116,7 +112,7 @@ fn bent_head_is_found_again_and_written_as_text_and_mesh() {
     );
     let output = sinew(&["scene", &folder.path("fitted.rat")], "");
     assert_eq!(output.status.code(), Some(0));
-    let scene: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    let scene: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     let bytes = std::fs::read(folder.path("fitted.ply")).expect("written");
     let written = mesh::read("fitted.ply", &bytes).expect("a mesh");
     let elements = scene["elements"].as_array().expect("elements");
@@ -126,9 +122,9 @@ fn bent_head_is_found_again_and_written_as_text_and_mesh() {
         let shape = &element["shape"];
         let corners = shape["Triangle"]["corners"].as_array().expect("corners");
         for (corner, own) in corners.iter().zip(written.corners(i)) {
-            let value = |axis: usize| corner[axis].as_f64().expect("a number");
             for axis in 0..3 {
-                furthest = furthest.max((value(axis) - own[axis]).abs());
+                let value = corner[axis].as_f64().expect("a number");
+                furthest = furthest.max((value - own[axis]).abs());
             }
         }
     }
@@ -136,8 +132,8 @@ fn bent_head_is_found_again_and_written_as_text_and_mesh() {
 }
 
 #[test]
-fn turned_cloud_is_met_by_an_alignment() {
-    let folder = prepared("align");
+fn a_turned_cloud_is_met_by_an_alignment() {
+    let folder = prepare("align");
     let scene = folder.write(
         "turned.rat",
         &format!("{CAMERA}mesh s head.obj\nrotate 0 0 1 40\ntranslate 0.5 -0.3 0.2\n"),
@@ -169,7 +165,7 @@ fn turned_cloud_is_met_by_an_alignment() {
     );
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    let told: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     let angle = told["turn"]["angle"].as_f64().expect("a number");
     assert!((angle - 40.0).abs() < 1.0, "{told}");
     let text = std::fs::read_to_string(&out).expect("written");
@@ -189,7 +185,7 @@ fn turned_cloud_is_met_by_an_alignment() {
 
 #[test]
 fn scans_are_seeded() {
-    let folder = prepared("seeds");
+    let folder = prepare("seeds");
     let scene = folder.path("bent.rat");
     let scan = |name: &str, seed: &str| {
         let path = folder.path(name);
@@ -219,7 +215,7 @@ fn scans_are_seeded() {
 }
 
 /// Message of the program for an input that it refuses.
-fn refused(arguments: &[&str]) -> String {
+fn refusal(arguments: &[&str]) -> String {
     let output = sinew(arguments, "");
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     String::from_utf8_lossy(&output.stderr).into_owned()
@@ -236,7 +232,7 @@ fn bad_input_is_told_in_words() {
     let fit = |mesh: &str, extra: &[&str]| {
         let mut arguments = vec!["fit", mesh, "--control", &cage, "-o", &out];
         arguments.extend(extra);
-        refused(&arguments)
+        refusal(&arguments)
     };
     let one = folder.write("one.xyz", "0 0 1\n");
     let said = fit(&head, &["--points", &one]);
@@ -261,7 +257,8 @@ fn bad_input_is_told_in_words() {
     assert!(said.contains("no triangles"), "{said}");
     let aside = folder.write(
         "aside.json",
-        r#"[{"eye":[0,-5,0],"target":[0,0,0],"up":[0,0,1],"fov":40,"size":[100,100],"lines":[[[20,50],[50,120]]]}]"#,
+        r#"[{"eye":[0,-5,0],"target":[0,0,0],"up":[0,0,1],"fov":40,"size":[100,100],
+            "lines":[[[20,50],[50,120]]]}]"#,
     );
     let said = fit(&head, &["--silhouettes", &aside]);
     assert!(
@@ -273,7 +270,7 @@ fn bad_input_is_told_in_words() {
         said.contains("--thickness") || said.contains("thickness"),
         "{said}"
     );
-    let said = refused(&[
+    let said = refusal(&[
         "fit",
         &head,
         "--control",
@@ -317,12 +314,12 @@ fn bad_input_is_told_in_words() {
     );
     // Scans that see nothing.
     let empty = folder.write("empty.rat", "surface s diffuse White\n");
-    let said = refused(&["scan", &empty, "-o", &folder.path("e.ply")]);
+    let said = refusal(&["scan", &empty, "-o", &folder.path("e.ply")]);
     assert!(said.contains("nothing to measure"), "{said}");
     let away = folder.write(
         "away.rat",
         &format!("{CAMERA}vrp 0 -20 0\nsphere s 1, 0 0 0\n"),
     );
-    let said = refused(&["scan", &away, "--outlines", &folder.path("o.json")]);
+    let said = refusal(&["scan", &away, "--outlines", &folder.path("o.json")]);
     assert!(said.contains("view 1 has no outline"), "{said}");
 }

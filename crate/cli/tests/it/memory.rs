@@ -1,8 +1,9 @@
-//! How much memory very many elements take, of which Linux tells.
+//! The memory of very many elements, as Linux tells it.
 #![cfg(target_os = "linux")]
 use std::process::Command;
 
-/// A tenth of a million elements have a tenth of their room, 1.5 GiB; `cargo xtask bench memory` measures all of them.
+/// A tenth of a million elements have a tenth of their room, 1.5 GiB; `cargo xtask bench memory`
+/// measures all of them.
 #[test]
 fn a_hundred_thousand_elements_are_traced_within_a_tenth_of_a_gibibyte_and_a_half() {
     let output = Command::new(env!("CARGO_BIN_EXE_sinew"))

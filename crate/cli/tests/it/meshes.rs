@@ -1,16 +1,18 @@
 //! `sinew mesh`, end to end.
 
-use crate::common::{Folder, printed, sinew};
+use crate::common::{Folder, sinew, stdout};
 use serde_json::Value;
 
-const PAIR: &str = "light White point pos 3 4 5\nsurface warm diffuse OrangeRed shine 30 blob -2 kernel gauss\n\
-    surface cool diffuse SteelBlue blob -2 kernel gauss\nsphere warm 1 0 0 0\nsphere cool 1 1.5 0 0\n";
+const PAIR: &str = "light White point pos 3 4 5\n\
+    surface warm diffuse OrangeRed shine 30 blob -2 kernel gauss\n\
+    surface cool diffuse SteelBlue blob -2 kernel gauss\n\
+    sphere warm 1 0 0 0\nsphere cool 1 1.5 0 0\n";
 
-fn meshed(arguments: &[&str]) -> Value {
+fn mesh(arguments: &[&str]) -> Value {
     let output = sinew(arguments, "");
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {said}");
-    serde_json::from_str(&printed(&output)).expect("JSON")
+    serde_json::from_str(&stdout(&output)).expect("JSON")
 }
 
 #[test]
@@ -20,7 +22,7 @@ fn every_format_holds_the_same_closed_mesh() {
     let mut volumes = Vec::new();
     for ending in ["glb", "3mf", "stl", "obj", "ply"] {
         let out = folder.path(&format!("pair.{ending}"));
-        let known = meshed(&[
+        let known = mesh(&[
             "mesh",
             &file,
             "-o",
@@ -76,7 +78,7 @@ fn levels_of_detail_and_coatings_are_written() {
     let folder = Folder::new("mesh-levels");
     let file = folder.write("pair.rat", PAIR);
     let out = folder.path("pair.glb");
-    let known = meshed(&["mesh", &file, "-o", &out, "--lod", "2", "--json"]);
+    let known = mesh(&["mesh", &file, "-o", &out, "--lod", "2", "--json"]);
     let levels = known["levels"].as_array().unwrap();
     assert_eq!(levels.len(), 2);
     let number = |value: &Value, key: &str| value[key].as_f64().unwrap();
@@ -93,7 +95,7 @@ fn levels_of_detail_and_coatings_are_written() {
         );
     }
     let out = folder.path("coat.ply");
-    let known = meshed(&["mesh", &file, "-o", &out, "--coat", "0.1", "--json"]);
+    let known = mesh(&["mesh", &file, "-o", &out, "--coat", "0.1", "--json"]);
     assert!(number(&known["parts"][0], "triangles") >= 40.0);
     assert!(number(&known["parts"][0], "excess") <= 0.1);
 }
@@ -124,7 +126,8 @@ fn what_cannot_be_meshed_is_told() {
     assert!(!std::fs::exists(&out).unwrap(), "nothing is written");
 }
 
-/// Models that would take hours end with a mesh or a sentence, by bounds on the counts of cells and evaluations.
+/// Models that would take hours end with a mesh or a sentence, by bounds on the counts of cells and
+/// evaluations.
 #[test]
 fn degenerate_models_end_with_a_mesh_or_words() {
     let folder = Folder::new("mesh-ends");

@@ -4,7 +4,7 @@
 //! integrates the kernel over each skeleton numerically. Both the double-precision reference and
 //! the single-precision forms that pictures are made with are held to the same bound.
 
-use crate::common::{Folder, printed, sinew};
+use crate::common::{Folder, sinew, stdout};
 use glam::DVec3;
 use oracle::quadrature;
 use serde_json::Value;
@@ -111,7 +111,7 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
                 &["probe", &file, "--points", "-", "--precision", precision],
                 &input,
             );
-            let lines: Vec<Value> = printed(&output)
+            let lines: Vec<Value> = stdout(&output)
                 .lines()
                 .map(|line| serde_json::from_str(line).expect("JSON"))
                 .collect();
@@ -134,7 +134,7 @@ fn probe_agrees_with_quadrature_on_random_scenes() {
     }
 }
 
-/// One shape of every kind of skeleton, as the language writes it.
+/// Returns a random shape of a kind of skeleton, as the language writes it.
 fn shape_of(kind: &str, random: &mut Random) -> String {
     let mut point = || words(random.vector(1.0));
     match kind {
@@ -175,8 +175,8 @@ fn shape_of(kind: &str, random: &mut Random) -> String {
     }
 }
 
-/// Every kernel on every kind of skeleton: double precision to 10⁻⁹, single to 10⁻⁴ (of the field, or of
-/// what matters of it).
+/// Every kernel on every kind of skeleton: double precision to 10⁻⁹, single to 10⁻⁴ (of the field,
+/// or of what matters of it).
 #[test]
 fn probe_agrees_with_quadrature_in_every_cell() {
     let folder = Folder::new("chart");
@@ -208,14 +208,15 @@ fn probe_agrees_with_quadrature_in_every_cell() {
                     &["probe", &file, "--points", "-", "--precision", precision],
                     &input,
                 );
-                for (point, line) in points.iter().zip(printed(&output).lines()) {
+                for (point, line) in points.iter().zip(stdout(&output).lines()) {
                     let line: Value = serde_json::from_str(line).expect("JSON");
                     let truth = quadrature::sum(&surface.sum, *point);
                     let value = line["field"].as_f64().expect("a number");
                     let error = (value - truth).abs() / truth.abs().max(least);
                     assert!(
                         error <= bound,
-                        "{kernel} {kind}, {precision}, {point}: {value} against {truth}, error {error:e}"
+                        "{kernel} {kind}, {precision}, {point}: {value} against {truth}, error \
+                         {error:e}"
                     );
                 }
             }

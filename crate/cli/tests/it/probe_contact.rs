@@ -1,6 +1,6 @@
 //! `sinew probe` of bodies in contact, against the formulas written out here.
 
-use crate::common::{Folder, printed, sinew};
+use crate::common::{Folder, sinew, stdout};
 use serde_json::Value;
 
 /// A Cauchy ball's field: `((1+|B|)/(1+|B|r²/R²))²`.
@@ -53,7 +53,7 @@ fn contact_is_what_the_formulas_say() {
         .collect();
     let output = sinew(&["probe", &file, "--points", "-"], &input);
     let mut pressed = [0; 3];
-    for (point, line) in points.iter().zip(printed(&output).lines()) {
+    for (point, line) in points.iter().zip(stdout(&output).lines()) {
         let line: Value = serde_json::from_str(line).expect("JSON");
         let bodies = line["bodies"].as_array().expect("a list");
         for (i, (name, center, radius)) in balls.into_iter().enumerate() {

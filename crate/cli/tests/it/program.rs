@@ -1,10 +1,11 @@
 //! The program's subcommands, end to end.
 
-use crate::common::{Folder, printed, sinew};
+use crate::common::{Folder, sinew, stdout};
 use serde_json::Value;
 
 const BALL: &str = "eyep 0 0 5\nvrp 0 0 0\nvup 0 1 0\nfov 40 40\nframesize 32 24\n\
-    light White point pos 3 4 5\nsurface flesh diffuse OrangeRed blob -2\nsphere flesh 1 0 0 0\nshoot\n";
+    light White point pos 3 4 5\nsurface flesh diffuse OrangeRed blob -2\n\
+    sphere flesh 1 0 0 0\nshoot\n";
 
 #[test]
 fn check_points_at_every_error_and_exits_1() {
@@ -24,7 +25,7 @@ fn check_points_at_every_error_and_exits_1() {
 
     let output = sinew(&["check", &bad, "--json"], "");
     assert_eq!(output.status.code(), Some(1));
-    let list: Vec<Value> = serde_json::from_str(&printed(&output)).expect("JSON");
+    let list: Vec<Value> = serde_json::from_str(&stdout(&output)).expect("JSON");
     let lines: Vec<_> = list
         .iter()
         .filter(|d| d["severity"] == "error")
@@ -62,7 +63,7 @@ fn check_takes_several_files_and_exits_with_the_worst() {
 
     let output = sinew(&["check", "--json", &bad, &good, &worse], "");
     assert_eq!(output.status.code(), Some(1));
-    let list: Vec<Value> = serde_json::from_str(&printed(&output)).expect("JSON");
+    let list: Vec<Value> = serde_json::from_str(&stdout(&output)).expect("JSON");
     let errors = list.iter().filter(|d| d["severity"] == "error");
     let files: Vec<_> = errors.filter_map(|d| d["file"].as_str()).collect();
     assert_eq!(files, [&bad, &worse]);
@@ -142,7 +143,7 @@ fn render_writes_a_picture_and_counts_its_work() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let summary: Value = serde_json::from_str(&printed(&output)).expect("JSON");
+    let summary: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     assert_eq!(summary["elements"]["soft"], 1);
     assert!(summary["rays"]["primary"].as_u64() >= Some(40 * 30));
     assert!(summary["field_evaluations"].as_u64() > Some(0));
@@ -217,7 +218,7 @@ fn probe_shows_rays_entering_and_leaving() {
         "0 0 5 0 0 -2\n0 5 5 0 0 -1\n1 2 3\n",
     );
     assert_eq!(output.status.code(), Some(1), "the third line is no ray");
-    let lines: Vec<Value> = printed(&output)
+    let lines: Vec<Value> = stdout(&output)
         .lines()
         .map(|line| serde_json::from_str(line).expect("JSON"))
         .collect();
@@ -241,10 +242,11 @@ fn probe_weighs_materials() {
     let folder = Folder::new("weights");
     let file = folder.write(
         "two.rat",
-        "surface red diffuse Red blob -2\nsurface blue diffuse Blue blob -2\nsphere red 1 -1 0 0\nsphere blue 1 1 0 0\n",
+        "surface red diffuse Red blob -2\nsurface blue diffuse Blue blob -2\nsphere red 1 -1 0 0\n\
+         sphere blue 1 1 0 0\n",
     );
     let output = sinew(&["probe", &file, "--points", "-"], "0 0.5 0\n-1 0 0\n");
-    let lines: Vec<Value> = printed(&output)
+    let lines: Vec<Value> = stdout(&output)
         .lines()
         .map(|line| serde_json::from_str(line).expect("JSON"))
         .collect();
@@ -269,7 +271,7 @@ fn links_carry_all_texts_there_and_back() {
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let link = printed(&output).trim().to_owned();
+    let link = stdout(&output).trim().to_owned();
     assert!(link.starts_with("https://example.org/sinew/#"), "{link}");
     let out = folder.path("out");
     assert!(sinew(&["open", &link, "-o", &out], "").status.success());
@@ -365,7 +367,7 @@ fn the_options_of_rats() {
     ] {
         assert_eq!(sinew(arguments, "").status.code(), Some(2), "{arguments:?}");
     }
-    assert!(printed(&sinew(&["-?"], "")).contains("-r W H"));
+    assert!(stdout(&sinew(&["-?"], "")).contains("-r W H"));
 }
 
 #[test]
@@ -468,7 +470,8 @@ fn fmt_lays_out_and_checks() {
 #[test]
 fn sculpt_replays_strokes_to_meshes_stage_by_stage() {
     let folder = Folder::new("sculpt");
-    let text = "strokes 1\nstart sphere 4\nstage egg\npull sphere 0.5 0.5 0.5 bell 1 : 0 0 1, 0 0 2\nstage nose\n\
+    let text = "strokes 1\nstart sphere 4\nstage egg\n\
+        pull sphere 0.5 0.5 0.5 bell 1 : 0 0 1, 0 0 2\nstage nose\n\
         paint 1 0 0 sphere 1 1 1 : 0 0 2\nloop\n";
     let strokes = folder.write("nose.strokes", text);
     for ending in ["ply", "obj", "stl", "glb", "3mf"] {

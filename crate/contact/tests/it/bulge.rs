@@ -35,7 +35,8 @@ fn all() -> Vec<Bulge> {
     all
 }
 
-/// The value alone, from the formulas as they are printed (with the corrections that the documentation names).
+/// The value alone, from the formulas as they are printed (with the corrections that the
+/// documentation names).
 fn independent(bulge: &Bulge, f: f64) -> f64 {
     if f >= 1.0 {
         return 1.0 - f;

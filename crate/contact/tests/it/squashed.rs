@@ -9,7 +9,7 @@ use std::sync::Arc;
 use trials::{Random, count};
 use wide::f32x8;
 
-/// A limb of two segments, or some balls.
+/// Returns a limb of two segments, or some balls.
 fn body(random: &mut Random) -> Arc<dyn Implicit> {
     if random.chance(0.3) {
         let hardness = random.range(3.0, 5.0);
@@ -51,7 +51,7 @@ fn bulge(random: &mut Random) -> Bulge {
     }
 }
 
-/// Some bodies, and each as all the others press it, with one bulge for all.
+/// Returns some bodies, and each as all the others press it, with one bulge for all.
 fn crowd(seed: u64, size: usize) -> (Vec<Arc<dyn Implicit>>, Vec<Squashed>, Bulge) {
     let random = &mut Random::new(seed);
     let bodies: Vec<_> = (0..size).map(|_| body(random)).collect();
@@ -105,7 +105,8 @@ fn bodies_share_space_without_gap_or_overlap() {
                 continue;
             }
             together += 1;
-            // Where bodies overlapped, the one with the largest field has the place, and the others none of it.
+            // Where bodies overlapped, the one with the largest field has the place, and the others
+            // none of it.
             let most = fields.iter().copied().fold(0.0, f64::max);
             for (field, touching) in fields.iter().zip(&squashed) {
                 let value = touching.jet(point).value;
@@ -152,7 +153,8 @@ fn bodies_share_space_without_gap_or_overlap() {
     );
 }
 
-/// The gradient is continuous where the other's field is c and where it is T, so that the surface's tangent is.
+/// The gradient is continuous where the other's field is c and where it is T, so that the surface's
+/// tangent is.
 #[test]
 fn tangents_are_continuous() {
     let mut looked = 0;

@@ -1,4 +1,5 @@
-//! How much of a ball's volume is left when two are pressed together, by Monte Carlo: the table of the crate's front page.
+//! Volume that is left of a ball when two are pressed together, by Monte Carlo: the table of
+//! the crate's front page.
 use contact::{Bulge, Squashed};
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;

@@ -40,7 +40,7 @@ fn meets(picture: &Picture, origin: DVec3, direction: DVec3) -> Option<f64> {
     picture.cast(&[(origin, direction)])[0].map(|hit| hit.t)
 }
 
-/// Two crossed bars and a ball, cut off where no digger can notice.
+/// Returns two crossed bars and a ball, cut off where no digger can notice.
 fn easy() -> Scene {
     let mut scene = empty();
     scene.settings.influence = 1e-6;
@@ -144,8 +144,8 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
     assert!(met > count(700), "{met}");
 }
 
-/// A picture in one tile.
-fn traced(scene: &Scene, size: [u32; 2]) -> (Vec<u8>, Stats) {
+/// Traces a picture in one tile.
+fn trace(scene: &Scene, size: [u32; 2]) -> (Vec<u8>, Stats) {
     let mut stats = Stats::default();
     let tile = Tile {
         x: 0,
@@ -162,11 +162,11 @@ fn traced(scene: &Scene, size: [u32; 2]) -> (Vec<u8>, Stats) {
 fn pictures_of_all_diggers_are_much_alike() {
     let scene = easy();
     let size = [40, 32];
-    let (wanted, _) = traced(&scene, size);
+    let (wanted, _) = trace(&scene, size);
     for digger in ALL {
         let mut scene = scene.clone();
         scene.settings.digger = digger;
-        let (found, stats) = traced(&scene, size);
+        let (found, stats) = trace(&scene, size);
         assert_eq!(stats.primary_rays, 40 * 32);
         assert!(stats.field_evaluations > 0 && stats.shadow_rays > 0);
         let differing = wanted
@@ -272,7 +272,7 @@ fn a_ray_through_very_many_primitives_comes_to_an_end() {
     for digger in ALL {
         let mut scene = scene.clone();
         scene.settings.digger = digger;
-        let (_, stats) = traced(&scene, [2, 1]);
+        let (_, stats) = trace(&scene, [2, 1]);
         // Eight rays are followed, and none needs to look at everything a thousand times.
         assert!(
             stats.field_evaluations < 8 * 5_000 * 200,

@@ -11,22 +11,22 @@
 //! A span is accepted when
 //! - its direction turns by at most [`Demands::turn`] from the span's middle, so that the distance
 //!   from a point has at most one extremum on it, near which it is almost a parabola;
-//! - a polynomial through its speed at [`Demands::terms`] Chebyshev points (and through α and ω, whose
-//!   polynomials are kept) is right to [`Demands::tolerance`] between them, so that Gauss–Legendre
-//!   with half as many nodes is right to that, too;
-//! - a smooth kernel's span is at most 2 widths long: the integrand, whose singularities are about a
-//!   width away from it, then calls for at most 9 nodes in single precision, 16 in double;
+//! - a polynomial through its speed at [`Demands::terms`] Chebyshev points (and through α and ω,
+//!   whose polynomials are kept) is right to [`Demands::tolerance`] between them, so that
+//!   Gauss–Legendre with half as many nodes is right to that, too;
+//! - a smooth kernel's span is at most 2 widths long: the integrand, whose singularities are
+//!   about a width away from it, then calls for at most 9 nodes in single precision, 16 in double;
 //! - the speed varies at most threefold, so that a distance is a known change of t (spans of less
 //!   than [`Demands::slow`] may do otherwise).
 //!
 //! The curve is cut at the slowest places first, so that cusps are ends. Spans shorter than
-//! [`Demands::least`] are accepted as they are. Should there be more than [`MOST_SPANS`] spans, turn and
-//! length are doubled and the tolerance is multiplied by 16, until there are not: a smooth kernel's
-//! curve of more than a thousand widths is then a chain of blobs that begin to show (4 nodes a width
-//! leave 10⁻⁶ of the field, 2 nodes 10⁻³).
+//! [`Demands::least`] are accepted as they are. Should there be more than [`MOST_SPANS`] spans,
+//! turn and length are doubled and the tolerance is multiplied by 16, until there are not: a smooth
+//! kernel's curve of more than a thousand widths is then a chain of blobs that begin to show (4
+//! nodes a width leave 10⁻⁶ of the field, 2 nodes 10⁻³).
 //!
-//! Both precisions have spans of their own: those of double precision would cost single precision three
-//! times as much.
+//! Both precisions have spans of their own: those of double precision would cost single precision
+//! three times as much.
 use crate::Kernel;
 use crate::cubed::cone::Cone;
 use core::f64::consts::PI;
@@ -44,22 +44,22 @@ const MOST_SPANS: usize = 512;
 /// α and ω at a fraction of the curve's length.
 pub(crate) type Law<'a> = &'a dyn Fn(f64) -> [f64; 2];
 
-/// A cubic's coefficients in powers of a parameter.
+/// Coefficients of a cubic in powers of a parameter.
 pub(crate) type Cubic = [DVec3; 4];
 
 /// A curve in local coordinates, prepared for one kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<S> {
-    /// For smooth kernels: positions and weights.
+    /// Nodes of the quadrature, for smooth kernels.
     pub nodes: Vec<Node<S>>,
-    /// For other kernels: its pieces.
+    /// Pieces of the curve, for other kernels.
     pub spans: Vec<Span<S>>,
     /// Nodes in (−1, 1) and weights of the rule by which a span, or its part within the kernel's
     /// support, is integrated.
     pub rule: Vec<[S; 2]>,
     /// Whether α or ω vary.
     pub tapered: bool,
-    /// Its closed form, if it has one; there are no nodes and spans then.
+    /// Closed form, if there is one; there are no nodes and spans then.
     pub cone: Option<Cone<S>>,
     /// Bounds on its pieces, in double precision only.
     pub piece_bounds: Vec<PieceBounds>,
@@ -108,12 +108,12 @@ pub struct PieceBounds {
     pub thinness: f64,
 }
 
-/// How finely a curve is cut.
+/// Fineness at which a curve is cut.
 #[derive(Clone, Copy)]
 struct Demands {
     /// Radians by which the direction may differ from that of the span's middle.
     turn: f64,
-    /// Of polynomials, relative; of smooth kernels' integrals.
+    /// Relative tolerance of polynomials, and of smooth kernels' integrals.
     tolerance: f64,
     /// Terms of polynomials in t.
     terms: usize,
@@ -151,7 +151,7 @@ impl Demands {
         pole: [20, 12],
     };
 
-    fn relaxed(self) -> Self {
+    fn relax(self) -> Self {
         Self {
             turn: self.turn * 2.0,
             tolerance: self.tolerance * 16.0,
@@ -200,8 +200,8 @@ impl<S: Copy> Span<S> {
 }
 
 impl Curve<f64> {
-    /// Prepares a curve from successive cubics over 0 ≤ t ≤ 1, in a fine version for double precision and a
-    /// coarse one for single.
+    /// Prepares a curve from successive cubics over 0 ≤ t ≤ 1, in a fine version for double
+    /// precision and a coarse one for single.
     pub(crate) fn new(
         kernel: Kernel,
         fine: &[Cubic],
@@ -216,7 +216,7 @@ impl Curve<f64> {
         double
     }
 
-    /// A straight curve that has a closed form: with the bounds of its pieces alone.
+    /// Prepares a straight curve that has a closed form: of its pieces only the bounds are kept.
     pub(crate) fn straight(cone: Cone<f64>, cubic: Cubic, law: Law<'_>) -> Self {
         let pieces = cut(Kernel::Cubed, &[cubic], Some(law), Demands::SINGLE);
         Self {
@@ -241,7 +241,7 @@ impl Curve<f64> {
             if pieces.len() <= MOST_SPANS {
                 break;
             }
-            demands = demands.relaxed();
+            demands = demands.relax();
             pieces = cut(kernel, cubics, law, demands);
         }
         let smooth = matches!(kernel, Kernel::Cauchy | Kernel::Gauss);
@@ -269,8 +269,9 @@ impl Curve<f64> {
         curve
     }
 
-    /// Upper bound on the field at distance d or more, as if all of the curve were at that distance.
-    pub(crate) fn bound_at(&self, kernel: Kernel, d: f64) -> f64 {
+    /// Upper bound on the field at distance d or more, as if all of the curve were at that
+    /// distance.
+    pub(crate) fn most_beyond(&self, kernel: Kernel, d: f64) -> f64 {
         self.piece_bounds
             .iter()
             .map(|piece| piece.mass * kernel.value(d * piece.thinness.sqrt()))
@@ -294,7 +295,8 @@ impl Curve<f64> {
     }
 }
 
-/// A piece of the curve for one application of the rule: a cubic over −1 ≤ t ≤ 1, and its position along the curve.
+/// A piece of the curve for one application of the rule: a cubic over −1 ≤ t ≤ 1, and its position
+/// along the curve.
 struct Piece<'a> {
     c: Cubic,
     length: f64,
@@ -359,11 +361,10 @@ impl Piece<'_> {
         let exact = |at_places: &[f64], f: &dyn Fn(usize) -> f64| {
             let p = fit(at_places);
             let largest = at_places.iter().fold(0.0, |l: f64, v| l.max(v.abs()));
-            let error = |(i, t): (usize, &f64)| (horner(&p, *t) - f(i)).abs();
-            between
-                .iter()
-                .enumerate()
-                .all(|it| error(it) <= demands.tolerance * largest)
+            let most = demands.tolerance * largest;
+            (0..)
+                .zip(&between)
+                .all(|(i, t)| (horner(&p, *t) - f(i)).abs() <= most)
         };
         let speeds: Vec<f64> = places.iter().map(|t| self.tangent(*t).length()).collect();
         if !exact(&speeds, &|i| tangents[i].length()) {
@@ -381,8 +382,8 @@ impl Piece<'_> {
     }
 
     /// Length in units of the local kernel width, counted longer where the curve is bent: there the
-    /// singularities of a Cauchy kernel may be nearer than a width. On a circle of radius r they are
-    /// no nearer than `√(2r(√(r²+1)−r))`.
+    /// singularities of a Cauchy kernel may be nearer than a width. On a circle of radius r they
+    /// are no nearer than `√(2r(√(r²+1)−r))`.
     fn width(&self) -> f64 {
         let mut largest: f64 = 0.0;
         for i in -2..=2 {
@@ -409,8 +410,8 @@ impl Piece<'_> {
         rules: &mut [Vec<[f64; 2]>],
     ) -> Vec<Node<f64>> {
         let half = self.width().min(demands.longest) / 2.0;
-        // The error of n nodes is about ρ^−2n, where 1/half = (ρ − 1/ρ)/2 for poles at ±i; for exp(−x²)
-        // it is about (half²/4)ⁿ/n!.
+        // The error of n nodes is about ρ^−2n, where 1/half = (ρ − 1/ρ)/2 for poles at ±i; for
+        // exp(−x²) it is about (half²/4)ⁿ/n!.
         let order = (2..36).find(|&n| {
             let error = if kernel == Kernel::Gauss {
                 (1..=n).fold(4.0 * half, |e, i| e * half * half / (4.0 * i as f64))
@@ -470,9 +471,13 @@ impl Piece<'_> {
             slimmest = values
                 .iter()
                 .fold(slimmest, |least, v| least.min(0.8 * v[1]));
-            let of = |i: usize| fit(&values.iter().map(|v| v[i]).collect::<Vec<f64>>());
-            span.density[..demands.terms].copy_from_slice(&of(0));
-            span.thinness[..demands.terms].copy_from_slice(&of(1));
+            for (i, terms) in [&mut span.density, &mut span.thinness]
+                .into_iter()
+                .enumerate()
+            {
+                let values: Vec<f64> = values.iter().map(|v| v[i]).collect();
+                terms[..demands.terms].copy_from_slice(&fit(&values));
+            }
         }
         let reach = c1.length() + c2.length() + c3.length() + 1.0 / slimmest.sqrt();
         // Rounding must not leave anything out.
@@ -591,15 +596,15 @@ fn cut<'a>(
     pieces
 }
 
-/// A cubic's length between two parameters.
+/// Computes a cubic's length between two parameters.
 fn length(c: &Cubic, from: f64, to: f64) -> f64 {
-    let mut speed = |t: f64| tangent(c, t).length();
     let breaks: Vec<f64> = (0..=8)
         .map(|i| from + (to - from) * f64::from(i) / 8.0)
         .collect();
-    // Next to a place where the curve stands still its speed is nothing but rounding, which no bisection settles.
+    // Next to a place where the curve stands still its speed is nothing but rounding, which no
+    // bisection settles.
     let rounding = 4.0 * f64::EPSILON * (c[1].length() + 2.0 * c[2].length() + 3.0 * c[3].length());
-    crate::integral::integral_within(&mut speed, &breaks, 1e-13, rounding)
+    crate::integral::integral_within(&mut |t| tangent(c, t).length(), &breaks, 1e-13, rounding)
 }
 
 /// 0, the places between at which a cubic is much slower than elsewhere, and 1.
@@ -647,8 +652,8 @@ fn fit(values: &[f64]) -> Vec<f64> {
     here[0] = 1.0;
     for k in 0..n {
         let turn = PI * k as f64 / n as f64;
-        let term = |(i, v): (usize, &f64)| v * libm::cos(turn * (i as f64 + 0.5));
-        let mean = values.iter().enumerate().map(term).sum::<f64>() / n as f64;
+        let terms = (0..n).map(|i| values[i] * libm::cos(turn * (i as f64 + 0.5)));
+        let mean = terms.sum::<f64>() / n as f64;
         let weight = if k == 0 { mean } else { 2.0 * mean };
         let factor = if k == 0 { 1.0 } else { 2.0 };
         let mut next = vec![0.0; n];
@@ -666,8 +671,8 @@ fn horner(p: &[f64], t: f64) -> f64 {
     p.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// Nodes in (−1, 1) and weights of the Gauss–Legendre rule of n points: the zeros of Pₙ, by Newton's
-/// method from Tricomi's approximation.
+/// Nodes in (−1, 1) and weights of the Gauss–Legendre rule of n points: the zeros of Pₙ, by
+/// Newton's method from Tricomi's approximation.
 pub(crate) fn gauss_legendre(n: usize) -> Vec<[f64; 2]> {
     (0..n)
         .map(|i| {

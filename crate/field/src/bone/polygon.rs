@@ -4,14 +4,14 @@
 //! the number of its rings matters.
 use super::Triangle;
 
-/// An edge, prepared. For a point whose foot in the plane is q, `along·q − start` is the foot's position
-/// on the edge's line measured from the edge's start, and `along×q − offset` the signed distance of
-/// q from that line, positive on the left, inside.
+/// An edge, prepared. For a point whose foot in the plane is q, `along·q − start` is the foot's
+/// position on the edge's line measured from the edge's start, and `along×q − offset` the signed
+/// distance of q from that line, positive on the left, inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge<S> {
-    /// Its unit direction.
+    /// Unit direction.
     pub along: [S; 2],
-    /// Its length.
+    /// Length.
     pub length: S,
     /// `along·start`.
     pub start: S,

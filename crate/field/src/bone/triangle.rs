@@ -15,7 +15,8 @@ pub struct Triangle<S> {
 }
 
 impl Triangle<f64> {
-    /// Prepares a triangle from its corners in counter-clockwise order. Coincident or collinear ones are allowed.
+    /// Prepares a triangle from its corners in counter-clockwise order. Coincident or collinear
+    /// ones are allowed.
     pub(crate) fn new(corners: [[f64; 2]; 3]) -> Self {
         let edges = [0, 1, 2].map(|i| Edge::between(corners[(i + 1) % 3], corners[(i + 2) % 3]));
         let [v0, v1, v2] = corners;

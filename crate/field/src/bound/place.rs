@@ -1,30 +1,31 @@
 //! Skeletons prepared for bounds: distances from balls.
 //!
-//! Points and segments are stored in [`Place`] itself, since a scene may have a million of them; other kinds are boxed.
+//! Points and segments are stored in [`Place`] itself, since a scene may have a million of them;
+//! other kinds are boxed.
 use crate::skeleton::{halves, nearest_on_segment};
 use crate::{Cut, Primitive, Skeleton};
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 
-/// A skeleton's place.
+/// Skeleton in the form from which distances are computed.
 #[derive(Clone, Debug)]
 pub enum Place {
     /// A point.
     Point(DVec3),
     /// A line segment.
     Segment {
-        /// One end.
+        /// Start.
         base: DVec3,
-        /// Unit vector to the other; 0 without a length.
+        /// Unit vector from the start to the end; 0 without a length.
         axis: DVec3,
         /// Length.
         length: f64,
     },
     /// An infinite plane.
     Plane {
-        /// A point of it.
+        /// Point of the plane.
         point: DVec3,
-        /// Its unit normal.
+        /// Unit normal.
         normal: DVec3,
     },
     /// A circular arc.
@@ -42,7 +43,8 @@ pub enum Place {
 pub struct Near {
     /// Distance from the skeleton, or less.
     pub distance: f64,
-    /// See [`Nearness`](super::Nearness).
+    /// Ratio of the integral over an arc to that over its tangent line, see
+    /// [`Nearness`](super::Nearness).
     pub arc_factor: f64,
     /// Distance of the ball from an arc's axis; 0 for other skeletons.
     pub axis_distance: f64,
@@ -71,9 +73,10 @@ pub struct Chord {
     sag: f64,
 }
 
-/// Largest distance of a curve's piece from its chord, in kernel widths …
+/// Largest distance of a curve's piece from its chord, in kernel widths, unless that takes more
+/// than [`MOST_CHORDS`].
 const SAG: f64 = 0.01;
-/// … with at most this many chords.
+/// Largest number of chords of a curve.
 const MOST_CHORDS: u32 = 16;
 
 impl Place {
@@ -197,11 +200,11 @@ impl Sweep {
 impl Chord {
     fn of([a, b, c, d]: [DVec3; 4]) -> Self {
         // The piece is in the hull of its control points.
-        let off = |p: DVec3| p.distance(nearest_on_segment(p, a, d));
+        let [off_b, off_c] = [b, c].map(|p| p.distance(nearest_on_segment(p, a, d)));
         Self {
             base: a,
             apex: d,
-            sag: off(b).max(off(c)) * (1.0 + 1e-9),
+            sag: off_b.max(off_c) * (1.0 + 1e-9),
         }
     }
 

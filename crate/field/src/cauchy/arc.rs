@@ -1,5 +1,5 @@
-//! A circular arc (thesis 2.22, whose printed form fails on half of all inputs; multiplied by the
-//! radius, so that the density is per unit length).
+//! The Cauchy kernel along a circular arc (thesis 2.22, whose printed form fails on half of all
+//! inputs; multiplied by the radius, so that the density is per unit length).
 //!
 //! The circle of radius r lies in the plane z = 0. The origin is a point M of it on the arc's line
 //! of symmetry: the arc's middle if the arc is at most a half circle (σ = 1), else the middle of
@@ -7,14 +7,16 @@
 //! `X = r + x` (so that (X, y, z) is measured from the centre), `ρ² = X²+y²`, `A = 1+r²+ρ²+z²`,
 //! `Δ = A²−4r²ρ² = (1+z²+(ρ−r)²)(1+z²+(ρ+r)²)`, and D₁, D₂ = 1 + squared distances from the ends:
 //!
-//! `f = r·[2A(δ − sin δ cos δ)/Δ^{3/2} + sin 2α/(D₁D₂)]`, `√(D₁D₂)·(sin δ, cos δ) = (√Δ sin α, A cos α − 2σrX)`.
+//! `f = r·[2A(δ − sin δ cos δ)/Δ^{3/2} + sin 2α/(D₁D₂)]`,
+//! `√(D₁D₂)·(sin δ, cos δ) = (√Δ sin α, A cos α − 2σrX)`.
 //!
 //! δ runs from 0 to π continuously: there is no branch to continue, and the azimuth, which is
 //! undefined on the axis ρ = 0, does not occur. `A cos α − 2σrX = σ(1+x²+y²+z² − A(1 − σ cos α))`
 //! keeps the digits of arcs that are long compared to the kernel's width.
 //!
 //! Gradient, with S = sin δ and K = ∫₀^δ sin⁴:
-//! `∇f/r = 2(δ−sin δ cos δ)∇A/Δ^{3/2} − 8AK∇Δ/Δ^{5/2} − 4AS³∇c/(Δ^{3/2}√(D₁D₂)) − sin 2α·∇(D₁D₂)/(D₁D₂)²`.
+//! `∇f/r = 2(δ−sin δ cos δ)∇A/Δ^{3/2} − 8AK∇Δ/Δ^{5/2}`
+//! `− 4AS³∇c/(Δ^{3/2}√(D₁D₂)) − sin 2α·∇(D₁D₂)/(D₁D₂)²`.
 use crate::angle::angle;
 use crate::bone::Arc;
 use crate::{Jet, Real};

@@ -1,8 +1,9 @@
-//! A planar polygon: the signed sum of the triangles from its first corner over its edges.
+//! The Cauchy kernel over a planar polygon: the signed sum of the triangles from its first corner
+//! over its edges.
 //!
-//! The plain edge sum (1) of [`triangle`](super::triangle) would do, but loses its digits outside the
-//! polygon; the triangles' does not. Of a convex polygon all terms are positive, and else the sum
-//! of their magnitudes is what a few polygons of that size would give.
+//! The plain edge sum (1) of [`triangle`](super::triangle) would do, but loses its digits outside
+//! the polygon; the triangles' does not. Of a convex polygon all terms are positive, and else the
+//! sum of their magnitudes is what a few polygons of that size would give.
 use super::triangle;
 use crate::bone::Polygon;
 use crate::{Jet, Real};

@@ -1,4 +1,4 @@
-//! A line segment (thesis 2.21).
+//! The Cauchy kernel along a line segment (thesis 2.21).
 //!
 //! The segment lies on the x axis, |x| ≤ c. With `p² = 1 + y² + z²`, `a = x+c`, `b = c−x` (signed
 //! distances of the foot of the perpendicular from the ends), `A = p²+a²`, `B = p²+b²` and the

@@ -1,11 +1,11 @@
-//! A triangle (thesis 2.23, without its split into right triangles and with 1/(2qs⁴) where the
-//! print has 1/(2qs)).
+//! The Cauchy kernel over a triangle (thesis 2.23, without its split into right triangles and with
+//! 1/(2qs⁴) where the print has 1/(2qs)).
 //!
 //! The triangle lies in the plane z = 0, its corners counter-clockwise. Let q be the foot of the
 //! perpendicular from the point, `c² = 1+z²`, Dᵢ = c² + squared distance of q from corner i. For an
 //! edge of length l let h be the signed distance of q from its line (positive inside), t₀ and
-//! `t₁ = t₀+l` the edge's interval measured from q's foot on that line, `w² = c²+h²` and θ in [0, π]
-//! the angle between (w, t₀) and (w, t₁). Green's theorem gives the sum over the edges
+//! `t₁ = t₀+l` the edge's interval measured from q's foot on that line, `w² = c²+h²` and θ in [0,
+//! π] the angle between (w, t₀) and (w, t₁). Green's theorem gives the sum over the edges
 //!
 //! `f = 1/(2c²) · Σ kθ`, k = h/w. (1)
 //!

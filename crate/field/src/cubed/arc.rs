@@ -1,19 +1,25 @@
-//! A circular arc: elliptic integrals of the first and the second kind, incomplete but for a closed circle.
+//! The cubed kernel along a circular arc: elliptic integrals of the first and the second kind,
+//! incomplete but for a closed circle.
 //!
 //! The frame and the distances ε, σ, α, ρ, A, D₁, D₂, C are those of the
-//! [squared kernel's arc](crate::squared::arc); n, m, s and M those of the [inverse kernel's](crate::inverse::arc).
-//! Every squared distance contains `ζ = z²+ε²`, so that the cubed kernel is −2 times the inverse kernel's derivative
-//! by ζ: `f = −2∂f₁/∂ζ`, `f₁ = 4rs·R_F(M, y, z)`, `y = M+s²n`, `z = M+s²m`. M moves all three arguments at once, and
-//! the sum of R_F's three derivatives is elementary:
+//! [squared kernel's arc](crate::squared::arc); n, m, s and M those of the [inverse
+//! kernel's](crate::inverse::arc). Every squared distance contains `ζ = z²+ε²`, so that the cubed
+//! kernel is −2 times the inverse kernel's derivative by ζ: `f = −2∂f₁/∂ζ`,
+//! `f₁ = 4rs·R_F(M, y, z)`, `y = M+s²n`, `z = M+s²m`. M moves all three arguments at once, and the
+//! sum of R_F's three derivatives is elementary:
 //!
-//! `f = 4rs·[2g′/√(yz) + s²(R_y + R_z)/3]`, `R_y = R_D(M, z, y)`, `R_z = R_D(M, y, z)`, `g = √M`, `g′ = ∂g/∂ζ`.
+//! `f = 4rs·[2g′/√(yz) + s²(R_y + R_z)/3]`, `R_y = R_D(M, z, y)`, `R_z = R_D(M, y, z)`, `g = √M`,
+//! `g′ = ∂g/∂ζ`.
 //!
-//! Both terms are positive. With `P = √(D₁D₂)` and `e = (D₁+D₂)/(2P) − 1 = (D₁−D₂)²/(2P(D₁+D₂+2P))`,
+//! Both terms are positive. With `P = √(D₁D₂)` and
+//! `e = (D₁+D₂)/(2P) − 1 = (D₁−D₂)²/(2P(D₁+D₂+2P))`,
 //! - where C > 0: `g² = (P+C)/2` and `2gg′ = e/2 + cos²(α/2)`;
-//! - else `g² = nm·sin²α/(2(P−C))` and `2g′/g = 1/n + 1/m − (e+2s²)/(P−C)`. A closed circle has g = 0.
+//! - else `g² = nm·sin²α/(2(P−C))` and `2g′/g = 1/n + 1/m − (e+2s²)/(P−C)`. A closed circle has g
+//!   = 0.
 //!
-//! Gradient: `∇f = 4rs·[2∇g′/√(yz) − g′/√(yz)·(∇y/y + ∇z/z) − s²∇g/√(yz)·(1/y+1/z) − 2s⁴(S_y∇n + S_z∇m)]`, where S
-//! are [sums of second derivatives](crate::carlson) of R_F.
+//! Gradient:
+//! `∇f = 4rs·[2∇g′/√(yz) − g′/√(yz)·(∇y/y + ∇z/z) − s²∇g/√(yz)·(1/y+1/z) − 2s⁴(S_y∇n + S_z∇m)]`,
+//! where S are [sums of second derivatives](crate::carlson) of R_F.
 use crate::bone::Arc;
 use crate::carlson::elliptic_second;
 use crate::squared::arc::Places;
@@ -40,8 +46,8 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
 
     let radial = one / places.rho.max(R::splat(1e-30));
     let [ux, uy] = [places.centred * radial, p[1] * radial];
-    let ring = |off: R| Vector([two * off * ux, two * off * uy, two * z]);
-    let (by_near, by_far) = (ring(places.gap), ring(places.rho + radius));
+    let [by_near, by_far] = [places.gap, places.rho + radius]
+        .map(|off| Vector([two * off * ux, two * off * uy, two * z]));
     let root = Root::of(arc, p, &places, [s2, cos2], [by_near, by_far]);
 
     let m = root.g * root.g;

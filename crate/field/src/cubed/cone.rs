@@ -1,24 +1,29 @@
-//! A line segment whose radius varies evenly along it.
+//! The cubed kernel along a line segment whose radius varies evenly along it.
 //!
-//! The segment lies on the x axis, |x| ≤ c; the radius at its point t is `r(t) = r₁ + kt`, in units of the smaller of those at
-//! its ends. The factor on the kernel is that of a uniform line of that radius, and the pole is rounded off by the same part ε of
-//! it everywhere, so that a cone's magnified copy has the same field:
+//! The segment lies on the x axis, |x| ≤ c; the radius at its point t is `r(t) = r₁ + kt`, in units
+//! of the smaller of those at its ends. The factor on the kernel is that of a uniform line of that
+//! radius, and the pole is rounded off by the same part ε of it everywhere, so that a cone's
+//! magnified copy has the same field:
 //!
 //! `f = r(−c)·∫ r(t)²/D^{3/2} dt`, `D = (x−t)² + y²+z² + ε²r(t)²`.
 //!
-//! D is the square of a distance from a line in four dimensions. With `α = 1+ε²k²`, `a = r(x)/α`, the foot of the perpendicular
-//! at `x − s`, `s = ε²ka`, and u measured from there, `D = α(u²+m²)`, `m² = (y²+z²)/α + ε²a²`, and `r = a+ku`. So
+//! D is the square of a distance from a line in four dimensions. With `α = 1+ε²k²`, `a = r(x)/α`,
+//! the foot of the perpendicular at `x − s`, `s = ε²ka`, and u measured from there, `D = α(u²+m²)`,
+//! `m² = (y²+z²)/α + ε²a²`, and `r = a+ku`. So
 //!
 //! `f = r(−c)·α^{−3/2}·(a²J₀ + 2akJ₁ + k²J₂)`, `Jₙ = ∫ uⁿ/(u²+m²)^{3/2} du` over `[u₀, u₁]`.
 //!
-//! With the distances A and B of the ends, `N = u₁A − u₀B` and P the sum of squared inverse distances,
+//! With the distances A and B of the ends, `N = u₁A − u₀B` and P the sum of squared inverse
+//! distances,
 //! - `J₀ = N/(m²AB)`, `J₁ = 1/A − 1/B = l(u₀+u₁)/(AB(A+B))`, `J₂ = arsinh(N/m²) − m²J₀`;
-//! - gradient: `∇f ∝ (Q − sP, −yP, −zP)/α` with `P = 3(a²K₀ + 2akK₁ + k²K₂)`, `Q = 3(a²K₁ + 2akK₂ + k²K₃)`,
-//!   `Kₙ = ∫ uⁿ/(u²+m²)^{5/2} du`, which J₀ and J₁ divide: of K₀ see the [segment](super::segment),
-//!   `3K₁ = J₁(1/A² + 1/(AB) + 1/B²)`, `3K₂ = J₀(u₀²/A² + u₀u₁/(AB) + u₁²/B²)`, `K₃ = J₁ − m²K₁`.
+//! - gradient: `∇f ∝ (Q − sP, −yP, −zP)/α` with `P = 3(a²K₀ + 2akK₁ + k²K₂)`,
+//!   `Q = 3(a²K₁ + 2akK₂ + k²K₃)`, `Kₙ = ∫ uⁿ/(u²+m²)^{5/2} du`, which J₀ and J₁ divide: of K₀ see
+//!   the [segment](super::segment), `3K₁ = J₁(1/A² + 1/(AB) + 1/B²)`,
+//!   `3K₂ = J₀(u₀²/A² + u₀u₁/(AB) + u₁²/B²)`, `K₃ = J₁ − m²K₁`.
 //!
-//! Far away these terms cancel, as a is the radius that the cone would have at the foot. There the integrand is smooth, and a
-//! Gauss–Legendre rule takes their place: from 3c off, at least, its n nodes are right to 5.8^{−2n}.
+//! Far away these terms cancel, as a is the radius that the cone would have at the foot. There the
+//! integrand is smooth, and a Gauss–Legendre rule takes their place: from 3c off, at least, its n
+//! nodes are right to 5.8^{−2n}.
 use super::Ends;
 use crate::inverse::POLE2;
 use crate::legendre;
@@ -47,8 +52,8 @@ const SINGLE: &[(f64, f64)] = &legendre::pairs::<3>();
 const DOUBLE: &[(f64, f64)] = &legendre::pairs::<5>();
 
 impl Cone<f64> {
-    /// A cone of half the length `half` and the radii at its start and its end, in units of the smaller one. `None` if it is too
-    /// steep.
+    /// Prepares a cone from half its length and the radii at its start and its end, in units of the
+    /// smaller one. Returns `None` if the cone is too steep.
     pub fn new(half: f64, [start, end]: [f64; 2]) -> Option<Self> {
         let slope = (end - start) / (2.0 * half);
         let alpha = 1.0 + POLE2 * slope * slope;
@@ -63,7 +68,7 @@ impl Cone<f64> {
 }
 
 impl<S: Copy> Cone<S> {
-    /// The same in another number type.
+    /// Converts the cone to another number type.
     pub fn cast<Q>(&self, f: impl Fn(S) -> Q) -> Cone<Q> {
         Cone {
             half: f(self.half),

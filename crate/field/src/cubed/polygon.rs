@@ -1,31 +1,33 @@
-//! A triangle or any planar polygon: the solid angle it is seen at, over the height.
+//! The cubed kernel over a triangle or any planar polygon: the solid angle at which it is seen,
+//! divided by the height above it.
 //!
 //! The polygon lies in the plane z = 0. Let q be the foot of the perpendicular from the point,
 //! `c² = z²+ε²`. For an edge of length l let h be the signed distance of q from its line (positive
-//! inside), t₀ and `t₁ = t₀+l` the edge's interval measured from q's foot on that line, `k² = c²+h²` and
-//! `ρᵢ² = k²+tᵢ²`. Green's theorem gives
+//! inside), t₀ and `t₁ = t₀+l` the edge's interval measured from q's foot on that line,
+//! `k² = c²+h²` and `ρᵢ² = k²+tᵢ²`. Green's theorem gives
 //!
 //! `f = Σ ∫ h(1/c − 1/√(k²+t²))/(h²+t²) dt = (1/c)·Σ W`,
 //!
-//! where W is the solid angle at which the point sees the triangle between q and the edge, as for the
-//! [inverse kernel](crate::inverse::polygon). Beside the polygon, nearly in its plane, the sum of all W is a small
-//! rest. But with Δ, the angle at which q sees the edge, `W = Δ − D`, and the Δ add up to a multiple of 2π
-//! that is known beforehand (w is the winding number of q, 0 outside):
+//! where W is the solid angle at which the point sees the triangle between q and the edge, as for
+//! the [inverse kernel](crate::inverse::polygon). Beside the polygon, nearly in its plane, the sum
+//! of all W is a small rest. But with Δ, the angle at which q sees the edge, `W = Δ − D`, and the Δ
+//! add up to a multiple of 2π that is known beforehand (w is the winding number of q, 0 outside):
 //!
-//! `f = (2πw − Σ D)/c`, `D = arctan(c·t/(|h|ρ))` at t₁ less that at t₀ `= atan2(c|h|N, h²ρ₀ρ₁+c²t₀t₁)`,
+//! `f = (2πw − Σ D)/c`, `D = arctan(c·t/(|h|ρ))` at t₁ less that at t₀
+//! `= atan2(c|h|N, h²ρ₀ρ₁+c²t₀t₁)`,
 //!
 //! `N = t₁ρ₀−t₀ρ₁`, with the sign of h: small terms without a large one.
 //!
-//! Gradient: in the plane `Σ n·L` over inward normals n, with the [segment](super::segment)'s field L = N/(k²ρ₀ρ₁).
-//! Across it
+//! Gradient: in the plane `Σ n·L` over inward normals n, with the [segment](super::segment)'s field
+//! L = N/(k²ρ₀ρ₁). Across it
 //!
 //! `∂f/∂z = −(z/c²)·(f + Σ h·L)`, or `−z·(2πw/c³ − Σ M)`, `M = (D/c − |h|L)/c²`,
 //!
 //! which with r = |h|N/(h²ρ₀ρ₁+c²t₀t₁) and s(v) = (v − arctan v)/v³ is
 //! `M = r·((ρ₀ρ₁−t₀t₁)/(k²ρ₀ρ₁) − r²·s(cr))`, where c divides out.
 //!
-//! Outside the polygon terms of both signs cancel; where a polygon is small compared to its distance the
-//! [cubature](crate::far) replaces the sum.
+//! Outside the polygon terms of both signs cancel; where a polygon is small compared to its
+//! distance the [cubature](crate::far) replaces the sum.
 use super::Ends;
 use crate::angle::{arctangent_shortfall, direction};
 use crate::bone::{Edge, Polygon, Triangle};
@@ -120,7 +122,8 @@ fn over_edges<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
 mod tests {
     use super::*;
 
-    /// Beside a polygon and nearly in its plane, also on the line of an edge, where h is 0 or nearly so.
+    /// Values and slopes beside a polygon and nearly in its plane, also on the line of an edge,
+    /// where h is 0 or nearly so.
     #[test]
     fn values_and_slopes_near_the_plane() {
         // Numbers of few bits, so that both precisions mean the same places.

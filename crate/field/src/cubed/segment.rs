@@ -1,15 +1,17 @@
-//! A line segment.
+//! The cubed kernel along a line segment.
 //!
-//! The segment lies on the x axis, |x| ≤ c. With `ρ² = y²+z²+ε²`, `a = x+c`, `b = c−x` (signed distances
-//! of the foot of the perpendicular from the ends) and the distances `A = √(ρ²+a²)`, `B = √(ρ²+b²)`,
+//! The segment lies on the x axis, |x| ≤ c. With `ρ² = y²+z²+ε²`, `a = x+c`, `b = c−x` (signed
+//! distances of the foot of the perpendicular from the ends) and the distances `A = √(ρ²+a²)`,
+//! `B = √(ρ²+b²)`,
 //!
 //! `f = (a/A + b/B)/ρ²`.
 //!
-//! Beyond the ends, where one of a and b is negative, `a/A + b/B = 4cxρ²/(AB(aB−bA))`: nothing cancels, and ρ²
-//! divides out.
+//! Beyond the ends, where one of a and b is negative, `a/A + b/B = 4cxρ²/(AB(aB−bA))`: nothing
+//! cancels, and ρ² divides out.
 //!
-//! Gradient: `∂f/∂x = 1/A³ − 1/B³ = −4cx(A²+AB+B²)/((A+B)A³B³)`, and `∂f/∂y = −3y·∫du/(ρ²+u²)^{5/2}`. The sines
-//! p = a/A and q = b/B make that integral `((p+q) − (p³+q³)/3)/ρ⁴`, of which the field divides out:
+//! Gradient: `∂f/∂x = 1/A³ − 1/B³ = −4cx(A²+AB+B²)/((A+B)A³B³)`, and
+//! `∂f/∂y = −3y·∫du/(ρ²+u²)^{5/2}`. The sines p = a/A and q = b/B make that integral
+//! `((p+q) − (p³+q³)/3)/ρ⁴`, of which the field divides out:
 //! `∂f/∂y = −y·f·(1/A² + 1/B² + (1+pq)/ρ²)`, and beyond the ends
 //! `(1+pq)/ρ² = (1/A² + 1/B² − ρ²/(A²B²))/(1−pq)`.
 use super::Ends;

@@ -1,8 +1,10 @@
 //! Polynomials of three variables on a box, by interpolation at Chebyshev nodes.
 //!
-//! Values at 5 × 5 × 5 nodes give the coefficients of products of Chebyshev polynomials up to degree 4 in each coordinate. Those of
-//! total degree above 5 are dropped, and the sum of their sizes is the exact bound of what that changes, since |Tₖ| ≤ 1. The rest
-//! are kept as powers of the coordinates, so that along a straight line the polynomial is one of degree 5 in one variable.
+//! Values at 5 × 5 × 5 nodes give the coefficients of products of Chebyshev polynomials up to
+//! degree 4 in each coordinate. Those of total degree above 5 are dropped, and the sum of their
+//! sizes is the exact bound of what that changes, since |Tₖ| ≤ 1. The rest are kept as powers of
+//! the coordinates, so that along a straight line the polynomial is one of degree 5 in one
+//! variable.
 use crate::{Jet, Real};
 use core::f64::consts::PI;
 use std::sync::OnceLock;
@@ -18,13 +20,16 @@ pub const VECTORS: usize = ALL.div_ceil(8);
 pub const DEGREE: usize = 5;
 /// Number of coefficients.
 const TERMS: usize = 53;
-/// Lebesgue's constant of interpolation at the nodes of three axes: the largest factor on errors of the values.
+/// Lebesgue's constant of interpolation at the nodes of three axes: the largest factor on errors of
+/// the values.
 pub const LEBESGUE: f64 = 7.9;
 /// Upper bound on √3, the ratio of a gradient's length to its largest component.
 pub const AXES: f64 = 1.733;
-/// Largest ratio of a gradient's component to the polynomial's size, in the box's coordinates: Markov's inequality for degree 4.
+/// Largest ratio of a gradient's component to the polynomial's size, in the box's coordinates:
+/// Markov's inequality for degree 4.
 const MARKOV: f64 = 16.0;
-/// Rounding of the polynomial's evaluation in single precision, relative to the sum of its coefficients' sizes.
+/// Rounding of the polynomial's evaluation in single precision, relative to the sum of its
+/// coefficients' sizes.
 const ROUNDING: f64 = 2e-6;
 /// Rounding of its coefficients in single precision.
 const STORED: f64 = 6e-8;
@@ -36,7 +41,8 @@ pub struct Expansion {
     terms: [f32; TERMS],
 }
 
-/// An interpolant: coefficients of products of Chebyshev polynomials, in the order of an expansion's terms.
+/// An interpolant: coefficients of products of Chebyshev polynomials, in the order of an
+/// expansion's terms.
 #[derive(Clone, Debug)]
 pub struct Series {
     terms: [f32; TERMS],
@@ -93,8 +99,8 @@ pub struct Fitted {
     pub range: [f64; 2],
 }
 
-/// Returns a bound on the gradient's length of a polynomial with degree 4 in each coordinate, on a box of this half extent, given one on
-/// its size.
+/// Returns a bound on the gradient's length of a polynomial with degree 4 in each coordinate, on a
+/// box of this half extent, given one on its size.
 pub fn slope_of(size: f64, half: f64) -> f64 {
     AXES * MARKOV * size / half
 }
@@ -102,7 +108,7 @@ pub fn slope_of(size: f64, half: f64) -> f64 {
 /// Coefficients of products of Chebyshev polynomials, x innermost.
 pub type Coefficients = [f64; ALL];
 
-/// A matrix of one axis.
+/// Matrix that acts along one axis.
 type Matrix = [[f64; NODES]; NODES];
 
 /// The nodes and the matrices from values to Chebyshev coefficients and from these to powers.
@@ -116,11 +122,11 @@ fn tables() -> &'static Tables {
     static TABLES: OnceLock<Tables> = OnceLock::new();
     TABLES.get_or_init(|| {
         let angle = |i: usize| PI * (2 * i + 1) as f64 / (2 * NODES) as f64;
-        let weight = |k: usize| if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
         Tables {
             nodes: core::array::from_fn(|i| libm::cos(angle(i))),
             chebyshev: core::array::from_fn(|k| {
-                core::array::from_fn(|i| weight(k) * libm::cos(k as f64 * angle(i)))
+                let weight = if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
+                core::array::from_fn(|i| weight * libm::cos(k as f64 * angle(i)))
             }),
             // Row i: the coefficient of xⁱ in each Chebyshev polynomial.
             powers: [
@@ -144,11 +150,10 @@ pub fn nodes() -> [[f32x8; 3]; VECTORS] {
     let x = axis();
     core::array::from_fn(|v| {
         core::array::from_fn(|axis| {
-            let place = |lane: usize| {
+            f32x8::new(core::array::from_fn(|lane| {
                 let node = (8 * v + lane).min(ALL - 1);
                 x[node / [1, NODES, NODES * NODES][axis] % NODES]
-            };
-            f32x8::new(core::array::from_fn(place))
+            }))
         })
     })
 }
@@ -158,7 +163,8 @@ const PLANE: usize = NODES * NODES;
 
 /// Multiplies the values along each axis by a matrix: those of x, y and z.
 fn apply([x, y, z]: [&Matrix; 3], values: &mut [f64; ALL]) {
-    // Along the last axis, whose planes are rows of memory; then the axes change places, and after three times are as before.
+    // Along the last axis, whose planes are rows of memory; then the axes change places, and after
+    // three times are as before.
     for matrix in [z, y, x] {
         let mut rows = [[0.0; PLANE]; NODES];
         for (row, factors) in rows.iter_mut().zip(matrix) {
@@ -192,7 +198,7 @@ impl Expansion {
         terms: [0.0; TERMS],
     };
 
-    /// The sum of an interpolant and of a polynomial's [coefficients](Expansion::moved).
+    /// The sum of an interpolant and of a polynomial's [coefficients](Expansion::in_part).
     pub fn of(series: &Series, more: Option<&Coefficients>) -> Fitted {
         let mut all = [0.0; ALL];
         let mut size = 0.0;
@@ -226,7 +232,8 @@ impl Expansion {
         }
     }
 
-    /// Coefficients in τ of the polynomial on the line `place + τ·step`, both in the box's coordinates. `single` converts a number.
+    /// Coefficients in τ of the polynomial on the line `place + τ·step`, both in the box's
+    /// coordinates. `single` converts a number.
     #[inline(always)]
     #[must_use]
     pub fn along<R: Real>(
@@ -296,9 +303,10 @@ impl Expansion {
         sum
     }
 
-    /// Coefficients of the polynomial in the coordinates of a smaller box, of which `shift + scale·x` is a place in this one's.
+    /// Coefficients of the polynomial in the coordinates of a smaller box, of which
+    /// `shift + scale·x` is a place in this one's.
     #[must_use]
-    pub fn moved(&self, shift: [f64; 3], scale: f64) -> Coefficients {
+    pub fn in_part(&self, shift: [f64; 3], scale: f64) -> Coefficients {
         let mut all = [0.0; ALL];
         let mut next = 0;
         each_term(|node| {
@@ -306,7 +314,7 @@ impl Expansion {
             next += 1;
         });
         // Column k: the coefficients of (shift + scale·x)ᵏ, by x·Tₙ = (Tₙ₋₁ + Tₙ₊₁)/2.
-        let of_axis = |shift: f64| {
+        let [x, y, z] = shift.map(|shift| {
             let mut matrix: Matrix = [[0.0; NODES]; NODES];
             let mut power = [0.0; NODES + 2];
             power[0] = 1.0;
@@ -323,8 +331,7 @@ impl Expansion {
                 }
             }
             matrix
-        };
-        let [x, y, z] = shift.map(of_axis);
+        });
         apply([&x, &y, &z], &mut all);
         all
     }
@@ -335,7 +342,7 @@ mod tests {
     use super::*;
     use trials::{Random, count};
 
-    /// A node's coordinates.
+    /// Returns a node's coordinates.
     fn place_of(node: usize) -> [f64; 3] {
         nodes()[node / 8].map(|x| f64::from(x.to_array()[node % 8]))
     }
@@ -356,7 +363,7 @@ mod tests {
             let error = fitted.error + series.error;
             assert!(error < 1e-4, "{error}");
             let (shift, scale) = (random.vector(0.5).to_array(), 0.4);
-            let moved = fitted.expansion.moved(shift, scale);
+            let moved = fitted.expansion.in_part(shift, scale);
             let moved = Expansion::of(&Series::ZERO, Some(&moved)).expansion;
             for _ in 0..20 {
                 let place = random.vector(1.0).to_array();

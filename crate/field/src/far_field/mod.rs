@@ -1,30 +1,36 @@
-//! The far field of a sum: a hierarchy of boxes, each with a polynomial of all that is far from it and a list of what is near.
+//! The far field of a sum: a hierarchy of boxes, each with a polynomial of all that is far from it
+//! and a list of what is near.
 //!
-//! Space is a cube that is halved along all axes again and again (an octree). A cell's polynomial is its parent's, plus the
-//! primitives that are far from the cell but were near its parent, evaluated at the nodes of [`Expansion`]; so each primitive is
-//! evaluated for a bounded number of cells of each size. Cells are made where and when they are first asked for, and depend on the
+//! Space is a cube that is halved along all axes again and again (an octree). A cell's polynomial
+//! is its parent's, plus the primitives that are far from the cell but were near its parent,
+//! evaluated at the nodes of [`Expansion`]; so each primitive is evaluated for a bounded number of
+//! cells of each size. Cells are made where and when they are first asked for, and depend on the
 //! primitives alone.
 //!
-//! A cell's list and its share of the polynomial depend on the primitives near its parent alone: thresholds depend on the cell's
-//! depth, not on the error that it inherits. After an edit of few primitives a hierarchy takes lists and shares from an
-//! [earlier one](FarField::after) in all cells near whose parents nothing has changed, and has the same bits as if it were made
-//! anew.
+//! A cell's list and its share of the polynomial depend on the primitives near its parent alone:
+//! thresholds depend on the cell's depth, not on the error that it inherits. After an edit of few
+//! primitives a hierarchy takes lists and shares from an [earlier one](FarField::after) in all
+//! cells near whose parents nothing has changed, and has the same bits as if it were made anew.
 //!
 //! # The bound
 //!
-//! The kernels that never end are `G = (ε² + u²)^(−e/2)`, with e = 1, 2, 3 for the inverse, the squared and the cubed kernel, and
-//! e = 4, ε = 1 for Cauchy's. Along a straight line that is the generating function's root of the Gegenbauer polynomials
-//! `C_n` of order e/2: its n-th derivative is `±n!·C_n(cos θ)·b^(−e−n)` with `b² = ε² + u²`, where `b·cos θ` is the position
-//! along the line. A skeleton adds up such terms. With A = 1 − I, the error of interpolation along an axis at n = 5 Chebyshev nodes of
-//! an interval of half length w, `|A f| ≤ 2(w/2)ⁿ/n!·|f⁽ⁿ⁾|`. Interpolation along all three axes, in any order, is off by
-//! `A₁f + I₁A₂f + I₁I₂A₃f`, and |I| ≤ Λ, so that the error is at most
+//! The kernels that never end are `G = (ε² + u²)^(−e/2)`, with e = 1, 2, 3 for the inverse, the
+//! squared and the cubed kernel, and e = 4, ε = 1 for Cauchy's. Along a straight line that is the
+//! generating function's root of the Gegenbauer polynomials `C_n` of order e/2: its n-th derivative
+//! is `±n!·C_n(cos θ)·b^(−e−n)` with `b² = ε² + u²`, where `b·cos θ` is the position along the
+//! line. A skeleton adds up such terms. With A = 1 − I, the error of interpolation along an axis at
+//! n = 5 Chebyshev nodes of an interval of half length w, `|A f| ≤ 2(w/2)ⁿ/n!·|f⁽ⁿ⁾|`.
+//! Interpolation along all three axes, in any order, is off by `A₁f + I₁A₂f + I₁I₂A₃f`, and |I| ≤
+//! Λ, so that the error is at most
 //!
 //! `2M·q⁵·(c₁ + Λc₂ + Λ²c₃)`, `q = s·w/2b`, `c₁ ≥ c₂ ≥ c₃`,
 //!
-//! where M bounds the field, s is the width parameter, and cᵢ bounds |C₅(cos θ)| for the lines along axis i. |C₅| is small up to a
-//! certain cosine, which at most one axis exceeds as seen from far away. Interpolation of the parent's polynomial is exact.
+//! where M bounds the field, s is the width parameter, and cᵢ bounds |C₅(cos θ)| for the lines
+//! along axis i. |C₅| is small up to a certain cosine, which at most one axis exceeds as seen from
+//! far away. Interpolation of the parent's polynomial is exact.
 //!
-//! Kernels that end, the Gaussian and primitives with a profile are near wherever they are not negligible.
+//! Kernels that end, the Gaussian and primitives with a profile are near wherever they are not
+//! negligible.
 mod expansion;
 mod source;
 mod sums;
@@ -39,20 +45,23 @@ use std::sync::{Arc, OnceLock};
 use sums::NodeSums;
 use wide::f32x8;
 
-/// Half the extent of the box in which a cell's polynomial holds, over half the cell's own: rays of a beam may leave the cell by the
-/// difference.
+/// Half the extent of the box in which a cell's polynomial holds, over half the cell's own: rays of
+/// a beam may leave the cell by the difference.
 pub const LOOSE: f64 = 1.3;
 /// Largest error of a cell's polynomial, in T.
 pub const MOST_ERROR: f64 = 1e-4 * THRESHOLD;
 /// Part of [`MOST_ERROR`] that a cell adds to its parent's error, at most.
 const PORTION: f64 = 1.0 / 16.0;
-/// Number of halvings of the cube beyond which that part is halved with each further one, so that the sum stays below 1.
+/// Number of halvings of the cube beyond which that part is halved with each further one, so that
+/// the sum stays below 1.
 const EVEN: i32 = 12;
-/// Largest error of the interpolant of a primitive that is taken for far. A power of two, so that halvings of it are told by exponents.
+/// Largest error of the interpolant of a primitive that is taken for far. A power of two, so that
+/// halvings of it are told by exponents.
 const FIRST_SHARE: f64 = 1.0 / (1 << 22) as f64;
 /// Largest number of halvings of [`FIRST_SHARE`] in a cell that has too many far primitives.
 const MOST_HALVINGS: usize = 24;
-/// Rounding of coordinates in single precision, in the world and in a primitive's own frame, relative to them.
+/// Rounding of coordinates in single precision, in the world and in a primitive's own frame,
+/// relative to them.
 const MISPLACED: f64 = 2.5e-7;
 /// Near primitives up to which [`FarField::around`] divides no cell.
 pub const FEW_NEAR: usize = 48;
@@ -99,14 +108,14 @@ enum Purpose {
 #[derive(Debug)]
 struct Sources {
     each: Vec<Source>,
-    /// All of them side by side, if they are points of one kernel.
+    /// The points side by side, if all primitives are points of one kernel.
     points: Option<Points>,
 }
 
 /// A cube of space.
 #[derive(Debug)]
 pub struct Cell {
-    /// Its middle.
+    /// Centre.
     pub center: DVec3,
     /// Half its side.
     pub half: f64,
@@ -126,7 +135,7 @@ pub struct Cell {
     pub is_empty: bool,
     /// Bounds that hierarchies have which were made [with derivatives](FarField::with_derivatives).
     pub smooth: Smooth,
-    /// Those of the error and of its slope that parts inherit: without the rounding of evaluation.
+    /// Bounds on the error and on its slope that parts inherit: without the rounding of evaluation.
     passed: [f64; 2],
     /// Number of halvings of the hierarchy's cube.
     depth: i32,
@@ -137,7 +146,8 @@ pub struct Cell {
     children: [OnceLock<Arc<Cell>>; 8],
 }
 
-/// The part of a cell that is not inherited: its list and the polynomial of primitives that are far from it but near its parent.
+/// The part of a cell that is not inherited: its list and the polynomial of primitives that are far
+/// from it but near its parent.
 #[derive(Debug)]
 struct Own {
     near: Arc<[u32]>,
@@ -153,9 +163,9 @@ struct Own {
 /// Bounds on the far field of a cell, in its loose cube; infinite where they are not known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smooth {
-    /// On the length of the gradient of the expansion's error.
+    /// Bound on the length of the gradient of the expansion's error.
     pub slope_error: f64,
-    /// On the first to third derivative of the true far field along any line.
+    /// Bounds on the first to third derivative of the true far field along any line.
     pub derivatives: [f64; 3],
 }
 
@@ -188,7 +198,8 @@ pub fn decay(power: i32, inverse: f32x8) -> f32x8 {
 /// Ratio of a cube's half diagonal to half its side, or more.
 const DIAGONAL: f64 = 1.733;
 
-/// Returns the exponent e and the square ε² of a kernel `(ε² + u²)^(−e/2)`; `None` for kernels that end and the Gaussian.
+/// Returns the exponent e and the square ε² of a kernel `(ε² + u²)^(−e/2)`; `None` for kernels that
+/// end and the Gaussian.
 #[must_use]
 pub fn power(kernel: Kernel) -> Option<(i32, f64)> {
     match kernel {
@@ -220,9 +231,10 @@ impl FarField {
         }
     }
 
-    /// The same hierarchy, made sooner with the help of an earlier one: cells near whose parents nothing has changed take their lists
-    /// and shares of polynomials from it. `changed` lists the numbers of the primitives that differ, in ascending order. An earlier
-    /// hierarchy in another cube, of another use or of another number of primitives is of no help.
+    /// Returns the hierarchy with an earlier one that helps to make it: cells near whose parents
+    /// nothing has changed take their lists and shares of polynomials from there. `changed` lists
+    /// the numbers of the primitives that differ, in ascending order. An earlier hierarchy in
+    /// another cube, of another use or of another number of primitives is of no help.
     #[must_use]
     pub fn after(self, earlier: Option<&Self>, changed: &Arc<[u32]>) -> Self {
         let frame = |field: &Self| {
@@ -246,8 +258,9 @@ impl FarField {
         self.earlier.is_some()
     }
 
-    /// The same for those who look for the surface alone: where bounds show that the field is below T, cells have no list, no
-    /// polynomial and no parts, and cost next to nothing.
+    /// Returns the hierarchy for callers that look for the surface alone: where bounds show that
+    /// the field is below T, cells have no list, no polynomial and no parts, and cost next to
+    /// nothing.
     #[must_use]
     pub fn surface_only(self) -> Self {
         Self {
@@ -256,7 +269,8 @@ impl FarField {
         }
     }
 
-    /// The same with bounds on derivatives and on the error of slopes ([`Cell::smooth`]).
+    /// Returns the hierarchy with bounds on derivatives and on the error of slopes
+    /// ([`Cell::smooth`]).
     #[must_use]
     pub fn with_derivatives(self) -> Self {
         Self {
@@ -265,14 +279,16 @@ impl FarField {
         }
     }
 
-    /// The hierarchy of those of the primitives that add to the field and for which a condition holds, in the same cube.
+    /// Returns the hierarchy, in the same cube, of the primitives that add to the field and for
+    /// which a condition holds.
     #[must_use]
     pub fn of_positive(&self, holds: impl Fn(u32) -> bool) -> Self {
         let each = &self.sources.each;
-        let counts = |i: &u32| each[*i as usize].adds && holds(*i);
         Self {
             sources: self.sources.clone(),
-            members: (0..each.len() as u32).filter(counts).collect(),
+            members: (0..each.len() as u32)
+                .filter(|i| each[*i as usize].adds && holds(*i))
+                .collect(),
             purpose: Purpose::Values,
             root: OnceLock::new(),
             earlier: None,
@@ -282,12 +298,13 @@ impl FarField {
 
     /// Number of primitives that have an expansion.
     #[must_use]
-    pub fn expanded(&self) -> usize {
+    pub fn count_expansions(&self) -> usize {
         let each = self.sources.each.iter();
         each.filter(|source| source.power > 0).count()
     }
 
-    /// The cube itself, given the primitives of which the hierarchy was made.
+    /// Returns the largest cell, the cube itself, given the primitives of which the hierarchy was
+    /// made.
     pub fn root(&self, primitives: &[Primitive]) -> &Arc<Cell> {
         self.root.get_or_init(|| {
             let own = self
@@ -305,7 +322,8 @@ impl FarField {
         })
     }
 
-    /// One of the eight parts of a cell that is not empty: bit i of the number tells that it is the upper half along axis i.
+    /// Returns one of the eight parts of a cell: bit i of `number` tells whether it is the upper
+    /// half along axis i. An empty cell has no parts and is returned itself.
     pub fn part<'c>(
         &self,
         primitives: &[Primitive],
@@ -323,8 +341,9 @@ impl FarField {
         })
     }
 
-    /// The cell for a ball of space: the first that has no more than [`FEW_NEAR`] near primitives, or whose part around the ball's
-    /// middle does not hold the ball in its loose cube. `None` if not even the largest does.
+    /// Returns the cell for a ball of space: the first that has no more than [`FEW_NEAR`] near
+    /// primitives, or whose part around the ball's middle does not hold the ball in its loose cube.
+    /// `None` if not even the largest does.
     pub fn around(
         &self,
         primitives: &[Primitive],
@@ -350,21 +369,22 @@ impl FarField {
         Some(cell)
     }
 
-    /// Some primitives as seen from a box.
-    fn seen(&self, center: DVec3, half: f64, candidates: &[u32]) -> Vec<Seen> {
-        let Some(points) = &self.sources.points else {
-            let seen = candidates.iter();
-            return seen
-                .map(|&i| self.sources.each[i as usize].seen(center, half))
-                .collect();
-        };
+    /// Computes bounds on some primitives in a box.
+    fn bounds_in(&self, center: DVec3, half: f64, candidates: &[u32]) -> Vec<Seen> {
         let mut seen = Vec::with_capacity(candidates.len());
-        points.seen(center, half, candidates, &mut seen);
+        match &self.sources.points {
+            Some(points) => points.bounds_in(center, half, candidates, &mut seen),
+            None => seen.extend(
+                candidates
+                    .iter()
+                    .map(|&i| self.sources.each[i as usize].bounds_in(center, half)),
+            ),
+        }
         seen
     }
 
-    /// Makes a cell from the primitives near its parent (`candidates`). `before` is an earlier cell at the place that was made from the
-    /// same ones.
+    /// Makes a cell from the primitives near its parent (`candidates`). `before` is an earlier cell
+    /// at the place that was made from the same ones.
     fn cell(
         &self,
         primitives: &[Primitive],
@@ -375,7 +395,7 @@ impl FarField {
     ) -> Cell {
         let loose = LOOSE * half;
         let seen = OnceCell::new();
-        let seen = || seen.get_or_init(|| self.seen(center, loose, candidates));
+        let seen = || seen.get_or_init(|| self.bounds_in(center, loose, candidates));
         let candidates_most = before.map(|before| before.candidates_most);
         let candidates_most = candidates_most.unwrap_or_else(|| self.adding(candidates, seen()));
         let inherited = parent.map_or([0.0; 2], |parent| parent.passed);
@@ -423,7 +443,8 @@ impl FarField {
         adding.map(|(_, seen)| seen.magnitude).sum()
     }
 
-    /// Divides candidates into near and far ones, and interpolates the sum of the far ones in a box.
+    /// Divides candidates into near and far ones, and interpolates the sum of the far ones in a
+    /// box.
     fn own(
         &self,
         primitives: &[Primitive],
@@ -479,8 +500,8 @@ impl FarField {
     }
 }
 
-/// Returns the error below which primitives are far, such that those of all far ones add up to about a portion or less: a power of two,
-/// halved as often as need be.
+/// Returns the error below which primitives are far, such that those of all far ones add up to
+/// about a portion or less: a power of two, halved as often as need be.
 fn share_of(portion: f64, first: f64, seen: &[Seen]) -> f64 {
     // Sums of the errors between one halving and the next, as their exponents of two tell.
     let mut sums = [0.0; MOST_HALVINGS];
@@ -503,7 +524,8 @@ fn share_of(portion: f64, first: f64, seen: &[Seen]) -> f64 {
 }
 
 impl Earlier {
-    /// One of the eight parts that a cell had, if it was made from the same candidates as it would be now, none of which have changed.
+    /// Returns one of the eight parts that a cell had, if it was made from the same candidates as
+    /// it would be now, none of which have changed.
     fn part(&self, of: &Cell, number: usize) -> Option<&Arc<Cell>> {
         let mut cell = &self.root;
         for _ in 0..of.depth {
@@ -520,12 +542,12 @@ impl Earlier {
 }
 
 impl Cell {
-    /// Adds what a cell inherits to its own part.
+    /// Adds the part that a cell inherits to its own.
     fn inherit(&mut self, own: &Own, parent: Option<&Cell>) {
         let more = parent.map(|parent| {
             let outer = 1.0 / parent.reach();
             let shift = ((self.center - parent.center) * outer).to_array();
-            parent.expansion.moved(shift, self.reach() * outer)
+            parent.expansion.in_part(shift, self.reach() * outer)
         });
         let fitted = Expansion::of(&own.series, more.as_ref());
         let mut smooth = own.smooth;
@@ -548,15 +570,14 @@ impl Cell {
     #[inline]
     #[must_use]
     pub fn part_of(&self, place: DVec3) -> usize {
-        let above = |axis: usize| usize::from(place[axis] >= self.center[axis]) << axis;
-        above(0) | above(1) | above(2)
+        place.cmpge(self.center).bitmask() as usize
     }
 
     /// Middle of one of its parts.
     fn middle_of(&self, number: usize) -> DVec3 {
         let half = 0.5 * self.half;
-        let side = |axis: usize| if number >> axis & 1 == 0 { -half } else { half };
-        self.center + DVec3::new(side(0), side(1), side(2))
+        let sides = [0, 1, 2].map(|axis| if number >> axis & 1 == 0 { -half } else { half });
+        self.center + DVec3::from_array(sides)
     }
 
     /// Whether a place is in the cell.

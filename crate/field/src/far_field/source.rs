@@ -1,4 +1,5 @@
-//! Primitives as boxes of space see them: bounds on their size there, and on the error of their interpolants.
+//! Primitives as boxes of space see them: bounds on their size there, and on the error of their
+//! interpolants.
 use super::expansion::{AXES, NODES};
 use super::{DIAGONAL, MISPLACED, Smooth, power};
 use crate::bone::Bone;
@@ -14,12 +15,13 @@ pub struct Source {
     pub around: f64,
     /// Half the sides of a box around it.
     pub extent: DVec3,
-    /// Bound on the field times the kernel's reciprocal ([`Bound::far`]), and the least width parameter.
+    /// Bound on the field times the kernel's reciprocal ([`Bound::far`]), and the least width
+    /// parameter.
     pub whole: f64,
     pub width: f64,
     /// The largest width parameter.
     pub finest: f64,
-    /// Of a point without a profile: its factor.
+    /// Factor of a point without a profile; `None` for all others.
     pub point: Option<f32>,
     /// The bounds of all others.
     pub bound: Option<Box<Bound>>,
@@ -36,7 +38,8 @@ pub struct Seen {
     pub magnitude: f64,
     /// Bound on the error of its expansion, or of leaving it out.
     pub error: f64,
-    /// Its largest slope over its size, about, where its place is rounded to single precision.
+    /// Largest slope over the size, about, for the effect of a place that is rounded to single
+    /// precision.
     pub steep: f64,
 }
 
@@ -47,7 +50,7 @@ struct Afar {
 }
 
 impl Source {
-    /// A primitive's bounds.
+    /// Computes a primitive's bounds.
     pub fn of(primitive: &Primitive) -> Self {
         let bound = Bound::new(primitive);
         let [whole, width] = bound.far();
@@ -77,13 +80,15 @@ impl Source {
         }
     }
 
-    /// Bounds on derivatives of the primitive in a box of this half extent, and on the slope of its interpolant's error, given the
-    /// bound on that error itself.
+    /// Bounds on derivatives of the primitive in a box of this half extent, and on the slope of its
+    /// interpolant's error, given the bound on that error itself.
     ///
-    /// With `A = 1 − I` the error `A₁f + I₁A₂f + I₁I₂A₃f` has the derivative by x₁ of a term `A₁g` as its own bound times
-    /// `n²/w` (n nodes, half extent w), since `|(g − Ig)′| ≤ |ω′|/n!·|g⁽ⁿ⁾|` (Shadrin 1995) for the nodes' polynomial `ω =
-    /// 2(w/2)ⁿTₙ(x/w)`; a polynomial `I₁g` less, by Markov's inequality. By another coordinate, `A₁` remains with a mixed derivative of
-    /// order n + 1, which on a line through space is no larger than that along it: `(n+1)!·C_{n+1}(1)·b^(−e−n−1)`.
+    /// With `A = 1 − I` the error `A₁f + I₁A₂f + I₁I₂A₃f` has the derivative by x₁ of a term `A₁g`
+    /// as its own bound times `n²/w` (n nodes, half extent w), since `|(g − Ig)′| ≤ |ω′|/n!·|g⁽ⁿ⁾|`
+    /// (Shadrin 1995) for the nodes' polynomial `ω = 2(w/2)ⁿTₙ(x/w)`; a polynomial `I₁g` less, by
+    /// Markov's inequality. By another coordinate, `A₁` remains with a mixed derivative of order
+    /// n+1, which on a line through space is no larger than that along it:
+    /// `(n+1)!·C_{n+1}(1)·b^(−e−n−1)`.
     pub fn smooth(&self, center: DVec3, half: f64, error: f64) -> Smooth {
         let Some(near) = self.afar(center, half) else {
             let Some(bound) = &self.bound else {
@@ -113,7 +118,7 @@ impl Source {
         }
     }
 
-    /// The field's bound as seen from a box; `None` if its kernel has no expansion.
+    /// Returns the field's bound in a box; `None` if its kernel has no expansion.
     fn afar(&self, center: DVec3, half: f64) -> Option<Afar> {
         if self.power == 0 {
             return None;
@@ -134,22 +139,23 @@ impl Source {
         Afar { own, inverse }
     }
 
-    /// Number of axes along which a line through the box may be seen from a part of the skeleton at an angle with a larger cosine
-    /// than this, squared: `cos² ≤ X²/(X² + R²)`, with the largest X along the axis and the least R across it.
+    /// Counts the axes along which a line through the box may be seen from a part of the skeleton
+    /// at an angle with a larger cosine than this, squared: `cos² ≤ X²/(X² + R²)`, with the largest
+    /// X along the axis and the least R across it.
     fn steep_axes(&self, away: DVec3, half: f64, square: f64) -> usize {
         let most = (away + half + self.extent) * self.finest;
         let least = (away - half - self.extent).max(DVec3::ZERO) * self.width;
         let least = least * least;
         let base = self.softening + least.element_sum();
-        let is_steep = |axis: &usize| {
-            let across = base - least[*axis];
-            square * across < (1.0 - square) * most[*axis] * most[*axis]
-        };
-        (0..3).filter(is_steep).count()
+        let steep = (0..3).filter(|&axis| {
+            let across = base - least[axis];
+            square * across < (1.0 - square) * most[axis] * most[axis]
+        });
+        steep.count()
     }
 
-    /// The primitive as seen from a box of this half extent.
-    pub fn seen(&self, center: DVec3, half: f64) -> Seen {
+    /// Computes bounds on the primitive in a box of this half extent.
+    pub fn bounds_in(&self, center: DVec3, half: f64) -> Seen {
         let away = (self.center - center).abs();
         let outside = (away - half).max(DVec3::ZERO).length();
         let mut distance = (outside - self.around).at_least(0.0);
@@ -186,9 +192,9 @@ impl Source {
 struct Gegenbauer {
     /// Value at 1, the largest.
     high: f64,
-    /// Largest size up to the cosine …
+    /// Largest size up to the cosine whose square is `square`.
     low: f64,
-    /// … with this square.
+    /// Square of that cosine.
     square: f64,
 }
 
@@ -219,14 +225,14 @@ const GEGENBAUER: [Gegenbauer; 4] = [
 const LAMBDA: f64 = 1.99;
 
 impl Gegenbauer {
-    /// `2(c₁ + Λc₂ + Λ²c₃)`, of which so many axes may exceed the cosine.
+    /// Returns `2(c₁ + Λc₂ + Λ²c₃)`, where `high` axes may exceed the cosine.
     fn factor(self, high: usize) -> f64 {
-        let of = |axis: usize| if axis < high { self.high } else { self.low };
-        2.0 * (of(0) + LAMBDA * of(1) + LAMBDA * LAMBDA * of(2))
+        let [c1, c2, c3] = [0, 1, 2].map(|axis| if axis < high { self.high } else { self.low });
+        2.0 * (c1 + LAMBDA * c2 + LAMBDA * LAMBDA * c3)
     }
 }
 
-/// All primitives side by side, if they are points of one kernel.
+/// Primitives side by side that are all points of one kernel.
 #[derive(Debug)]
 pub struct Points {
     /// Place, width parameter, bound on the field over the kernel.
@@ -243,11 +249,13 @@ pub struct Points {
 }
 
 impl Points {
-    /// `None` if the sources are anything else.
+    /// Gathers the sources; `None` if they are not all points of one kernel.
     pub fn of(sources: &[Source]) -> Option<Self> {
         let power = sources.first()?.power;
-        let plain = |s: &Source| s.point.is_some() && s.power == power;
-        if !sources.iter().all(plain) {
+        if !sources
+            .iter()
+            .all(|s| s.point.is_some() && s.power == power)
+        {
             return None;
         }
         let all = |of: &dyn Fn(&Source) -> f64| sources.iter().map(|s| of(s) as f32).collect();
@@ -265,8 +273,9 @@ impl Points {
         })
     }
 
-    /// Bounds on sizes and errors of some points in a box, rounded upwards.
-    pub fn seen(&self, center: DVec3, half: f64, candidates: &[u32], seen: &mut Vec<Seen>) {
+    /// Computes bounds on sizes and errors of some points in a box, rounded upwards, and appends
+    /// them to `seen`.
+    pub fn bounds_in(&self, center: DVec3, half: f64, candidates: &[u32], seen: &mut Vec<Seen>) {
         let coordinates = self.furthest + center.abs().max_element();
         // Places are rounded.
         let wide = half * (1.0 + 1e-6) + MISPLACED * coordinates;
@@ -280,8 +289,9 @@ impl Points {
         let up = f32x8::splat(1.0 + 1e-4);
         for block in candidates.chunks(8) {
             let gather = |row: &[f32]| {
-                let of = |lane: usize| row[block[lane.min(block.len() - 1)] as usize];
-                f32x8::new(core::array::from_fn(of))
+                f32x8::new(core::array::from_fn(|lane| {
+                    row[block[lane.min(block.len() - 1)] as usize]
+                }))
             };
             let (scale, whole) = (gather(&self.scale), gather(&self.whole));
             // In kernel widths, squared.
@@ -328,7 +338,8 @@ impl Points {
 mod tests {
     use super::*;
 
-    /// The bounds on Gegenbauer polynomials: everywhere, and up to the cosine, where they are nearly reached.
+    /// The bounds on Gegenbauer polynomials: everywhere, and up to the cosine, where they are
+    /// nearly reached.
     #[test]
     fn gegenbauer_polynomials_are_bounded() {
         for (bounds, e) in GEGENBAUER.iter().zip(1..) {
@@ -355,7 +366,8 @@ mod tests {
         }
     }
 
-    /// Interpolation of a single point's field at the nodes of a box is no further off than its bound, which is nearly reached.
+    /// Interpolation of a single point's field at the nodes of a box is no further off than its
+    /// bound, which is nearly reached.
     #[test]
     fn interpolants_of_points_are_within_their_bounds() {
         use crate::{BlobScale, Kernel, Shaping, Skeleton};
@@ -401,7 +413,7 @@ mod tests {
                 let half = 0.6;
                 let points = Points::of(&[Source::of(&point)]).expect("a point");
                 let mut seen = Vec::new();
-                points.seen(DVec3::ZERO, half, &[0], &mut seen);
+                points.bounds_in(DVec3::ZERO, half, &[0], &mut seen);
                 let value = |x: f64, y: f64, z: f64| point.value([x, y, z].map(|c| c * half));
                 for _ in 0..6 {
                     let place = random.vector(1.0).to_array();

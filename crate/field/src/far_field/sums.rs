@@ -27,7 +27,7 @@ pub struct NodeSums<'f> {
     loss: f64,
 }
 
-/// Up to eight points of one kernel.
+/// Points of one kernel that wait to be added, up to eight.
 #[derive(Default)]
 struct Waiting {
     count: usize,
@@ -79,7 +79,8 @@ impl<'f> NodeSums<'f> {
         }
         let waiting = &mut self.waiting;
         (waiting.power, waiting.softening) = (source.power, source.softening as f32);
-        // Relative to the box, in kernel widths: single precision then has its digits whatever the place.
+        // Relative to the box, in kernel widths: single precision then has its digits whatever the
+        // place.
         let scale = source.finest;
         let away = ((self.center - source.center) * scale).as_vec3().to_array();
         let lane = waiting.count;

@@ -1,4 +1,4 @@
-//! A circular arc, by Gauss–Legendre (it has no elementary form).
+//! The Gauss kernel along a circular arc, by Gauss–Legendre quadrature (it has no elementary form).
 //!
 //! With ρ the point's distance from the axis and ψ its azimuth, and u the azimuth of a point of the
 //! arc as seen from ψ, the squared distance between the two is
@@ -6,24 +6,26 @@
 //!
 //! `f = r·e^(−z²−(ρ−r)²)·∫ e^(−4rρ·sin²(u/2)) du`.
 //!
-//! Where 4rρ is large, only a window counts around the place of the piece that is nearest, where u is v:
-//! `4rρ·(sin²(u/2) − sin²(v/2)) ≤ L²`. What lies outside is below erfc L of the field, or, where the nearest place is
-//! an end, below e^(−L²) of it: so beyond the ends, where the field is a tiny part of the whole circle's, it keeps
-//! its digits. The integral runs over the part of the piece within that
-//! window. It has one peak and no other feature, of width L times less than the window's: its
-//! Chebyshev coefficients fall like those of e^(−L²x²), which are `e^(−L²/2)·I_k(L²/2)` for the even
-//! degrees 2k. With n nodes those up to degree 2n−1 count exactly, and the rest is about 10⁻⁷ (L = 3.6,
-//! n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak; of one that falls off from an end less. Where the window would be
-//! wider than a half circle, the integrand may reach further out than L: there the rest is up to 10⁻⁶ and 10⁻¹².
+//! Where 4rρ is large, only a window counts around the place of the piece that is nearest, where u
+//! is v: `4rρ·(sin²(u/2) − sin²(v/2)) ≤ L²`. What lies outside is below erfc L of the field, or,
+//! where the nearest place is an end, below e^(−L²) of it: so beyond the ends, where the field is a
+//! tiny part of the whole circle's, it keeps its digits. The integral runs over the part of the
+//! piece within that window. It has one peak and no other feature, of width L times less than the
+//! window's: its Chebyshev coefficients fall like those of e^(−L²x²), which are
+//! `e^(−L²/2)·I_k(L²/2)` for the even degrees 2k. With n nodes those up to degree 2n−1 count
+//! exactly, and the rest is about 10⁻⁷ (L = 3.6, n = 16) or 10⁻¹⁵ (L = 6.3, n = 40) of the peak; of
+//! one that falls off from an end less. Where the window would be wider than a half circle, the
+//! integrand may reach further out than L: there the rest is up to 10⁻⁶ and 10⁻¹².
 //!
 //! Azimuths jump by 2π somewhere. An arc of at most a half circle whose middle is at |u| ≤ π
 //! reaches |u| = 3π/2 at most: the window is either narrower than π/2 and meets it in one piece, or
-//! takes it whole. A longer arc is the sum of its halves: all terms are positive, and nothing cancels
-//! in a gap or on the axis. Azimuths are measured from that of the origin, the arc's or the gap's
-//! middle, so short arcs of huge circles and narrow gaps keep their digits.
+//! takes it whole. A longer arc is the sum of its halves: all terms are positive, and nothing
+//! cancels in a gap or on the axis. Azimuths are measured from that of the origin, the arc's or the
+//! gap's middle, so short arcs of huge circles and narrow gaps keep their digits.
 //!
 //! Gradient: in the plane, away from the axis and along the circle,
-//! `−2·∫ ((ρ−r) + 2r·sin²(u/2), −2r·sin(u/2)cos(u/2))`, each times the integrand of f; across it `−2zf`.
+//! `−2·∫ ((ρ−r) + 2r·sin²(u/2), −2r·sin(u/2)cos(u/2))`, each times the integrand of f; across it
+//! `−2zf`.
 use crate::angle::direction;
 use crate::bone::Arc;
 use crate::{Jet, Real, legendre};
@@ -130,9 +132,9 @@ fn window<R: Real>(coupling: R, nearest: R) -> R {
     )
 }
 
-/// Returns the integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2, over the part of
-/// `from + limits` in the window; `from` is separate to keep the digits of a short piece's length. `ends` is
-/// coupling·s² at the nearer of the limits.
+/// Returns the integrals of `e^(−coupling·s²)·(1, s², s·c)`, s and c the sine and cosine of u/2,
+/// over the part of `from + limits` in the window; `from` is separate to keep the digits of a short
+/// piece's length. `ends` is coupling·s² at the nearer of the limits.
 #[inline(always)]
 fn piece<R: Real>(coupling: R, ends: R, from: R, [low, high]: [R; 2]) -> [R; 3] {
     let zero = R::splat(0.0);

@@ -1,4 +1,5 @@
-//! A planar polygon, with holes or without: a triangle too (the thesis has none).
+//! The Gauss kernel over a planar polygon, with holes or without, or a triangle (the thesis has
+//! none).
 //!
 //! The polygon lies in the plane z = 0, q is the foot of the perpendicular from the point. For an
 //! edge let h be the signed distance of q from its line (positive inside) and [t₀, t₁] its
@@ -24,13 +25,13 @@
 //! The angles' sum is 0 outside the polygon. It is set to that, so what remains are terms that
 //! fall with the distance as the field does; those that do not cancel symbolically (see [`Wing`]).
 //!
-//! Gradient: in the plane the sum of inward normals times `∫e^(−h²−t²)dt`, an error function; across
-//! it `−2zf`.
+//! Gradient: in the plane the sum of inward normals times `∫e^(−h²−t²)dt`, an error function;
+//! across it `−2zf`.
 //!
 //! Near a small polygon (1) is a small difference of angles. There the integrand is nearly level,
-//! and a product of Gauss–Legendre rules over the triangles between the origin and the edges is good
-//! to the last digits. Single precision gives a needle, much thinner than the kernel's width but
-//! long, an error of 10⁻⁷ of what a wide polygon would give.
+//! and a product of Gauss–Legendre rules over the triangles between the origin and the edges is
+//! good to the last digits. Single precision gives a needle, much thinner than the kernel's width
+//! but long, an error of 10⁻⁷ of what a wide polygon would give.
 use crate::angle::direction;
 use crate::bone::Edge;
 use crate::{Jet, Real, legendre};
@@ -42,7 +43,7 @@ const SMALL: f64 = 0.7;
 /// [`segment`](super::segment)) for lengths 1.4 and 0.7 are below 10⁻⁷.
 const EDGE_SINGLE: [(f64, f64); 3] = legendre::pairs();
 const SPOKE_SINGLE: [(f64, f64); 2] = legendre::pairs();
-/// The same with remainders below 10⁻¹⁶, in double precision for both.
+/// Rule with remainders below 10⁻¹⁶, in double precision for both directions.
 const DOUBLE: [(f64, f64); 6] = legendre::pairs();
 
 /// Value and gradient at a local position.
@@ -115,8 +116,8 @@ fn off_zero<R: Real>(t: R) -> R {
 
 /// S(h, t) in two parts, with h ≥ 0.
 struct Wing<R> {
-    /// For |t| > h the part of (2) that does not depend on |t|, `(π/2)·erfc h`, with t's sign; else
-    /// 0. Of two ends on the same side it cancels to the last bit.
+    /// Part of (2) that does not depend on |t|, `(π/2)·erfc h`, with t's sign, if |t| > h; else 0.
+    /// Of two ends on the same side it cancels to the last bit.
     level: R,
     /// The rest of S.
     rest: R,

@@ -1,4 +1,4 @@
-//! A line segment (thesis 2.21, whose print lacks the factor √π/2).
+//! The Gauss kernel along a line segment (thesis 2.21, whose print lacks the factor √π/2).
 //!
 //! The segment lies on the x axis, |x| ≤ c. With `ρ² = y²+z²` and, for x ≥ 0 (the field is even in
 //! x), the distances `a = x−c` and `b = x+c` of the foot of the perpendicular from the ends:

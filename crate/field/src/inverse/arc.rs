@@ -1,18 +1,19 @@
-//! A circular arc: one elliptic integral.
+//! The inverse kernel along a circular arc: one elliptic integral.
 //!
 //! The frame and the distances ε, σ, α, ρ, A, Δ, D₁, D₂, C are those of the
-//! [squared kernel's arc](crate::squared::arc); `n, m = z²+ε²+(ρ∓r)²` are the squares of the nearest and
-//! the farthest distance from the circle, and `s = sin(α/2)`. The thesis has no formula. With
-//! t = tan(θ/2) the integral over the arc is that of one over the root of two quadratics, which Carlson
-//! (A table of elliptic integrals: two quadratic factors, 1992) gives between any two limits as one R_F:
+//! [squared kernel's arc](crate::squared::arc); `n, m = z²+ε²+(ρ∓r)²` are the squares of the
+//! nearest and the farthest distance from the circle, and `s = sin(α/2)`. The thesis has no
+//! formula. With t = tan(θ/2) the integral over the arc is that of one over the root of two
+//! quadratics, which Carlson (A table of elliptic integrals: two quadratic factors, 1992) gives
+//! between any two limits as one R_F:
 //!
 //! `f = 4rs·R_F(M, M+s²n, M+s²m)`, `M = ½(√(D₁D₂) + C)`.
 //!
 //! Nothing is split at the azimuth and no term is subtracted. Where C is negative
 //! `M = ½Δ sin²α/(√(D₁D₂) − C)`; a closed circle has M = 0, a complete integral.
 //!
-//! Gradient, by the chain rule. M moves all three arguments at once, and the sum of R_F's three derivatives
-//! is elementary, so that two R_D are enough:
+//! Gradient, by the chain rule. M moves all three arguments at once, and the sum of R_F's three
+//! derivatives is elementary, so that two R_D are enough:
 //! `∇f = −(2rs/3)·[3∇M/√(M(M+s²n)(M+s²m)) + R_n·s²∇n + R_m·s²∇m]`, `R_n = R_D(M, M+s²m, M+s²n)`,
 //! `R_m = R_D(M, M+s²n, M+s²m)`. `∇M/√M` is computed as a whole, since M may be 0.
 use crate::bone::Arc;

@@ -1,23 +1,24 @@
-//! A triangle or any planar polygon: the potential of a uniform plate, as a sum over its edges.
+//! The inverse kernel over a triangle or any planar polygon: the potential of a uniform plate, as a
+//! sum over its edges.
 //!
 //! The polygon lies in the plane z = 0. Let q be the foot of the perpendicular from the point,
 //! `c² = z²+ε²`. For an edge of length l let h be the signed distance of q from its line (positive
-//! inside), t₀ and `t₁ = t₀+l` the edge's interval measured from q's foot on that line, `k² = c²+h²` and
-//! `ρᵢ² = k²+tᵢ²`. Green's theorem gives
+//! inside), t₀ and `t₁ = t₀+l` the edge's interval measured from q's foot on that line,
+//! `k² = c²+h²` and `ρᵢ² = k²+tᵢ²`. Green's theorem gives
 //!
 //! `f = Σ ∫ h(√(k²+t²)−c)/(h²+t²) dt = Σ h·L − c·Ω`, `L = asinh(t₁/k) − asinh(t₀/k)`, `Ω = Σ W`,
 //! `W = 2·atan2(h·l, (ρ₀+c)(ρ₁+c)+h²+t₀t₁)`.
 //!
-//! L is the [segment](super::segment)'s field. W is the solid angle at which the point sees the triangle
-//! between q and the edge (Van Oosterom and Strackee), and Ω the polygon's: two arctangents of the
-//! published form (fields.md 3.5) in one, in which nothing cancels: `ρ₀ρ₁+t₀t₁` is never negative, and
-//! computed as `k²(k²+t₀²+t₁²)/(ρ₀ρ₁−t₀t₁)` where it would cancel.
+//! L is the [segment](super::segment)'s field. W is the solid angle at which the point sees the
+//! triangle between q and the edge (Van Oosterom and Strackee), and Ω the polygon's: two
+//! arctangents of the published form (fields.md 3.5) in one, in which nothing cancels: `ρ₀ρ₁+t₀t₁`
+//! is never negative, and computed as `k²(k²+t₀²+t₁²)/(ρ₀ρ₁−t₀t₁)` where it would cancel.
 //!
 //! Gradient: `Σ n·L` over inward normals n in the plane, and `−(z/c)·Ω` across it.
 //!
-//! Outside the polygon terms of both signs cancel. In single precision that leaves an error of about
-//! 10⁻⁷ times the perimeter, 2·10⁻⁶ of the largest field at a radius from the skeleton; where a polygon is
-//! small compared to its distance the [cubature](crate::far) replaces the sum.
+//! Outside the polygon terms of both signs cancel. In single precision that leaves an error of
+//! about 10⁻⁷ times the perimeter, 2·10⁻⁶ of the largest field at a radius from the skeleton; where
+//! a polygon is small compared to its distance the [cubature](crate::far) replaces the sum.
 use super::{POLE2, surplus};
 use crate::angle::direction;
 use crate::bone::{Edge, Polygon, Triangle};

@@ -1,4 +1,4 @@
-//! A line segment.
+//! The inverse kernel along a line segment.
 //!
 //! The segment lies on the x axis, |x| ≤ c. With `ρ² = y²+z²+ε²`, `a = x+c`, `b = c−x` (signed
 //! distances of the foot of the perpendicular from the ends) and the distances `A = √(ρ²+a²)`,
@@ -6,9 +6,9 @@
 //!
 //! `f = asinh(a/ρ) + asinh(b/ρ) = ln((A+B+2c)/(A+B−2c))`.
 //!
-//! Beside the segment `A+B−2c = (A−a)+(B−b)` cancels, but each of its brackets is `ρ²/(A+a)` where a is
-//! positive, and a sum where it is not. So `f = ln(1+4c/g)` with a g of two positive terms, and nothing
-//! cancels beside the segment, beyond its ends, on its axis or far away.
+//! Beside the segment `A+B−2c = (A−a)+(B−b)` cancels, but each of its brackets is `ρ²/(A+a)` where
+//! a is positive, and a sum where it is not. So `f = ln(1+4c/g)` with a g of two positive terms,
+//! and nothing cancels beside the segment, beyond its ends, on its axis or far away.
 //!
 //! Gradient: with `s = A+B`, `∂f/∂x = 1/A−1/B = −4cx/(ABs)` and `∂f/∂y = −4c·s·y/(AB·g·(s+2c))`.
 use super::{POLE2, surplus};

@@ -1,4 +1,5 @@
-//! Making the local convolution of a skeleton: segments, the pieces within their reach, and distances along the skeleton.
+//! Making the local convolution of a skeleton: segments, the pieces within their reach, and
+//! distances along the skeleton.
 use super::cells::Cells;
 use super::graph::Graph;
 use super::groups::Group;
@@ -17,9 +18,10 @@ pub const MOST_LINKS: usize = 1 << 22;
 pub struct Limb {
     /// Numbers of the points at its ends, which it shares with its neighbours.
     pub ends: [u32; 2],
-    /// For each end the segment that goes on from it, if one does.
+    /// Segment that goes on from each end, if one does.
     pub next: [Option<u32>; 2],
-    /// Its pieces, one after the other along it, as primitives with their lengths. Their fields are positive.
+    /// Pieces, one after the other along the segment, as primitives with their lengths. Their
+    /// fields are positive.
     pub pieces: Vec<(Primitive, f64)>,
 }
 
@@ -39,14 +41,13 @@ impl Limb {
 
     fn is_sound(&self, points: usize) -> bool {
         let [a, b] = self.ends;
-        let positive = |(primitive, length): &(Primitive, f64)| {
-            let bound = Bound::new(primitive);
-            length.is_finite() && *length > 0.0 && !bound.carves() && !bound.has_profile()
-        };
         a != b
             && (a.max(b) as usize) < points
             && !self.pieces.is_empty()
-            && self.pieces.iter().all(positive)
+            && self.pieces.iter().all(|(primitive, length)| {
+                let bound = Bound::new(primitive);
+                length.is_finite() && *length > 0.0 && !bound.carves() && !bound.has_profile()
+            })
     }
 }
 
@@ -57,13 +58,13 @@ impl Local {
     /// If a number is not usable or too many pieces are within reach of each other.
     pub fn new(points: &[DVec3], limbs: &[Limb], reach: f64) -> Result<Self, LocalError> {
         let count = limbs.len() as u32;
-        let follows = |limb: &Limb| limb.next.iter().flatten().all(|next| *next < count);
         let sound = reach.is_finite()
             && reach > 0.0
             && points.iter().all(|p| p.is_finite())
-            && limbs
-                .iter()
-                .all(|limb| limb.is_sound(points.len()) && follows(limb));
+            && limbs.iter().all(|limb| {
+                let mut next = limb.next.iter().flatten();
+                limb.is_sound(points.len()) && next.all(|next| *next < count)
+            });
         if !sound {
             return Err(LocalError::Unusable);
         }
@@ -195,7 +196,8 @@ impl Local {
     }
 }
 
-/// The normal of the plane at an end of a limb: half-way to the direction of the one that goes on there, else its own direction.
+/// The normal of the plane at an end of a limb: half-way to the direction of the one that goes on
+/// there, else its own direction.
 fn normal(points: &[DVec3], limbs: &[Limb], limb: &Limb, end: usize) -> DVec3 {
     let direction = |limb: &Limb| {
         let [a, b] = limb.ends.map(|end| points[end as usize]);

@@ -5,11 +5,11 @@ use crate::Ball;
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
-/// Cells are halved until half their side is less than this part of the reach …
+/// Half side, as a part of the reach, from which on cells are not halved.
 const FINEST: f64 = 1.0 / 24.0;
-/// … or this often.
+/// Largest number of halvings.
 const DEEPEST: u32 = 10;
-/// In cells with half a side longer than this part of the reach nearly everything matters.
+/// Half side, as a part of the reach, above which nearly everything matters in a cell.
 const COARSE: f64 = 0.8;
 
 /// A cube of space, cut into cells.
@@ -23,7 +23,7 @@ pub(super) struct Cells {
 
 #[derive(Clone, Debug, Default)]
 struct Cell {
-    /// `None`: those of the cell that it is a part of.
+    /// Terms that matter; `None` if they are those of the cell that this is a part of.
     terms: Option<Terms>,
     parts: [OnceLock<Box<Cell>>; 8],
 }
@@ -31,9 +31,9 @@ struct Cell {
 /// Terms that matter in a ball around a cell, as large as one and a bit cells.
 #[derive(Clone, Debug)]
 struct Terms {
-    /// Those that may lead.
+    /// Terms that may lead.
     first: Arc<[u32]>,
-    /// Those, and all of those whose field may be [`FAINT`] or more.
+    /// Terms that may lead, and all others whose field may be [`FAINT`] or more.
     both: Arc<[u32]>,
 }
 
@@ -43,18 +43,21 @@ impl Cells {
         let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let half = 0.5 * (high - low).max_element() + reach;
-        let finer = |depth: &u32| half * f64::from(1u32 << depth).recip() < FINEST * reach;
+        let depth = (0..DEEPEST)
+            .find(|depth| half * f64::from(1u32 << depth).recip() < FINEST * reach)
+            .unwrap_or(DEEPEST);
         Self {
             center: 0.5 * (low + high),
             half,
-            depth: (0..DEEPEST).find(finer).unwrap_or(DEEPEST),
+            depth,
             root: Cell::default(),
         }
     }
 }
 
 impl Local {
-    /// The terms that may lead somewhere in a ball; or all of those that may be above [`FAINT`] there, too.
+    /// Returns the terms that may lead somewhere in a ball; with `both` also those that may be
+    /// above [`FAINT`] there.
     pub(super) fn terms_in(&self, ball: &Ball, both: bool) -> &[u32] {
         let (mut center, mut half) = (self.cells.center, self.cells.half);
         let mut terms: Option<&Terms> = None;
@@ -70,7 +73,7 @@ impl Local {
             center += DVec3::select(above, DVec3::splat(half), DVec3::splat(-half));
             cell = cell.parts[part].get_or_init(|| {
                 Box::new(Cell {
-                    terms: self.chosen(terms, center, half),
+                    terms: self.choose(terms, center, half),
                     parts: Default::default(),
                 })
             });
@@ -83,8 +86,9 @@ impl Local {
         }
     }
 
-    /// The terms that matter around a cell, among those of a larger one; `None` if these are all.
-    fn chosen(&self, among: Option<&Terms>, center: DVec3, half: f64) -> Option<Terms> {
+    /// Returns the terms that matter around a cell, among those of a larger one; `None` if these
+    /// are all.
+    fn choose(&self, among: Option<&Terms>, center: DVec3, half: f64) -> Option<Terms> {
         if half > COARSE * self.reach() {
             return None;
         }

@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, BinaryHeap};
 /// A graph of nodes joined by edges with lengths.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
-    /// For each node its neighbours.
+    /// Neighbours of each node.
     edges: Vec<Vec<(u32, f64)>>,
 }
 
 impl Graph {
-    /// A graph of some nodes, without edges.
+    /// Makes a graph of some nodes, without edges.
     #[must_use]
     pub fn new(nodes: usize) -> Self {
         Self {
@@ -29,7 +29,8 @@ impl Graph {
         self.edges[b as usize].push((a, length));
     }
 
-    /// Distances along the graph from a node to those within a reach (Dijkstra's algorithm), at most `most` of them.
+    /// Distances along the graph from a node to those within a reach (Dijkstra's algorithm), at
+    /// most `most` of them.
     #[must_use]
     pub fn within(&self, from: u32, reach: f64, most: usize) -> BTreeMap<u32, f64> {
         let mut found = BTreeMap::new();

@@ -1,13 +1,14 @@
-//! Groups of pieces, and a tree of them: bounds on the sum of all fields that need no look at single pieces.
+//! Groups of pieces, and a tree of them: bounds on the sum of all fields that need no look at
+//! single pieces.
 use super::{Local, Piece};
 use crate::{Ball, Kernel};
 
 /// Pieces of a leaf of the tree.
 const LEAF: usize = 4;
-/// A group is opened if its radius is more than this part of its distance.
+/// Ratio of a group's radius to its distance above which the group is opened.
 const NEAR: f64 = 0.35;
 
-/// Some pieces: their field is at most `mass` times the kernel at their distance.
+/// Group of pieces: their field is at most `mass` times the kernel at their distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Group {
     pub ball: Ball,
@@ -26,7 +27,7 @@ pub(super) enum Node {
 }
 
 impl Group {
-    /// An upper bound on its field at a distance from its ball.
+    /// Returns an upper bound on its field at a distance from its ball.
     pub fn most(&self, distance: f64) -> f64 {
         self.mass * self.kernel.value(distance.max(0.0) * self.width)
     }

@@ -1,18 +1,20 @@
 //! Bounds on the largest of the stretches in a ball, and on the largest one that is far from it.
-use super::survey::{Bounds, Candidate, Survey};
+use super::survey::{Bounds, Survey};
 use super::{FAINT, Local};
 use crate::Ball;
 
-/// Bounds on the fields of the stretches of interest in a ball, see [`Local::two`] for what they are.
+/// Bounds on the fields of the stretches of interest in a ball, see [`Local::two`] for what they
+/// are.
 #[derive(Clone, Copy, Debug)]
 pub struct Two {
     /// The largest stretch.
     pub first: Bounds,
-    /// The largest one that is far from it, or the level below which that is of no interest, if it is more; `None` if none is above the level.
+    /// The largest one that is far from it, or the level below which that is of no interest, if it
+    /// is more; `None` if none is above the level.
     pub second: Option<Bounds>,
 }
 
-/// Those of some candidates that may be the largest.
+/// Candidates that may be the largest.
 struct Leaders {
     floor: f64,
     members: Vec<usize>,
@@ -88,8 +90,8 @@ impl Leaders {
 }
 
 impl Local {
-    /// Bounds on the largest stretch in a ball and, if a level is given, on the largest one more than 2D away from it along the
-    /// skeleton, or the level where that is more.
+    /// Bounds on the largest stretch in a ball and, if a level is given, on the largest one more
+    /// than 2D away from it along the skeleton, or the level where that is more.
     #[must_use]
     pub fn enclose_two(&self, ball: Ball, level: Option<f64>) -> Two {
         let everything = self.everything(&ball);
@@ -99,7 +101,8 @@ impl Local {
             curvature: f64::INFINITY,
             jump: f64::INFINITY,
         };
-        // In balls that large hardly anything is decided, and nearly all of the skeleton would have to be looked at.
+        // In balls that large hardly anything is decided, and nearly all of the skeleton would have
+        // to be looked at.
         if everything < FAINT || ball.radius > COARSE * self.reach() {
             return Two {
                 first: faint(0.0),
@@ -130,27 +133,27 @@ impl Local {
     }
 }
 
-/// Bounds on the largest stretch that is far from those that lead, or a level, if that is more; `None` if none is above the level.
+/// Bounds on the largest stretch that is far from those that lead, or a level, if that is more;
+/// `None` if none is above the level.
 fn second(survey: &Survey, leaders: &Leaders, level: f64) -> Option<Bounds> {
     let far = 2.0 * survey.local.reach();
-    let apart = |a: &Candidate, b: &Candidate| {
-        if a.chain == b.chain {
-            return [0.0; 2];
-        }
-        let ((a, half_a), (b, half_b)) = (survey.middle(a), survey.middle(b));
-        let distance = survey.local.distance(a, b);
-        [distance - half_a - half_b, distance + half_a + half_b]
-    };
-    // For each candidate and each leader the least and the largest distance between them, if the candidate is of interest.
+    // For each candidate and each leader the least and the largest distance between them, if the
+    // candidate is of interest.
     let all = &survey.all;
     let count = leaders.members.len();
     let mut distances = vec![[0.0; 2]; all.len() * count];
     let mut is_any = false;
     for (i, candidate) in all.iter().enumerate().filter(|(_, c)| c.most >= level) {
         for (k, leader) in leaders.members.iter().enumerate() {
-            let between = apart(candidate, &all[*leader]);
-            distances[i * count + k] = between;
-            is_any |= between[1] > far;
+            let leader = &all[*leader];
+            // Along one chain they are 0 apart.
+            if candidate.chain != leader.chain {
+                let ((a, half_a), (b, half_b)) = (survey.middle(candidate), survey.middle(leader));
+                let distance = survey.local.distance(a, b);
+                let most = distance + half_a + half_b;
+                distances[i * count + k] = [distance - half_a - half_b, most];
+                is_any |= most > far;
+            }
         }
     }
     if !is_any {
@@ -163,11 +166,11 @@ fn second(survey: &Survey, leaders: &Leaders, level: f64) -> Option<Bounds> {
         .max(level);
     let seconds = Leaders::above(survey, floor, |i| of(i).iter().any(|d| d[1] > far));
     let mut own = seconds.bounds(survey);
-    let is_apart = |i: &usize| {
-        let mut pairs = leaders.members.iter().zip(of(*i));
-        pairs.all(|(k, d)| all[*i].chain == all[*k].chain || d[0] > far)
-    };
-    if !seconds.members.iter().all(is_apart) {
+    let are_apart = seconds.members.iter().all(|&i| {
+        let mut pairs = leaders.members.iter().zip(of(i));
+        pairs.all(|(k, d)| all[i].chain == all[*k].chain || d[0] > far)
+    });
+    if !are_apart {
         own.slope = f64::INFINITY;
         own.curvature = f64::INFINITY;
         own.jump = f64::INFINITY;

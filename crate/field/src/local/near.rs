@@ -1,4 +1,5 @@
-//! Values and bounds of pieces at a point or in a ball. Each piece is evaluated once, for however many places it counts.
+//! Values and bounds of pieces at a point or in a ball. Each piece is evaluated once, for however
+//! many places it counts.
 use super::Piece;
 use crate::bound::Nearness;
 use crate::{Ball, Jet};
@@ -35,14 +36,14 @@ pub(super) struct Nearby<'a> {
     close: Slots<Close>,
 }
 
-/// How near a piece is, and an upper bound on its field.
+/// Nearness of a piece, and an upper bound on its field.
 #[derive(Clone, Copy, Debug)]
 struct Far {
     near: Nearness,
     most: f64,
 }
 
-/// A piece's field at the ball's centre and bounds on it in the ball.
+/// Field of a piece at the ball's centre, and bounds on it in the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Close {
     pub jet: Jet<f64>,
@@ -72,12 +73,12 @@ impl<'a> Nearby<'a> {
         })
     }
 
-    /// An upper bound on a piece's field.
+    /// Returns an upper bound on a piece's field.
     pub fn most(&mut self, piece: u32) -> f64 {
         self.far(piece).most
     }
 
-    /// A lower bound on it.
+    /// Returns a lower bound on a piece's field.
     pub fn least(&self, piece: u32) -> f64 {
         let bound = &self.pieces[piece as usize].bound;
         bound.least(self.ball.center, self.ball.radius)
@@ -97,7 +98,7 @@ impl<'a> Nearby<'a> {
 
 /// Values by number, made at first use.
 struct Slots<T> {
-    /// For each number 0, or one more than its place.
+    /// 0 for a number without a value, else one more than the value's place.
     places: Vec<u32>,
     values: Vec<T>,
 }

@@ -1,31 +1,33 @@
-//! Which places of a segment have a plane that passes through a point, or through a ball.
+//! Places of a segment whose planes pass through a point, or through a ball.
 use crate::Ball;
 use glam::DVec3;
 
-/// A segment with the planes that sweep along it: at its part u the plane through `r(u) = base + u·along` with the normal
+/// A segment with the planes that sweep along it: at its part u the plane through
+/// `r(u) = base + u·along` with the normal
 /// `d(u) = normal + u·turn`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swept {
-    /// Its start.
+    /// Start.
     pub base: DVec3,
-    /// From its start to its end.
+    /// Vector from start to end.
     pub along: DVec3,
-    /// The unit normal at its start …
+    /// Unit normal at the start.
     normal: DVec3,
-    /// … and by how much that at its end differs.
+    /// Difference of the normal at the end from that at the start.
     turn: DVec3,
 }
 
 /// Places on a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Places {
-    /// From and to which part of the segment.
+    /// Parts of the segment from which and to which they reach.
     pub parts: [f64; 2],
-    /// The least |∂(d·(p−r))/∂u| at any of them and any point of the ball, with its sign; 0 if it may vanish.
+    /// The least |∂(d·(p−r))/∂u| at any of them and any point of the ball, with its sign; 0 if it
+    /// may vanish.
     pub rate: f64,
 }
 
-/// By how much a root may miss an end of a segment and still be one.
+/// Part of a segment by which a root may miss an end and still be one.
 const ROUNDING: f64 = 1e-9;
 
 impl Swept {
@@ -52,7 +54,8 @@ impl Swept {
         self.normal + self.turn * part
     }
 
-    /// How much the planes turn over the segment, and the second derivative of `d·(p−r)` by u.
+    /// Returns how much the normal changes over the segment, and the second derivative of `d·(p−r)`
+    /// by u.
     #[must_use]
     pub fn bends(&self) -> [f64; 2] {
         [self.turn.length(), -2.0 * self.turn.dot(self.along)]
@@ -90,7 +93,6 @@ impl Swept {
         let [c, b, a] = self.polynomial(ball.center);
         // No normal is longer than 1.
         let reach = ball.radius * (1.0 + ROUNDING) + ROUNDING * self.along.length();
-        let at = |u: f64| c + u * (b + u * a);
         // Most segments are nowhere near: a quadratic is within |a|/4 of its chord.
         let slack = reach + 0.25 * a.abs();
         let ends = [c, c + b + a];
@@ -110,7 +112,7 @@ impl Swept {
         let breaks = &mut breaks[..count];
         breaks.sort_unstable_by(f64::total_cmp);
         let mut open: Option<f64> = None;
-        let mut tell = |from: f64, to: f64| {
+        let mut report = |from: f64, to: f64| {
             let parts = [(from - ROUNDING).max(0.0), (to + ROUNDING).min(1.0)];
             let rates = parts.map(|u| b + 2.0 * a * u);
             let slowest = rates[0].abs().min(rates[1].abs()) - self.turn.length() * ball.radius;
@@ -123,18 +125,19 @@ impl Swept {
             f(Places { parts, rate });
         };
         for pair in breaks.windows(2) {
-            let inside = at(0.5 * (pair[0] + pair[1])).abs() <= reach;
+            let u = 0.5 * (pair[0] + pair[1]);
+            let inside = (c + u * (b + u * a)).abs() <= reach;
             match (inside, open) {
                 (true, None) => open = Some(pair[0]),
                 (false, Some(from)) => {
-                    tell(from, pair[0]);
+                    report(from, pair[0]);
                     open = None;
                 }
                 _ => {}
             }
         }
         if let Some(from) = open {
-            tell(from, 1.0);
+            report(from, 1.0);
         }
     }
 }
@@ -147,6 +150,5 @@ fn roots([c, b, a]: [f64; 3]) -> [Option<f64>; 2] {
     }
     // The stable one of the two forms of each.
     let q = -0.5 * (b + discriminant.sqrt().copysign(b));
-    let finite = |x: f64| x.is_finite().then_some(x);
-    [finite(c / q), finite(q / a)]
+    [c / q, q / a].map(|root| root.is_finite().then_some(root))
 }

@@ -1,4 +1,5 @@
-//! The field of a place: the sum of the pieces in its window, and the largest of such sums at a point.
+//! The field of a place: the sum of the pieces in its window, and the largest of such sums at a
+//! point.
 use super::near::Jets;
 use super::survey::reach_of;
 use super::window::Weight;
@@ -17,9 +18,10 @@ pub(super) struct Stretch {
 #[derive(Clone, Copy, Debug)]
 struct Site {
     place: Place,
-    /// Its part of its segment, if a plane sweeps past it; an end or a branch stays where it is.
+    /// Part of the segment, if a plane sweeps past it; `None` for an end or a branch, which stays
+    /// where it is.
     part: Option<f64>,
-    /// A bound on its field from above.
+    /// Upper bound on its field.
     most: f64,
     /// Square of its distance from the point.
     away: f64,
@@ -72,14 +74,15 @@ impl Local {
         self.window.mean([a.0, b.0], [a.1, b.1], link.length)
     }
 
-    /// W and its gradient at a place that stays where it is, at a point.
+    /// Computes W and its gradient at a place that stays where it is, at a point.
     #[must_use]
     pub fn stretch_at(&self, place: Place, point: DVec3) -> Jet<f64> {
         let mut jets = Jets::new(&self.pieces, point.to_array());
         self.stretch(place, &mut jets).0
     }
 
-    /// The same, and the derivative by the place.
+    /// Computes W and its gradient at a place that stays where it is, and the derivative of W by
+    /// the place.
     fn stretch(&self, place: Place, jets: &mut Jets) -> (Jet<f64>, f64) {
         let segment = &self.segments[place.segment as usize];
         let (mut sum, mut by_place) = (Jet::zero(), 0.0);
@@ -94,8 +97,8 @@ impl Local {
         (sum, by_place)
     }
 
-    /// F's part of a site.
-    fn evaluated(&self, site: &Site, point: DVec3, jets: &mut Jets) -> Stretch {
+    /// Computes the share of a site in F.
+    fn evaluate(&self, site: &Site, point: DVec3, jets: &mut Jets) -> Stretch {
         let place = site.place;
         let (mut jet, by_place) = self.stretch(place, jets);
         if let Some(part) = site.part {
@@ -111,7 +114,8 @@ impl Local {
         Stretch { place, jet }
     }
 
-    /// The sites of a point among some terms, the nearest ones first, so that most others need not be evaluated.
+    /// The sites of a point among some terms, the nearest ones first, so that most others need not
+    /// be evaluated.
     fn sites(&self, point: DVec3, terms: &[u32]) -> Vec<Site> {
         let ball = Ball {
             center: point,
@@ -125,7 +129,7 @@ impl Local {
                 None => (term, None),
             };
             let segment = &self.segments[number as usize];
-            let mut tell = |part: f64, sweeps: bool| {
+            let mut add = |part: f64, sweeps: bool| {
                 found.push(Site {
                     place: Place {
                         segment: number,
@@ -137,8 +141,8 @@ impl Local {
                 });
             };
             match end {
-                Some(end) => tell(end as f64, false),
-                None => segment.swept.each(point, |part| tell(part, true)),
+                Some(end) => add(end as f64, false),
+                None => segment.swept.each(point, |part| add(part, true)),
             }
         }
         // Stable: of two that are as near the first one stays first.
@@ -168,8 +172,8 @@ impl Local {
         least
     }
 
-    /// The largest stretch at a point and, if a level is given, the largest one more than 2D away from it along the skeleton, which may
-    /// be left out if it is below the level.
+    /// The largest stretch at a point and, if a level is given, the largest one more than 2D away
+    /// from it along the skeleton, which may be left out if it is below the level.
     pub(super) fn two_at(&self, point: DVec3, level: Option<f64>) -> [Option<Stretch>; 2] {
         let ball = Ball {
             center: point,
@@ -186,7 +190,7 @@ impl Local {
         let mut first: Option<Stretch> = None;
         for (site, known) in sites.iter().zip(&mut known) {
             if first.is_none_or(|first| site.most >= first.jet.value) {
-                let stretch = self.evaluated(site, point, &mut jets);
+                let stretch = self.evaluate(site, point, &mut jets);
                 *known = Some(stretch);
                 if first.is_none_or(|first| stretch.jet.value > first.jet.value) {
                     first = Some(stretch);
@@ -203,7 +207,7 @@ impl Local {
             if site.most < least || self.distance(leader.place, site.place) <= far {
                 continue;
             }
-            let stretch = known.unwrap_or_else(|| self.evaluated(site, point, &mut jets));
+            let stretch = known.unwrap_or_else(|| self.evaluate(site, point, &mut jets));
             if second.is_none_or(|second| stretch.jet.value > second.jet.value) {
                 second = Some(stretch);
             }
@@ -211,18 +215,21 @@ impl Local {
         [first, second]
     }
 
-    /// Value and gradient of the largest stretch at a point, and of the largest one more than 2D away from it along the skeleton, if
-    /// there is one.
+    /// Value and gradient of the largest stretch at a point, and of the largest one more than 2D
+    /// away from it along the skeleton, if there is one.
     #[must_use]
     pub fn two(&self, point: DVec3) -> (Jet<f64>, Option<Jet<f64>>) {
         self.two_above(point, 0.0)
     }
 
-    /// The same; the second one may be left out if its value is below a level.
+    /// Computes the jets of [`Local::two`]; the second one may be left out if its value is below
+    /// `level`.
     #[must_use]
     pub fn two_above(&self, point: DVec3, level: f64) -> (Jet<f64>, Option<Jet<f64>>) {
         let [first, second] = self.two_at(point, Some(level));
-        let jet = |stretch: Stretch| stretch.jet;
-        (first.map_or_else(Jet::zero, jet), second.map(jet))
+        (
+            first.map_or_else(Jet::zero, |first| first.jet),
+            second.map(|second| second.jet),
+        )
     }
 }

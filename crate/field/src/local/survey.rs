@@ -3,6 +3,7 @@ use super::near::Nearby;
 use super::planes::Places;
 use super::{Link, Local, Place, Segment};
 use crate::Ball;
+use crate::ripple::times;
 use glam::DVec3;
 
 /// Bounds on a function in a ball: those of [`crate::Enclosure`], and how much its gradient jumps.
@@ -14,14 +15,15 @@ pub struct Bounds {
     pub slope: f64,
     /// The largest second derivative along any line, where there is one.
     pub curvature: f64,
-    /// The gradients at two points differ by no more than the curvature times their distance and this.
+    /// The gradients at two points differ by no more than the curvature times their distance and
+    /// this.
     pub jump: f64,
 }
 
 /// The places in an interval of a segment whose planes may meet a ball, or an end or a branch.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
-    /// Its number among the terms of [`Local`].
+    /// Number among the terms of [`Local`].
     pub term: u32,
     pub segment: u32,
     pub parts: [f64; 2],
@@ -32,7 +34,7 @@ pub(super) struct Candidate {
     solid: bool,
     /// Whether there is a place for every point of the ball.
     lasting: bool,
-    /// At how many ends it goes on in another interval, where the gradient jumps.
+    /// Number of ends at which it goes on in another interval, where the gradient jumps.
     joints: u32,
     /// An upper bound on its field.
     pub most: f64,
@@ -49,7 +51,7 @@ pub(super) struct Known {
     pub gradient: Option<DVec3>,
 }
 
-/// All candidates of a ball.
+/// Candidates of a ball.
 pub(super) struct Survey<'a> {
     pub local: &'a Local,
     pub ball: Ball,
@@ -127,7 +129,7 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// A bound on a candidate's field from above.
+    /// Returns an upper bound on a candidate's field.
     pub fn most(&mut self, number: usize) -> f64 {
         let candidate = &mut self.all[number];
         if !candidate.summed {
@@ -164,7 +166,7 @@ impl<'a> Survey<'a> {
         if self.all[number].known.is_none() {
             let most = self.most(number);
             let candidate = self.all[number].clone();
-            let known = self.bounded(&candidate, most);
+            let known = self.evaluate(&candidate, most);
             self.all[number].most = known.bounds.value[1];
             self.all[number].known = Some(known);
         }
@@ -179,8 +181,8 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// Bounds on W for the places of a candidate.
-    fn bounded(&mut self, candidate: &Candidate, most: f64) -> Known {
+    /// Computes bounds on W for the places of a candidate.
+    fn evaluate(&mut self, candidate: &Candidate, most: f64) -> Known {
         let (local, ball) = (self.local, self.ball);
         let segment = &local.segments[candidate.segment as usize];
         let [low, high] = candidate.parts;
@@ -225,7 +227,6 @@ impl<'a> Survey<'a> {
                 mixed += steepest * near.slope;
             }
         }
-        let times = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let change = times(slope, ball.radius) + times(by_place, span);
         let change = if change.is_nan() {
             f64::INFINITY
@@ -275,17 +276,19 @@ impl<'a> Survey<'a> {
 
     /// The candidate whose place is nearest to the ball's centre.
     fn nearest(&self) -> Option<usize> {
-        let distance = |c: &Candidate| {
-            let at = self.local.segments[c.segment as usize].swept;
+        let distances = self.all.iter().map(|c| {
             let [low, high] = c.parts;
-            at.at(0.5 * (low + high)).distance_squared(self.ball.center)
-        };
-        let numbered = self.all.iter().map(distance).zip(0..);
-        let nearest = numbered.min_by(|a, b| a.0.total_cmp(&b.0));
+            let swept = &self.local.segments[c.segment as usize].swept;
+            swept
+                .at(0.5 * (low + high))
+                .distance_squared(self.ball.center)
+        });
+        let nearest = distances.zip(0..).min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map(|(_, number)| number)
     }
 
-    /// A lower bound on the largest stretch, after a close look at some of those that may be the largest.
+    /// Returns a lower bound on the largest stretch, after a close look at some candidates that may
+    /// be the largest.
     pub fn floor(&mut self) -> f64 {
         if let Some(nearest) = self.nearest() {
             self.look_at_chain(self.all[nearest].chain);
@@ -309,7 +312,8 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// A lower bound on the largest of some candidates: of one that is there for every point of the ball, with all that it goes on in.
+    /// Returns a lower bound on the largest of some candidates: of one that is there for every
+    /// point of the ball, with all that it goes on in.
     pub fn least(&self, of: impl Fn(usize, &Candidate) -> bool) -> f64 {
         // For each chain the least value of its candidates.
         let mut lowest = vec![f64::INFINITY; self.all.len()];
@@ -325,7 +329,8 @@ impl<'a> Survey<'a> {
         finite.fold(0.0, f64::max)
     }
 
-    /// The terms whose candidates may be above a level, with those that they go on in, in ascending order.
+    /// The terms whose candidates may be above a level, with those that they go on in, in ascending
+    /// order.
     pub fn terms_above(&mut self, level: f64) -> Vec<u32> {
         let mut matters = vec![false; self.all.len()];
         for i in 0..self.all.len() {
@@ -352,7 +357,8 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// The least and the largest distance of a piece's points from a place of a segment, within the two ways to it.
+/// The least and the largest distance of a piece's points from a place of a segment, within the two
+/// ways to it.
 pub(super) fn reach_of(segment: &Segment, link: &Link, along: f64) -> [f64; 2] {
     if link.own {
         let [[start, _], [end, _]] = link.distances;
@@ -366,14 +372,17 @@ pub(super) fn reach_of(segment: &Segment, link: &Link, along: f64) -> [f64; 2] {
     [near, near + link.length]
 }
 
-/// Tells candidates that go on in each other: a place passes from one to the other as the point moves, if their planes turn alike.
+/// Returns the first candidate of the chain that a candidate is in.
+fn first_of(all: &[Candidate], mut i: usize) -> usize {
+    while all[i].chain != i {
+        i = all[i].chain;
+    }
+    i
+}
+
+/// Joins candidates that go on in each other to chains: a place passes from one to the other as the
+/// point moves, if their planes turn alike.
 fn join(local: &Local, all: &mut [Candidate], touching: &[Touch]) {
-    let first_of = |all: &[Candidate], mut i: usize| {
-        while all[i].chain != i {
-            i = all[i].chain;
-        }
-        i
-    };
     for &Touch {
         segment: number,
         end,

@@ -1,6 +1,7 @@
 //! The window of local convolution: how much of the skeleton counts at a distance along it.
 
-/// A window of arc length D to either side: 1 up to D−δ, then falling as `1 − 3t² + 2t³`, t = (x−D+δ)/δ, to 0 at D.
+/// A window of arc length D to either side: 1 up to D−δ, then falling as `1 − 3t² + 2t³`, t =
+/// (x−D+δ)/δ, to 0 at D.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     /// D.
@@ -17,12 +18,12 @@ const FADE: f64 = 1.0 / 3.0;
 pub struct Weight {
     /// The weight, in [0, 1].
     pub value: f64,
-    /// Its derivative by the place of the window's middle.
+    /// Derivative of the weight by the place of the window's middle.
     pub slope: f64,
 }
 
 impl Window {
-    /// A window of a reach > 0.
+    /// Prepares a window of a reach > 0.
     #[must_use]
     pub fn new(reach: f64) -> Self {
         Self {
@@ -31,7 +32,7 @@ impl Window {
         }
     }
 
-    /// From where on it fades.
+    /// Distance from which on the window fades.
     #[must_use]
     pub fn flat(&self) -> f64 {
         self.reach - self.fade
@@ -49,7 +50,7 @@ impl Window {
         self.at(x)[1]
     }
 
-    /// Both.
+    /// Computes weight and area at x.
     fn at(&self, x: f64) -> [f64; 2] {
         let flat = self.flat();
         let t = ((x - flat) / self.fade).clamp(0.0, 1.0);
@@ -65,8 +66,9 @@ impl Window {
         [1.5 / self.fade, 6.0 / (self.fade * self.fade)]
     }
 
-    /// The mean weight over a piece of a length whose ends are at these distances from the window's middle, with the signs by which
-    /// they change as the middle moves on: `(2A(τ) − A(α) − A(β))/l`, where the two ways to the piece meet after τ = (α+β+l)/2.
+    /// The mean weight over a piece of a length whose ends are at these distances from the window's
+    /// middle, with the signs by which they change as the middle moves on:
+    /// `(2A(τ) − A(α) − A(β))/l`, where the two ways to the piece meet after τ = (α+β+l)/2.
     #[must_use]
     pub fn mean(&self, [a, b]: [f64; 2], [along_a, along_b]: [f64; 2], length: f64) -> Weight {
         if a.min(b) >= self.reach {
@@ -90,7 +92,8 @@ impl Window {
         }
     }
 
-    /// The mean weight over a piece that the window's middle is on, at these distances from its ends.
+    /// The mean weight over a piece that the window's middle is on, at these distances from its
+    /// ends.
     #[must_use]
     pub fn mean_around(&self, [a, b]: [f64; 2], length: f64) -> Weight {
         let [[weight_a, area_a], [weight_b, area_b]] = [a, b].map(|x| self.at(x));

@@ -1,16 +1,17 @@
-//! A circular arc.
+//! The metaballs kernel along a circular arc.
 //!
 //! Seen from the point, the squared distance of the circle's place at the azimuth w is
-//! `u² = g² + 4ρr sin²(w/2)`, see [polynomials](crate::polynomial::arc). The arc's pieces in |w| < W₃, where
-//! u < ⅓, have the closed form of the polynomial `1 − 3u² = ⅔ + 3v`, `v = 1/9 − u²`.
+//! `u² = g² + 4ρr sin²(w/2)`, see [polynomials](crate::polynomial::arc). The arc's pieces in |w| <
+//! W₃, where u < ⅓, have the closed form of the polynomial `1 − 3u² = ⅔ + 3v`, `v = 1/9 − u²`.
 //!
 //! On those in W₃ < |w| < W₁, up to u = 1, the integrals of u and 1/u are elliptic. In
-//! Carlson's form they are the sum of two functions of w of about the size of the whole at each end, which a
-//! short piece's difference would not survive; so the Gauss–Legendre rule is taken there, with 8 nodes
-//! in single precision and 24 in double. The integrand's singularities, u = 0, are at
-//! `sinh(|Im w|/2) = g/√(4ρr)`, Re w = 0, and the pieces end where u = ⅓: the sum of half axes of the
-//! largest ellipse around a piece that is clear of them is at least 1.9 (a circle that just fits into the
-//! ball, g = ⅓), so that the error falls as 1.9⁻²ⁿ: it is below 5·10⁻⁷ of the largest field with 8 nodes.
+//! Carlson's form they are the sum of two functions of w of about the size of the whole at each
+//! end, which a short piece's difference would not survive; so the Gauss–Legendre rule is taken
+//! there, with 8 nodes in single precision and 24 in double. The integrand's singularities, u = 0,
+//! are at `sinh(|Im w|/2) = g/√(4ρr)`, Re w = 0, and the pieces end where u = ⅓: the sum of half
+//! axes of the largest ellipse around a piece that is clear of them is at least 1.9 (a circle that
+//! just fits into the ball, g = ⅓), so that the error falls as 1.9⁻²ⁿ: it is below 5·10⁻⁷ of the
+//! largest field with 8 nodes.
 use super::INNER;
 use super::rule_arc;
 use crate::bone::Arc;
@@ -28,19 +29,19 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let mut sum = [R::splat(0.0); 4];
     let mut add = |part: [R; 4]| sum = core::array::from_fn(|i| sum[i] + part[i]);
     for piece in inner.pieces(arc, &place).into_iter().flatten() {
-        add(smooth(arc, &place, inner.top, &piece));
+        add(integrate_inner(arc, &place, inner.top, &piece));
     }
     for span in AzimuthRange::of(arc, &place).into_iter().flatten() {
         for [from, to] in [[inner.half, outer.half], [-outer.half, -inner.half]] {
-            add(rooted(arc, &place, &span.between(from, to)));
+            add(integrate_outer(arc, &place, &span.between(from, to)));
         }
     }
     place.jet(arc, sum, p)
 }
 
-/// The integrals of [`polynomial::arc`](crate::polynomial::arc) for `⅔ + 3v`.
+/// Computes the integrals of [`polynomial::arc`](crate::polynomial::arc) for `⅔ + 3v`.
 #[inline(always)]
-fn smooth<R: Real>(
+fn integrate_inner<R: Real>(
     arc: &Arc<R::Scalar>,
     place: &FromCircle<R>,
     top: R,
@@ -61,9 +62,13 @@ fn smooth<R: Real>(
     ])
 }
 
-/// The same for `1.5(1−u)²`.
+/// Computes the integrals of [`polynomial::arc`](crate::polynomial::arc) for `1.5(1−u)²`.
 #[inline(always)]
-fn rooted<R: Real>(arc: &Arc<R::Scalar>, place: &FromCircle<R>, piece: &Azimuths<R>) -> [R; 4] {
+fn integrate_outer<R: Real>(
+    arc: &Arc<R::Scalar>,
+    place: &FromCircle<R>,
+    piece: &Azimuths<R>,
+) -> [R; 4] {
     let zero = R::splat(0.0);
     let one = R::splat(1.0);
     let half = R::splat(0.5);

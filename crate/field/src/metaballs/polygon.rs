@@ -1,33 +1,32 @@
-//! A planar polygon, or a triangle.
+//! The metaballs kernel over a planar polygon, or a triangle.
 //!
-//! As for [polynomials](crate::polynomial::polygon), Green's theorem makes the field a sum over the edges'
-//! parts inside the disc `s² + z² ≤ 1` around the point's foot, `Σ h·∫ Φ/s² dt`, and an angle of those
-//! outside. With q = u² = s²+z², and H(q) the kernel, the radial primitive is `Φ = ½∫H dq` from q = z².
-//! An edge's part inside has up to three pieces: the middle one, u < ⅓, where Φ/s² is a polynomial of
-//! degree 2, and those on either side of it. The gradient in the plane is `Σ n·∫H dt`, across it
-//! `−2z` times the same sum for the kernel −H′.
+//! As for [polynomials](crate::polynomial::polygon), Green's theorem makes the field a sum over the
+//! edges' parts inside the disc `s² + z² ≤ 1` around the point's foot, `Σ h·∫ Φ/s² dt`, and an
+//! angle of those outside. With q = u² = s²+z², and H(q) the kernel, the radial primitive is
+//! `Φ = ½∫H dq` from q = z². An edge's part inside has up to three pieces: the middle one, u < ⅓,
+//! where Φ/s² is a polynomial of degree 2, and those on either side of it. The gradient in the
+//! plane is `Σ n·∫H dt`, across it `−2z` times the same sum for the kernel −H′.
 //!
-//! Φ and H are differences from a reference q*, made of `q − q*`, so that they are exact to their last
-//! digits. Where all parts inside are *far*, their half length at most a quarter of their distance from
-//! the foot (small polygons are), q* is
+//! Φ and H are differences from a reference q*, made of `q − q*`, so that they are exact to their
+//! last digits. Where all parts inside are *far*, their half length at most a quarter of their
+//! distance from the foot (small polygons are), q* is
 //! - the polygon's middle where all of it is inside the disc: with `C = Φ(q*)/s*²` the
 //!   sum is `2·area·C + Σ h·∫ (ΔΦ − C·Δq)/s² dt`;
 //! - else the rim: `2πW·Φ(1) + Σ h·∫ ΔΦ/s² dt`, where the polygon winds W times around the foot.
 //!
 //! Elsewhere q* = z², at the foot.
 //!
-//! The pieces are integrated by a Gauss–Legendre rule of n nodes: in single precision 6 (the middle one, a
-//! polynomial or over a far pole, 4), in double 20. An
-//! integrand's singularities are at u = 0 and, where parts are far, s = 0, so its error is
-//! O(ϱ⁻²ⁿ) with the sum ϱ of half axes of the largest ellipse around the piece that is clear of these. The
-//! worst piece, from u = ⅓ straight out to u = 1, has ϱ = 2.4, and an amplitude (of what is
-//! left of √q when its first terms, which the rule integrates exactly, are gone) that makes the error
-//! 10⁻⁷ of the largest field, and 10⁻¹⁵ in double.
+//! The pieces are integrated by a Gauss–Legendre rule of n nodes: in single precision 6 (the middle
+//! one, a polynomial or over a far pole, 4), in double 20. An integrand's singularities are at u =
+//! 0 and, where parts are far, s = 0, so its error is O(ϱ⁻²ⁿ) with the sum ϱ of half axes of the
+//! largest ellipse around the piece that is clear of these. The worst piece, from u = ⅓ straight
+//! out to u = 1, has ϱ = 2.4, and an amplitude (of what is left of √q when its first terms, which
+//! the rule integrates exactly, are gone) that makes the error 10⁻⁷ of the largest field, and 10⁻¹⁵
+//! in double.
 use super::{INNER, INNER2, rule, rule_inside};
 use crate::bone::Edge;
-use crate::polynomial::polygon::Clipped;
+use crate::polynomial::polygon::{Clipped, whole_turns};
 use crate::{Jet, Real};
-use core::f64::consts::TAU;
 
 /// Value and gradient at a local position.
 #[inline(always)]
@@ -39,7 +38,8 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     let z2 = z * z;
     let disc2 = ((one - z) * (one + z)).max(zero);
 
-    // First look: whether the disc holds the whole polygon, or meets no edge, and whether all is far.
+    // First look: whether the disc holds the whole polygon, or meets no edge, and whether all is
+    // far.
     let (mut inside, mut far, mut met, mut double_area) = (one, one, zero, zero);
     for edge in edges {
         let part = Clipped::new(edge, disc2, x, y);
@@ -112,7 +112,6 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
         let [ax, ay] = edge.along.map(R::lift);
         in_plane = [in_plane[0] - ay * g, in_plane[1] + ax * g];
     }
-    let whole_turns = |angle: R| R::splat(TAU) * (angle * R::splat(1.0 / TAU) + half).floor();
     let angle = R::select(zero.lt(met), angle, whole_turns(angle));
     let angle = R::select(far, whole_turns(angle + seen), angle);
     let angle = R::select(at_middle, zero, angle);
@@ -126,10 +125,10 @@ pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     }
 }
 
-/// A squared distance.
+/// Squared distance at which the kernel is taken.
 struct Level<R: Real> {
     q: R,
-    /// Its root, at least ⅓.
+    /// Root of q, at least ⅓.
     root: R,
     inner: R::Mask,
 }
@@ -158,8 +157,8 @@ impl<R: Real> Level<R> {
 
     /// Returns the differences of `½∫H dq` and of H from this level to another, `step` higher.
     ///
-    /// The step is divided between the two sides of u = ⅓. Rounding of that division does not matter, since H is
-    /// continuous there.
+    /// The step is divided between the two sides of u = ⅓. Rounding of that division does not
+    /// matter, since H is continuous there.
     #[inline(always)]
     fn rise(&self, to: &Self, step: R) -> (R, R) {
         let zero = R::splat(0.0);

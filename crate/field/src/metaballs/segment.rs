@@ -1,16 +1,17 @@
-//! A line segment.
+//! The metaballs kernel along a line segment.
 //!
-//! The kernel is `1.5·P(u) − 0.5·P(3u)` with `P(u) = (1−u)₊²`. Within the ball u ≤ 1 the segment has a
-//! part of length L around the middle m, from t₀ to t₁, seen from the foot of the perpendicular, whose
-//! length is ρ. With u₀ and u₁ the ends' distances, U their sum, and `λ = asinh(t₁/ρ) − asinh(t₀/ρ)`,
+//! The kernel is `1.5·P(u) − 0.5·P(3u)` with `P(u) = (1−u)₊²`. Within the ball u ≤ 1 the segment
+//! has a part of length L around the middle m, from t₀ to t₁, seen from the foot of the
+//! perpendicular, whose length is ρ. With u₀ and u₁ the ends' distances, U their sum, and
+//! `λ = asinh(t₁/ρ) − asinh(t₀/ρ)`,
 //!
 //! `∫P = L + L(ρ²+m²+L²/12) − 2T`, `T = ∫u = ½(L(U/2 + 2m²/U) + ρ²λ)`,
 //! `∂/∂x = (u₁−u₀)(2−U)`, `u₁−u₀ = 2mL/U`, `∂/∂(y,z) = −2(y,z)(λ−L)`,
 //!
 //! and the same for the ball u ≤ ⅓. So each term is L times something, exact to its last digits:
-//! short segments keep theirs. `λ = ln(1 + 2L/(U−L))`, and `U−L = (u₀+t₀) + (u₁−t₁)`, of which a sum whose
-//! terms differ in sign is ρ² over the other. Where the two balls hold the same part, the terms that are
-//! not smooth at the axis cancel to the last bit and leave `1 − 3u²`.
+//! short segments keep theirs. `λ = ln(1 + 2L/(U−L))`, and `U−L = (u₀+t₀) + (u₁−t₁)`, of which a
+//! sum whose terms differ in sign is ρ² over the other. Where the two balls hold the same part, the
+//! terms that are not smooth at the axis cancel to the last bit and leave `1 − 3u²`.
 use super::INNER;
 use crate::bone::Segment;
 use crate::polynomial::segment::within;

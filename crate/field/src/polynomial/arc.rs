@@ -1,20 +1,20 @@
-//! A circular arc.
+//! Polynomial kernels along a circular arc.
 //!
-//! The circle of radius r lies in the plane z = 0; ρ is the point's distance from its axis, `g = ρ−r`
-//! its gap to the circle's cylinder. At the azimuth w from the point's
+//! The circle of radius r lies in the plane z = 0; ρ is the point's distance from its axis,
+//! `g = ρ−r` its gap to the circle's cylinder. At the azimuth w from the point's
 //!
 //! `v = v₀ − 4ρr sin²(w/2)`, `v₀ = 1 − z² − g²`,
 //!
-//! which is positive for |w| < W, `sin²(W/2) = v₀/(4ρr)`, or everywhere. That window meets the arc in
-//! at most two pieces. Around a piece's middle m, with w = m + 2a and |a| ≤ h,
+//! which is positive for |w| < W, `sin²(W/2) = v₀/(4ρr)`, or everywhere. That window meets the arc
+//! in at most two pieces. Around a piece's middle m, with w = m + 2a and |a| ≤ h,
 //!
 //! `v = P − 2X sin²a − 2Y sin a cos a`, `P = v(m)`, `X = 2ρr cos m`, `Y = 2ρr sin m`,
 //!
 //! so that `∫g(v) dw` and `∫g′(v)·(1, 1−cos 2a, sin 2a) dw` are polynomials in P, X and Y whose
-//! coefficients are the integrals `∫₀^h sin²ᵏ`, k ≤ 3, see [`Moments`]. All are taken in units of h²ᵏ⁺¹,
-//! so that neither short arcs of huge circles nor tiny circles lose digits. The gradient in the plane
-//! is `−2∫g′·(q − r·e(w))` over the circle's points r·e(w), and `q − r·e` is written as its value at
-//! m plus what m lacks.
+//! coefficients are the integrals `∫₀^h sin²ᵏ`, k ≤ 3, see [`Moments`]. All are taken in units of
+//! h²ᵏ⁺¹, so that neither short arcs of huge circles nor tiny circles lose digits. The gradient in
+//! the plane is `−2∫g′·(q − r·e(w))` over the circle's points r·e(w), and `q − r·e` is written as
+//! its value at m plus what m lacks.
 use crate::angle::direction;
 use crate::bone::Arc;
 use crate::real::polynomial;
@@ -34,7 +34,7 @@ pub fn jet<R: Real>(coefficients: [f64; 2], arc: &Arc<R::Scalar>, p: [R; 3]) -> 
     place.jet(arc, sum, p)
 }
 
-/// Where a point is, seen from the circle's centre, mirrored so that y ≥ 0.
+/// Position of a point seen from the circle's centre, mirrored so that y ≥ 0.
 pub(crate) struct FromCircle<R> {
     /// Distance from the axis.
     pub rho: R,
@@ -93,7 +93,7 @@ impl<R: Real> FromCircle<R> {
         }
     }
 
-    /// From the sums of [`integral`] to value and gradient.
+    /// Computes value and gradient from the sums of [`integral`].
     #[inline(always)]
     pub fn jet(&self, arc: &Arc<R::Scalar>, sum: [R; 4], [_, y, z]: [R; 3]) -> Jet<R> {
         let radius = R::lift(arc.radius);
@@ -117,7 +117,7 @@ pub(crate) struct Window<R: Real> {
     pub top: R,
     /// Half the window's angle, at most π.
     pub half: R,
-    /// Where the window leaves out some of the circle.
+    /// Mask that holds where the window leaves out some of the circle.
     pub open: R::Mask,
 }
 
@@ -137,12 +137,15 @@ pub(crate) struct AzimuthRange<R> {
 }
 
 impl<R: Real> AzimuthRange<R> {
-    /// The arc, and the arc a turn on where both can be within the distance 1 of a point.
+    /// Returns the arc's azimuths, and the azimuths one turn further on where both can be within
+    /// the distance 1 of a point.
     ///
-    /// From a point outside a circle of radius r ≥ 1, or inside, its part within the distance 1 has an angle
-    /// of at most `2 arcsin(1/r)`. So the second is in need only if the arc's gap is less than that.
+    /// From a point outside a circle of radius r ≥ 1, or inside, its part within the distance 1 has
+    /// an angle of at most `2 arcsin(1/r)`. So the second is in need only if the arc's gap is less
+    /// than that.
     ///
-    /// Ends are measured from whichever is near, the arc's middle or the gap's: so τ keeps its digits.
+    /// Ends are measured from whichever is near, the arc's middle or the gap's: so τ keeps its
+    /// digits.
     #[inline(always)]
     pub fn of(arc: &Arc<R::Scalar>, place: &FromCircle<R>) -> [Option<Self>; 2] {
         // Of the arc, not of lanes.
@@ -219,7 +222,8 @@ impl<R: Real> Window<R> {
 
 /// Sine and cosine of |x| ≤ π/4.
 ///
-/// In single precision Taylor's polynomials, whose error is below 2·10⁻⁹ there: there is no turn to take off.
+/// In single precision Taylor's polynomials, whose error is below 2·10⁻⁹ there: there is no turn to
+/// take off.
 #[inline(always)]
 pub(crate) fn eighth_turn<R: Real>(x: R) -> (R, R) {
     if R::DOUBLE {
@@ -259,10 +263,11 @@ pub(crate) struct Moments<R> {
 }
 
 impl<R: Real> Moments<R> {
-    /// For 0 ≤ h ≤ π/2.
+    /// Computes the moments for 0 ≤ h ≤ π/2.
     ///
-    /// `∫sin⁶/h⁷` is a polynomial in h² (Chebyshev fit, error below 2·10⁻¹⁰ in single precision, 4·10⁻²²
-    /// in double), the others follow by `∫sin²ᵏ⁻² = (2k∫sin²ᵏ + sin²ᵏ⁻¹cos)/(2k−1)`, a sum of positive terms.
+    /// `∫sin⁶/h⁷` is a polynomial in h² (Chebyshev fit, error below 2·10⁻¹⁰ in single precision,
+    /// 4·10⁻²² in double), the others follow by `∫sin²ᵏ⁻² = (2k∫sin²ᵏ + sin²ᵏ⁻¹cos)/(2k−1)`, a sum
+    /// of positive terms.
     #[inline(always)]
     pub fn new(h: R) -> Self {
         let h2 = h * h;
@@ -348,7 +353,7 @@ impl<R: Real> PieceFrame<R> {
         }
     }
 
-    /// From `∫g, ∫g′, r∫g′(1−cos), r∫g′sin` to `∫g, ∫g′·(q − r·e), ∫g′`.
+    /// Converts `∫g, ∫g′, r∫g′(1−cos), r∫g′sin` to `∫g, ∫g′·(q − r·e), ∫g′`.
     #[inline(always)]
     pub fn gather(&self, [value, slope, lack, lean]: [R; 4]) -> [R; 4] {
         let [cos, sin] = self.turn;

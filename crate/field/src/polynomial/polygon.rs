@@ -1,30 +1,33 @@
-//! A planar polygon, or a triangle, clipped exactly to the kernel's ball. (The thesis calls polynomial
-//! kernels on triangles unsuitable for an analytical solution.)
+//! Polynomial kernels over a planar polygon, or a triangle, clipped exactly to the kernel's ball.
+//! (The thesis calls polynomial kernels on triangles unsuitable for an analytical solution.)
 //!
-//! The polygon lies in the plane z = 0. The ball meets that in a disc of radius √M, `M = 1−z²`, around
-//! the point's foot; at the distance s from the foot `v = M − s²`. Green's theorem makes the area's
-//! integral a sum over edges. With the radial primitive `Φ(s) = ∫₀ˢ g s ds`, h the foot's signed distance
-//! from the edge's line and t the place on that line, it is `Σ h·∫ Φ/s² dt`, `s² = h²+t²`.
+//! The polygon lies in the plane z = 0. The ball meets that in a disc of radius √M, `M = 1−z²`,
+//! around the point's foot; at the distance s from the foot `v = M − s²`. Green's theorem makes the
+//! area's integral a sum over edges. With the radial primitive `Φ(s) = ∫₀ˢ g s ds`, h the foot's
+//! signed distance from the edge's line and t the place on that line, it is `Σ h·∫ Φ/s² dt`,
+//! `s² = h²+t²`.
 //!
 //! On the part of an edge inside the disc Φ/s² is the polynomial
 //!
 //! `Q(v) = c₂(M²+Mv+v²)/6 + c₃(M³+M²v+Mv²+v³)/8`;
 //!
-//! outside it Φ is constant, `Φ = M·Q(0)`, and the integral the angle at which the foot sees that part. The
-//! gradient in the plane is `Σ n·∫g dt` over inward normals n and the parts inside. Across it
-//! `∂f/∂z = −2z·∂f/∂M`, where ∂f/∂M is the same sum for the kernel `g′ = 2c₂v + 3c₃v²`. Polynomials along
-//! edges are of degree at most 6, for which the Gauss–Legendre rule with four nodes is exact.
+//! outside it Φ is constant, `Φ = M·Q(0)`, and the integral the angle at which the foot sees that
+//! part. The gradient in the plane is `Σ n·∫g dt` over inward normals n and the parts inside.
+//! Across it `∂f/∂z = −2z·∂f/∂M`, where ∂f/∂M is the same sum for the kernel `g′ = 2c₂v + 3c₃v²`.
+//! Polynomials along edges are of degree at most 6, for which the Gauss–Legendre rule with four
+//! nodes is exact.
 //!
 //! Small polygons must not lose their digits in a sum of edges that are far from the foot. So
-//! - where the whole polygon is inside the disc, Q and g are counted from their values at the polygon's
-//!   middle, which add `2·area·Q(v₀)` and nothing;
-//! - where it is not, but all parts inside are far from the foot for their length, Φ is counted from
-//!   its value outside: the sum is `2πW·M·Q(0) − Σ h·∫ Ψ/s² dt`, where W is how often the polygon winds
-//!   around the foot and `Ψ = c₂v³/6 + c₃v⁴/8` vanishes towards the rim. With a part's half length at
-//!   most 1/k of its distance from the foot, where 1/s² has its pole, the error of n nodes is below
-//!   `(2k)⁻²ⁿ`, and so that of the same four 2·10⁻⁷ of Ψ for k = 4 (single precision) and 10⁻¹⁷ for 64;
-//! - where no edge meets the disc, the angles, which add up to 2πW, are rounded to that: outside the
-//!   kernel's reach the field is 0 to the last bit.
+//! - where the whole polygon is inside the disc, Q and g are counted from their values at the
+//!   polygon's middle, which add `2·area·Q(v₀)` and nothing;
+//! - where it is not, but all parts inside are far from the foot for their length, Φ is counted
+//!   from its value outside: the sum is `2πW·M·Q(0) − Σ h·∫ Ψ/s² dt`, where W is how often the
+//!   polygon winds around the foot and `Ψ = c₂v³/6 + c₃v⁴/8` vanishes towards the rim. With a
+//!   part's half length at most 1/k of its distance from the foot, where 1/s² has its pole, the
+//!   error of n nodes is below `(2k)⁻²ⁿ`, and so that of the same four 2·10⁻⁷ of Ψ for k = 4
+//!   (single precision) and 10⁻¹⁷ for 64;
+//! - where no edge meets the disc, the angles, which add up to 2πW, are rounded to that: outside
+//!   the kernel's reach the field is 0 to the last bit.
 use super::GAUSS4;
 use crate::angle::direction;
 use crate::bone::Edge;
@@ -59,7 +62,8 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
     // Sums over edges of Q − Q₀ and the like.
     let (mut value, mut slope, mut linear, mut angle) = (zero, zero, zero, zero);
     let mut in_plane = [zero; 2];
-    // Sums of Ψ and the like, the angle at which the parts inside are seen, and whether all are far.
+    // Sums of Ψ and the like, the angle at which the parts inside are seen, and whether all are
+    // far.
     let (mut rim, mut rim1, mut seen, mut far) = (zero, zero, zero, one);
     for edge in edges {
         let part = Clipped::new(edge, disc2, x, y);
@@ -106,8 +110,6 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
         let g = part.half * g;
         in_plane = [in_plane[0] - ay * g, in_plane[1] + ax * g];
     }
-    let whole_turns =
-        |angle: R| R::splat(TAU) * (angle * R::splat(1.0 / TAU) + R::splat(0.5)).floor();
     let angle = R::select(zero.lt(met), angle, whole_turns(angle));
     // Q₀ of the kernel and of its derivative, at the middle or at the rim.
     let squares = disc2 * (disc2 + middle) + middle * middle;
@@ -124,6 +126,12 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
         value,
         gradient: [in_plane[0], in_plane[1], -two * z * slope],
     }
+}
+
+/// Rounds an angle to a multiple of 2π.
+#[inline(always)]
+pub(crate) fn whole_turns<R: Real>(angle: R) -> R {
+    R::splat(TAU) * (angle * R::splat(1.0 / TAU) + R::splat(0.5)).floor()
 }
 
 /// An edge and its part inside the disc around the foot.

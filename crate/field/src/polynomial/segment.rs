@@ -1,14 +1,14 @@
-//! A line segment.
+//! Polynomial kernels along a line segment.
 //!
 //! The segment lies on the x axis. At t from the foot of the perpendicular, whose length is ρ,
-//! `v = c² − t²` with `c² = 1 − ρ²`. The part of the segment within |t| ≤ c has a middle m and a half
-//! length δ, and on it
+//! `v = c² − t²` with `c² = 1 − ρ²`. The part of the segment within |t| ≤ c has a middle m and a
+//! half length δ, and on it
 //!
 //! `f = ∫g dt`, `∂f/∂x = ∫2t·g′ dt`, `∂f/∂(y,z) = −2(y,z)·∫g′ dt`, `g′ = 2c₂v + 3c₃v²`.
 //!
 //! The integrands are polynomials of degree at most 6, for which the Gauss–Legendre rule with four
-//! nodes is exact: it is a closed form with weights for coefficients. v is positive at all nodes, so
-//! that nothing cancels, however short the part or close to the kernel's rim.
+//! nodes is exact: it is a closed form with weights for coefficients. v is positive at all nodes,
+//! so that nothing cancels, however short the part or close to the kernel's rim.
 use super::GAUSS4;
 use crate::bone::Segment;
 use crate::{Jet, Real};

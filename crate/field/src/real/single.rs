@@ -146,9 +146,9 @@ pub(super) trait Binary: Real {
     fn parts(self) -> (Self, Self);
 }
 
-/// `e⁻ˣ` in single precision: −x and the nearest multiple n of ln 2 (in two parts, the first with so few bits that its
-/// products are exact) leave r, and `eʳ = 1 + r + r²·P(r)`. P is fitted for the least relative error where |r| ≤ ½·ln 2
-/// (and a little more), which is 3·10⁻⁹.
+/// `e⁻ˣ` in single precision: −x and the nearest multiple n of ln 2 (in two parts, the first with
+/// so few bits that its products are exact) leave r, and `eʳ = 1 + r + r²·P(r)`. P is fitted for
+/// the least relative error where |r| ≤ ½·ln 2 (and a little more), which is 3·10⁻⁹.
 #[inline(always)]
 pub(super) fn decay<R: Binary>(x: R) -> R {
     // From here on n = −127, which encodes 0.
@@ -174,8 +174,9 @@ pub(super) fn decay<R: Binary>(x: R) -> R {
     power * shifted.bits_up::<23>()
 }
 
-/// Upper bound on `e⁻ˣ`, x ≥ 0: with the exponent that is stored in front of them, the bits of n + f are (1 + f)·2ⁿ, where f is
-/// between 0 and 1; that is the chord of 2ⁿ⁺ᶠ, which is convex, and above it by no more than 6.2 %.
+/// Upper bound on `e⁻ˣ`, x ≥ 0: with the exponent that is stored in front of them, the bits of n +
+/// f are (1 + f)·2ⁿ, where f is between 0 and 1; that is the chord of 2ⁿ⁺ᶠ, which is convex, and
+/// above it by no more than 6.2 %.
 #[inline(always)]
 pub(super) fn decay_at_most<R: Binary>(x: R) -> R {
     // No exponent is less than 1.
@@ -184,8 +185,8 @@ pub(super) fn decay_at_most<R: Binary>(x: R) -> R {
     shifted.bits_up::<15>()
 }
 
-/// 1.5·2¹⁵, so that a sum with it is rounded to 8 bits after the point, the exponent of 2⁰, and the last of these bits, which is
-/// more than what is lost by rounding down.
+/// 1.5·2¹⁵, so that a sum with it is rounded to 8 bits after the point, the exponent of 2⁰, and the
+/// last of these bits, which is more than what is lost by rounding down.
 const EIGHT_BITS: f64 = 49_152.0 + 127.0 + 1.0 / 256.0;
 
 /// 1.5·2²³, and the exponent that a number of single precision stores for 2⁰.
@@ -256,7 +257,8 @@ pub(super) fn sin_cos<R: Real>(x: R) -> (R, R) {
     let r = r - turns * R::splat(4.837512969970703e-4);
     let r = r - turns * R::splat(7.549_789_954_891e-8);
     let (sine, cosine) = sin_cos_octant(r);
-    // Quadrant 0…3: odd quadrants swap the two, quadrants 2 and 3 negate the sine, 1 and 2 the cosine.
+    // Quadrant 0…3: odd quadrants swap the two, quadrants 2 and 3 negate the sine, 1 and 2 the
+    // cosine.
     let quadrant = turns - (turns * R::splat(0.25)).floor() * R::splat(4.0);
     let odd = half.lt(quadrant - (quadrant * half).floor() * R::splat(2.0));
     let upper = R::splat(1.5).lt(quadrant);

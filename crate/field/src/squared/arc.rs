@@ -1,8 +1,8 @@
-//! A circular arc.
+//! The squared kernel along a circular arc.
 //!
-//! The frame is that of the [Cauchy arc](crate::cauchy::arc): the origin is the middle of the arc (σ = 1)
-//! or of its gap (σ = −1) on the circle of radius r, whose centre is at (−r, 0, 0); α is half the arc's
-//! angle. With `X = r+x`, `ρ² = X²+y²`, `A = r²+ρ²+z²+ε²`,
+//! The frame is that of the [Cauchy arc](crate::cauchy::arc): the origin is the middle of the arc
+//! (σ = 1) or of its gap (σ = −1) on the circle of radius r, whose centre is at (−r, 0, 0); α is
+//! half the arc's angle. With `X = r+x`, `ρ² = X²+y²`, `A = r²+ρ²+z²+ε²`,
 //! `Δ = A²−4r²ρ² = (z²+ε²+(ρ−r)²)(z²+ε²+(ρ+r)²)` and D₁, D₂ = ε² + squared distances from the ends:
 //!
 //! `f = 2rδ/√Δ`, `√(D₁D₂)·(sin δ, cos δ) = (√Δ sin α, C)`, `C = A cos α − 2σrX`.
@@ -59,11 +59,11 @@ pub struct Places<R> {
     pub near: R,
     /// `z²+ε²+(ρ+r)²`.
     pub far: R,
-    /// A.
+    /// The sum A.
     pub total: R,
     /// D₁ and D₂.
     pub ends: [R; 2],
-    /// Their gradients' halves in x and y; the z axis's half is z.
+    /// Halves of their gradients in x and y; the z axis's half is z.
     pub to_ends: [[R; 2]; 2],
     /// C.
     pub cosine: R,

@@ -1,30 +1,32 @@
-//! A triangle or any planar polygon: a sum over its edges.
+//! The squared kernel over a triangle or any planar polygon: a sum over its edges.
 //!
 //! The polygon lies in the plane z = 0. Let q be the foot of the perpendicular from the point,
 //! `c² = z²+ε²`. For an edge of length l let h be the signed distance of q from its line (positive
-//! inside), t₀ and `t₁ = t₀+l` the edge's interval measured from q's foot on that line, and `k² = c²+h²`.
-//! Green's theorem gives
+//! inside), t₀ and `t₁ = t₀+l` the edge's interval measured from q's foot on that line, and
+//! `k² = c²+h²`. Green's theorem gives
 //!
 //! `f = Σ ∫ ½ln((k²+t²)/c²)·h/(h²+t²) dt`,
 //!
 //! which the thesis gives up, and which no elementary function is. But with `t = |h|·tan φ`,
-//! `k²+t² = ((k+|h|)/2)²·|1+βe^{2iφ}|²/cos²φ` where `β = (k−|h|)/(k+|h|) = c²/(k+|h|)²`. The logarithm of
+//! `k²+t² = ((k+|h|)/2)²·|1+βe^{2iφ}|²/cos²φ` where `β = (k−|h|)/(k+|h|) = c²/(k+|h|)²`. The
+//! logarithm of
 //! |1+βe^{2iφ}| and that of cos φ, which is the same thing with β = 1, integrate to
-//! [dilogarithms](crate::clausen). With Δ the angle at which q sees the edge, ψ in [0, π/2] the angle between
-//! the edge's line and the direction from q to an end, `Λ(β, ψ) = Im Li₂(βe^{2iψ})`:
+//! [dilogarithms](crate::clausen). With Δ the angle at which q sees the edge, ψ in [0, π/2] the
+//! angle between the edge's line and the direction from q to an end, `Λ(β, ψ) = Im Li₂(βe^{2iψ})`:
 //!
 //! `f = Σ sign(h)·[Δ·ln((k+|h|)/c) + ½·(sign(t)·(Λ(β,ψ)−Λ(1,ψ)) at t₁ less that at t₀)]`.
 //!
-//! Gradient, elementary: `Σ n·θ/k` over inward normals n in the plane, where θ is the angle that the edge
-//! is seen at from a distance k instead of |h|, and across it `−(z/c²)·Σ (h/k)θ`. Where the point is so near
-//! the plane that the terms of that sum are large but leave a small rest, they are taken apart:
-//! `(h/k)θ = sign(h)·(Δ + D − eθ)`, `e = 1−|h|/k = c²/(k(k+|h|))`, where `Σ sign(h)Δ` is a multiple of 2π, 0
-//! outside, and `D = θ−Δ` is the difference of two small angles at the ends,
-//! `arctan(t/|h|) − arctan(t/k) = −arg(1−βe^{2iψ})`, which the dilogarithms need as well.
+//! Gradient, elementary: `Σ n·θ/k` over inward normals n in the plane, where θ is the angle that
+//! the edge is seen at from a distance k instead of |h|, and across it `−(z/c²)·Σ (h/k)θ`. Where
+//! the point is so near the plane that the terms of that sum are large but leave a small rest, they
+//! are taken apart: `(h/k)θ = sign(h)·(Δ + D − eθ)`, `e = 1−|h|/k = c²/(k(k+|h|))`, where
+//! `Σ sign(h)Δ` is a multiple of 2π, 0 outside, and `D = θ−Δ` is the difference of two small angles
+//! at the ends, `arctan(t/|h|) − arctan(t/k) = −arg(1−βe^{2iψ})`, which the dilogarithms need as
+//! well.
 //!
-//! Outside the polygon terms of both signs cancel. In single precision that leaves an error of about 10⁻⁶,
-//! which weighs against the largest field; where a polygon is small compared to its distance the
-//! [cubature](crate::far) replaces the sum.
+//! Outside the polygon terms of both signs cancel. In single precision that leaves an error of
+//! about 10⁻⁶, which weighs against the largest field; where a polygon is small compared to its
+//! distance the [cubature](crate::far) replaces the sum.
 use crate::angle::direction;
 use crate::bone::{Edge, Polygon, Triangle};
 use crate::clausen::{InDisc, imaginary_dilogarithm};
@@ -159,7 +161,8 @@ impl<R: Real> EdgeTerms<R> {
         // |1−e^{2iψ}|² = 4 sin²ψ; ln of 0 is multiplied by ψ = 0.
         let ln_chord2 = (versine + versine).max(R::splat(1e-37)).ln();
         let ln_ratio = ((self.k2 + t2) * self.i_rim * self.i_rim).ln();
-        // The imaginary and the real part of 1−βe^{2iψ}, both without their factor 2|h|: it may be 0.
+        // The imaginary and the real part of 1−βe^{2iψ}, both without their factor 2|h|: it may be
+        // 0.
         let weight = self.beta * i_planar;
         let less = direction(weight * t_abs, self.i_rim + weight * self.h);
         let inner = imaginary_dilogarithm(&InDisc {
@@ -187,7 +190,8 @@ impl<R: Real> EdgeTerms<R> {
 mod tests {
     use super::*;
 
-    /// Beside a polygon and nearly in its plane, also on the line of an edge, where h is 0 or nearly so.
+    /// Slopes beside a polygon and nearly in its plane, also on the line of an edge, where h is 0
+    /// or nearly so.
     #[test]
     fn slopes_near_the_plane() {
         // Numbers of few bits, so that both precisions mean the same places.

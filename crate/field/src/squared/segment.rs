@@ -1,13 +1,14 @@
-//! A line segment (thesis 3.1: two arctangents, here made one angle).
+//! The squared kernel along a line segment (thesis 3.1: two arctangents, here made one angle).
 //!
 //! The segment lies on the x axis, |x| ≤ c. With `ρ² = y²+z²+ε²`, `a = x+c`, `b = c−x` (signed
-//! distances of the foot of the perpendicular from the ends), `A = ρ²+a²`, `B = ρ²+b²` and the angle θ
-//! in [0, π] between the directions to the ends, `√(AB)·(sin θ, cos θ) = (2cρ, ρ²−ab)`:
+//! distances of the foot of the perpendicular from the ends), `A = ρ²+a²`, `B = ρ²+b²` and the
+//! angle θ in [0, π] between the directions to the ends, `√(AB)·(sin θ, cos θ) = (2cρ, ρ²−ab)`:
 //!
 //! `f = θ/ρ`.
 //!
-//! Gradient: `∂f/∂x = 1/A − 1/B = −4cx/(AB)`, and `∂f/∂y = −2y·∫du/(ρ²+u²)²`, where the integral is the
-//! [Cauchy kernel](crate::cauchy::segment)'s with ρ for its p: `(θ − sin θ cos θ)/(2ρ³) + 2c/(AB)`.
+//! Gradient: `∂f/∂x = 1/A − 1/B = −4cx/(AB)`, and `∂f/∂y = −2y·∫du/(ρ²+u²)²`, where the integral is
+//! the [Cauchy kernel](crate::cauchy::segment)'s with ρ for its p:
+//! `(θ − sin θ cos θ)/(2ρ³) + 2c/(AB)`.
 use crate::angle::angle;
 use crate::bone::Segment;
 use crate::inverse::POLE2;

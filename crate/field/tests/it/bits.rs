@@ -1,5 +1,5 @@
-//! The same bits natively and as wasm, optimised or not: hashes of fields at fixed places. A change
-//! of one is a change of pictures, and must be meant.
+//! Bits are the same natively and as wasm, optimised or not: hashes of fields at fixed places. A
+//! change of one is a change of pictures, and must be meant.
 
 use core::cell::RefCell;
 use field::bound::SpanLength;
@@ -19,8 +19,8 @@ fn bits_are_the_same_on_every_platform() {
     let found = Found::default();
     for kernel in Kernel::ALL {
         for kind in ALL_KINDS {
-            let plain = |random: &mut Random| shaping(random, kernel);
-            found.primitives(&format!("{} {kind:?}", kernel.name()), kind, plain, None);
+            let name = format!("{} {kind:?}", kernel.name());
+            found.primitives(&name, kind, |random| shaping(random, kernel), None);
         }
         for kind in [Kind::Segment, Kind::Arc, Kind::Curve] {
             let tapered = |random: &mut Random| Shaping {
@@ -50,8 +50,9 @@ fn bits_are_the_same_on_every_platform() {
                 times: 1.2,
                 restriction: 0.7,
             };
-            let plain = |random: &mut Random| shaping(random, Kernel::Cauchy);
-            found.primitives(&format!("{waves:?} {kind:?}"), kind, plain, Some(profile));
+            let name = format!("{waves:?} {kind:?}");
+            let shaping = |random: &mut Random| shaping(random, Kernel::Cauchy);
+            found.primitives(&name, kind, shaping, Some(profile));
         }
     }
     found.functions();
@@ -63,7 +64,7 @@ fn bits_are_the_same_on_every_platform() {
     trials::bits::compare(&found.0.into_inner(), include_str!("../bits.txt"), path);
 }
 
-/// A shaping of width about 1.
+/// Returns a shaping of width about 1.
 fn shaping(random: &mut Random, kernel: Kernel) -> Shaping {
     Shaping {
         kernel,
@@ -128,7 +129,7 @@ impl Found {
                 let near = bound.nearness(point, radius);
                 let estimate = bound.estimate(near, &SpanLength::new(radius));
                 bounds.numbers([
-                    primitive.bound_at(primitive.skeleton.distance(point)),
+                    primitive.most_beyond(primitive.skeleton.distance(point)),
                     bound.magnitude(near),
                     bound.slope(near),
                     bound.curvature(near),
@@ -191,7 +192,7 @@ impl Found {
                     };
                     let shift = random.vector(1.0);
                     let skeleton = random.skeleton(kind, 0.05);
-                    let moved = moved(skeleton, shift);
+                    let moved = translate(skeleton, shift);
                     Primitive::new(moved, &shaping, None)
                 })
                 .collect();
@@ -347,8 +348,8 @@ impl Found {
     }
 }
 
-/// A skeleton elsewhere.
-fn moved(skeleton: field::Skeleton, by: DVec3) -> field::Skeleton {
+/// Returns a skeleton that is moved by a vector.
+fn translate(skeleton: field::Skeleton, by: DVec3) -> field::Skeleton {
     use field::Skeleton::{Point, Segment, Triangle};
     match skeleton {
         Point { center } => Point {
@@ -365,7 +366,7 @@ fn moved(skeleton: field::Skeleton, by: DVec3) -> field::Skeleton {
     }
 }
 
-/// All numbers of bounds.
+/// Numbers of bounds.
 fn bounds(of: &Variation) -> [f64; 9] {
     let [low, high] = of.range.value;
     let range = of.range;

@@ -113,7 +113,8 @@ fn a_blob_on_a_ray_is_the_field() {
     }
 }
 
-/// The ceiling bounds the field at every distance from the bone, and is tight near the bone's middle.
+/// The ceiling bounds the field at every distance from the bone, and is tight near the bone's
+/// middle.
 #[test]
 fn ceilings_hold() {
     let mut random = Random::new(53);
@@ -147,7 +148,8 @@ fn ceilings_hold() {
     assert!(tight > count(1000), "{tight}");
 }
 
-/// Bounds on values and second derivatives hold on random intervals; where `rises_until` is true the end is largest.
+/// Bounds on values and second derivatives hold on random intervals; where `rises_until` is true
+/// the end is largest.
 #[test]
 fn bounds_on_pieces_hold() {
     let mut random = Random::new(52);
@@ -190,7 +192,8 @@ fn bounds_on_pieces_hold() {
     assert!(tight > count(2000), "{tight}");
 }
 
-/// Bounds hold in single precision, too, and those of points exceed double precision's by at most 7 %.
+/// Bounds hold in single precision, too, and those of points exceed double precision's by at most 7
+/// %.
 #[test]
 fn bounds_in_single_precision_hold() {
     let mut random = Random::new(55);
@@ -269,8 +272,8 @@ fn bounds_in_single_precision_hold() {
     );
 }
 
-/// A field's slope along a ray falls by at most `Limits::kink` at the end of a ramp, and does not fall
-/// at its start.
+/// A field's slope along a ray falls by at most `Limits::kink` at the end of a ramp, and does not
+/// fall at its start.
 #[test]
 fn kinks_of_ramps_are_bounded() {
     let mut random = Random::new(54);

@@ -102,7 +102,7 @@ fn chains_add_up_to_the_bone() {
     );
 }
 
-/// No chain: long straight bones, other kernels, bones that subtract, very long bones.
+/// Bones without a chain: long straight ones, other kernels, bones that subtract, very long bones.
 #[test]
 fn other_bones_have_none() {
     let bone = |kernel: Kernel, strength: f64, skeleton: Skeleton| {

@@ -20,8 +20,8 @@ mod errors {
     use wide::f32x8;
 
     /// The worst relative error of single precision against double, at points 0.05 or more from the
-    /// skeleton where the field is at least T/10, of random primitives of radius 1, a hundredth to ten
-    /// long, that are no needles.
+    /// skeleton where the field is at least T/10, of random primitives of radius 1, a hundredth to
+    /// ten long, that are no needles.
     fn worst_error(kernel: Kernel, kind: Kind) -> f64 {
         let mut random = Random::new(41);
         let mut worst = 0.0_f64;
@@ -45,8 +45,8 @@ mod errors {
         worst
     }
 
-    /// Whether a triangle is more than ten times as long as wide: its coordinates' rounding is then a good
-    /// part of its width.
+    /// Whether a triangle is more than ten times as long as wide: its coordinates' rounding is then
+    /// a good part of its width.
     fn is_needle(skeleton: &Skeleton) -> bool {
         let Skeleton::Triangle { corners: [a, b, c] } = *skeleton else {
             return false;
@@ -56,12 +56,13 @@ mod errors {
     }
 
     /// The bound that each cell is held to. (Listed, with the figures, in BENCHMARKS.md.)
-    fn bound(kernel: Kernel, kind: Kind) -> f64 {
+    fn most_error(kernel: Kernel, kind: Kind) -> f64 {
         match (kernel, kind) {
-            // The window over which it is integrated leaves out 2·10⁻⁶ of the field on the skeleton,
-            // which is up to e¹⁰·T here.
+            // The window over which it is integrated leaves out 2·10⁻⁶ of the field on the
+            // skeleton, which is up to e¹⁰·T here.
             (Kernel::Gauss, Kind::Arc) => 2e-4,
-            // The rounding of coordinates alone, 1/40 of a radius from circles of 10: 3·10⁻⁷ of the distance, thrice.
+            // The rounding of coordinates alone, 1/40 of a radius from circles of 10: 3·10⁻⁷ of the
+            // distance, thrice.
             (Kernel::Cubed, Kind::Arc) => 5e-5,
             // Sums over edges, whose terms are larger than they.
             (_, Kind::Triangle | Kind::Polygon) => 5e-5,
@@ -77,7 +78,7 @@ mod errors {
                 let worst = worst_error(kernel, kind);
                 println!("error {} {} {worst:.1e}", kernel.name(), name(kind));
                 assert!(
-                    worst <= bound(kernel, kind),
+                    worst <= most_error(kernel, kind),
                     "{kernel:?} {kind:?}: {worst:e}"
                 );
             }
@@ -111,7 +112,7 @@ fn speed() {
     }
 }
 
-/// A skeleton of each kind, about one unit long.
+/// Returns a skeleton of each kind, about one unit long.
 fn typical(kind: Kind) -> Skeleton {
     let flat = [DVec3::X, DVec3::Y, DVec3::new(-0.3, -0.2, 0.0)];
     match kind {

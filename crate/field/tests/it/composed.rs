@@ -14,7 +14,7 @@ fn balls(random: &mut Random, count: usize) -> Exponentials {
     Exponentials::new(hardness, balls.collect()).expect("the numbers are usable")
 }
 
-/// A map that turns, mirrors, shears and stretches.
+/// Returns a map that turns, mirrors, shears and stretches.
 fn map(random: &mut Random) -> DAffine3 {
     let column = |random: &mut Random, axis: DVec3| axis + 0.4 * random.vector(1.0);
     let matrix = DMat3::from_cols(

@@ -80,7 +80,8 @@ fn single_precision_matches_quadrature() {
     }
 }
 
-/// The same formula in single and double precision, on many more cases than quadrature allows.
+/// Single precision agrees with double, in the same formulas, on many more cases than quadrature
+/// allows.
 #[test]
 fn single_precision_is_exact_for_inputs_nearby() {
     for kind in KINDS {
@@ -176,7 +177,8 @@ fn gradient_is_the_derivative() {
                     1e-9 * primitive.width * (value.abs() + sensitivity(&primitive, point) * 1e-3);
                 assert!(
                     (gradient[axis] - difference).abs() <= tolerance,
-                    "axis {axis}: {} instead of {difference}, tolerance {tolerance:e}: {primitive:?} at {point:?}",
+                    "axis {axis}: {} instead of {difference}, tolerance {tolerance:e}: \
+                     {primitive:?} at {point:?}",
                     gradient[axis]
                 );
             }

@@ -1,5 +1,5 @@
-//! The hierarchy of far fields: its polynomials and lists add up to the field within the stated bounds, and it is as large as the
-//! number of primitives asks for.
+//! The hierarchy of far fields: its polynomials and lists add up to the field within the stated
+//! bounds, and it is as large as the number of primitives asks for.
 use field::far_field::{Cell, MOST_ERROR};
 use field::{
     Ball, BlobScale, FarField, Implicit, Kernel, Primitive, Shaping, Skeleton, Slack, Sum,
@@ -42,7 +42,7 @@ fn primitive(kernel: Kernel, kind: usize, size: f64, n: &mut Random) -> Primitiv
     Primitive::new(skeleton, &shaping, None).expect("flesh")
 }
 
-/// A cell at a depth around a place.
+/// Returns a cell at a depth around a place.
 fn descend<'c>(
     field: &'c FarField,
     primitives: &[Primitive],
@@ -112,7 +112,8 @@ fn polynomials_are_within_their_bounds() {
     assert!(listed * 3 < all * 2, "{listed} of {all}");
 }
 
-/// Errors stay below the limit where rounding does not count, and the slope of the polynomial is that of the field.
+/// Errors stay below the limit where rounding does not count, and the slope of the polynomial is
+/// that of the field.
 #[test]
 fn balls_have_small_errors_and_true_slopes() {
     let mut n = Random::new(3);
@@ -137,7 +138,8 @@ fn balls_have_small_errors_and_true_slopes() {
                 });
             let told = cell.expansion.jet(local.to_array(), f64::from).gradient;
             let told = DVec3::from_array(told) / cell.reach();
-            // By Markov's inequality a polynomial of degree 5 with this error has at most 25 times its slope.
+            // By Markov's inequality a polynomial of degree 5 with this error has at most 25 times
+            // its slope.
             let most = 40.0 * cell.error / cell.reach();
             assert!(told.distance(slope) <= most, "{kernel:?} {told} {slope}");
         }
@@ -147,7 +149,8 @@ fn balls_have_small_errors_and_true_slopes() {
     }
 }
 
-/// Lists get short, and the work that all cells around the primitives take grows about as their number.
+/// Lists get short, and the work that all cells around the primitives take grows about as their
+/// number.
 #[test]
 fn work_is_about_linear() {
     let mut work = Vec::new();
@@ -178,7 +181,8 @@ fn work_is_about_linear() {
     assert!(many[1] < 2.0 * few[1], "{few:?} {many:?}");
 }
 
-/// Where only the surface counts, the cells that are left empty have a field below T, and most of space is such.
+/// Cells that are left empty where only the surface counts have a field below T, and most of
+/// space is such.
 #[test]
 fn empty_cells_hold_no_surface() {
     let mut n = Random::new(9);
@@ -226,7 +230,8 @@ fn cells_are_the_same_in_any_order() {
     }
 }
 
-/// After an edit of few primitives a hierarchy takes over most of an earlier one's cells, and has the same bits as one made anew.
+/// After an edit of few primitives a hierarchy takes over most of an earlier one's cells, and has
+/// the same bits as one made anew.
 #[test]
 fn edits_give_the_bits_of_a_fresh_hierarchy() {
     let mut n = Random::new(17);
@@ -283,7 +288,8 @@ fn edits_give_the_bits_of_a_fresh_hierarchy() {
     }
 }
 
-/// Gradients are no further off than the bound, derivatives no larger than theirs, and both bounds are of use.
+/// Gradients are no further off than the bound, derivatives no larger than theirs, and both bounds
+/// are of use.
 #[test]
 fn slopes_are_within_their_bounds() {
     let mut n = Random::new(31);

@@ -1,5 +1,5 @@
-//! Far out, a field is a tiny fraction of its largest value, and surfaces of great blobbiness lie there: relative accuracy
-//! must hold.
+//! Far out, a field is a tiny fraction of its largest value, and surfaces of great blobbiness lie
+//! there: relative accuracy must hold.
 
 use core::f64::consts::TAU;
 use field::bound::{Nearness, SpanLength};
@@ -23,7 +23,7 @@ fn gauss(skeleton: Skeleton) -> Primitive {
     Primitive::new(skeleton, &shaping, None).expect("flesh")
 }
 
-/// Beyond the ends of a Gaussian's arc, too.
+/// Fields keep their digits beyond the ends of a Gaussian's arc, too.
 #[test]
 fn arcs_keep_their_digits() {
     let mut random = Random::new(5);

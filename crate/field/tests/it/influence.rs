@@ -29,12 +29,12 @@ fn random_primitive(random: &mut Random, kind: Kind) -> Primitive {
     primitive(skeleton.clone(), &shaping, profile)
 }
 
-/// A point at exactly this distance from a place on the skeleton, so at most that from it.
+/// Returns a point at exactly this distance from a place on the skeleton, so at most that from it.
 fn at_distance(random: &mut Random, skeleton: &Skeleton, distance: f64) -> DVec3 {
     random.place(skeleton) + random.direction() * distance
 }
 
-/// |f| ≤ bound_at(distance), which does not grow, and is below ε·T at the depth of influence.
+/// |f| ≤ most_beyond(distance), which does not grow, and is below ε·T at the depth of influence.
 #[test]
 fn influence_bounds_the_field() {
     for kind in KINDS {
@@ -46,7 +46,7 @@ fn influence_bounds_the_field() {
                 let point = at_distance(&mut random, &primitive.skeleton, depth);
                 let distance = primitive.skeleton.distance(point);
                 let value = jet::<f64>(&primitive, point).0.abs();
-                let bound = primitive.bound_at(distance);
+                let bound = primitive.most_beyond(distance);
                 // Next to a pole the distance's rounding counts.
                 let slack = 4.0 * f64::EPSILON * sensitivity(&primitive, point);
                 assert!(
@@ -54,7 +54,7 @@ fn influence_bounds_the_field() {
                     "{value} > {bound}: {primitive:?} at {point:?}"
                 );
                 assert!(
-                    primitive.bound_at(1.1 * distance) <= bound * (1.0 + 1e-12),
+                    primitive.most_beyond(1.1 * distance) <= bound * (1.0 + 1e-12),
                     "{primitive:?} at {distance}"
                 );
             }
@@ -62,8 +62,7 @@ fn influence_bounds_the_field() {
     }
 }
 
-/// Beyond the depth of influence the field is below ε·T, and not much beyond it above: the
-/// depth is not needlessly large.
+/// Fields are below ε·T beyond the depth of influence, which is not needlessly large.
 #[test]
 fn influence_is_tight() {
     for kind in KINDS {
@@ -79,7 +78,9 @@ fn influence_is_tight() {
             };
             let primitive = primitive(skeleton.clone(), &shaping, None);
             let level = shaping.influence * THRESHOLD;
-            assert!(primitive.bound_at(primitive.influence * (1.0 + 1e-9)) <= level * (1.0 + 1e-9));
+            assert!(
+                primitive.most_beyond(primitive.influence * (1.0 + 1e-9)) <= level * (1.0 + 1e-9)
+            );
             if primitive.influence == 0.0 {
                 continue;
             }
@@ -112,7 +113,8 @@ fn influence_is_tight() {
     }
 }
 
-/// Points of a ray within the depth of influence are within its interval; the sphere holds them too.
+/// Points of a ray within the depth of influence are within its interval; the sphere holds them
+/// too.
 #[test]
 fn ray_intervals_are_conservative() {
     for kind in KINDS {
@@ -154,7 +156,8 @@ fn ray_intervals_are_conservative() {
                     let distance = primitive.skeleton.distance(point);
                     assert!(
                         inside || distance >= primitive.influence * (1.0 - 1e-9),
-                        "t = {t} at distance {distance} of {} is not in {interval:?}: {primitive:?}, {origin:?} {direction:?}",
+                        "t = {t} at distance {distance} of {} is not in {interval:?}: \
+                         {primitive:?}, {origin:?} {direction:?}",
                         primitive.influence
                     );
                     if let Some((center, radius)) = primitive.bounding_sphere() {

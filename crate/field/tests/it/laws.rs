@@ -1,5 +1,5 @@
-//! Laws of convolution surfaces: the radius as asked, no bulges at joints, invariance under rigid motions, strengths and
-//! profiles that multiply.
+//! Laws of convolution surfaces: the radius as asked, no bulges at joints, invariance under rigid
+//! motions, strengths and profiles that multiply.
 
 use core::f64::consts::TAU;
 use field::{BlobScale, Kernel, Primitive, Profile, Shaping, Skeleton, Sum, THRESHOLD, Wave};
@@ -10,7 +10,7 @@ use trials::skeletons::{KINDS, Kind, shaping};
 use trials::{Random, count};
 use wide::f32x8;
 
-/// A skeleton cut in two.
+/// Returns a skeleton cut in two.
 fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     Some(match *skeleton {
         Skeleton::Segment { base, apex } => {
@@ -56,7 +56,7 @@ fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     })
 }
 
-fn moved(skeleton: &Skeleton, turn: DQuat, shift: DVec3) -> Skeleton {
+fn transform(skeleton: &Skeleton, turn: DQuat, shift: DVec3) -> Skeleton {
     let to = |p: DVec3| turn * p + shift;
     match *skeleton {
         Skeleton::Point { center } => Skeleton::Point { center: to(center) },
@@ -154,7 +154,7 @@ fn rigid_motion() {
             let shift = random.vector(3.0);
             let point = random.near(&skeleton, -2.0, 1.0);
             let here = primitive(skeleton.clone(), &shaping, None);
-            let there = primitive(moved(&skeleton, turn, shift), &shaping, None);
+            let there = primitive(transform(&skeleton, turn, shift), &shaping, None);
             let (value, gradient) = jet::<f64>(&here, point);
             let (other, other_gradient) = jet::<f64>(&there, turn * point + shift);
             let scale = value.abs() + 10.0 * sensitivity(&here, point);
@@ -240,10 +240,10 @@ fn radius_in_isolation() {
     }
 }
 
-/// The cubed kernel has no width: a point's field is (R/d)³, a long line's (R/d)², a plane's R/d, whatever the
-/// blobbiness.
+/// The cubed kernel has no width: a point's field is (R/d)³, a long line's (R/d)², a plane's R/d,
+/// whatever the blobbiness.
 #[test]
-fn cubed_fields_are_powers_of_the_distance() {
+fn fields_of_the_cubed_kernel_are_powers_of_the_distance() {
     let mut random = Random::new(18);
     for _ in 0..count(100) {
         let radius = random.decades(-2.0, 1.0);
@@ -302,7 +302,7 @@ fn strength_multiplies() {
     }
 }
 
-/// No flesh, or none that can be computed: no primitive, and no panic.
+/// Shapings without flesh, or with none that can be computed, give no primitive, and no panic.
 #[test]
 fn refusals() {
     let point = Skeleton::Point {
@@ -425,7 +425,7 @@ fn profiles() {
             // At kinks and jumps (and the axis of an arc) rounding decides for a side: all that
             // the neighbourhood takes on is right.
             let h = 1e-6;
-            let scale = 30.0 * primitive.bound_at(0.0);
+            let scale = 30.0 * primitive.most_beyond(0.0);
             let around = [DVec3::X, DVec3::Y, DVec3::Z]
                 .map(|axis| [-h, h].map(|h| quadrature::value(&primitive, point + axis * h)));
             let lowest = around.iter().flatten().fold(want, |low, x| low.min(*x));

@@ -1,4 +1,5 @@
-//! Local convolution: against its definition, by quadrature and search; its bounds, by sampling; and how far it jumps.
+//! Local convolution: against its definition, by quadrature and search; its bounds, by sampling;
+//! and how far it jumps.
 
 use field::local::{Limb, Place, Two};
 use field::{Ball, BlobScale, Implicit, Kernel, Local, Primitive, Shaping, Skeleton, Taper};
@@ -9,7 +10,7 @@ use trials::{Random, count};
 /// A skeleton: points with radii, and segments between them, curve by curve.
 struct Figure {
     points: Vec<(DVec3, f64)>,
-    /// Two points, and the number of their curve.
+    /// Pair of points, and the number of their curve.
     segments: Vec<([usize; 2], usize)>,
     reach: f64,
     kernel: Kernel,
@@ -182,7 +183,8 @@ impl Figure {
         sum
     }
 
-    /// The places whose planes hold a point, by a search for changes of sign; and ends and branches.
+    /// The places whose planes hold a point, by a search for changes of sign; and ends and
+    /// branches.
     fn places(&self, point: DVec3) -> Vec<(usize, f64)> {
         const STEPS: usize = 500;
         let segments = &self.segments;
@@ -372,7 +374,8 @@ fn gradients_are_derivatives() {
     assert!(off * 50 < all, "{off} of {all}");
 }
 
-/// Values, slopes and second derivatives in balls are within their bounds, and the bounds are of use.
+/// Values, slopes and second derivatives in balls are within their bounds, and the bounds are of
+/// use.
 #[test]
 fn bounds_hold_in_balls() {
     let mut random = Random::new(73);
@@ -416,7 +419,8 @@ fn bounds_hold_in_balls() {
                     }
                     assert!(other.is_none() || second.is_some());
                     if first.jump.is_finite() {
-                        // The gradient changes by no more than the second derivative times the distance, and its jumps.
+                        // The gradient changes by no more than the second derivative times the
+                        // distance, and its jumps.
                         let center = local.jet(center);
                         let change =
                             DVec3::from_array(own.gradient) - DVec3::from_array(center.gradient);
@@ -437,8 +441,8 @@ fn bounds_hold_in_balls() {
     );
 }
 
-/// Across the planes at joints and at the ends of curves in a branch the value is continuous and the slope jumps a little; where places
-/// vanish that lead, far out beside bends, the value jumps.
+/// Across the planes at joints and at the ends of curves in a branch the value is continuous and
+/// the slope jumps a little; where places vanish that lead, far out beside bends, the value jumps.
 #[test]
 fn jumps_are_small() {
     for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
@@ -446,7 +450,8 @@ fn jumps_are_small() {
             let (figure, planes) = wave(segments, kernel);
             jumps(&figure, &planes)
         });
-        // The value has none. A slope's is that of the turn at a joint: the finer the curve, the smaller.
+        // The value has none. A slope's is that of the turn at a joint: the finer the curve, the
+        // smaller.
         assert!(
             coarse[0].max(fine[0]) < 1e-6,
             "{kernel:?} {coarse:?} {fine:?}"
@@ -466,8 +471,8 @@ fn jumps_are_small() {
     }
 }
 
-/// A wave of flesh of a radius of 0.3, whose bends have a radius of 0.5: inside of them ∇s is large. And the planes of its joints: a
-/// point and the normal.
+/// Returns a wave of flesh of a radius of 0.3, whose bends have a radius of 0.5: inside of them ∇s
+/// is large. And the planes of its joints: a point and the normal.
 fn wave(segments: u32, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
     let places: Vec<(DVec3, f64)> = (0..=segments)
         .map(|i| {
@@ -523,14 +528,16 @@ fn jumps(figure: &Figure, planes: &[[DVec3; 2]]) -> [f64; 2] {
         }
     }
     println!(
-        "{} segments, {:?}: value {largest:.1e}, slope {steepest:.1e}, at the surface {at_surface:.1e}",
+        "{} segments, {:?}: value {largest:.1e}, slope {steepest:.1e}, at the surface \
+         {at_surface:.1e}",
         figure.segments.len(),
         figure.kernel
     );
     [largest, steepest]
 }
 
-/// Folds beside each other blend when all of the skeleton counts, and do not when only what is near does.
+/// Folds beside each other blend when all of the skeleton counts, and do not when only what is near
+/// does.
 #[test]
 fn folds_do_not_blend() {
     let fold = |reach: f64| {

@@ -1,4 +1,5 @@
-//! Bounds on the logarithm of a sum of Gaussians against differences of values and gradients in balls.
+//! Bounds on the logarithm of a sum of Gaussians against differences of values and gradients in
+//! balls.
 
 use field::{
     Ball, BlobScale, Implicit, Jet, Kernel, Logarithm, Primitive, Shaping, Skeleton, Slack, Sum,
@@ -7,7 +8,7 @@ use field::{
 use glam::DVec3;
 use trials::{Random, count};
 
-/// A few points and segments, some much thinner than others and some in one place.
+/// Returns a few points and segments, some much thinner than others and some in one place.
 fn sum(random: &mut Random) -> Sum {
     let terms = 1 + random.below(7);
     (0..terms)
@@ -38,8 +39,8 @@ fn jet(sum: &Sum, point: DVec3) -> Jet<f64> {
     Logarithm::of(&sum.jet(point))
 }
 
-/// Holds bounds in a ball against values and gradients at random points of it. Returns how near the second and the third derivative came to
-/// their bounds.
+/// Holds bounds in a ball against values and gradients at random points of it. Returns how near the
+/// second and the third derivative came to their bounds.
 fn check(sum: &Sum, ball: Ball, variation: &Variation, random: &mut Random) -> [f64; 2] {
     let Ball { center, radius } = ball;
     let mut nearest = [0.0_f64; 2];

@@ -28,7 +28,7 @@ impl Dress {
     }
 }
 
-/// A random primitive of this kernel and kind.
+/// Returns a random primitive of this kernel and kind.
 fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, dress: Dress) -> Primitive {
     let size = random.decades(-1.5, 1.0);
     let skeleton = random.skeleton(kind, size);
@@ -46,7 +46,7 @@ fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, dress: Dres
     primitive(skeleton, &shaping, profile)
 }
 
-/// A profile of smooth waves.
+/// Returns a profile of smooth waves.
 fn smooth_profile(random: &mut Random) -> Profile {
     let waves = [Wave::Sin, Wave::Cos, Wave::Sin2, Wave::Cos2, Wave::One];
     Profile {
@@ -100,7 +100,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
             let magnitude = bound.magnitude(near);
             let value = primitive.value(p.to_array()).abs();
             // Far out, sums over edges leave rounding errors of the field near by.
-            let rounding = 1e-15 * primitive.bound_at(0.5 / primitive.width);
+            let rounding = 1e-15 * primitive.most_beyond(0.5 / primitive.width);
             assert!(
                 value <= magnitude * (1.0 + 1e-6) + rounding,
                 "{value} > {magnitude}: {primitive:?} {p}"
@@ -128,7 +128,8 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
                 "{turned} > {allowed} on {h}: {primitive:?} {center}"
             );
             tightest_turn = tightest_turn.max(turned / allowed);
-            // On a chord the slope is off its linear interpolant by an eighth of the third derivative times its square.
+            // On a chord the slope is off its linear interpolant by an eighth of the third
+            // derivative times its square.
             let bent = slope_at(0.5 * h) - 0.5 * (slope_at(0.3 * h) + slope_at(0.7 * h));
             let allowed = 0.125 * (0.4 * h) * (0.4 * h) * bound.third(near);
             assert!(
@@ -171,7 +172,8 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
         "{kind:?} {dress:?}: {tightest} {tightest_span} {tightest_slope}"
     );
     assert!(tightest_turn > least, "{kind:?} {dress:?}: {tightest_turn}");
-    // Of kernels that end in a kink, and of planes, there may be no place where the third derivative is told.
+    // Of kernels that end in a kink, and of planes, there may be no place where the third
+    // derivative is told.
     assert!(
         tightest_bend <= 1.0 && (tightest_bend == 0.0 || tightest_bend > 0.1 * least),
         "{kind:?} {dress:?}: {tightest_bend}"

@@ -53,7 +53,7 @@ fn controls(kind: usize, random: &mut Random) -> Vec<DVec3> {
     apart
 }
 
-/// A point in general or in special position.
+/// Returns a point in general or in special position.
 fn point(kind: usize, controls: &[DVec3], random: &mut Random) -> DVec3 {
     let mut some = || controls[random.below(controls.len())];
     let (a, b, c) = (some(), some(), some());
@@ -105,7 +105,8 @@ fn weights_are_the_stolen_volumes() {
         let sibson = Sibson::new(&controls, &BOX).expect("controls that are apart");
         let point = point(i % 2, &controls, &mut random) * 0.7;
         let row = sibson.coordinates(point).expect("a point of the box");
-        // Samples of the cell: a direction, and a distance up to the cell's wall; each stands for a volume.
+        // Samples of the cell: a direction, and a distance up to the cell's wall; each stands for a
+        // volume.
         let sites = sibson.sites();
         let mut samples = Vec::new();
         for _ in 0..40_000 {
@@ -171,7 +172,8 @@ fn coordinates_are_continuous_and_local() {
 
 #[test]
 fn deformation_reproduces_affine_moves_in_the_hull() {
-    // Inside a dense cage whose corners are all controls a linear field of moves moves vertices linearly.
+    // Inside a dense cage whose corners are all controls a linear field of moves moves vertices
+    // linearly.
     let mut random = Random::new(4);
     let mut controls: Vec<DVec3> = (0..8)
         .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))

@@ -156,8 +156,8 @@ fn line(bone: Bone) -> String {
     }
 }
 
-/// Kernels without a finite line or plane are scaled by one of 10 radii to each side, and bones that
-/// are much smaller need more strength to have flesh.
+/// Kernels without a finite line or plane are scaled by one of 10 radii to each side, and bones
+/// that are much smaller need more strength to have flesh.
 fn strength(kernel: Kernel, bone: Bone) -> &'static str {
     match (kernel, bone) {
         (Kernel::Inverse, Bone::Line) => ", strength 1.6",

@@ -1,5 +1,6 @@
-//! Lesson 9: two drops that touch and do not melt: each is pressed onto the sheet where both fields are equal, and a bulge, a
-//! function of the other's field, keeps the surface smooth and gives back volume.
+//! Lesson 9: two drops that touch and do not melt: each is pressed onto the sheet where both fields
+//! are equal, and a bulge, a function of the other's field, keeps the surface smooth and gives back
+//! volume.
 
 use crate::bench::Bench;
 use crate::command::Command;
@@ -203,7 +204,8 @@ impl Key {
         let outline = |grids: &[Grid; 2]| [0, 1].map(|i: usize| grids[i].line(THRESHOLD as f32));
         let whole = volume(&fields[0]);
         let volumes = [&pressed[0], &with(0, &cut)].map(|grid| volume(grid) / whole.max(1e-9));
-        // Inside both pressed fields are f₁+1−f₂ and f₂+1−f₁: what one is above T the other is below.
+        // Inside both pressed fields are f₁+1−f₂ and f₂+1−f₁: what one is above T the other is
+        // below.
         let sum = pressed[0].values.iter().zip(&pressed[1].values);
         let touching = fields[0].values.iter().zip(&fields[1].values);
         let gap = sum

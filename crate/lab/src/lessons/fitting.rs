@@ -1,4 +1,5 @@
-//! Lesson 9: one coarse mesh with a lumpy and a thin implicit surface, fitted to points that can be dragged.
+//! Lesson 9: one coarse mesh with a lumpy and a thin implicit surface, fitted to points that can be
+//! dragged.
 
 use crate::bench::Bench;
 use crate::command::Command;
@@ -20,7 +21,8 @@ const HALF: f64 = 2.1;
 const SAMPLES: usize = 81;
 /// Half the height of the ring of facets whose section is shown.
 const RISE: f64 = 0.25;
-/// Directions of the corners of the mesh, degrees, and how far out they are: uneven, as meshes of the web are.
+/// Directions of the corners of the mesh, degrees, and how far out they are: uneven, as meshes of
+/// the web are.
 const CORNERS: [(f64, f64); 9] = [
     (5.0, 1.25),
     (28.0, 1.3),

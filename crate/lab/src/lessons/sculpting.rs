@@ -1,5 +1,5 @@
-//! Lesson 9: sculpting by strokes: a dog step by step, decay functions, and subdivision with and without propagation
-//! (figures 4, 1 and 2 of Bill and Lodha 1995).
+//! Lesson 9: sculpting by strokes: a dog step by step, decay functions, and subdivision with and
+//! without propagation (figures 4, 1 and 2 of Bill and Lodha 1995).
 
 use crate::bench::Bench;
 use crate::command::Command;

@@ -1,4 +1,5 @@
-//! Lesson 9: two balls, each with a map of u and v of its own, and how their textures mix where their flesh does.
+//! Lesson 9: two balls, each with a map of u and v of its own, and how their textures mix where
+//! their flesh does.
 
 use super::grid::refused;
 use crate::bench::Bench;
@@ -214,7 +215,8 @@ impl Textures {
         })
     }
 
-    /// The share of the first ball at a place of the line through both; `None` where neither is felt.
+    /// The share of the first ball at a place of the line through both; `None` where neither is
+    /// felt.
     fn share(fields: &[Sum; 2], x: f64) -> Option<f64> {
         let [one, other] =
             [0, 1].map(|i| sample::one(&[&fields[i]], DVec3::new(x, 0.0, 0.0)).min(1e30));

@@ -4,7 +4,7 @@
 //! only, and each leaf lists its primitives in ascending order, so that the tree depends on no
 //! library's way of sorting.
 
-use super::tree::{Bvh, MAX_DEPTH, Node, sanitized};
+use super::tree::{Bvh, MAX_DEPTH, Node, sanitize};
 use crate::aabb::Aabb;
 use glam::DVec3;
 
@@ -12,11 +12,12 @@ use glam::DVec3;
 const LEAF: usize = 4;
 /// Bins of the surface area heuristic.
 const BINS: usize = 16;
-/// From this depth nodes are split by the median, which halves: 64 + 31 levels are the deepest.
+/// Depth from which nodes are split by the median, which halves them: as there are fewer than 2³¹
+/// boxes, the deepest level is 64 + 31.
 const MEDIAN_FROM: usize = 64;
 const _: () = assert!(MEDIAN_FROM + 31 < MAX_DEPTH);
 
-/// A node that is not yet split: its place, its range in the order, and its depth.
+/// Node that is not yet split: its place, its range in the order, and its depth.
 struct Open {
     node: u32,
     start: usize,
@@ -26,7 +27,7 @@ struct Open {
 
 pub(super) fn build(boxes: &[Aabb]) -> Bvh {
     assert!(boxes.len() < 1 << 31, "fewer than 2³¹ boxes");
-    let boxes: Vec<Aabb> = boxes.iter().copied().map(sanitized).collect();
+    let boxes: Vec<Aabb> = boxes.iter().copied().map(sanitize).collect();
     let mut bvh = Bvh {
         nodes: Vec::new(),
         parents: Vec::new(),

@@ -1,4 +1,4 @@
-//! A bounding volume hierarchy over boxes, and searches in it.
+//! Bounding volume hierarchy over boxes, and searches in it.
 
 mod build;
 mod search;

@@ -31,18 +31,19 @@ impl Stack {
     }
 }
 
-/// A ray, prepared for meeting many boxes.
+/// Ray, prepared for meeting many boxes.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// Where parameter 0 is.
+    /// Point with the parameter 0.
     pub origin: DVec3,
-    /// How far parameter 1 is from it; not zero. Components below 1e-300 count as 0.
+    /// Vector from the origin to the point with the parameter 1; not zero. Components below 1e-300
+    /// count as 0.
     pub direction: DVec3,
     inverse: DVec3,
 }
 
 impl Ray {
-    /// A ray from a point in a direction of any length.
+    /// Returns a ray from a point in a direction of any length.
     #[must_use]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Self {
@@ -52,8 +53,8 @@ impl Ray {
         }
     }
 
-    /// The parameter ≥ 0 at which the ray enters a box, rounded down; `None` if it misses the box, or
-    /// enters it beyond `far`. A box that the ray only touches is never missed.
+    /// The parameter ≥ 0 at which the ray enters a box, rounded down; `None` if it misses the box,
+    /// or enters it beyond `far`. A box that the ray only touches is never missed.
     #[must_use]
     pub fn entry(&self, bounds: &Aabb, far: f64) -> Option<f64> {
         if bounds.is_empty() {
@@ -103,9 +104,9 @@ impl Bvh {
         })
     }
 
-    /// Calls `visit` with the primitives whose box a ray enters at a parameter from 0 to `far`, boxes of
-    /// nodes nearest first. `visit` gets the present `far` and returns the next: where it met the
-    /// primitive, or what it got. A negative one ends the search.
+    /// Calls `visit` with the primitives whose box a ray enters at a parameter from 0 to `far`,
+    /// boxes of nodes nearest first. `visit` gets the present `far` and returns the next: where it
+    /// met the primitive, or what it got. A negative one ends the search.
     pub fn along_ray(&self, ray: &Ray, far: f64, mut visit: impl FnMut(u32, f64) -> f64) {
         let mut far = far;
         let mut stack = Stack::new(self);
@@ -120,8 +121,9 @@ impl Bvh {
                 }
             }
             if node.count == 0 {
-                let entry = |child: u32| ray.entry(&self.nodes[child as usize].bounds, far);
-                match [node.first, node.first + 1].map(entry) {
+                match [node.first, node.first + 1]
+                    .map(|child| ray.entry(&self.nodes[child as usize].bounds, far))
+                {
                     [Some(a), Some(b)] if b < a => {
                         stack.push(node.first);
                         stack.push(node.first + 1);
@@ -139,9 +141,9 @@ impl Bvh {
         }
     }
 
-    /// The primitive with the least squared distance, and that distance: `distance_squared` is asked
-    /// about primitives whose box is near enough. Of equally distant ones the lowest number is
-    /// returned; `None` if none is within √`limit` (a squared distance, too).
+    /// The primitive with the least squared distance, and that distance: `distance_squared` is
+    /// asked about primitives whose box is near enough. Of equally distant ones the lowest number
+    /// is returned; `None` if none is within √`limit` (a squared distance, too).
     ///
     /// `distance_squared` must not return less than the squared distance of the primitive's box,
     /// roundings aside.
@@ -186,8 +188,9 @@ impl Bvh {
         best
     }
 
-    /// Visits nodes from the root down, the first child before the second. `visit` gets a node's number, its box, and its
-    /// primitives if it is a leaf, and says whether the nodes below it are to be visited.
+    /// Visits nodes from the root down, the first child before the second. `visit` gets a node's
+    /// number, its box, and its primitives if it is a leaf, and says whether the nodes below it are
+    /// to be visited.
     pub fn descend(&self, mut visit: impl FnMut(u32, &Aabb, &[u32]) -> bool) {
         let mut stack = Stack::new(self);
         while let Some(number) = stack.pop() {
@@ -199,8 +202,8 @@ impl Bvh {
         }
     }
 
-    /// Calls `visit` once with each pair of primitives (lower number first) whose boxes have a point in
-    /// common, until it breaks. Pairs come in no particular but always the same order.
+    /// Calls `visit` once with each pair of primitives (lower number first) whose boxes have a
+    /// point in common, until it breaks. Pairs come in no particular but always the same order.
     pub fn pairs(&self, mut visit: impl FnMut(u32, u32) -> ControlFlow<()>) {
         let mut open: Vec<(u32, u32)> = Vec::new();
         if !self.is_empty() {

@@ -5,7 +5,7 @@ use crate::aabb::Aabb;
 /// The deepest path from the root to a leaf: see `build`.
 pub(super) const MAX_DEPTH: usize = 96;
 
-/// A node: a leaf if it has primitives, else the parent of `first` and `first + 1`.
+/// Node: a leaf if it has primitives, else the parent of `first` and `first + 1`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     pub(super) bounds: Aabb,
@@ -15,7 +15,7 @@ pub(super) struct Node {
     pub(super) count: u32,
 }
 
-/// A bounding volume hierarchy over numbered boxes, the primitives.
+/// Bounding volume hierarchy over numbered boxes, the primitives.
 ///
 /// The tree depends on the boxes and their order only, so that it is the same on every machine.
 /// Primitives whose box is empty or has a NaN are kept but never found.
@@ -68,8 +68,8 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the hierarchy: splits by the surface area heuristic over 16 bins of box centres, and by
-    /// the median where that makes no progress. Takes time in proportion to n log n.
+    /// Builds the hierarchy: splits by the surface area heuristic over 16 bins of box centres, and
+    /// by the median where that makes no progress. Takes time in proportion to n log n.
     ///
     /// # Panics
     /// If there are 2³¹ boxes or more.
@@ -115,16 +115,16 @@ impl Bvh {
         counts
     }
 
-    /// Gives a primitive a new box, and updates the nodes above it. Costs the depth of the tree. The
-    /// tree's shape stays, so that after large motions [`Bvh::new`] gives a faster one.
+    /// Gives a primitive a new box, and updates the nodes above it. Costs the depth of the tree.
+    /// The tree's shape stays, so that after large motions [`Bvh::new`] gives a faster one.
     ///
     /// # Panics
     /// If there is no such primitive.
     pub fn set_box(&mut self, primitive: u32, bounds: Aabb) {
-        self.boxes[primitive as usize] = sanitized(bounds);
+        self.boxes[primitive as usize] = sanitize(bounds);
         let mut node = self.leaves[primitive as usize];
         loop {
-            let fitted = self.fitted(node);
+            let fitted = self.fit(node);
             let old = &mut self.nodes[node as usize].bounds;
             if *old == fitted || node == 0 {
                 *old = fitted;
@@ -142,15 +142,15 @@ impl Bvh {
     pub fn refit(&mut self, boxes: &[Aabb]) {
         assert_eq!(boxes.len(), self.boxes.len(), "one box for each primitive");
         for (own, new) in self.boxes.iter_mut().zip(boxes) {
-            *own = sanitized(*new);
+            *own = sanitize(*new);
         }
         for node in (0..self.nodes.len() as u32).rev() {
-            self.nodes[node as usize].bounds = self.fitted(node);
+            self.nodes[node as usize].bounds = self.fit(node);
         }
     }
 
     /// The box of all that is directly below a node.
-    pub(super) fn fitted(&self, node: u32) -> Aabb {
+    pub(super) fn fit(&self, node: u32) -> Aabb {
         let node = self.nodes[node as usize];
         if node.count == 0 {
             let [a, b] = [node.first, node.first + 1].map(|i| &self.nodes[i as usize].bounds);
@@ -170,7 +170,7 @@ impl Bvh {
 }
 
 /// The box, or the empty one if it has a NaN.
-pub(super) fn sanitized(bounds: Aabb) -> Aabb {
+pub(super) fn sanitize(bounds: Aabb) -> Aabb {
     if bounds.is_empty() {
         Aabb::EMPTY
     } else {

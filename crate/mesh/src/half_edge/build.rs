@@ -1,4 +1,5 @@
-//! Construction of the half-edge mesh from polygons, with detection and repair of non-manifold parts.
+//! Construction of the half-edge mesh from polygons, with detection and repair of non-manifold
+//! parts.
 
 use super::connectivity::HalfEdgeMesh;
 use super::id::{HalfEdgeId, NONE};
@@ -54,27 +55,27 @@ impl fmt::Display for Repairs {
     }
 }
 
-/// A mesh made of polygons, with what was repaired.
+/// Mesh made of polygons, with what was repaired.
 #[derive(Clone, Debug)]
 pub struct Built {
     /// The mesh.
     pub mesh: HalfEdgeMesh,
     /// The changes.
     pub repairs: Repairs,
-    /// The polygons' vertex that each vertex of the mesh comes from: for colours and the like. A vertex
-    /// in the middle of a halved edge comes from one of its ends.
+    /// The polygons' vertex that each vertex of the mesh comes from: for colours and the like. A
+    /// vertex in the middle of a halved edge comes from one of its ends.
     pub sources: Vec<u32>,
 }
 
 impl HalfEdgeMesh {
-    /// Builds the mesh of polygons that are a manifold, with or without boundary. Vertices keep their
-    /// order; those of no face are left out.
+    /// Builds the mesh of polygons that are a manifold, with or without boundary. Vertices keep
+    /// their order; those of no face are left out.
     ///
     /// # Errors
     /// If the polygons are no manifold: says in words why. If a vertex is missing or not finite, or
     /// the mesh is over the [`crate::limits`].
     pub fn from_polygons(soup: &PolygonSoup) -> Result<Self, Error> {
-        let built = Self::repaired(soup)?;
+        let built = Self::repair(soup)?;
         if built.repairs.is_none() {
             Ok(built.mesh)
         } else {
@@ -90,29 +91,31 @@ impl HalfEdgeMesh {
         Self::from_polygons(&PolygonSoup::from(mesh))
     }
 
-    /// Builds a mesh of any polygons. Faces are turned over where that makes neighbours agree (as few as
-    /// possible in each component); edges of more than two faces, and vertices of several fans, are
-    /// separated. Closed bodies that touch in edges or vertices come apart and stay closed.
+    /// Builds a mesh of any polygons. Faces are turned over where that makes neighbours agree (as
+    /// few as possible in each component); edges of more than two faces, and vertices of several
+    /// fans, are separated. Closed bodies that touch in edges or vertices come apart and stay
+    /// closed.
     ///
     /// ```
     /// use glam::DVec3;
     /// use mesh::{HalfEdgeMesh, PolygonSoup};
     ///
     /// // Two triangles that touch in a vertex.
-    /// let mut soup = PolygonSoup::new([0, 1, 2, 3, 4].map(|i| DVec3::splat(f64::from(i))).to_vec());
+    /// let points = [0, 1, 2, 3, 4].map(|i| DVec3::splat(f64::from(i)));
+    /// let mut soup = PolygonSoup::new(points.to_vec());
     /// soup.add_face(&[0, 1, 2]);
     /// soup.add_face(&[2, 3, 4]);
     /// assert!(HalfEdgeMesh::from_polygons(&soup).is_err());
-    /// let built = HalfEdgeMesh::repaired(&soup)?;
+    /// let built = HalfEdgeMesh::repair(&soup)?;
     /// assert_eq!(built.repairs.split_vertices, 1);
     /// assert_eq!(built.sources, [0, 1, 2, 3, 4, 2]);
     /// # Ok::<(), mesh::Error>(())
     /// ```
     ///
     /// # Errors
-    /// If a face has a vertex that does not exist, a position is not finite, or the mesh is over the
-    /// [`crate::limits`].
-    pub fn repaired(soup: &PolygonSoup) -> Result<Built, Error> {
+    /// If a face has a vertex that does not exist, a position is not finite, or the mesh is over
+    /// the [`crate::limits`].
+    pub fn repair(soup: &PolygonSoup) -> Result<Built, Error> {
         let mut repairs = Repairs::default();
         let mut corners = Corners::new(soup, &mut repairs)?;
         let mut edges = corners.edges();
@@ -122,13 +125,13 @@ impl HalfEdgeMesh {
         }
         let partner = corners.pair(&edges, &mut repairs);
         let mut sources = corners.separate_vertices(&partner, soup.positions.len(), &mut repairs);
-        let doubled = corners.doubled_edges(&partner);
+        let double = corners.double_edges(&partner);
         let mut mesh = corners.connect(&partner);
         mesh.positions = sources
             .iter()
             .map(|v| soup.positions[*v as usize])
             .collect();
-        for h in doubled.iter().map(|c| HalfEdgeId(corners.half_edge[*c])) {
+        for h in double.iter().map(|c| HalfEdgeId(corners.half_edge[*c])) {
             let [a, b] = [mesh.origin(h), mesh.target(h)];
             let middle = 0.5 * mesh.position(a) + 0.5 * mesh.position(b);
             mesh.split_edge(h, middle)
@@ -148,7 +151,7 @@ impl HalfEdgeMesh {
 /// the next corner's.
 struct Corners {
     vertex: Vec<u32>,
-    /// Where each face starts, and the number of corners at the end.
+    /// First corner of each face; after those of all faces, the number of corners.
     starts: Vec<u32>,
     face: Vec<u32>,
     /// The half-edge that each corner became.
@@ -160,8 +163,7 @@ type Edge = (u32, u32, u32);
 
 impl Corners {
     fn new(soup: &PolygonSoup, repairs: &mut Repairs) -> Result<Self, Error> {
-        let is_far = |p: &glam::DVec3| !p.is_finite();
-        if let Some(i) = soup.positions.iter().position(is_far) {
+        if let Some(i) = soup.positions.iter().position(|p| !p.is_finite()) {
             return fail(format!("vertex {i} (from 0) is not at a finite place"));
         }
         let mut corners = Self {
@@ -214,13 +216,14 @@ impl Corners {
         if corner == start { end - 1 } else { corner - 1 }
     }
 
-    /// All edges; those of the same vertices are neighbours.
+    /// Returns all edges, sorted, so that edges between the same vertices are neighbours.
     fn edges(&self) -> Vec<Edge> {
-        let edge = |c: u32| {
-            let [a, b] = [c, self.next(c)].map(|c| self.vertex[c as usize]);
-            (a.min(b), a.max(b), c)
-        };
-        let mut edges: Vec<Edge> = (0..self.vertex.len() as u32).map(edge).collect();
+        let mut edges: Vec<Edge> = (0..self.vertex.len() as u32)
+            .map(|c| {
+                let [a, b] = [c, self.next(c)].map(|c| self.vertex[c as usize]);
+                (a.min(b), a.max(b), c)
+            })
+            .collect();
         edges.sort_unstable();
         edges
     }
@@ -348,8 +351,8 @@ impl Corners {
         sources
     }
 
-    /// A corner of every edge whose vertices an edge before joins.
-    fn doubled_edges(&self, partner: &[u32]) -> Vec<usize> {
+    /// Returns a corner of every edge between vertices that an earlier edge joins.
+    fn double_edges(&self, partner: &[u32]) -> Vec<usize> {
         let mut edges = self.edges();
         edges.retain(|(_, _, c)| partner[*c as usize] == NONE || *c < partner[*c as usize]);
         same_vertices(&edges)

@@ -1,12 +1,12 @@
 //! The collapse of an edge.
 
 use super::connectivity::{HalfEdgeMesh, need_finite};
-use super::id::{EditError, HalfEdgeId, NONE};
+use super::id::{EditError, HalfEdgeId, NONE, VertexId};
 use glam::DVec3;
 
 impl HalfEdgeMesh {
-    /// Removes an edge and the vertex that `h` leaves: its other edges then end at the target of `h`,
-    /// which moves to a position. Triangles beside the edge disappear.
+    /// Removes an edge and the vertex that `h` leaves: its other edges then end at the target of
+    /// `h`, which moves to a position. Triangles beside the edge disappear.
     ///
     /// # Errors
     /// If there is no such half-edge, the position is not finite, or the result would be no simple
@@ -48,8 +48,8 @@ impl HalfEdgeMesh {
         Ok(())
     }
 
-    /// Of a loop of two half-edges, there and back, makes one edge: `back` takes the place of the twin
-    /// of `there`, whose edge is removed.
+    /// Makes one edge from a loop of two half-edges, there and back: `back` takes the place of the
+    /// twin of `there`, whose edge is removed.
     pub(super) fn merge_two_sides(&mut self, there: u32, back: u32) {
         let outer = there ^ 1;
         let (before, after) = (self.prev[outer as usize], self.next[outer as usize]);
@@ -71,22 +71,23 @@ impl HalfEdgeMesh {
         self.need(self.has_half_edge(h))?;
         let (h, t) = (h.0, h.0 ^ 1);
         let (u, v) = (self.origin[h as usize], self.origin[t as usize]);
-        let is_boundary = |v: u32| self.face[self.outgoing[v as usize] as usize] == NONE;
+
         let on_boundary = [h, t].map(|side| self.face[side as usize] == NONE);
-        if is_boundary(u) && is_boundary(v) && on_boundary == [false; 2] {
+        let are_ends_on_boundary = [u, v].map(|end| self.is_boundary_vertex(VertexId(end)));
+        if are_ends_on_boundary == [true; 2] && on_boundary == [false; 2] {
             return Err(EditError::Pinch);
         }
-        // The third vertex of the triangle on each side.
-        let apex = |side: u32| {
-            let is_apex = self.face[side as usize] != NONE && self.is_triangle(side);
-            is_apex.then(|| self.origin[self.prev[side as usize] as usize])
-        };
+
         for (side, is_boundary) in [h, t].into_iter().zip(on_boundary) {
             if is_boundary && self.is_triangle(side) {
                 return Err(EditError::DoubleEdge);
             }
         }
-        let apexes = [apex(h), apex(t)];
+        // The third vertex of the triangle on each side.
+        let apexes = [h, t].map(|side| {
+            let is_apex = self.face[side as usize] != NONE && self.is_triangle(side);
+            is_apex.then(|| self.origin[self.prev[side as usize] as usize])
+        });
         if apexes[0].is_some() && apexes[0] == apexes[1] {
             return Err(EditError::DegenerateFace);
         }

@@ -4,17 +4,18 @@ use super::id::{EditError, FaceId, HalfEdgeId, NONE, VertexId};
 use crate::limits::MAX_HALF_EDGES;
 use glam::DVec3;
 
-/// A polygon mesh whose edges know their neighbours: a 2-manifold with or without boundary, consistently
-/// oriented, of faces with any number of vertices.
+/// Polygon mesh whose edges know their neighbours: a 2-manifold with or without boundary,
+/// consistently oriented, of faces with any number of vertices.
 ///
-/// Each edge is a pair of half-edges in opposite directions, numbered h and h ^ 1. A half-edge belongs
-/// to the face on its left, or to none: then it is a boundary half-edge, and those of a hole form a
-/// loop just as those of a face do. Of two vertices at most one edge joins them, a face has no vertex
-/// twice, and the faces at a vertex form one fan; every edit keeps that, or is refused.
+/// Each edge is a pair of half-edges in opposite directions, numbered h and h ^ 1. A half-edge
+/// belongs to the face on its left, or to none: then it is a boundary half-edge, and those of a
+/// hole form a loop just as those of a face do. Of two vertices at most one edge joins them, a face
+/// has no vertex twice, and the faces at a vertex form one fan; every edit keeps that, or is
+/// refused.
 ///
 /// All data are in arrays of 32-bit numbers, about 66 bytes for each triangle and 0.5 vertices.
-/// Numbers of removed elements are used again, last removed first, so that the same edits give the same
-/// numbers everywhere.
+/// Numbers of removed elements are used again, last removed first, so that the same edits give the
+/// same numbers everywhere.
 ///
 /// ```
 /// use glam::DVec3;
@@ -43,7 +44,7 @@ use glam::DVec3;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HalfEdgeMesh {
     pub(super) positions: Vec<DVec3>,
-    /// A half-edge that leaves each vertex: the boundary one if there is one; `NONE` for a free slot.
+    /// Half-edge that leaves each vertex: the boundary one if there is one; `NONE` for a free slot.
     pub(super) outgoing: Vec<u32>,
     pub(super) next: Vec<u32>,
     pub(super) prev: Vec<u32>,
@@ -51,7 +52,7 @@ pub struct HalfEdgeMesh {
     pub(super) origin: Vec<u32>,
     /// The face on the left of each half-edge; `NONE` on the boundary.
     pub(super) face: Vec<u32>,
-    /// A half-edge of each face; `NONE` for a free slot.
+    /// Half-edge of each face; `NONE` for a free slot.
     pub(super) face_first: Vec<u32>,
     pub(super) free_vertices: Vec<u32>,
     /// Even half-edges of free pairs.
@@ -78,40 +79,41 @@ impl HalfEdgeMesh {
         self.face_first.len() - self.free_faces.len()
     }
 
-    /// One more than the largest number of a vertex: the length of arrays that are kept beside.
+    /// Number of slots for vertices, one more than the largest number of a vertex: the length of
+    /// arrays that are kept beside the mesh.
     #[must_use]
     pub fn vertex_slots(&self) -> usize {
         self.positions.len()
     }
 
-    /// One more than the largest number of a face.
+    /// Number of slots for faces, one more than the largest number of a face.
     #[must_use]
     pub fn face_slots(&self) -> usize {
         self.face_first.len()
     }
 
-    /// One more than the largest number of a half-edge.
+    /// Number of slots for half-edges, one more than the largest number of a half-edge.
     #[must_use]
     pub fn half_edge_slots(&self) -> usize {
         self.next.len()
     }
 
-    /// All vertices, in ascending order.
+    /// Iterates over the vertices in ascending order.
     pub fn vertices(&self) -> impl Iterator<Item = VertexId> {
-        used(&self.outgoing).map(VertexId)
+        numbers_in_use(&self.outgoing).map(VertexId)
     }
 
-    /// All faces, in ascending order.
+    /// Iterates over the faces in ascending order.
     pub fn faces(&self) -> impl Iterator<Item = FaceId> {
-        used(&self.face_first).map(FaceId)
+        numbers_in_use(&self.face_first).map(FaceId)
     }
 
-    /// All half-edges, in ascending order.
+    /// Iterates over the half-edges in ascending order.
     pub fn half_edges(&self) -> impl Iterator<Item = HalfEdgeId> {
-        used(&self.origin).map(HalfEdgeId)
+        numbers_in_use(&self.origin).map(HalfEdgeId)
     }
 
-    /// One half-edge of each edge (the even one), in ascending order.
+    /// Iterates over the edges in ascending order; of each, its even half-edge is given.
     pub fn edges(&self) -> impl Iterator<Item = HalfEdgeId> {
         self.half_edges().step_by(2)
     }
@@ -191,13 +193,13 @@ impl HalfEdgeMesh {
         (face != NONE).then_some(FaceId(face))
     }
 
-    /// A half-edge that leaves a vertex: the boundary half-edge if there is one.
+    /// Returns a half-edge that leaves a vertex: the boundary half-edge if there is one.
     #[must_use]
     pub fn outgoing(&self, v: VertexId) -> HalfEdgeId {
         HalfEdgeId(self.outgoing[v.index()])
     }
 
-    /// `true` if an end of the boundary passes the vertex.
+    /// `true` if the boundary passes the vertex.
     #[must_use]
     pub fn is_boundary_vertex(&self, v: VertexId) -> bool {
         self.face[self.outgoing[v.index()] as usize] == NONE
@@ -317,7 +319,7 @@ impl HalfEdgeMesh {
         Ok(())
     }
 
-    /// A vertex without edges; the caller sets its outgoing half-edge.
+    /// Adds a vertex without edges; the caller sets its outgoing half-edge.
     pub(super) fn new_vertex(&mut self, position: DVec3) -> u32 {
         if let Some(v) = self.free_vertices.pop() {
             self.positions[v as usize] = position;
@@ -328,7 +330,7 @@ impl HalfEdgeMesh {
         self.positions.len() as u32 - 1
     }
 
-    /// A pair of half-edges that are in no loop; returns the one that leaves `from`.
+    /// Adds a pair of half-edges that are in no loop; returns the one that leaves `from`.
     pub(super) fn new_edge(&mut self, from: u32, to: u32) -> u32 {
         if let Some(h) = self.free_edges.pop() {
             self.origin[h as usize] = from;
@@ -402,7 +404,7 @@ pub(super) fn need_finite(position: DVec3) -> Result<(), EditError> {
 }
 
 /// The numbers of used slots.
-fn used(slots: &[u32]) -> impl Iterator<Item = u32> {
+fn numbers_in_use(slots: &[u32]) -> impl Iterator<Item = u32> {
     let numbered = slots.iter().zip(0..);
     numbered.filter(|(slot, _)| **slot != NONE).map(|(_, i)| i)
 }

@@ -3,12 +3,12 @@
 use super::connectivity::HalfEdgeMesh;
 use super::id::{EditError, FaceId, NONE, VertexId};
 
-/// A vertex that became two: where faces around it were removed so that those left meet in it only.
+/// Vertex that became two: where faces around it were removed so that those left meet in it only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexCopy {
     /// The vertex there was.
     pub original: VertexId,
-    /// A new vertex at the same position, with some of its edges.
+    /// New vertex at the same position, with some of its edges.
     pub copy: VertexId,
 }
 
@@ -72,19 +72,12 @@ impl HalfEdgeMesh {
         // Every fan begins with a boundary half-edge that leaves the vertex and ends with one that
         // arrives.
         let leaving: Vec<u32> = self.around_vertex(v).collect();
-        let is_boundary = |h: u32| self.face[h as usize] == NONE;
-        let Some(start) = leaving.iter().position(|h| is_boundary(*h)) else {
+        let Some(start) = leaving.iter().position(|h| self.face[*h as usize] == NONE) else {
             return;
         };
-        let mut fans: Vec<Vec<u32>> = Vec::new();
-        for h in leaving[start..].iter().chain(&leaving[..start]) {
-            if is_boundary(*h) {
-                fans.push(Vec::new());
-            }
-            if let Some(fan) = fans.last_mut() {
-                fan.push(*h);
-            }
-        }
+        let from_boundary = [&leaving[start..], &leaving[..start]].concat();
+        let fans = from_boundary.chunk_by(|_, h| self.face[*h as usize] != NONE);
+        let fans: Vec<Vec<u32>> = fans.map(<[u32]>::to_vec).collect();
         for (i, fan) in fans.iter().enumerate() {
             let (first, last) = (fan[0], fan[fan.len() - 1]);
             let owner = match i {

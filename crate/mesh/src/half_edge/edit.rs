@@ -5,8 +5,8 @@ use super::id::{EditError, FaceId, HalfEdgeId, NONE, VertexId};
 use glam::DVec3;
 
 impl HalfEdgeMesh {
-    /// Puts a vertex on an edge. The faces on both sides get a vertex more. `h` then leads to the new
-    /// vertex, and `next(h)` from there to the old target.
+    /// Puts a vertex on an edge. The faces on both sides get a vertex more. `h` then leads to the
+    /// new vertex, and `next(h)` from there to the old target.
     ///
     /// # Errors
     /// If there is no such half-edge, the position is not finite, or the mesh is full.
@@ -33,8 +33,8 @@ impl HalfEdgeMesh {
         Ok(VertexId(m))
     }
 
-    /// Puts a vertex on an edge, and joins it with the opposite vertices of the triangles beside, so
-    /// that they become two each. Faces with more vertices get a vertex more.
+    /// Puts a vertex on an edge, and joins it with the opposite vertices of the triangles beside,
+    /// so that they become two each. Faces with more vertices get a vertex more.
     ///
     /// # Errors
     /// Those of [`HalfEdgeMesh::split_edge`]; also if both triangles have the same opposite vertex.
@@ -43,8 +43,9 @@ impl HalfEdgeMesh {
         self.need_room(3)?;
         let sides =
             [h.0, h.0 ^ 1].map(|side| self.face[side as usize] != NONE && self.is_triangle(side));
-        let opposite = |side: u32| self.origin[self.prev[side as usize] as usize];
-        if sides == [true; 2] && opposite(h.0) == opposite(h.0 ^ 1) {
+        let [left, right] =
+            [h.index(), h.index() ^ 1].map(|side| self.origin[self.prev[side] as usize]);
+        if sides == [true; 2] && left == right {
             return Err(EditError::DoubleEdge);
         }
         let m = self.split_edge(h, position)?;
@@ -59,12 +60,12 @@ impl HalfEdgeMesh {
         Ok(m)
     }
 
-    /// Divides a face by an edge from the origin of `a` to the origin of `b`, two of its half-edges.
-    /// The face keeps `a`; the new face, which is returned, gets `b`.
+    /// Divides a face by an edge from the origin of `a` to the origin of `b`, two of its
+    /// half-edges. The face keeps `a`; the new face, which is returned, gets `b`.
     ///
     /// # Errors
-    /// If the half-edges do not exist or are not of one face, if an edge joins their origins already,
-    /// or if the mesh is full.
+    /// If the half-edges do not exist or are not of one face, if an edge joins their origins
+    /// already, or if the mesh is full.
     pub fn split_face(&mut self, a: HalfEdgeId, b: HalfEdgeId) -> Result<FaceId, EditError> {
         self.need(self.has_half_edge(a) && self.has_half_edge(b))?;
         let (a, b) = (a.0, b.0);
@@ -88,7 +89,8 @@ impl HalfEdgeMesh {
         Ok(FaceId(self.new_face(b)))
     }
 
-    /// Puts a vertex into a face and joins it with all its vertices: n triangles instead of the face.
+    /// Puts a vertex into a face and joins it with all its vertices: n triangles instead of the
+    /// face.
     ///
     /// # Errors
     /// If there is no such face, the position is not finite, or the mesh is full.
@@ -148,15 +150,16 @@ impl HalfEdgeMesh {
     #[must_use]
     pub fn loop_center(&self, h: HalfEdgeId) -> DVec3 {
         let count = self.loop_half_edges(h).count() as f64;
-        let share = |h| self.position(self.origin(h)) / count;
-        self.loop_half_edges(h).map(share).sum()
+        self.loop_half_edges(h)
+            .map(|h| self.position(self.origin(h)) / count)
+            .sum()
     }
 
     /// Replaces the edge between two triangles by the other diagonal of their quadrilateral.
     ///
     /// # Errors
-    /// If there is no such half-edge, it is not between two triangles, or an edge joins the opposite
-    /// vertices already.
+    /// If there is no such half-edge, it is not between two triangles, or an edge joins the
+    /// opposite vertices already.
     pub fn flip_edge(&mut self, h: HalfEdgeId) -> Result<(), EditError> {
         self.need(self.has_half_edge(h))?;
         let (h, t) = (h.0, h.0 ^ 1);

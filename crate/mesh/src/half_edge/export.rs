@@ -9,7 +9,7 @@ impl HalfEdgeMesh {
     /// The faces as polygons. Vertices are numbered in the order of their handles.
     #[must_use]
     pub fn to_polygons(&self) -> PolygonSoup {
-        let (positions, numbers) = self.numbered();
+        let (positions, numbers) = self.number_vertices();
         let mut soup = PolygonSoup::new(positions);
         let mut face = Vec::new();
         for f in self.faces() {
@@ -21,8 +21,8 @@ impl HalfEdgeMesh {
     }
 
     /// The faces as triangles; those with more vertices are cut as by
-    /// [`HalfEdgeMesh::triangulate`], so that the result is a manifold, too. Vertices are numbered in
-    /// the order of their handles, added centres last.
+    /// [`HalfEdgeMesh::triangulate`], so that the result is a manifold, too. Vertices are numbered
+    /// in the order of their handles, added centres last.
     ///
     /// # Errors
     /// If cutting them makes the mesh too large.
@@ -32,7 +32,7 @@ impl HalfEdgeMesh {
             cut.triangulate()?;
             return cut.to_triangles();
         }
-        let (positions, numbers) = self.numbered();
+        let (positions, numbers) = self.number_vertices();
         let triangles = self.faces().map(|f| {
             let first = self.face_first[f.index()] as usize;
             [first, self.next[first] as usize, self.prev[first] as usize]
@@ -41,17 +41,17 @@ impl HalfEdgeMesh {
         Ok(TriangleMesh::new(positions, triangles.collect()))
     }
 
-    /// A copy without free slots. Elements keep their order.
+    /// Returns a copy without free slots. Elements keep their order.
     #[must_use]
     pub fn compact(&self) -> Self {
-        let (positions, vertices) = self.numbered();
+        let (positions, vertices) = self.number_vertices();
         let faces = numbers(&self.face_first);
         // Pairs stay pairs: both halves are used or free.
         let half_edges = numbers(&self.origin);
-        let moved = |old: &[u32], numbers: &[u32]| -> Vec<u32> {
+        let renumber = |old: &[u32], numbers: &[u32]| -> Vec<u32> {
             let used = old.iter().zip(&self.origin).filter(|(_, v)| **v != NONE);
-            let new = |i: u32| numbers.get(i as usize).copied().unwrap_or(NONE);
-            used.map(|(i, _)| new(*i)).collect()
+            used.map(|(i, _)| numbers.get(*i as usize).copied().unwrap_or(NONE))
+                .collect()
         };
         let first = |old: &[u32]| -> Vec<u32> {
             let used = old.iter().filter(|h| **h != NONE);
@@ -60,17 +60,17 @@ impl HalfEdgeMesh {
         Self {
             positions,
             outgoing: first(&self.outgoing),
-            next: moved(&self.next, &half_edges),
-            prev: moved(&self.prev, &half_edges),
-            origin: moved(&self.origin, &vertices),
-            face: moved(&self.face, &faces),
+            next: renumber(&self.next, &half_edges),
+            prev: renumber(&self.prev, &half_edges),
+            origin: renumber(&self.origin, &vertices),
+            face: renumber(&self.face, &faces),
             face_first: first(&self.face_first),
             ..Self::default()
         }
     }
 
     /// The positions of all vertices, and the place of each slot's vertex among them.
-    fn numbered(&self) -> (Vec<glam::DVec3>, Vec<u32>) {
+    fn number_vertices(&self) -> (Vec<glam::DVec3>, Vec<u32>) {
         let positions = self.vertices().map(|v| self.position(v)).collect();
         (positions, numbers(&self.outgoing))
     }
@@ -79,12 +79,14 @@ impl HalfEdgeMesh {
 /// The place of each used slot among the used ones.
 fn numbers(slots: &[u32]) -> Vec<u32> {
     let mut next = 0;
-    let number = |slot: &u32| {
-        if *slot == NONE {
-            return NONE;
-        }
-        next += 1;
-        next - 1
-    };
-    slots.iter().map(number).collect()
+    slots
+        .iter()
+        .map(|slot| {
+            if *slot == NONE {
+                return NONE;
+            }
+            next += 1;
+            next - 1
+        })
+        .collect()
 }

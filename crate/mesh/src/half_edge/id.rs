@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// No half-edge, face or vertex.
+/// Stands for no half-edge, face or vertex.
 pub(super) const NONE: u32 = u32::MAX;
 
 macro_rules! id {
@@ -37,7 +37,7 @@ id!(
 /// Why an edit was refused. The mesh is as it was before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EditError {
-    /// A handle names nothing that is in the mesh.
+    /// The handle names nothing that is in the mesh.
     Missing,
     /// The half-edge belongs to a face, and a boundary half-edge is needed; or the other way round.
     WrongSide,
@@ -45,11 +45,11 @@ pub enum EditError {
     NoTriangle,
     /// The result would join two vertices by two edges, or a vertex with itself.
     DoubleEdge,
-    /// A face would have a vertex twice, or fewer than three vertices.
+    /// The result would have a face with a vertex twice, or with fewer than three vertices.
     DegenerateFace,
     /// Sheets that are apart would share a vertex.
     Pinch,
-    /// A coordinate is not finite.
+    /// The position has a coordinate that is not finite.
     NotFinite,
     /// The mesh is at one of the [`crate::limits`].
     Full,

@@ -1,4 +1,4 @@
-//! A half-edge structure for polygon meshes with and without boundary.
+//! Half-edge structure for polygon meshes with and without boundary.
 
 mod build;
 mod collapse;

@@ -3,7 +3,8 @@
 use super::connectivity::HalfEdgeMesh;
 use glam::DVec3;
 
-/// Equal values between two changes that are stored rather than beginning a new run: a run costs about as much.
+/// Equal values between two changes that are stored rather than beginning a new run: a run costs
+/// about as much.
 const SHORT_GAP: usize = 8;
 
 /// Contents of a list in another state: its length, and runs of values that differ.
@@ -14,7 +15,8 @@ pub struct ListPatch<T> {
 }
 
 impl<T: Copy> ListPatch<T> {
-    /// The patch that makes `old` of `new`. `is_same` must compare bits, so that the first bits come back.
+    /// The patch that makes `old` of `new`. `is_same` must compare bits, so that the first bits
+    /// come back.
     pub fn between(old: &[T], new: &[T], is_same: impl Fn(&T, &T) -> bool) -> Self {
         let mut runs: Vec<(usize, Vec<T>)> = Vec::new();
         let shared = old.len().min(new.len());
@@ -67,15 +69,17 @@ impl<T: Copy> ListPatch<T> {
     /// Bytes that it takes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let run = |(_, values): &(usize, Vec<T>)| {
-            size_of::<(usize, Vec<T>)>() + values.len() * size_of::<T>()
-        };
-        size_of::<Self>() + self.runs.iter().map(run).sum::<usize>()
+        size_of::<Self>()
+            + self
+                .runs
+                .iter()
+                .map(|(_, values)| size_of::<(usize, Vec<T>)>() + values.len() * size_of::<T>())
+                .sum::<usize>()
     }
 }
 
-/// What leads from one state of a mesh to another, and back: [`HalfEdgeMesh::swap`]. It takes space for what
-/// differs only.
+/// Difference between two states of a mesh, which leads from one to the other and back by
+/// [`HalfEdgeMesh::swap`]. It takes space only for what differs.
 ///
 /// ```
 /// use glam::DVec3;
@@ -107,11 +111,10 @@ impl MeshPatch {
     /// The patch that makes `old` of `new`.
     #[must_use]
     pub fn between(old: &HalfEdgeMesh, new: &HalfEdgeMesh) -> Self {
-        let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
         let (before, after) = (old.lists(), new.lists());
         Self {
             positions: ListPatch::between(&old.positions, &new.positions, |a, b| {
-                bits(a) == bits(b)
+                a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
             }),
             lists: core::array::from_fn(|i| ListPatch::between(before[i], after[i], |a, b| a == b)),
         }
@@ -125,8 +128,8 @@ impl MeshPatch {
 }
 
 impl HalfEdgeMesh {
-    /// Gives the mesh its other state, and the patch becomes the one that leads back. The mesh must be in one of the
-    /// two states that the patch was made of.
+    /// Gives the mesh its other state, and the patch becomes the one that leads back. The mesh must
+    /// be in one of the two states that the patch was made of.
     pub fn swap(&mut self, patch: &mut MeshPatch) {
         patch.positions.swap(&mut self.positions);
         let lists = [

@@ -3,10 +3,10 @@
 use super::connectivity::HalfEdgeMesh;
 use super::id::{FaceId, HalfEdgeId, NONE};
 
-/// A connected component of a mesh.
+/// Connected component of a mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shell {
-    /// Its faces, in ascending order.
+    /// Faces of the shell, in ascending order.
     pub faces: Vec<FaceId>,
     /// Number of vertices.
     pub vertices: usize,
@@ -38,7 +38,7 @@ impl HalfEdgeMesh {
         self.vertex_count() as i64 - self.edge_count() as i64 + self.face_count() as i64
     }
 
-    /// A boundary half-edge of each hole, in ascending order.
+    /// Returns a boundary half-edge of each hole, in ascending order.
     #[must_use]
     pub fn boundary_loops(&self) -> Vec<HalfEdgeId> {
         let mut seen = vec![false; self.next.len()];

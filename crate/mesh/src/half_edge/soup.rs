@@ -18,12 +18,12 @@ pub struct PolygonSoup {
     /// Vertex positions.
     pub positions: Vec<DVec3>,
     corners: Vec<u32>,
-    /// Where in `corners` each face ends.
+    /// Index into `corners` at which each face ends.
     ends: Vec<usize>,
 }
 
 impl PolygonSoup {
-    /// A soup without faces.
+    /// Returns a soup without faces.
     #[must_use]
     pub fn new(positions: Vec<DVec3>) -> Self {
         Self {

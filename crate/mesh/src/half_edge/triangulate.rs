@@ -8,9 +8,9 @@ use glam::DVec3;
 const MOST_EARS: usize = 64;
 
 impl HalfEdgeMesh {
-    /// Cuts a face into triangles: ears first whose smallest angle is largest, seen along the face's
-    /// mean normal. A centre vertex is added where no ear is left that keeps a simple mesh, and to
-    /// faces of more than 64 vertices.
+    /// Cuts a face into triangles: ears first whose smallest angle is largest, seen along the
+    /// face's mean normal. A centre vertex is added where no ear is left that keeps a simple mesh,
+    /// and to faces of more than 64 vertices.
     ///
     /// # Errors
     /// If there is no such face, or the mesh is full.
@@ -51,20 +51,21 @@ impl HalfEdgeMesh {
         HalfEdgeId(self.face_first[f.index()])
     }
 
-    /// The sum of the areas of a face's triangles about its centre, as a vector along its mean normal
-    /// (Newell's normal); its length is twice the area of a flat face.
+    /// The sum of the areas of a face's triangles about its centre, as a vector along its mean
+    /// normal (Newell's normal); its length is twice the area of a flat face.
     #[must_use]
     pub fn face_normal(&self, f: FaceId) -> DVec3 {
         let origin = self.position(self.origin(self.face_first(f)));
-        let cross = |h: HalfEdgeId| {
-            let [a, b] = [self.origin(h), self.target(h)].map(|v| self.position(v) - origin);
-            a.cross(b)
-        };
-        self.face_half_edges(f).map(cross).sum()
+        self.face_half_edges(f)
+            .map(|h| {
+                let [a, b] = [self.origin(h), self.target(h)].map(|v| self.position(v) - origin);
+                a.cross(b)
+            })
+            .sum()
     }
 
-    /// The half-edges from which and to which the diagonal of the best ear goes: the ear's first, and
-    /// the one after its last.
+    /// The half-edges from which and to which the diagonal of the best ear goes: the ear's first,
+    /// and the one after its last.
     fn best_ear(&self, f: FaceId) -> Option<(HalfEdgeId, HalfEdgeId)> {
         let normal = self.face_normal(f);
         let sides: Vec<HalfEdgeId> = self.face_half_edges(f).collect();
@@ -73,11 +74,10 @@ impl HalfEdgeMesh {
         let mut best: Option<(f64, usize)> = None;
         for i in 0..n {
             let ear = [place(i), place(i + 1), place(i + 2)];
-            let is_inside = |k: usize| contains(&ear, place(k), normal);
             let quality = ear_quality(&ear, normal);
             let is_better = quality > 0.0 && best.is_none_or(|(most, _)| quality > most);
             if is_better
-                && !(i + 3..i + n).any(is_inside)
+                && !(i + 3..i + n).any(|k| contains(&ear, place(k), normal))
                 && !self.are_joined(self.origin(sides[i]).0, self.origin(sides[(i + 2) % n]).0)
             {
                 best = Some((quality, i));
@@ -87,7 +87,8 @@ impl HalfEdgeMesh {
     }
 }
 
-/// A measure of the smallest angle of a triangle; negative if it is turned against the normal.
+/// Returns a measure of the smallest angle of a triangle; negative if it is turned against the
+/// normal.
 fn ear_quality([a, b, c]: &[DVec3; 3], normal: DVec3) -> f64 {
     let area = (*b - *a).cross(*c - *a);
     let longest = [*a - *b, *b - *c, *c - *a]

@@ -21,7 +21,12 @@ impl fmt::Display for Violation {
 
 impl core::error::Error for Violation {}
 
-/// An error unless all elements pass.
+/// Whether a slot exists and is used.
+fn is_used(slots: &[u32], i: u32) -> bool {
+    slots.get(i as usize).is_some_and(|s| *s != NONE)
+}
+
+/// Returns an error unless all elements pass.
 fn all(
     invariant: &'static str,
     mut elements: impl Iterator<Item = usize>,
@@ -34,8 +39,8 @@ fn all(
 }
 
 impl HalfEdgeMesh {
-    /// Checks every invariant of the structure, in time proportional to the mesh (and to the square of
-    /// the largest number of edges at a vertex).
+    /// Checks every invariant of the structure, in time proportional to the mesh (and to the square
+    /// of the largest number of edges at a vertex).
     ///
     /// # Errors
     /// The first violation found.
@@ -48,18 +53,19 @@ impl HalfEdgeMesh {
     /// Numbers are in range, and free slots are listed once.
     fn validate_slots(&self) -> Result<(), Violation> {
         let half_edges = 0..self.next.len();
-        let used = |slots: &[u32], i: u32| slots.get(i as usize).is_some_and(|s| *s != NONE);
         all(
             "half-edges of a pair are both used or both free",
             half_edges.clone(),
             |h| {
-                let is_free = |h: usize| {
-                    [&self.origin, &self.next, &self.prev, &self.face]
+                let pair = [h, h ^ 1];
+                let is_free = pair.iter().all(|h| {
+                    let arrays = [&self.origin, &self.next, &self.prev, &self.face];
+                    arrays.iter().all(|array| array[*h] == NONE)
+                });
+                is_free
+                    || pair
                         .iter()
-                        .all(|array| array[h] == NONE)
-                };
-                let is_used = |h: usize| used(&self.outgoing, self.origin[h]);
-                (is_free(h) && is_free(h ^ 1)) || (is_used(h) && is_used(h ^ 1))
+                        .all(|h| is_used(&self.outgoing, self.origin[*h]))
             },
         )?;
         all(
@@ -67,11 +73,11 @@ impl HalfEdgeMesh {
             half_edges.clone(),
             |h| {
                 self.origin[h] == NONE
-                    || (used(&self.origin, self.next[h]) && used(&self.origin, self.prev[h]))
+                    || (is_used(&self.origin, self.next[h]) && is_used(&self.origin, self.prev[h]))
             },
         )?;
         all("the face of a half-edge is used", half_edges, |h| {
-            self.face[h] == NONE || used(&self.face_first, self.face[h])
+            self.face[h] == NONE || is_used(&self.face_first, self.face[h])
         })?;
         for (invariant, slots, free, step) in [
             (
@@ -157,7 +163,7 @@ impl HalfEdgeMesh {
         Ok(())
     }
 
-    /// A loop has three vertices or more, and none twice.
+    /// Checks that a loop has three vertices or more, and none twice.
     fn validate_loop(
         &self,
         first: u32,
@@ -232,7 +238,7 @@ mod tests {
     use crate::half_edge::soup::PolygonSoup;
     use glam::DVec3;
 
-    /// A pyramid without its base, beside free slots.
+    /// Returns a pyramid without its base, beside free slots.
     fn pyramid() -> HalfEdgeMesh {
         let corners = [[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0], [0, 0, 1]];
         let positions = corners.map(|p| DVec3::from(p.map(f64::from)));

@@ -5,8 +5,8 @@ use super::id::{EditError, HalfEdgeId, NONE};
 
 impl HalfEdgeMesh {
     /// Joins two boundary half-edges in opposite directions to one edge between their faces. The
-    /// target of `b` becomes the origin of `a`, the origin of `b` the target of `a`, which keep their
-    /// numbers and positions. A notch of two edges that would be left beside is closed, too.
+    /// target of `b` becomes the origin of `a`, the origin of `b` the target of `a`, which keep
+    /// their numbers and positions. A notch of two edges that would be left beside is closed, too.
     ///
     /// # Errors
     /// If a half-edge does not exist or has a face, or the result would be no simple mesh.
@@ -26,9 +26,9 @@ impl HalfEdgeMesh {
                 .filter(|[first, second]| first != second)
         };
         let notches = [notch(a, b), notch(b, a)];
-        let tip = |notch: Option<[u32; 2]>| notch.map(|[first, _]| self.origin[first as usize ^ 1]);
-        self.can_merge([v, x], [u, y], tip(notches[0]))?;
-        self.can_merge([u, y], [v, x], tip(notches[1]))?;
+        let tips = notches.map(|notch| notch.map(|[first, _]| self.origin[first as usize ^ 1]));
+        self.can_merge([v, x], [u, y], tips[0])?;
+        self.can_merge([u, y], [v, x], tips[1])?;
 
         for (kept, removed) in [(v, x), (u, y)] {
             let leaving: Vec<u32> = self.around_vertex(removed).collect();
@@ -74,8 +74,8 @@ impl HalfEdgeMesh {
         self.remove_edge(removed);
     }
 
-    /// Checks whether two ends of welded edges may become one vertex. The other ends become one, too;
-    /// `tip` is the middle of a notch that is closed.
+    /// Checks whether two ends of welded edges may become one vertex. The other ends become one,
+    /// too; `tip` is the middle of a notch that is closed.
     fn can_merge(
         &self,
         [one, other]: [u32; 2],
@@ -85,21 +85,22 @@ impl HalfEdgeMesh {
         if one == other {
             return Ok(());
         }
-        let around = |v: u32| -> Vec<u32> {
+        let [near_one, near_other] = [one, other].map(|v| -> Vec<u32> {
             self.neighbors_of(v)
                 .map(|n| if n == far[1] { far[0] } else { n })
                 .collect()
-        };
-        let [near_one, near_other] = [around(one), around(other)];
-        // The far end is a neighbour of each by the edge that is welded, and must not be by another.
-        let is_far = |v: &&u32| **v == far[0];
+        });
+        // The far end is a neighbour of each by the edge that is welded, and must not be by
+        // another.
         for near in [&near_one, &near_other] {
-            if near.iter().filter(is_far).count() > 1 {
+            if near.iter().filter(|v| **v == far[0]).count() > 1 {
                 return Err(EditError::DoubleEdge);
             }
         }
-        let is_shared = |v: &&u32| **v != far[0] && Some(**v) != tip && near_other.contains(v);
-        if near_one.contains(&other) || near_one.iter().any(|v| is_shared(&v)) {
+        let is_shared = near_one
+            .iter()
+            .any(|v| *v != far[0] && Some(*v) != tip && near_other.contains(v));
+        if near_one.contains(&other) || is_shared {
             return Err(EditError::DoubleEdge);
         }
         for out in self.around_vertex(one) {

@@ -8,8 +8,9 @@ use crate::triangle_mesh::TriangleMesh;
 /// Reads a mesh. The format follows from the first bytes, where they tell, else from the ending of
 /// the file's name (`.obj`, `.ply`, `.stl`, `.glb`, `.3mf`, in any case).
 ///
-/// Positions are in the file's units, but those of 3MF files in millimetres (GLB's unit is the metre).
-/// Colours become linear: vertex colours of GLB are, those of PLY, OBJ and 3MF are taken for sRGB.
+/// Positions are in the file's units, but those of 3MF files in millimetres (GLB's unit is the
+/// metre). Colours become linear: vertex colours of GLB are, those of PLY, OBJ and 3MF are taken
+/// for sRGB.
 ///
 /// Polygons are cut into triangles that all start at their first corner, which is right for convex
 /// ones. Triangles without an area are left out. A file in which some triangles have no normals is
@@ -45,5 +46,5 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Error> {
             _ => fail("meshes are read from .obj, .ply, .stl, .glb and .3mf files"),
         }
     }?;
-    mesh.checked()
+    mesh.check()
 }

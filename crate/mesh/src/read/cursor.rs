@@ -1,6 +1,6 @@
 //! Numbers out of bytes that may end too early.
 
-/// A place in some bytes.
+/// Place in some bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cursor<'a> {
     rest: &'a [u8],

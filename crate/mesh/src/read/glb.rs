@@ -1,8 +1,9 @@
 //! GLB: a scene of nodes that place meshes, described in JSON, followed by one block of numbers.
 //!
-//! All triangles of the scene are read, each where its node puts it, with vertex colours, and of the
-//! materials name, base colour and roughness; textures, cameras, skins and animations are passed over. What the file says must be understood to read it (compression above
-//! all) is refused by name.
+//! All triangles of the scene are read, each where its node puts it, with vertex colours, and of
+//! the materials name, base colour and roughness; textures, cameras, skins and animations are
+//! passed over. What the file says must be understood to read it (compression above all) is refused
+//! by name.
 
 use super::cursor::Cursor;
 use crate::error::{Error, fail};
@@ -148,7 +149,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
         ..TriangleMesh::default()
     };
     let mut tally = 0;
-    for (node, place) in reader.placed()? {
+    for (node, place) in reader.places()? {
         let Some(model) = reader.file.nodes[node].mesh else {
             continue;
         };
@@ -197,11 +198,10 @@ fn material(surface: &Surface) -> Material {
     }
 }
 
-/// The description and the numbers.
+/// Splits a file into its description and its numbers.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), Error> {
-    let cut = || Error("this GLB file is cut off".into());
     let mut at = Cursor::new(bytes.get(4..).unwrap_or_default(), false);
-    let mut next = || at.take().map(u32::from_le_bytes).ok_or_else(cut);
+    let mut next = || at.take().map(u32::from_le_bytes).ok_or_else(cut_off);
     let version = next()?;
     if version != 2 {
         return fail(format!(
@@ -215,21 +215,26 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), Error> {
     }
     if length > MAX_JSON {
         return fail(format!(
-            "the description in this GLB has {length} bytes, more than the {MAX_JSON} that are taken"
+            "the description in this GLB has {length} bytes, more than the {MAX_JSON} that are \
+             taken"
         ));
     }
     // Twelve bytes of heading, eight before each chunk.
     let rest = &bytes[20..];
-    let (json, rest) = rest.split_at_checked(length).ok_or_else(cut)?;
+    let (json, rest) = rest.split_at_checked(length).ok_or_else(cut_off)?;
     if rest.len() < 8 {
         return Ok((json, &[]));
     }
     let (heading, numbers) = rest.split_at(8);
     let mut at = Cursor::new(heading, false);
-    let length = at.take().map(u32::from_le_bytes).ok_or_else(cut)? as usize;
-    let numbers = numbers.get(..length).ok_or_else(cut)?;
+    let length = at.take().map(u32::from_le_bytes).ok_or_else(cut_off)? as usize;
+    let numbers = numbers.get(..length).ok_or_else(cut_off)?;
     let is_binary = heading[4..] == *b"BIN\0";
     Ok((json, if is_binary { numbers } else { &[] }))
+}
+
+fn cut_off() -> Error {
+    Error("this GLB file is cut off".into())
 }
 
 fn get<'a, T>(list: &'a [T], i: usize, what: &str) -> Result<&'a T, Error> {
@@ -242,17 +247,21 @@ impl Node {
         if let Some(matrix) = &self.matrix {
             return DAffine3::from_mat4(DMat4::from_cols_array(matrix));
         }
-        let vector = |v: [f32; 3]| DVec3::from(v.map(f64::from));
         let rotation = self.rotation.map_or(DQuat::IDENTITY, |q| {
             let q = DQuat::from_array(q.map(f64::from));
             if q.length() > 0.0 { q.normalize() } else { q }
         });
         DAffine3::from_scale_rotation_translation(
-            self.scale.map_or(DVec3::ONE, vector),
+            self.scale.map_or(DVec3::ONE, double),
             rotation,
-            self.translation.map_or(DVec3::ZERO, vector),
+            self.translation.map_or(DVec3::ZERO, double),
         )
     }
+}
+
+/// Converts a vector to double precision.
+fn double(v: [f32; 3]) -> DVec3 {
+    DVec3::from(v.map(f64::from))
 }
 
 struct Reader<'a> {
@@ -262,7 +271,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     /// The nodes of the scene, with the map from each to the world.
-    fn placed(&self) -> Result<Vec<(usize, DAffine3)>, Error> {
+    fn places(&self) -> Result<Vec<(usize, DAffine3)>, Error> {
         let nodes = &self.file.nodes;
         let mut to_do: Vec<(usize, DAffine3)> = if self.file.scenes.is_empty() {
             // Without a scene, all nodes that are no other's child.
@@ -429,12 +438,13 @@ impl Reader<'_> {
             ));
         }
         let (bytes, count, stride) = self.values(i, 12)?;
-        let vector = |k: usize| {
-            let mut at = Cursor::new(&bytes[k * stride..], false);
-            let mut next = || at.f32().unwrap_or(f64::NAN);
-            DVec3::new(next(), next(), next())
-        };
-        Ok((0..count).map(vector).collect())
+        Ok((0..count)
+            .map(|k| {
+                let mut at = Cursor::new(&bytes[k * stride..], false);
+                let mut next = || at.f32().unwrap_or(f64::NAN);
+                DVec3::new(next(), next(), next())
+            })
+            .collect())
     }
 
     /// Linear colours, as floats or as shares of the largest whole number.
@@ -462,8 +472,9 @@ impl Reader<'_> {
             2 => f32::from(u16::from_le_bytes([bytes[at], bytes[at + 1]])) / 65_535.0,
             _ => f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]),
         };
-        let color = |k: usize| [0, 1, 2].map(|c| channel(k * stride + c * size));
-        Ok((0..count).map(color).collect())
+        Ok((0..count)
+            .map(|k| [0, 1, 2].map(|c| channel(k * stride + c * size)))
+            .collect())
     }
 
     fn indices(&self, i: usize) -> Result<Vec<u32>, Error> {
@@ -479,11 +490,12 @@ impl Reader<'_> {
             }
         };
         let (bytes, count, stride) = self.values(i, size)?;
-        let index = |k: usize| {
-            let mut word = [0; 4];
-            word[..size].copy_from_slice(&bytes[k * stride..k * stride + size]);
-            u32::from_le_bytes(word)
-        };
-        Ok((0..count).map(index).collect())
+        Ok((0..count)
+            .map(|k| {
+                let mut word = [0; 4];
+                word[..size].copy_from_slice(&bytes[k * stride..k * stride + size]);
+                u32::from_le_bytes(word)
+            })
+            .collect())
     }
 }

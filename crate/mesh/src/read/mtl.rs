@@ -5,8 +5,8 @@ use crate::error::{Error, fail};
 use crate::limits::{MAX_BYTES, MAX_MATERIALS};
 use crate::triangle_mesh::{Material, TriangleMesh};
 
-/// Reads the materials of an MTL file: `newmtl`, `Kd` (taken for sRGB), `Pr` or else `Ns`. Give them to
-/// a mesh with [`TriangleMesh::set_materials`].
+/// Reads the materials of an MTL file: `newmtl`, `Kd` (taken for sRGB), `Pr` or else `Ns`. Give
+/// them to a mesh with [`TriangleMesh::set_materials`].
 ///
 /// # Errors
 /// If the file is over one of the [`crate::limits`], or numbers are missing.

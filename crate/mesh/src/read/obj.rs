@@ -1,5 +1,5 @@
-//! OBJ: lines of text, of which `v` (with or without a colour), `vn`, `f`, and the names in `o`, `g` and
-//! `usemtl` are read.
+//! OBJ: lines of text, of which `v` (with or without a colour), `vn`, `f`, and the names in `o`,
+//! `g` and `usemtl` are read.
 
 use crate::color::decode;
 use crate::error::{Error, fail};
@@ -8,7 +8,7 @@ use crate::triangle_mesh::{Group, Material, TriangleMesh};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// A corner of a face: its position and its normal, counted from 0.
+/// Corner of a face: its position and its normal, counted from 0.
 type Corner = (u32, Option<u32>);
 
 #[derive(Default)]
@@ -16,7 +16,7 @@ struct Reader {
     mesh: TriangleMesh,
     positions: Vec<DVec3>,
     normals: Vec<DVec3>,
-    /// Which corner of the mesh a position with a normal became.
+    /// Corner of the mesh that each position with a normal has become.
     corners: HashMap<Corner, u32>,
     /// The normal of each corner of the mesh.
     chosen: Vec<Option<u32>>,
@@ -62,8 +62,11 @@ impl Reader {
             Some("v") => {
                 let mut numbers = words.clone();
                 triple(&mut self.positions, words)?;
-                let far = |p: &DVec3| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE;
-                if self.positions.last().is_some_and(far) {
+                if self
+                    .positions
+                    .last()
+                    .is_some_and(|p| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE)
+                {
                     return fail(format!(
                         "numbers within ±{MAX_COORDINATE:e} are needed here"
                     ));
@@ -140,7 +143,7 @@ impl Reader {
         Ok(())
     }
 
-    /// A corner written as `position`, `position/texture`, `position//normal` or
+    /// Reads a corner written as `position`, `position/texture`, `position//normal` or
     /// `position/texture/normal`.
     fn corner(&mut self, word: &str) -> Result<u32, Error> {
         let mut parts = word.split('/');
@@ -166,14 +169,19 @@ impl Reader {
             .map(|chosen| chosen.map(|i| self.normals[i as usize]))
             .collect();
         if !self.colors.is_empty() {
-            let color = |i: &u32| self.colors.get(*i as usize).copied().unwrap_or([1.0; 3]);
-            self.mesh.colors = Some(self.sources.iter().map(color).collect());
+            self.mesh.colors = Some(
+                self.sources
+                    .iter()
+                    .map(|i| self.colors.get(*i as usize).copied().unwrap_or([1.0; 3]))
+                    .collect(),
+            );
         }
         Ok(self.mesh)
     }
 }
 
-/// A place in a list, from 0, of a number that counts from 1, or from the end if it is negative.
+/// Returns a place in a list, from 0, of a number that counts from 1, or from the end if it is
+/// negative.
 fn index(word: &str, count: usize, list: &str) -> Result<u32, Error> {
     let place = match word.parse::<i64>() {
         Ok(n) if n > 0 => Some(n - 1),

@@ -1,8 +1,8 @@
 //! PLY: a heading that lists elements with their properties, then rows of values, as text or as
 //! numbers.
 //!
-//! Of the element `vertex` the properties x, y, z, nx, ny, nz and red, green, blue are read, of `face` the list
-//! `vertex_indices` (or `vertex_index`).
+//! Of the element `vertex` the properties x, y, z, nx, ny, nz and red, green, blue are read, of
+//! `face` the list `vertex_indices` (or `vertex_index`).
 
 use super::cursor::Cursor;
 use crate::color::decode;
@@ -27,7 +27,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// A colour's channel, 0 … 1: whole numbers count to the largest of their type.
+    /// Returns a colour's channel, 0 … 1: whole numbers count to the largest of their type.
     fn share(self, value: f64) -> f64 {
         value
             / match self {
@@ -55,7 +55,7 @@ struct Element<'a> {
     properties: Vec<Property<'a>>,
 }
 
-/// Where values come from.
+/// Source of a file's values.
 enum Source<'a> {
     Text(core::str::SplitAsciiWhitespace<'a>),
     Numbers(Cursor<'a>),

@@ -1,7 +1,7 @@
 //! 3MF: a zip archive with a description in XML of objects, and of where they are.
 //!
-//! Triangles of all objects that are to be built are read, each where its item and its components put
-//! it, in millimetres; of the materials base materials and groups of colours. Textures, slices,
+//! Triangles of all objects that are to be built are read, each where its item and its components
+//! put it, in millimetres; of the materials base materials and groups of colours. Textures, slices,
 //! beams and support are passed over.
 
 use super::xml::{Tag, Tags};
@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, HashMap};
 /// Members of an archive that are looked at.
 const MAX_MEMBERS: usize = 10_000;
 
-/// A property of a corner: a resource's number and an index into it.
+/// Property of a corner: a resource's number and an index into it.
 type Property = (u32, u32);
 
 #[derive(Default)]
@@ -47,7 +47,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
         return fail("this zip archive has no 3MF model");
     };
     let text = String::from_utf8_lossy(&text);
-    Model::read(&text)?.placed()
+    Model::read(&text)?.mesh()
 }
 
 /// The content of a member; `None` if there is none of this name.
@@ -108,21 +108,21 @@ fn transform(tag: &Tag<'_>) -> Result<DAffine3, Error> {
     let Ok(m) = <[f64; 12]>::try_from(numbers) else {
         return fail("a transform in this 3MF file has not twelve numbers");
     };
-    let row = |i: usize| DVec3::new(m[3 * i], m[3 * i + 1], m[3 * i + 2]);
+    let [x, y, z, shift] = [0, 3, 6, 9].map(|i| DVec3::new(m[i], m[i + 1], m[i + 2]));
     Ok(DAffine3::from_mat3_translation(
-        DMat3::from_cols(row(0), row(1), row(2)),
-        row(3),
+        DMat3::from_cols(x, y, z),
+        shift,
     ))
 }
 
 /// `#RRGGBB` or `#RRGGBBAA`, of which the opacity is passed over.
 fn color(tag: &Tag<'_>, name: &str) -> Result<[f32; 3], Error> {
     let text = tag.get(name).unwrap_or_default();
-    let channel = |i: usize| {
-        let digits = text.strip_prefix('#')?.get(2 * i..2 * i + 2)?;
+    let channels = [0, 2, 4].map(|i| {
+        let digits = text.strip_prefix('#')?.get(i..i + 2)?;
         u8::from_str_radix(digits, 16).ok()
-    };
-    match [channel(0), channel(1), channel(2)] {
+    });
+    match channels {
         [Some(r), Some(g), Some(b)] => Ok([r, g, b].map(linear_from_srgb)),
         _ => fail(format!(
             "`{name}` of a `{}` in this 3MF file is no colour",
@@ -246,7 +246,7 @@ impl Model {
     }
 
     /// The mesh of all items.
-    fn placed(&self) -> Result<TriangleMesh, Error> {
+    fn mesh(&self) -> Result<TriangleMesh, Error> {
         let has_colors = self.objects.values().any(|object| {
             let properties = object.triangles.iter().flat_map(|(_, p)| p).flatten();
             properties
@@ -291,7 +291,7 @@ impl Model {
             if let Some((own, since)) = group
                 && own != material
             {
-                mesh.groups.push(named(object, own, since..start));
+                mesh.groups.push(new_group(object, own, since..start));
                 group = None;
             }
             group = group.or(Some((material, start)));
@@ -322,7 +322,7 @@ impl Model {
         }
         if let Some((own, since)) = group {
             mesh.groups
-                .push(named(object, own, since..mesh.triangles.len() as u32));
+                .push(new_group(object, own, since..mesh.triangles.len() as u32));
         }
         if mesh.groups.len() > MAX_MATERIALS {
             return fail(format!(
@@ -340,7 +340,11 @@ impl Model {
     }
 }
 
-fn named(object: &Object, material: Option<&Material>, triangles: core::ops::Range<u32>) -> Group {
+fn new_group(
+    object: &Object,
+    material: Option<&Material>,
+    triangles: core::ops::Range<u32>,
+) -> Group {
     Group {
         name: object.name.clone(),
         material: material.cloned(),

@@ -3,7 +3,7 @@
 use crate::error::{Error, fail};
 use std::borrow::Cow;
 
-/// A tag.
+/// Tag.
 pub(super) struct Tag<'a> {
     /// Name without the namespace's prefix.
     pub(super) name: &'a str,
@@ -45,7 +45,6 @@ impl<'a> Tags<'a> {
     /// # Errors
     /// If a tag or a comment does not end.
     pub(super) fn next(&mut self) -> Result<Option<Tag<'a>>, Error> {
-        let unended = || Error("a tag in this 3MF file does not end".into());
         loop {
             let Some((_, rest)) = self.rest.split_once('<') else {
                 return Ok(None);
@@ -54,7 +53,7 @@ impl<'a> Tags<'a> {
                 .iter()
                 .find_map(|(start, end)| Some((rest.strip_prefix(start)?, *end)));
             if let Some((inside, end)) = skipped {
-                let (_, after) = inside.split_once(end).ok_or_else(unended)?;
+                let (_, after) = inside.split_once(end).ok_or_else(no_end)?;
                 self.rest = after;
                 continue;
             }
@@ -62,7 +61,7 @@ impl<'a> Tags<'a> {
             if rest.starts_with('!') {
                 return fail("this 3MF file has a document type, which is not read");
             }
-            let end = tag_end(rest).ok_or_else(unended)?;
+            let end = tag_end(rest).ok_or_else(no_end)?;
             let inside = &rest[..end];
             self.rest = &rest[end + 1..];
             let (inside, is_close) = match inside.strip_prefix('/') {
@@ -85,7 +84,11 @@ impl<'a> Tags<'a> {
     }
 }
 
-/// Where a tag ends: the first `>` outside quotes.
+fn no_end() -> Error {
+    Error("a tag in this 3MF file does not end".into())
+}
+
+/// Returns the index of the end of a tag: the first `>` outside quotes.
 fn tag_end(text: &str) -> Option<usize> {
     let mut quote = None;
     for (i, byte) in text.bytes().enumerate() {

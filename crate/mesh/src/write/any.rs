@@ -9,9 +9,9 @@ impl Export {
     /// The files of a format: one, or two for OBJ (the second has the materials, if there are any).
     ///
     /// # Errors
-    /// If there are no triangles, the parts are not sound (an index out of range, a list of the wrong
-    /// length, a position that is not finite as a 32-bit number of millimetres), or they are over one
-    /// of the [`crate::limits`].
+    /// If there are no triangles, the parts are not sound (an index out of range, a list of the
+    /// wrong length, a position that is not finite as a 32-bit number of millimetres), or they are
+    /// over one of the [`crate::limits`].
     pub fn write(&self, format: Format) -> Result<Vec<ExportedFile>, Error> {
         let parts = prepare(self)?;
         let file = |extension: &str, bytes| ExportedFile {

@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 
 /// Meshes to be written to a file, with their size.
 ///
-/// All formats but GLB are written in millimetres. GLB's unit is the metre: its positions are the same
-/// numbers, below a node that scales them by 0.001. So every format has the same coordinates, rounded
-/// to 32 bits once, and what was proved of [`Export::rounded`] holds for each. (OBJ and 3MF have the
-/// shortest decimals that are these 32-bit numbers; a reader that takes them for 64-bit ones is off by
-/// up to 6e-8 of a coordinate.)
+/// All formats but GLB are written in millimetres. GLB's unit is the metre: its positions are the
+/// same numbers, below a node that scales them by 0.001. So every format has the same coordinates,
+/// rounded to 32 bits once, and what was proved of [`Export::round`] holds for each. (OBJ and 3MF
+/// have the shortest decimals that are these 32-bit numbers; a reader that takes them for 64-bit
+/// ones is off by up to 6e-8 of a coordinate.)
 ///
 /// Colours are linear in GLB, and sRGB in PLY, OBJ, MTL and 3MF. STL has no colours. Vertex colours
-/// replace the colours of materials: in GLB, where both are multiplied, the materials of a mesh with
-/// vertex colours are white.
+/// replace the colours of materials: in GLB, where both are multiplied, the materials of a mesh
+/// with vertex colours are white.
 ///
 /// ```
 /// use glam::DVec3;
@@ -45,7 +45,7 @@ pub struct Export {
     pub millimetres: f64,
 }
 
-/// A named mesh of an [`Export`].
+/// Named mesh of an [`Export`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
     /// Name; may be empty.
@@ -54,7 +54,7 @@ pub struct Part {
     pub mesh: TriangleMesh,
 }
 
-/// A file format that can be written.
+/// File format that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Format {
     /// Binary glTF: parts, groups, normals, colours, materials; metres.
@@ -69,7 +69,7 @@ pub enum Format {
     Ply,
 }
 
-/// A file as bytes.
+/// File as bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExportedFile {
     /// Name with ending.
@@ -79,7 +79,7 @@ pub struct ExportedFile {
 }
 
 impl Format {
-    /// All formats.
+    /// The formats that can be written.
     pub const ALL: [Self; 5] = [Self::Glb, Self::ThreeMf, Self::Stl, Self::Obj, Self::Ply];
 
     /// The ending of file names, without the dot.

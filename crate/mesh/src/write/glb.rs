@@ -14,7 +14,7 @@ const U16: u32 = 5123;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
-/// The description's lists, and the numbers.
+/// Lists of the description, and the numbers that they point to.
 #[derive(Default)]
 struct Builder {
     numbers: Vec<u8>,
@@ -23,7 +23,7 @@ struct Builder {
 }
 
 impl Builder {
-    /// Ends a view of the numbers from a start on.
+    /// Adds a buffer view of the numbers from a start to the present end, and returns its index.
     fn view(&mut self, start: usize, target: u32) -> usize {
         let length = self.numbers.len() - start;
         self.views.push(json!({
@@ -37,7 +37,8 @@ impl Builder {
         self.accessors.len() - 1
     }
 
-    /// A list of vectors, and the accessor of it; with its box for positions, where it is demanded.
+    /// Adds a list of vectors, and returns the index of its accessor; with a box for positions,
+    /// where it is demanded.
     fn vectors(&mut self, vectors: &[[f32; 3]], with_box: bool) -> usize {
         let start = self.numbers.len();
         put_floats(&mut self.numbers, vectors.as_flattened());
@@ -46,11 +47,11 @@ impl Builder {
             "bufferView": view, "componentType": F32, "count": vectors.len(), "type": "VEC3"
         });
         if with_box {
-            let fold = |k: usize, pick: fn(f32, f32) -> f32| {
-                vectors.iter().map(|v| v[k]).reduce(pick).unwrap_or(0.0)
-            };
-            accessor["min"] = json!([0, 1, 2].map(|k| fold(k, f32::min)));
-            accessor["max"] = json!([0, 1, 2].map(|k| fold(k, f32::max)));
+            let ends = [f32::min, f32::max].map(|pick: fn(f32, f32) -> f32| {
+                [0, 1, 2].map(|k| vectors.iter().map(|v| v[k]).reduce(pick).unwrap_or(0.0))
+            });
+            accessor["min"] = json!(ends[0]);
+            accessor["max"] = json!(ends[1]);
         }
         self.accessor(accessor)
     }
@@ -126,7 +127,7 @@ impl Builder {
 }
 
 impl Builder {
-    /// Numbers that are no vertices, and the accessor of them.
+    /// Adds numbers that are no vertices, and returns the index of their accessor.
     fn numbers(&mut self, numbers: &[f32], count: usize, kind: &str) -> usize {
         let start = self.numbers.len();
         put_floats(&mut self.numbers, numbers);
@@ -143,7 +144,8 @@ impl Builder {
         self.accessor(accessor)
     }
 
-    /// The nodes of the joints, the first of which has the number `first`; the skin, and the animation if there are two frames or more.
+    /// The nodes of the joints, the first of which has the number `first`; the skin, and the
+    /// animation if there are two frames or more.
     fn rig(
         &mut self,
         rig: &Rig,
@@ -216,9 +218,10 @@ pub(super) fn write(
     rig: Option<&Rig>,
 ) -> Result<Vec<u8>, Error> {
     let materials = materials(export);
-    // Each as it is, and white for meshes with vertex colours, which multiply it; only those in use.
+    // Each as it is, and white for meshes with vertex colours, which multiply it; only those in
+    // use.
     let mut described = Vec::new();
-    let mut list = |is_white: bool| -> Vec<usize> {
+    let [plain, white] = [false, true].map(|is_white| -> Vec<usize> {
         let is_used = parts.iter().any(|p| p.mesh.colors.is_some() == is_white);
         let mut places = Vec::new();
         for material in materials.iter().filter(|_| is_used) {
@@ -231,14 +234,15 @@ pub(super) fn write(
             } }));
         }
         places
-    };
-    let [plain, white] = [list(false), list(true)];
+    });
     let mut builder = Builder::default();
-    let shares = |i: usize| rig.map(|rig| &rig.shares[i][..]);
     let meshes: Vec<Value> = parts
         .iter()
         .enumerate()
-        .map(|(i, part)| builder.part(part, shares(i), &plain, &white))
+        .map(|(i, part)| {
+            let shares = rig.map(|rig| &rig.shares[i][..]);
+            builder.part(part, shares, &plain, &white)
+        })
         .collect();
     let scale = [0.001, 0.001, 0.001];
     let mut nodes: Vec<Value> = parts

@@ -100,12 +100,14 @@ fn unique_names(materials: &[&Material]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (i, material) in materials.iter().enumerate() {
         let plain = line_name(&material.name, "material");
-        let is_taken = |name: &String| name == "default" || names.contains(name);
+
         let numbered = (0..=materials.len()).map(|n| match n {
             0 => plain.clone(),
             n => format!("{plain}.{n}"),
         });
-        let free = numbered.into_iter().find(|name| !is_taken(name));
+        let free = numbered
+            .into_iter()
+            .find(|name| name != "default" && !names.contains(name));
         names.push(free.unwrap_or_else(|| format!("{plain}..{i}")));
     }
     names

@@ -7,24 +7,35 @@ use crate::triangle_mesh::{Material, TriangleMesh};
 use core::ops::Range;
 use glam::DVec3;
 
-/// A part whose indices are in range and whose lists are as long as its positions.
+/// Part whose indices are in range and whose lists are as long as its positions.
 pub(super) struct Prepared<'a> {
     pub(super) name: &'a str,
     pub(super) mesh: &'a TriangleMesh,
     /// Millimetres.
     pub(super) positions: Vec<[f32; 3]>,
-    /// Of length 1.
+    /// Normals of length 1.
     pub(super) normals: Option<Vec<[f32; 3]>>,
-    /// All triangles, in ranges of one material.
+    /// Ranges of triangles of one material, which hold all triangles.
     pub(super) segments: Vec<Segment<'a>>,
 }
 
 /// Triangles of one material.
 pub(super) struct Segment<'a> {
     pub(super) name: &'a str,
-    /// Its place in [`materials`].
+    /// Index into [`materials`].
     pub(super) material: Option<usize>,
     pub(super) triangles: Range<usize>,
+}
+
+impl Segment<'_> {
+    /// Returns triangles without a name and a material.
+    fn bare(triangles: Range<usize>) -> Self {
+        Self {
+            name: "",
+            material: None,
+            triangles,
+        }
+    }
 }
 
 impl Prepared<'_> {
@@ -52,22 +63,24 @@ impl Prepared<'_> {
 }
 
 impl Export {
-    /// The meshes as every format has them: in millimetres, rounded to 32 bits. What shall be proved of
-    /// a file (that nothing intersects, say) is to be proved of these.
+    /// The meshes as every format has them: in millimetres, rounded to 32 bits. What shall be
+    /// proved of a file (that nothing intersects, say) is to be proved of these.
     ///
     /// # Errors
     /// As [`Export::write`].
-    pub fn rounded(&self) -> Result<Vec<TriangleMesh>, Error> {
+    pub fn round(&self) -> Result<Vec<TriangleMesh>, Error> {
         let parts = prepare(self)?;
-        let mesh = |part: &Prepared<'_>| TriangleMesh {
-            positions: part
-                .positions
-                .iter()
-                .map(|p| DVec3::from(p.map(f64::from)))
-                .collect(),
-            ..part.mesh.clone()
-        };
-        Ok(parts.iter().map(mesh).collect())
+        Ok(parts
+            .iter()
+            .map(|part| TriangleMesh {
+                positions: part
+                    .positions
+                    .iter()
+                    .map(|p| DVec3::from(p.map(f64::from)))
+                    .collect(),
+                ..part.mesh.clone()
+            })
+            .collect())
     }
 }
 
@@ -92,8 +105,8 @@ pub(super) fn prepare(export: &Export) -> Result<Vec<Prepared<'_>>, Error> {
     }
     if count > MAX_EXPORT_TRIANGLES {
         return fail(format!(
-            "{count} triangles are more than the {MAX_EXPORT_TRIANGLES} that a file may have; choose a \
-             larger tolerance or simplify the mesh"
+            "{count} triangles are more than the {MAX_EXPORT_TRIANGLES} that a file may have; \
+             choose a larger tolerance or simplify the mesh"
         ));
     }
     let groups: usize = export.parts.iter().map(|p| p.mesh.groups.len() + 1).sum();
@@ -128,10 +141,11 @@ fn prepare_part<'a>(
     if count > 3 * MAX_EXPORT_TRIANGLES {
         return wrong("has more vertices than triangles can use");
     }
-    let is_whole = |length: Option<usize>| length.is_none_or(|length| length == count);
-    if !is_whole(mesh.normals.as_ref().map(Vec::len))
-        || !is_whole(mesh.colors.as_ref().map(Vec::len))
-    {
+    let lengths = [
+        mesh.normals.as_ref().map(Vec::len),
+        mesh.colors.as_ref().map(Vec::len),
+    ];
+    if lengths.into_iter().flatten().any(|length| length != count) {
         return wrong("has not as many normals or colours as vertices");
     }
     let positions: Vec<[f32; 3]> = mesh
@@ -144,18 +158,13 @@ fn prepare_part<'a>(
     }
     let mut segments = Vec::new();
     let mut end = 0;
-    let bare = |triangles: Range<usize>| Segment {
-        name: "",
-        material: None,
-        triangles,
-    };
     for group in &mesh.groups {
         let range = group.triangles.start as usize..group.triangles.end as usize;
         if range.start < end || range.end < range.start || range.end > mesh.triangles.len() {
             return wrong("has groups that overlap or go beyond its triangles");
         }
         if range.start > end {
-            segments.push(bare(end..range.start));
+            segments.push(Segment::bare(end..range.start));
         }
         end = range.end;
         let own = group.material.as_ref();
@@ -171,7 +180,7 @@ fn prepare_part<'a>(
         }
     }
     if end < mesh.triangles.len() {
-        segments.push(bare(end..mesh.triangles.len()));
+        segments.push(Segment::bare(end..mesh.triangles.len()));
     }
     Ok(Prepared {
         name: &part.name,
@@ -182,9 +191,12 @@ fn prepare_part<'a>(
     })
 }
 
+fn is_missing(normal: &DVec3) -> bool {
+    normal.normalize_or_zero() == DVec3::ZERO
+}
+
 /// Normals of length 1: where there is none, the mean of the triangles' around, by area.
 fn unit_normals(mesh: &TriangleMesh, normals: &[DVec3]) -> Vec<[f32; 3]> {
-    let is_missing = |n: &DVec3| n.normalize_or_zero() == DVec3::ZERO;
     let mut own = vec![DVec3::ZERO; normals.len()];
     if normals.iter().any(is_missing) {
         for (i, triangle) in mesh.triangles.iter().enumerate() {
@@ -194,11 +206,14 @@ fn unit_normals(mesh: &TriangleMesh, normals: &[DVec3]) -> Vec<[f32; 3]> {
             }
         }
     }
-    let unit = |(given, own): (&DVec3, &DVec3)| {
-        let normal = if is_missing(given) { own } else { given };
-        normal.normalize_or(DVec3::Z).to_array().map(|x| x as f32)
-    };
-    normals.iter().zip(&own).map(unit).collect()
+    normals
+        .iter()
+        .zip(&own)
+        .map(|(given, own)| {
+            let normal = if is_missing(given) { own } else { given };
+            normal.normalize_or(DVec3::Z).to_array().map(|x| x as f32)
+        })
+        .collect()
 }
 
 /// The means of the normals of the triangles around each vertex, by area.
@@ -206,7 +221,8 @@ pub(super) fn mean_normals(mesh: &TriangleMesh) -> Vec<[f32; 3]> {
     unit_normals(mesh, &vec![DVec3::ZERO; mesh.positions.len()])
 }
 
-/// A name on one line, without what would end it in a text format; `other` if nothing is left.
+/// Returns a name on one line, without what would end it in a text format; `other` if nothing is
+/// left.
 pub(super) fn line_name(name: &str, other: &str) -> String {
     let kept: String = name
         .chars()

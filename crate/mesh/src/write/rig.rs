@@ -11,33 +11,33 @@ const MOST_JOINTS: usize = 4096;
 /// The most poses of all joints in all frames.
 const MOST_POSES: usize = 4_000_000;
 
-/// A joint's number and its weight for a vertex.
+/// Joint's number and its weight for a vertex.
 pub type Share = (u16, f32);
 
-/// A joint. At rest it is not turned.
+/// Joint. At rest it is not turned.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its name; may be empty.
+    /// Name; may be empty.
     pub name: String,
     /// The joint that it hangs on, one of those before it; `None` for a root.
     pub parent: Option<usize>,
-    /// Where it is at rest, in units of the mesh.
+    /// Place at rest, in units of the mesh.
     pub place: DVec3,
 }
 
-/// Where a joint is, and how it is turned from its rest; both in the coordinates of the mesh.
+/// Place of a joint, and its rotation from rest; both in the coordinates of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Its place.
+    /// Place of the joint.
     pub place: DVec3,
-    /// Its turn, a unit quaternion.
+    /// Rotation from rest, a unit quaternion.
     pub turn: DQuat,
 }
 
 /// Joints, the vertices that they take along, and how they move.
 ///
-/// A vertex v goes to `Σ wᵢ (pᵢ + Rᵢ(v − rᵢ))`, where joint i has the weight wᵢ, is at rest at rᵢ, and in the frame at pᵢ with the turn
-/// Rᵢ.
+/// A vertex v goes to `Σ wᵢ (pᵢ + Rᵢ(v − rᵢ))`, where joint i has the weight wᵢ, is at rest at rᵢ,
+/// and in the frame at pᵢ with the turn Rᵢ.
 ///
 /// ```
 /// use glam::{DQuat, DVec3};
@@ -65,11 +65,12 @@ pub struct Pose {
 pub struct Rig {
     /// The joints, parents first.
     pub joints: Vec<Joint>,
-    /// For each part of the export that has triangles, and each of its vertices, the joints that move it. Weights add up to 1.
+    /// Shares of each vertex of each part of the export that has triangles: the joints that
+    /// move it. Weights add up to 1.
     pub shares: Vec<Vec<[Share; 4]>>,
     /// The poses of all joints in each frame; no animation is written of fewer than two frames.
     pub frames: Vec<Vec<Pose>>,
-    /// Frames of a second.
+    /// Frames per second.
     pub rate: f64,
 }
 
@@ -78,37 +79,39 @@ impl Rig {
     #[must_use]
     pub fn rest(&self) -> Vec<Pose> {
         let joints = self.joints.iter();
-        let pose = |joint: &Joint| Pose {
-            place: joint.place,
-            turn: DQuat::IDENTITY,
-        };
-        joints.map(pose).collect()
+        joints
+            .map(|joint| Pose {
+                place: joint.place,
+                turn: DQuat::IDENTITY,
+            })
+            .collect()
     }
 
-    /// Where a joint's skin takes a vertex.
+    /// Returns the place to which the joints take a vertex: `Σ wᵢ (pᵢ + Rᵢ(v − rᵢ))`.
     #[must_use]
-    pub fn skinned(&self, vertex: DVec3, shares: &[Share; 4], frame: &[Pose]) -> DVec3 {
+    pub fn skin(&self, vertex: DVec3, shares: &[Share; 4], frame: &[Pose]) -> DVec3 {
         shares.iter().fold(DVec3::ZERO, |sum, &(joint, weight)| {
             let (pose, rest) = (&frame[joint as usize], self.joints[joint as usize].place);
             sum + (pose.place + pose.turn * (vertex - rest)) * f64::from(weight)
         })
     }
 
-    /// For each joint its translation, millimetres, and rotation from its parent's coordinates.
+    /// Computes each joint's translation, millimetres, and rotation from its parent's coordinates.
     pub(super) fn local(&self, frame: &[Pose], millimetres: f64) -> Vec<([f32; 3], [f32; 4])> {
         let joints = self.joints.iter().zip(frame);
-        let local = |(joint, pose): (&Joint, &Pose)| {
-            let (place, turn) = match joint.parent {
-                Some(parent) => {
-                    let back = frame[parent].turn.conjugate();
-                    (back * (pose.place - frame[parent].place), back * pose.turn)
-                }
-                None => (pose.place, pose.turn),
-            };
-            let place = (place * millimetres).to_array().map(|x| x as f32);
-            (place, turn.to_array().map(|x| x as f32))
-        };
-        joints.map(local).collect()
+        joints
+            .map(|(joint, pose)| {
+                let (place, turn) = match joint.parent {
+                    Some(parent) => {
+                        let back = frame[parent].turn.conjugate();
+                        (back * (pose.place - frame[parent].place), back * pose.turn)
+                    }
+                    None => (pose.place, pose.turn),
+                };
+                let place = (place * millimetres).to_array().map(|x| x as f32);
+                (place, turn.to_array().map(|x| x as f32))
+            })
+            .collect()
     }
 
     fn check(&self, vertices: &[usize]) -> Result<(), Error> {
@@ -118,8 +121,12 @@ impl Rig {
                 "a rig has 1 to {MOST_JOINTS} joints, this one has {joints}"
             ));
         }
-        let is_before = |(i, joint): (usize, &Joint)| joint.parent.is_none_or(|p| p < i);
-        if !self.joints.iter().enumerate().all(is_before) {
+        if !self
+            .joints
+            .iter()
+            .enumerate()
+            .all(|(i, joint)| joint.parent.is_none_or(|p| p < i))
+        {
             return fail("a joint stands before the one that it hangs on");
         }
         if self.frames.len().saturating_mul(joints) > MOST_POSES {
@@ -129,16 +136,14 @@ impl Rig {
         if !numbers.eq(vertices.iter().copied()) {
             return fail("a rig has shares for as many vertices as there are");
         }
-        let sound = |share: &Share| (share.0 as usize) < joints && (0.0..=1.0).contains(&share.1);
-        let shares = self.shares.iter().flatten();
-        if !shares.flatten().all(sound) {
+        let mut shares = self.shares.iter().flatten().flatten();
+        if !shares.all(|(joint, weight)| (*joint as usize) < joints && (0.0..=1.0).contains(weight))
+        {
             return fail("a rig has a share of no joint, or out of range");
         }
-        let sound = |pose: &Pose| pose.place.is_finite() && pose.turn.is_normalized();
-        let frames = self.frames.iter();
-        if !frames
-            .clone()
-            .all(|frame| frame.len() == joints && frame.iter().all(sound))
+        let mut poses = self.frames.iter().flatten();
+        if self.frames.iter().any(|frame| frame.len() != joints)
+            || !poses.all(|pose| pose.place.is_finite() && pose.turn.is_normalized())
         {
             return fail("a rig has a frame without a sound pose for each joint");
         }
@@ -151,7 +156,8 @@ impl Rig {
 }
 
 impl Export {
-    /// A GLB file of the meshes with joints, weights and, if there are two frames or more, an animation.
+    /// Returns a GLB file of the meshes with joints, weights and, if there are two frames or more,
+    /// an animation.
     ///
     /// # Errors
     /// As [`Export::write`], and if the rig does not fit the meshes.

@@ -1,24 +1,27 @@
-//! Normals of a mesh as viewers shade it: those that it has, else those of its triangles, smooth where they meet at a small angle.
+//! Normals of a mesh as viewers shade it: those that it has, else those of its triangles, smooth
+//! where they meet at a small angle.
 
 use crate::triangle_mesh::TriangleMesh;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Cosine of the largest angle between the normals of two triangles that are shaded as one surface: 30°.
+/// Cosine of the largest angle between the normals of two triangles that are shaded as one surface:
+/// 30°.
 const SMOOTH: f64 = 0.866;
 
-/// Vertices of a file. Where triangles meet at an edge that is seen, each side has vertices of its own.
+/// Vertices of a file. Where triangles meet at an edge that is seen, each side has vertices of its
+/// own.
 pub(super) struct Shading {
-    /// For each vertex that of the mesh. All of the mesh's come first, in their order.
+    /// Vertex of the mesh that each vertex stands for. The mesh's own come first, in their order.
     pub(super) origins: Vec<u32>,
-    /// For each vertex the normal, of length 1.
+    /// Normal of each vertex, of length 1.
     pub(super) normals: Vec<[f32; 3]>,
-    /// For each triangle its vertices.
+    /// Vertices of each triangle.
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
 impl Shading {
-    /// Normals of a mesh whose indices are in range.
+    /// Computes the shading of a mesh whose indices are in range.
     pub(super) fn new(mesh: &TriangleMesh) -> Self {
         let count = mesh.positions.len();
         let given = |v: usize| {
@@ -37,13 +40,13 @@ impl Shading {
         let mut all = Self {
             origins: (0..count as u32).collect(),
             normals: (0..count)
-                .map(|v| rounded(given(v).unwrap_or(DVec3::Z)))
+                .map(|v| round(given(v).unwrap_or(DVec3::Z)))
                 .collect(),
             triangles: mesh.triangles.clone(),
         };
         for (v, corners) in around.iter().enumerate() {
             for (i, (surface, normal)) in surfaces(mesh, corners).into_iter().enumerate() {
-                let normal = rounded(normal);
+                let normal = round(normal);
                 let own = if i == 0 {
                     all.normals[v] = normal;
                     v as u32
@@ -61,12 +64,12 @@ impl Shading {
     }
 }
 
-fn rounded(normal: DVec3) -> [f32; 3] {
+fn round(normal: DVec3) -> [f32; 3] {
     normal.to_array().map(|x| x as f32)
 }
 
-/// The corners at a vertex by the smooth surfaces that they are of, each with its normal: the mean of its triangles', by their angles
-/// at the vertex.
+/// The corners at a vertex by the smooth surfaces that they are of, each with its normal: the mean
+/// of its triangles', by their angles at the vertex.
 fn surfaces(mesh: &TriangleMesh, corners: &[(usize, usize)]) -> Vec<(Vec<(usize, usize)>, DVec3)> {
     let normals = corners.iter().map(|(t, _)| {
         let [a, b, c] = mesh.corners(*t);
@@ -118,7 +121,8 @@ fn surfaces(mesh: &TriangleMesh, corners: &[(usize, usize)]) -> Vec<(Vec<(usize,
 mod tests {
     use super::*;
 
-    /// A prism around the z axis with so many sides, from −1 to 1, with lids that are fans around their middle.
+    /// Returns a prism around the z axis with so many sides, from −1 to 1, with lids that are fans
+    /// around their middle.
     fn prism(sides: u32) -> TriangleMesh {
         let mut mesh = TriangleMesh::default();
         for z in [-1.0, 1.0] {
@@ -174,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn given_normals_are_kept_and_missing_ones_found() {
+    fn normals_are_kept_and_missing_ones_found() {
         let mut mesh = prism(24);
         let mut normals = vec![DVec3::ZERO; mesh.positions.len()];
         normals[3] = DVec3::new(2.0, 0.0, 0.0);

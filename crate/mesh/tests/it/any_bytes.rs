@@ -35,7 +35,7 @@ fn check(name: &str, bytes: &[u8]) {
             }
             assert!(end as usize <= mesh.triangles.len());
             // Meshes that are read can be repaired and written.
-            let built = mesh::HalfEdgeMesh::repaired(&mesh::PolygonSoup::from(&mesh)).unwrap();
+            let built = mesh::HalfEdgeMesh::repair(&mesh::PolygonSoup::from(&mesh)).unwrap();
             built.mesh.validate().unwrap();
             let part = mesh::Part {
                 name: name.into(),
@@ -66,7 +66,7 @@ fn check(name: &str, bytes: &[u8]) {
 }
 
 /// The tetrahedron with colours and a material.
-fn written(format: mesh::Format) -> Vec<u8> {
+fn write(format: mesh::Format) -> Vec<u8> {
     let model = tetrahedron();
     let triangles = model
         .triangles
@@ -93,8 +93,9 @@ fn written(format: mesh::Format) -> Vec<u8> {
     export.write(format).unwrap().swap_remove(0).bytes
 }
 
-/// A 3MF file's description, unpacked, in an archive that does not pack it: so that changes reach it.
-fn stored(xml: &[u8]) -> Vec<u8> {
+/// Returns a 3MF file's description, unpacked, in an archive that does not pack it: so that changes
+/// reach it.
+fn store(xml: &[u8]) -> Vec<u8> {
     let description = archive::Member {
         packed: true,
         ..archive::Member::new("3D/3dmodel.model", xml)
@@ -107,7 +108,8 @@ const XML: &str = r##"<?xml version="1.0"?><!-- a > comment --><model unit="inch
 <basematerials id="1"><base name="a &amp; b" displaycolor="#FF8000FF"/></basematerials>
 <m:colorgroup id="2"><m:color color="#102030"/><m:color color='#405060'/></m:colorgroup>
 <object id="3" name="o" pid="1" pindex="0"><mesh><vertices><vertex x="0" y="0" z="0"/>
-<vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/><vertex x="0" y="0" z="1"/></vertices><triangles>
+<vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/><vertex x="0" y="0" z="1"/></vertices>
+<triangles>
 <triangle v1="0" v2="2" v3="1"/><triangle v1="0" v2="1" v3="3" pid="2" p1="0" p2="1" p3="0"/>
 <triangle v1="0" v2="3" v3="2" pid="2" p1="1"/></triangles></mesh></object>
 <object id="4"><components><component objectid="3" transform="-1 0 0 0 1 0 0 0 1 5 0 0"/>
@@ -116,7 +118,7 @@ const XML: &str = r##"<?xml version="1.0"?><!-- a > comment --><model unit="inch
 
 #[test]
 fn a_3mf_description_is_understood() {
-    let mesh = mesh::read("x.3mf", &stored(XML.as_bytes())).unwrap();
+    let mesh = mesh::read("x.3mf", &store(XML.as_bytes())).unwrap();
     assert_eq!(mesh.triangles.len(), 6);
     // The mirrored one comes first; inches.
     let [a, b, c] = mesh.corners(0);
@@ -138,7 +140,7 @@ fn a_3mf_description_is_understood() {
     assert_eq!(of(4, 1), [0x40, 0x50, 0x60].map(mesh::linear_from_srgb));
     assert_eq!(of(5, 2), [0x40, 0x50, 0x60].map(mesh::linear_from_srgb));
     let told = |xml: &str| {
-        mesh::read("x.3mf", &stored(xml.as_bytes()))
+        mesh::read("x.3mf", &store(xml.as_bytes()))
             .unwrap_err()
             .to_string()
     };
@@ -176,9 +178,9 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
         ("x.ply", binary_ply(&model, true)),
         ("x.glb", glb(&model)),
         ("x.xml", XML.as_bytes().to_vec()),
-        ("x.3mf", written(mesh::Format::ThreeMf)),
-        ("x.glb", written(mesh::Format::Glb)),
-        ("x.obj", written(mesh::Format::Obj)),
+        ("x.3mf", write(mesh::Format::ThreeMf)),
+        ("x.glb", write(mesh::Format::Glb)),
+        ("x.obj", write(mesh::Format::Obj)),
         (
             "x.mtl",
             b"newmtl a\nKd 0.5 0.5 0.5\nNs 10\nPr 0.5\n".to_vec(),
@@ -253,14 +255,14 @@ fn mutate(u: &mut Unstructured<'_>, bytes: &mut Vec<u8>) -> Result<()> {
 }
 
 #[test]
-fn changed_files_do_no_harm() {
+fn changes_of_files_do_no_harm() {
     let samples = samples();
     trials(|u| {
         let (name, bytes) = u.choose(&samples)?;
         let mut bytes = bytes.clone();
         mutate(u, &mut bytes)?;
         if *name == "x.xml" {
-            bytes = stored(&bytes);
+            bytes = store(&bytes);
         }
         let name = if *name == "x.xml" { "x.3mf" } else { *name };
         check(name, &bytes);

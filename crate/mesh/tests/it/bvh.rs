@@ -134,8 +134,7 @@ fn rays_miss_no_box_and_come_front_to_back() {
             // Points along the ray, exactly where that can be.
             for (i, bounds) in (0..).zip(&boxes) {
                 let steps = (0..=60).map(|s| origin + direction * (f64::from(s) / 20.0));
-                let inside = |p: DVec3| bounds.distance_squared(p) == 0.0;
-                if steps.into_iter().any(inside) {
+                if steps.into_iter().any(|p| bounds.distance_squared(p) == 0.0) {
                     assert!(found.binary_search(&i).is_ok(), "{i} {bounds:?} {ray:?}");
                 }
             }

@@ -23,13 +23,17 @@ fn exact(r: u8, g: u8, b: u8) -> [f32; 3] {
     [r, g, b].map(mesh::linear_from_srgb)
 }
 
-/// A sphere with vertex colours and normals, and a torus of two materials.
+/// Returns a sphere with vertex colours and normals, and a torus of two materials.
 fn export() -> Export {
     let mut ball = sphere(4);
     ball.normals = Some(ball.positions.clone());
     let level = |x: f64| ((x * 0.5 + 0.5) * 255.0) as u8;
-    let color = |p: &DVec3| exact(level(p.x), level(p.y), level(p.z));
-    ball.colors = Some(ball.positions.iter().map(color).collect());
+    ball.colors = Some(
+        ball.positions
+            .iter()
+            .map(|p| exact(level(p.x), level(p.y), level(p.z)))
+            .collect(),
+    );
     let mut ring = torus(8, 6);
     ring.positions.iter_mut().for_each(|p| *p += DVec3::Z * 3.0);
     ring.normals = Some(vec![DVec3::Z * 2.0; ring.positions.len()]);
@@ -64,8 +68,8 @@ fn write(export: &Export, format: Format) -> Vec<ExportedFile> {
 }
 
 /// Corners of all triangles, as every format should have them (millimetres).
-fn expected(export: &Export) -> Vec<[DVec3; 3]> {
-    let parts = export.rounded().unwrap();
+fn expectation(export: &Export) -> Vec<[DVec3; 3]> {
+    let parts = export.round().unwrap();
     let all = parts
         .iter()
         .flat_map(|m| (0..m.triangles.len()).map(|i| m.corners(i)));
@@ -75,7 +79,7 @@ fn expected(export: &Export) -> Vec<[DVec3; 3]> {
 #[test]
 fn our_readers_read_what_is_written() {
     let export = export();
-    let wanted = expected(&export);
+    let wanted = expectation(&export);
     let [ball, ring] = [&export.parts[0].mesh, &export.parts[1].mesh];
     for format in Format::ALL {
         let files = write(&export, format);
@@ -171,7 +175,7 @@ fn stl_is_read_by_stl_io() {
     let export = export();
     let file = write(&export, Format::Stl).remove(0);
     let mesh = stl_io::read_stl(&mut Cursor::new(file.bytes)).unwrap();
-    let wanted = expected(&export);
+    let wanted = expectation(&export);
     assert_eq!(mesh.faces.len(), wanted.len());
     for (face, corners) in mesh.faces.iter().zip(&wanted) {
         for (i, corner) in face.vertices.iter().zip(corners) {
@@ -190,7 +194,7 @@ fn ply_is_read_by_ply_rs() {
     let ply = Parser::<DefaultElement>::new()
         .read_ply(&mut Cursor::new(file.bytes))
         .unwrap();
-    let wanted = expected(&export);
+    let wanted = expectation(&export);
     let float = |p: &Property| match p {
         Property::Float(x) => f64::from(*x),
         other => panic!("{other:?}"),
@@ -254,7 +258,7 @@ fn obj_is_read_by_tobj() {
         })
         .unwrap();
     let materials = materials.unwrap();
-    let wanted = expected(&export);
+    let wanted = expectation(&export);
     let mut all = Vec::new();
     for model in &models {
         let at = |i: u32| {
@@ -314,7 +318,7 @@ fn glb_is_read_by_gltf() {
             }
         }
     }
-    assert_eq!(all, expected(&export));
+    assert_eq!(all, expectation(&export));
     // Without a material glTF's own, which is rough.
     assert_eq!(roughness, [1.0, 0.25, 0.7]);
 }
@@ -338,7 +342,7 @@ fn vertex_colours_make_glb_materials_white() {
     assert_eq!(dark.unwrap().color, [1.0; 3]);
 }
 
-fn judged(mesh: &TriangleMesh) -> Manifold {
+fn in_manifold_rust(mesh: &TriangleMesh) -> Manifold {
     let positions = mesh.positions.iter().flat_map(|p| p.to_array());
     Manifold::from_mesh_gl(&MeshGL {
         num_prop: 3,
@@ -348,27 +352,33 @@ fn judged(mesh: &TriangleMesh) -> Manifold {
     })
 }
 
-/// A closed manifold by our test is one for `manifold-rust`, too, of the same genus; and what we do
-/// not, is not.
+/// Closed manifolds by our test are such for `manifold-rust`, too, of the same genus; and what we
+/// do not, is not.
 #[test]
 fn manifold_rust_agrees() {
     for (mesh, genus) in [(sphere(5), 0), (torus(9, 7), 1)] {
-        let judge = judged(&mesh);
-        assert!(matches!(judge.status(), Judgement::NoError));
+        let manifold = in_manifold_rust(&mesh);
+        assert!(matches!(manifold.status(), Judgement::NoError));
         assert_eq!(
-            (judge.genus(), judge.num_tri()),
+            (manifold.genus(), manifold.num_tri()),
             (genus, mesh.triangles.len())
         );
-        assert!((judge.volume() - mesh.signed_volume()).abs() < 1e-5);
-        assert!((judge.surface_area() - mesh.area()).abs() < 1e-4);
+        assert!((manifold.volume() - mesh.signed_volume()).abs() < 1e-5);
+        assert!((manifold.surface_area() - mesh.area()).abs() < 1e-4);
         assert!(mesh::Topology::of(&mesh).unwrap().is_closed_manifold());
         let mut open = mesh.clone();
         open.triangles.pop();
-        assert!(!matches!(judged(&open).status(), Judgement::NoError));
+        assert!(!matches!(
+            in_manifold_rust(&open).status(),
+            Judgement::NoError
+        ));
         assert!(!mesh::Topology::of(&open).unwrap().is_closed_manifold());
         let mut turned = mesh.clone();
         turned.triangles[3].swap(0, 1);
-        assert!(!matches!(judged(&turned).status(), Judgement::NoError));
+        assert!(!matches!(
+            in_manifold_rust(&turned).status(),
+            Judgement::NoError
+        ));
         assert!(!mesh::Topology::of(&turned).unwrap().is_closed_manifold());
         // Edited meshes stay what they are.
         let mut edited = HalfEdgeMesh::from_triangles(&mesh).unwrap();
@@ -382,9 +392,9 @@ fn manifold_rust_agrees() {
                 break;
             }
         }
-        let judge = judged(&edited.to_triangles().unwrap());
-        assert!(matches!(judge.status(), Judgement::NoError));
-        assert_eq!(judge.genus(), genus);
+        let manifold = in_manifold_rust(&edited.to_triangles().unwrap());
+        assert!(matches!(manifold.status(), Judgement::NoError));
+        assert_eq!(manifold.genus(), genus);
     }
 }
 
@@ -410,10 +420,16 @@ fn meshes_that_cannot_be_written_are_errors() {
     let ring = |e: &mut Export, change: fn(&mut TriangleMesh)| change(&mut e.parts[1].mesh);
     assert!(told(&|e| ring(e, |m| m.groups[0].triangles.end = 50)).contains("overlap"));
     assert!(told(&|e| ring(e, |m| m.groups[1].triangles.end = 500)).contains("overlap"));
-    let nan = |m: &mut TriangleMesh| m.groups[0].material = Some(material("", [f32::NAN; 3], 0.0));
-    assert!(told(&|e| ring(e, nan)).contains("no number"));
-    let many = |m: &mut TriangleMesh| m.triangles = vec![[0, 1, 2]; limits::MAX_EXPORT_TRIANGLES];
-    assert!(told(&|e| ball(e, many)).contains("larger tolerance"));
+    assert!(
+        told(&|e| ring(e, |m: &mut TriangleMesh| m.groups[0].material =
+            Some(material("", [f32::NAN; 3], 0.0))))
+        .contains("no number")
+    );
+    assert!(
+        told(&|e| ball(e, |m: &mut TriangleMesh| m.triangles =
+            vec![[0, 1, 2]; limits::MAX_EXPORT_TRIANGLES]))
+        .contains("larger tolerance")
+    );
     let groups = |m: &mut TriangleMesh| m.groups = vec![Group::default(); limits::MAX_MATERIALS];
     assert!(told(&|e| ring(e, groups)).contains("parts and groups"));
 }
@@ -429,7 +445,7 @@ fn names_do_no_harm() {
         group.name = bad.repeat(100);
         group.material.as_mut().unwrap().name = "default".into();
     }
-    let wanted = expected(&export);
+    let wanted = expectation(&export);
     for format in Format::ALL {
         let files = write(&export, format);
         let mesh = read(&format!("x.{}", format.extension()), &files[0].bytes).unwrap();
@@ -447,7 +463,7 @@ fn three_mf_is_read_by_threemf2() {
     use threemf2::package::ThreemfPackage;
     use threemf2::package::query::get_mesh_objects;
     let export = export();
-    let wanted = expected(&export);
+    let wanted = expectation(&export);
     let file = write(&export, Format::ThreeMf).remove(0);
     let bytes = Cursor::new(file.bytes);
     let package =

@@ -1,4 +1,4 @@
-//! A small model through each format, and what a person is told of broken ones.
+//! Small model through each format, and what a person is told of broken ones.
 
 use crate::common::{Model, binary_ply, glb, png_of, tetrahedron};
 use glam::DVec3;
@@ -6,18 +6,22 @@ use mesh::{Heights, TriangleMesh, heights, limits, read, terra};
 
 /// The corners of each triangle: what a mesh is, however it is stored.
 fn faces(mesh: &TriangleMesh) -> Vec<[DVec3; 3]> {
-    let corners = |t: &[u32; 3]| t.map(|i| mesh.positions[i as usize]);
-    mesh.triangles.iter().map(corners).collect()
+    mesh.triangles
+        .iter()
+        .map(|t| t.map(|i| mesh.positions[i as usize]))
+        .collect()
 }
 
 fn normals(mesh: &TriangleMesh) -> Vec<[DVec3; 3]> {
     let normals = mesh.normals.as_ref().expect("normals");
     assert_eq!(normals.len(), mesh.positions.len());
-    let corners = |t: &[u32; 3]| t.map(|i| normals[i as usize]);
-    mesh.triangles.iter().map(corners).collect()
+    mesh.triangles
+        .iter()
+        .map(|t| t.map(|i| normals[i as usize]))
+        .collect()
 }
 
-fn told(name: &str, bytes: impl AsRef<[u8]>) -> String {
+fn message(name: &str, bytes: impl AsRef<[u8]>) -> String {
     read(name, bytes.as_ref())
         .expect_err("an error")
         .to_string()
@@ -96,41 +100,43 @@ fn glb_nodes_place_their_meshes() {
 }
 
 #[test]
-fn broken_files_are_told_with_their_place() {
+fn errors_name_their_place_in_the_file() {
     let model = tetrahedron();
-    assert!(told("x.obj", "v 0 0 0\nv 1 0\n").starts_with("line 2:"));
-    assert!(told("x.obj", "v 0 0 0\nf 1 2 3").contains("`2` is none of the 1 `v`"));
-    assert!(told("x.obj", "v 0 0 0\nf 0 1 1").starts_with("line 2:"));
-    assert!(told("x.obj", "v 0 0 0\nv 1 1 1\nf 1 2").contains("at least three"));
-    assert!(told("x.obj", "").contains("no triangles"));
-    assert!(told("x.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3").contains("has an area"));
-    assert!(told("x.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3").starts_with("line 1:"));
-    assert!(told("x.jpg", "").contains(".obj"));
-    assert!(told("x.stl", "").contains("too short"));
-    assert!(told("x.stl", "solid\nvertex 1 2\n").starts_with("line 2:"));
+    assert!(message("x.obj", "v 0 0 0\nv 1 0\n").starts_with("line 2:"));
+    assert!(message("x.obj", "v 0 0 0\nf 1 2 3").contains("`2` is none of the 1 `v`"));
+    assert!(message("x.obj", "v 0 0 0\nf 0 1 1").starts_with("line 2:"));
+    assert!(message("x.obj", "v 0 0 0\nv 1 1 1\nf 1 2").contains("at least three"));
+    assert!(message("x.obj", "").contains("no triangles"));
+    assert!(message("x.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3").contains("has an area"));
+    assert!(message("x.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3").starts_with("line 1:"));
+    assert!(message("x.jpg", "").contains(".obj"));
+    assert!(message("x.stl", "").contains("too short"));
+    assert!(message("x.stl", "solid\nvertex 1 2\n").starts_with("line 2:"));
     let stl = model.binary_stl();
-    assert!(told("x.stl", &stl[..stl.len() - 1]).contains("cut off"));
-    assert!(told("x.ply", "ply\nformat ascii 1.0\nelement vertex 1\n").contains("end_header"));
+    assert!(message("x.stl", &stl[..stl.len() - 1]).contains("cut off"));
+    assert!(message("x.ply", "ply\nformat ascii 1.0\nelement vertex 1\n").contains("end_header"));
     let ply = String::from_utf8(model.ascii_ply()).unwrap();
-    assert!(told("x.ply", ply.replace("property float x", "property flat x")).contains("`flat`"));
-    assert!(told("x.ply", ply.replace("ascii", "morse")).contains("format"));
+    assert!(
+        message("x.ply", ply.replace("property float x", "property flat x")).contains("`flat`")
+    );
+    assert!(message("x.ply", ply.replace("ascii", "morse")).contains("format"));
     let cut = &ply[..ply.len() - 4];
     assert!(
-        told("x.ply", cut).contains("`face` 3 (from 0)"),
+        message("x.ply", cut).contains("`face` 3 (from 0)"),
         "{}",
-        told("x.ply", cut)
+        message("x.ply", cut)
     );
     let glb = glb(&model);
-    assert!(told("x.glb", &glb[..glb.len() - 1]).contains("cut off"));
+    assert!(message("x.glb", &glb[..glb.len() - 1]).contains("cut off"));
     let needs = |name: &str| model.glb_with(r#"[{"mesh":0}]"#, name);
     let draco = r#""extensionsRequired":["KHR_draco_mesh_compression"],"#;
-    assert!(told("x.glb", needs(draco)).contains("KHR_draco_mesh_compression"));
+    assert!(message("x.glb", needs(draco)).contains("KHR_draco_mesh_compression"));
     let harmless = r#""extensionsRequired":["KHR_materials_unlit"],"#;
     assert!(read("x.glb", &needs(harmless)).is_ok());
     let circle = r#"[{"children":[1]},{"children":[0],"mesh":0}]"#;
-    assert!(told("x.glb", model.glb_with(circle, "")).contains("two places"));
+    assert!(message("x.glb", model.glb_with(circle, "")).contains("two places"));
     let nowhere = r#"[{"mesh":7}]"#;
-    assert!(told("x.glb", model.glb_with(nowhere, "")).contains("mesh 7"));
+    assert!(message("x.glb", model.glb_with(nowhere, "")).contains("mesh 7"));
 }
 
 #[test]
@@ -146,47 +152,47 @@ fn counts_are_not_believed() {
             ] {
                 for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
                     let text = format!(
-                        "ply\nformat {format} 1.0\nelement {element} {count}\n{property}end_header\n\
-                         \u{1}\u{2}\u{3}"
+                        "ply\nformat {format} 1.0\nelement {element} {count}\n\
+                         {property}end_header\n\u{1}\u{2}\u{3}"
                     );
-                    told("x.ply", text);
+                    message("x.ply", text);
                 }
             }
         }
     }
     let mut stl = vec![0; 84];
     stl[80..].copy_from_slice(&u32::MAX.to_le_bytes());
-    told("x.stl", stl);
+    message("x.stl", stl);
     // A list as long as a length can say, and one that is not even a number.
     let heading = "ply\nformat binary_little_endian 1.0\nelement face 1\n\
                    property list uint uchar vertex_index\nend_header\n";
     let mut list = heading.as_bytes().to_vec();
     list.extend([255; 300]);
-    told("x.ply", list);
+    message("x.ply", list);
     let heading = "ply\nformat ascii 1.0\nelement face 1\n\
                    property list float int vertex_index\nend_header\nnan 1 2 3";
-    told("x.ply", heading);
+    message("x.ply", heading);
     assert!(begin.elapsed().as_secs() < 5, "{:?}", begin.elapsed());
 }
 
 #[test]
 fn limits_hold() {
-    told("x.obj", vec![b'\n'; limits::MAX_BYTES + 1]);
+    message("x.obj", vec![b'\n'; limits::MAX_BYTES + 1]);
     let line = "v 1 0 0\nv 0 1 0\nv 0 0 1\n";
     let most = format!("{line}{}", "f 1 2 3\n".repeat(limits::MAX_TRIANGLES));
     let mesh = read("x.obj", most.as_bytes()).unwrap();
     assert_eq!(mesh.triangles.len(), limits::MAX_TRIANGLES);
-    assert!(told("x.obj", format!("{most}f 1 2 3\n")).contains("200000 triangles"));
+    assert!(message("x.obj", format!("{most}f 1 2 3\n")).contains("200000 triangles"));
     // A fan is many triangles in one line.
     let fan = format!("{line}f {}", "1 2 3 ".repeat(limits::MAX_TRIANGLES));
-    assert!(told("x.obj", fan).contains("200000 triangles"));
+    assert!(message("x.obj", fan).contains("200000 triangles"));
     let points = "v 1 0 0\n".repeat(limits::MAX_VERTICES + 1);
-    assert!(told("x.obj", points).contains("more than 600000"));
+    assert!(message("x.obj", points).contains("more than 600000"));
     // Many nodes that show one mesh of many empty parts.
     let model = tetrahedron();
     let nodes = vec![r#"{"mesh":0}"#; 60_000].join(",");
     let begin = trials::WorkClock::start();
-    told("x.glb", model.glb_with(&format!("[{nodes}]"), ""));
+    message("x.glb", model.glb_with(&format!("[{nodes}]"), ""));
     assert!(begin.elapsed().as_secs() < 5, "{:?}", begin.elapsed());
 }
 
@@ -257,8 +263,13 @@ fn a_large_picture_is_averaged() {
         (3, 50_000),
         (258, 257),
     ] {
-        let slope = |i: usize| (i % width) as f32 / (width - 1) as f32;
-        let heights = Heights::new(width, (0..width * height).map(slope).collect()).unwrap();
+        let heights = Heights::new(
+            width,
+            (0..width * height)
+                .map(|i| (i % width) as f32 / (width - 1) as f32)
+                .collect(),
+        )
+        .unwrap();
         let mesh = terra(&heights, DVec3::ONE).unwrap();
         let count = mesh.triangles.len();
         assert!(count <= limits::MAX_TERRA, "{width} × {height}: {count}");

@@ -248,7 +248,7 @@ fn boundaries_are_welded() {
 fn polygons_that_are_no_manifold_are_refused_or_repaired() {
     let refused = |soup: &PolygonSoup| HalfEdgeMesh::from_polygons(soup).unwrap_err().to_string();
     let repaired = |soup: &PolygonSoup| {
-        let built = HalfEdgeMesh::repaired(soup).unwrap();
+        let built = HalfEdgeMesh::repair(soup).unwrap();
         built.mesh.validate().unwrap();
         assert_eq!(built.sources.len(), built.mesh.vertex_count());
         built
@@ -328,7 +328,7 @@ fn any_polygons_are_repaired() {
                 .collect();
             soup.add_face(&face);
         }
-        let built = HalfEdgeMesh::repaired(&soup).unwrap();
+        let built = HalfEdgeMesh::repair(&soup).unwrap();
         built.mesh.validate().unwrap();
         assert_eq!(built.sources.len(), built.mesh.vertex_count());
         assert_eq!(
@@ -356,7 +356,7 @@ fn further(mesh: &HalfEdgeMesh, h: HalfEdgeId, steps: usize) -> HalfEdgeId {
     (0..steps).fold(h, |h, _| mesh.next(h))
 }
 
-/// One random edit, which may be refused.
+/// Makes a random edit, which may be refused.
 fn random_edit(mesh: &mut HalfEdgeMesh, random: &mut Random) -> Result<(), EditError> {
     let h = HalfEdgeId(random.below(mesh.half_edge_slots() + 1) as u32);
     let f = FaceId(random.below(mesh.face_slots() + 1) as u32);

@@ -16,7 +16,7 @@ fn pairs(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 
 const GROUND: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
-/// A triangle with its lowest vertex at a point, above the ground triangle.
+/// Returns a triangle with its lowest vertex at a point, above the ground triangle.
 fn spike(tip: [f64; 3]) -> Vec<[u32; 2]> {
     let mut all = GROUND.to_vec();
     all.extend([tip, [0.2, 0.3, 1.0], [0.4, 0.2, 1.0]]);
@@ -131,8 +131,8 @@ fn undecidable_meshes_are_reported() {
     );
 }
 
-/// Whether two closed triangles with whole coordinates meet: separating axes, exactly. Two convex sets
-/// are apart if and only if one of these directions separates them.
+/// Whether two closed triangles with whole coordinates meet: separating axes, exactly. Two convex
+/// sets are apart if and only if one of these directions separates them.
 fn meet(a: [[i64; 3]; 3], b: [[i64; 3]; 3]) -> bool {
     let sub = |p: [i64; 3], q: [i64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let cross = |p: [i64; 3], q: [i64; 3]| {
@@ -175,7 +175,8 @@ fn random_triangles_on_a_grid_are_judged_as_by_separating_axes() {
             .chain(&b)
             .map(|p| p.map(|x| x as f64 * 0.1))
             .collect();
-        // A tenth is no binary number: exactness is needed, and the grid's is lost; so whole ones, too.
+        // A tenth is no binary number: exactness is needed, and the grid's is lost; so whole ones,
+        // too.
         let whole: Vec<DVec3> = a
             .iter()
             .chain(&b)
@@ -196,8 +197,8 @@ fn random_triangles_on_a_grid_are_judged_as_by_separating_axes() {
     assert!(counts.iter().all(|n| 12 * n > tried), "{counts:?}");
 }
 
-/// Triangles that share a vertex, judged by shrinking: they meet elsewhere if and only if they still
-/// meet when the shared corner of one is cut off by a little.
+/// Triangles that share a vertex, judged by shrinking: they meet elsewhere if and only if they
+/// still meet when the shared corner of one is cut off by a little.
 #[test]
 fn random_triangles_with_a_common_vertex() {
     let mut random = Random::new(12);

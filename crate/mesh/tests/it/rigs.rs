@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3, Mat4, Quat, Vec3};
 use mesh::{Export, Joint, Part, Pose, Rig, TriangleMesh};
 
-/// A bar of three squares along x, with a joint at each end and one in the middle.
+/// Returns a bar of three squares along x, with a joint at each end and one in the middle.
 fn bar() -> (Export, Rig) {
     let mut positions = Vec::new();
     for i in 0..4 {
@@ -140,7 +140,7 @@ fn another_reader_moves_the_vertices_as_the_rig_does() {
             }
             // Metres: 20 mm a unit.
             let own = export.parts[0].mesh.positions[i];
-            let expected = rig.skinned(own, &rig.shares[0][i], frame) * 0.02;
+            let expected = rig.skin(own, &rig.shares[0][i], frame) * 0.02;
             assert!(
                 moved.as_dvec3().distance(expected) < 1e-6,
                 "{number} {i}: {moved} {expected}"

@@ -3,10 +3,13 @@
 use glam::DVec3;
 use mesh::{PolygonSoup, TriangleMesh};
 
-/// A cube of six quadrilaterals from 0 to 1.
+/// Returns a cube of six quadrilaterals from 0 to 1.
 pub fn cube() -> PolygonSoup {
-    let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
-    let mut soup = PolygonSoup::new((0..8).map(corner).collect());
+    let mut soup = PolygonSoup::new(
+        (0..8)
+            .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+            .collect(),
+    );
     for face in [
         [0, 2, 3, 1],
         [4, 5, 7, 6],
@@ -20,7 +23,7 @@ pub fn cube() -> PolygonSoup {
     soup
 }
 
-/// A grid on a torus: n by m quadrilaterals, or twice as many triangles.
+/// Returns a grid on a torus: n by m quadrilaterals, or twice as many triangles.
 pub fn torus(n: u32, m: u32) -> TriangleMesh {
     let mut positions = Vec::new();
     let mut triangles = Vec::new();

@@ -9,7 +9,8 @@ use mesh::{Aabb, TriangleMesh};
 use nalgebra::Matrix4;
 use scene::{Element, Scene, Shape};
 
-/// The field of soft balls with the quartic kernel, `c·(1 − r²/D²)²` within `D = R·√(1 + 2/|B|)`, with `c` so that it is 1 at `R`.
+/// The field of soft balls with the quartic kernel, `c·(1 − r²/D²)²` within `D = R·√(1 + 2/|B|)`,
+/// with `c` so that it is 1 at `R`.
 ///
 /// # Errors
 /// Anything else in the scene.
@@ -48,7 +49,8 @@ fn sum(terms: &[Tree]) -> Tree {
     }
 }
 
-/// Makes the mesh in a box with cells of an edge length. The time for compiling the tree is part of it.
+/// Makes the mesh in a box with cells of an edge length. The time for compiling the tree is part of
+/// it.
 ///
 /// # Errors
 /// Fidget's.

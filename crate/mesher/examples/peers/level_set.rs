@@ -1,4 +1,5 @@
-//! `LevelSet` of manifold-rust, with the field evaluated by the terms that matter in each cell of a grid.
+//! `LevelSet` of manifold-rust, with the field evaluated by the terms that matter in each cell of a
+//! grid.
 
 use field::{Ball, Implicit, Part, Slack, THRESHOLD};
 use glam::DVec3;
@@ -16,7 +17,8 @@ const SLACK: Slack = Slack {
     far: 0.0,
 };
 
-/// Makes the mesh in a box with cubes of an edge length, vertices within `precision` of the surface.
+/// Makes the mesh in a box with cubes of an edge length, vertices within `precision` of the
+/// surface.
 pub fn mesh(grid: &Grid, bounds: &Aabb, edge: f64, precision: f64) -> TriangleMesh {
     let bounds = Bounds::from_points(vector(bounds.min), vector(bounds.max));
     let value = |p: Vec3| grid.value(DVec3::new(p.x, p.y, p.z)) - THRESHOLD;

@@ -1,10 +1,12 @@
 //! Speed and triangles of meshes: lines of JSON for `cargo xtask bench meshes`.
 //!
-//! `cargo run --release -p mesher --features fidget --example peers -- KIND FILE…`, where KIND is the program that the mesher is
-//! compared with at equal measured error, `level-set` (manifold-rust) or `fidget` (with the quartic kernel), or `alone` for the time of
+//! `cargo run --release -p mesher --features fidget --example peers -- KIND FILE…`, where KIND is
+//! the program that the mesher is compared with at equal measured error,
+//! `level-set` (manifold-rust) or `fidget` (with the quartic kernel), or `alone` for the time of
 //! the mesher only, which runs as wasm, too.
 //!
-//! The edge length of the others' cells is the longest one found at which the measured error is that of our mesh.
+//! The edge length of the others' cells is the longest one found at which the measured error is
+//! that of our mesh.
 
 #[cfg(feature = "fidget")]
 mod fidget;
@@ -117,8 +119,9 @@ struct Made {
 /// Halvings of the interval of edge lengths in which the error becomes small enough.
 const HALVINGS: usize = 3;
 
-/// Makes meshes with ever shorter edges until the measured error is at most a tenth larger than a wanted one, and a few with edges
-/// between the last two; `prepared` seconds are added to the time of the coarsest one that is good enough.
+/// Makes meshes with ever shorter edges until the measured error is at most a tenth larger than a
+/// wanted one, and a few with edges between the last two; `prepared` seconds are added to the time
+/// of the coarsest one that is good enough.
 fn at_equal_error(
     function: &dyn Implicit,
     hull: &Aabb,

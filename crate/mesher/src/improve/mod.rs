@@ -1,12 +1,15 @@
-//! Fewer and better triangles: edges are collapsed and flipped and vertices moved, as long as [samples](crate::certify::estimate) tell that each
-//! new triangle is near the surface, and all places of the surface where there were vertices at the start are near the mesh. At the end
+//! Fewer and better triangles: edges are collapsed and flipped and vertices moved, as long as
+//! [samples](crate::certify::estimate) tell that each new triangle is near the surface, and all
+//! places of the surface where there were vertices at the start are near the mesh. At the end
 //! triangles are [proved](crate::certify::is_within) to be near the surface.
 //!
-//! Rounds: edits that do not touch each other are chosen in an order that depends on the mesh alone, planned on several
-//! threads, and applied one after the other. Where cells leave the surface open, at kinks and where it touches itself, an edit
-//! is refused if an exact test finds that a new triangle meets another one ([`crate::guard`]).
+//! Rounds: edits that do not touch each other are chosen in an order that depends on the mesh
+//! alone, planned on several threads, and applied one after the other. Where cells leave the
+//! surface open, at kinks and where it touches itself, an edit is refused if an exact test finds
+//! that a new triangle meets another one ([`crate::guard`]).
 //!
-//! `state.rs` has the mesh and changes it, `plan.rs` plans edits, `rounds.rs` does many of a kind, and `settle.rs` mends what the fine mesh has wrong.
+//! `state.rs` has the mesh and changes it, `plan.rs` plans edits,
+//! `rounds.rs` does many of a kind, and `settle.rs` mends what the fine mesh has wrong.
 
 mod plan;
 mod rounds;

@@ -103,7 +103,8 @@ impl Improver<'_> {
             .or_else(|| self.try_collapse(h, at_u, true))
     }
 
-    /// The collapse of an edge to a vertex; `moves` if the target of the half-edge gets another position.
+    /// The collapse of an edge to a vertex; `moves` if the target of the half-edge gets another
+    /// position.
     pub fn try_collapse(&self, h: HalfEdgeId, vertex: Vertex, moves: bool) -> Option<Plan> {
         let mesh = &self.mesh;
         let ends = [mesh.origin(h), mesh.target(h)];
@@ -157,8 +158,9 @@ impl Improver<'_> {
         Some(judged)
     }
 
-    /// Distances of triangles from the surface, infinite where none is found; `None` if they are no better than before: fewer
-    /// are to have none, or as few and fewer are to be beyond the tolerance.
+    /// Distances of triangles from the surface, infinite where none is found; `None` if they are no
+    /// better than before: fewer are to have none, or as few and fewer are to be beyond the
+    /// tolerance.
     pub fn judge_better(
         &self,
         faces: &[FaceId],
@@ -179,7 +181,8 @@ impl Improver<'_> {
         Some(judged)
     }
 
-    /// Whether triangles in the place of some faces are near all places of the surface that are kept there.
+    /// Whether triangles in the place of some faces are near all places of the surface that are
+    /// kept there.
     pub fn holds(&self, faces: impl Iterator<Item = FaceId>, corners: &[[Vertex; 3]]) -> bool {
         let most = self.tolerance * self.tolerance;
         let triangles: Vec<[DVec3; 3]> = corners.iter().map(|c| c.map(|v| v.position)).collect();
@@ -204,7 +207,8 @@ impl Improver<'_> {
         faces.iter().any(is_far) && corners.iter().any(is_in)
     }
 
-    /// Whether a triangle may be near the surface as its corners tell, and no angle is below the least one.
+    /// Whether a triangle may be near the surface as its corners tell, and no angle is below the
+    /// least one.
     pub fn is_likely(&self, corners: &[Vertex; 3], least_angle: f64, tolerance: f64) -> bool {
         let [a, b, c] = corners.map(|v| v.position);
         let Some(normal) = (b - a).cross(c - a).try_normalize() else {
@@ -262,7 +266,8 @@ impl Improver<'_> {
         })
     }
 
-    /// A division of two triangles into four; `helps` if fewer have to be off the surface afterwards.
+    /// A division of two triangles into four; `helps` if fewer have to be off the surface
+    /// afterwards.
     pub fn plan_split(&self, h: HalfEdgeId, helps: bool) -> Option<Plan> {
         let mesh = &self.mesh;
         let [p, q, r, s] = self.diamond(h).map(|v| self.vertices[v.index()]);

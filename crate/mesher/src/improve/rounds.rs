@@ -12,8 +12,8 @@ const MOST_ROUNDS: usize = 60;
 const TOLD: usize = 1024;
 
 impl Improver<'_> {
-    /// Plans those of some edits, in their order, that do not touch each other, and applies those that are good. Returns how
-    /// many.
+    /// Plans those of some edits, in their order, that do not touch each other, and applies those
+    /// that are good. Returns how many.
     pub fn do_round(
         &mut self,
         edits: Vec<Edit>,
@@ -27,7 +27,8 @@ impl Improver<'_> {
             if self.is_refused(edit) {
                 continue;
             }
-            // Two edits change a common face only where an end of one is beside an end of the other.
+            // Two edits change a common face only where an end of one is beside an end of the
+            // other.
             let (mesh, is_taken_at) = (&self.mesh, |v: VertexId| is_taken[v.index()]);
             let is_beside = match edit {
                 Edit::Collapse(h) | Edit::Merge(h) => {

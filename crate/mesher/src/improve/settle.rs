@@ -8,12 +8,14 @@ use mesh::{FaceId, HalfEdgeId, VertexId};
 
 /// Rounds in which triangles are divided or removed until all are near the surface.
 const SETTLE_ROUNDS: usize = 40;
-/// Rounds in which nothing but divisions are tried, as long as more than one of so many triangles are far.
+/// Rounds in which nothing but divisions are tried, as long as more than one of so many triangles
+/// are far.
 const COARSE_ROUNDS: usize = 12;
 const COARSE: usize = 4;
 /// Rounds in which every edit is tried at the triangles that are left.
 const RESCUE_ROUNDS: usize = 8;
-/// Most triangles of such a round: where more are left, there are kinks, or the surface touches itself, and no edit would help.
+/// Most triangles of such a round: where more are left, there are kinks, or the surface touches
+/// itself, and no edit would help.
 const MOST_RESCUED: usize = 300;
 /// No more remedies are tried after so many evaluations, and so many for each triangle of the mesh.
 const LEAST_WORK: u64 = 50_000;
@@ -30,7 +32,8 @@ const FEW: usize = 8;
 const LEAST_DIVIDED: usize = 60;
 
 impl Improver<'_> {
-    /// Looks at triangles of which nothing is known yet; divides those that are too far from the surface, and removes flat ones.
+    /// Looks at triangles of which nothing is known yet; divides those that are too far from the
+    /// surface, and removes flat ones.
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
         let (mut least, mut stalled) = (usize::MAX, 0);
         let start = self.space.evaluations();
@@ -38,7 +41,8 @@ impl Improver<'_> {
         for round in 0..SETTLE_ROUNDS {
             progress.at(round as f32 / SETTLE_ROUNDS as f32)?;
             let far = self.off(progress)?;
-            // A mesh that is too coarse has more such faces at first, and each half of one is nearer.
+            // A mesh that is too coarse has more such faces at first, and each half of one is
+            // nearer.
             let is_coarse = round < COARSE_ROUNDS && COARSE * far.len() > self.mesh.face_count();
             // All kinds of remedies have been tried without much success.
             if far.len() < least - least / 20 {
@@ -75,8 +79,8 @@ impl Improver<'_> {
         Ok(())
     }
 
-    /// Proves faces to be near the surface, and divides those that are not, as long as they are few. Returns whether each is proved, in the
-    /// order of the faces.
+    /// Proves faces to be near the surface, and divides those that are not, as long as they are
+    /// few. Returns whether each is proved, in the order of the faces.
     pub fn prove(&mut self, progress: &mut Progress<'_>) -> Result<Vec<bool>, MeshError> {
         for round in 0..=DIVISIONS {
             progress.at(round as f32 / (DIVISIONS + 1) as f32)?;
@@ -113,7 +117,8 @@ impl Improver<'_> {
             .collect())
     }
 
-    /// The division of a face at its longest edge, with its rank; `None` if it is too flat, or in a lid.
+    /// The division of a face at its longest edge, with its rank; `None` if it is too flat, or in a
+    /// lid.
     fn split_of_longest(&self, f: FaceId) -> Option<(f64, Edit)> {
         let length = |h: &HalfEdgeId| {
             let [a, b] = [self.mesh.origin(*h), self.mesh.target(*h)];
@@ -128,7 +133,8 @@ impl Improver<'_> {
         (self.angle(f) > SLIVER && self.is_allowed(edit)).then_some((-length, edit))
     }
 
-    /// Tries every edit at each of the faces that are left, one after the other, until one helps. Returns how many were helped.
+    /// Tries every edit at each of the faces that are left, one after the other, until one helps.
+    /// Returns how many were helped.
     pub fn rescue(&mut self, progress: &mut Progress<'_>) -> Result<usize, MeshError> {
         let mut done = 0;
         let far = self.off(progress)?;
@@ -150,7 +156,8 @@ impl Improver<'_> {
             let edits: Vec<Edit> = merges.chain(flips).chain(moves).chain(splits).collect();
             self.round += 1;
             for edit in edits {
-                // An edit refused in an earlier round would be planned the same way again; only divisions depend on more.
+                // An edit refused in an earlier round would be planned the same way again; only
+                // divisions depend on more.
                 let is_known = !matches!(edit, Edit::Split(_)) && self.is_refused(edit);
                 if is_known || !self.is_allowed(edit) {
                     continue;
@@ -203,7 +210,8 @@ impl Improver<'_> {
         Ok(far.into_iter().filter(|f| self.is_off[f.index()]).collect())
     }
 
-    /// The edit that may help a face which is not near the surface, with its rank; `None` if there is none.
+    /// The edit that may help a face which is not near the surface, with its rank; `None` if there
+    /// is none.
     pub fn remedy(&self, f: FaceId, round: usize) -> Option<(f64, Edit)> {
         let mesh = &self.mesh;
         let mut edges: Vec<(f64, HalfEdgeId)> = mesh

@@ -9,7 +9,8 @@ use crate::space::Space;
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId};
 
-/// Samples may be so far from the surface, in tolerances: proofs need some room, and between samples it may be a little more.
+/// Samples may be so far from the surface, in tolerances: proofs need some room, and between
+/// samples it may be a little more.
 const SHARE: f64 = 0.8;
 /// The largest distance from the surface of vertices whose places are kept, in tolerances.
 const ON: f64 = 0.25;
@@ -73,7 +74,8 @@ pub struct Plan {
     pub faces: Vec<(FaceId, f32)>,
 }
 
-/// The numbers of faces that are not found to be near the surface at all, and of those found to be farther than the tolerance.
+/// The numbers of faces that are not found to be near the surface at all, and of those found to be
+/// farther than the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Off {
     pub all: usize,
@@ -107,7 +109,8 @@ pub struct Improver<'a> {
     pub errors: Vec<f32>,
     /// Places of the surface: where vertices were at the start.
     pub places: Vec<DVec3>,
-    /// For each face, the places that it is nearest to, of those that were kept by faces in its place.
+    /// For each face, the places that it is nearest to, of those that were kept by faces in its
+    /// place.
     pub kept: Vec<Vec<u32>>,
     /// The faces that were looked at since they changed, and are not within the tolerance.
     pub is_off: Vec<bool>,
@@ -116,14 +119,15 @@ pub struct Improver<'a> {
     pub guard: Guard,
     /// The round in which something around a vertex has changed.
     pub changed: Vec<u32>,
-    /// The round in which an edit was refused: as long as nothing changes at its vertices it would be again.
+    /// The round in which an edit was refused: as long as nothing changes at its vertices it would
+    /// be again.
     pub refused: Refused,
     pub round: u32,
 }
 
 impl<'a> Improver<'a> {
-    /// Takes a mesh over, with the tolerance of the result and its own. Edits in the guarded places are kept from making the mesh cut
-    /// itself.
+    /// Takes a mesh over, with the tolerance of the result and its own. Edits in the guarded places
+    /// are kept from making the mesh cut itself.
     ///
     /// # Errors
     /// If it is no manifold.
@@ -190,7 +194,8 @@ impl<'a> Improver<'a> {
         })
     }
 
-    /// The distance of a triangle from the surface as samples tell it; `None` if it is more than the tolerance.
+    /// The distance of a triangle from the surface as samples tell it; `None` if it is more than
+    /// the tolerance.
     pub fn distance(&self, corners: &[Vertex; 3], tolerance: f64) -> Option<f64> {
         estimate(self.space, corners.each_ref(), tolerance)
     }
@@ -214,7 +219,8 @@ impl<'a> Improver<'a> {
         })
     }
 
-    /// The corners of the two triangles at an edge: its ends, then the opposite ones on its left and its right.
+    /// The corners of the two triangles at an edge: its ends, then the opposite ones on its left
+    /// and its right.
     pub fn diamond(&self, h: HalfEdgeId) -> [VertexId; 4] {
         let mesh = &self.mesh;
         let opposite = |h| mesh.target(mesh.next(h));
@@ -278,7 +284,8 @@ impl<'a> Improver<'a> {
         off
     }
 
-    /// The triangles that an edit makes, in the place of which faces. A vertex that is new has the number after all others.
+    /// The triangles that an edit makes, in the place of which faces. A vertex that is new has the
+    /// number after all others.
     pub fn changes(&self, edit: Edit, vertex: Option<Vertex>) -> (Vec<[Corner; 3]>, Vec<FaceId>) {
         let mesh = &self.mesh;
         let corner = |v: VertexId| Corner {
@@ -332,7 +339,8 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// Does an edit as planned. Returns whether that was possible: the mesh has to stay a manifold, and not to cut itself.
+    /// Does an edit as planned. Returns whether that was possible: the mesh has to stay a manifold,
+    /// and not to cut itself.
     pub fn apply(&mut self, edit: Edit, plan: &Plan) -> bool {
         let mut touched = Vec::new();
         self.touched(edit, &mut touched);
@@ -394,7 +402,8 @@ impl<'a> Improver<'a> {
         }
     }
 
-    /// Changes the mesh as planned, if it stays a manifold. Returns the vertex in the middle of the change, or an end of a flipped edge.
+    /// Changes the mesh as planned, if it stays a manifold. Returns the vertex in the middle of the
+    /// change, or an end of a flipped edge.
     pub fn change(&mut self, edit: Edit, plan: &Plan) -> Option<VertexId> {
         let giving = self.giving(edit);
         let center = self.change_mesh(edit, plan)?;
@@ -481,7 +490,8 @@ impl<'a> Improver<'a> {
     }
 }
 
-/// Whether proofs may fail at a place: in cells that leave the topology open or where the gradient jumps, or beside such cells.
+/// Whether proofs may fail at a place: in cells that leave the topology open or where the gradient
+/// jumps, or beside such cells.
 pub fn may_be_unproved(forest: &Forest, position: DVec3) -> bool {
     let own = &forest.cells[forest.leaf_at(position) as usize];
     let size = forest.size(own.level);

@@ -61,7 +61,8 @@ fn check(name: &str, function: &dyn Implicit, coat: &Coat, bound: f64) {
         near.count() + coat.buried >= coat.mesh.positions.len(),
         "{name}"
     );
-    // Of edges with both ends on the surface few are farther off than asked when all divisions are done, and the farthest is told.
+    // Of edges with both ends on the surface few are farther off than asked when all divisions are
+    // done, and the farthest is told.
     let mut edges: Vec<[u32; 2]> = coat
         .mesh
         .triangles
@@ -90,7 +91,8 @@ fn check(name: &str, function: &dyn Implicit, coat: &Coat, bound: f64) {
     );
 }
 
-/// The largest distance of sampled points of the mesh outside the surface from it: webs in bends and between limbs.
+/// The largest distance of sampled points of the mesh outside the surface from it: webs in bends
+/// and between limbs.
 fn largest_web(function: &dyn Implicit, coat: &Coat) -> f64 {
     let mut random = Random::new(3);
     let mut farthest = 0.0_f64;
@@ -360,7 +362,8 @@ fn caller_may_cancel_at_any_report_and_loses_nothing() {
     };
     let (first, fractions) = coated(&mut coatings, 0);
     let evaluations = first.unwrap().evaluations;
-    // No kernel ends, so that each evaluation takes a hundred terms: a report comes after a thousand or so.
+    // No kernel ends, so that each evaluation takes a hundred terms: a report comes after a
+    // thousand or so.
     assert!(
         fractions.len() as u64 > evaluations / 2000 && fractions.is_sorted(),
         "{} reports, {evaluations} evaluations",

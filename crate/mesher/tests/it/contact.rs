@@ -70,7 +70,8 @@ fn sheets_lie_on_each_other() {
             let other = Distances::new(&meshes[1 - i]);
             let mut on_sheet = 0;
             for point in &meshes[i].positions {
-                // A little inside of the crease, so that the nearest point of the other mesh is on its sheet, too.
+                // A little inside of the crease, so that the nearest point of the other mesh is on
+                // its sheet, too.
                 let inside = alone.iter().all(|f| f.jet(*point).value > 1.05 * THRESHOLD);
                 if inside {
                     farthest = farthest.max(other.to(*point));

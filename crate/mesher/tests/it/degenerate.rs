@@ -98,7 +98,8 @@ fn boxes_too_large_for_the_tolerance_are_told_in_words() {
 
 #[test]
 fn soft_shell_whose_turns_touch_is_united() {
-    // Balls along a spiral, as the command `shell` lays them: each turn just touches the one inside.
+    // Balls along a spiral, as the command `shell` lays them: each turn just touches the one
+    // inside.
     let (growth, touch) = (1.7_f64, 0.7 / 2.7);
     let balls = (0..=36).map(|i| {
         let turns = f64::from(i) / 18.0;
@@ -309,7 +310,8 @@ fn cavities_stay_in_unions_and_outer_drops_them() {
     );
 }
 
-/// A function that waves by next to nothing about its threshold throughout a ball, and of which no more is known than that.
+/// A function that waves by next to nothing about its threshold throughout a ball, and of which no
+/// more is known than that.
 #[derive(Debug)]
 struct Level;
 

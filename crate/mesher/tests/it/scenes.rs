@@ -1,10 +1,13 @@
 //! Scenes: random ones over all kernels and primitives, and the examples, judged by others.
 //!
-//! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes, `SINEW_MESHES=NAME` one example, `SINEW_MESHES=NUMBER`
-//! one random scene with the care of the sample, `SINEW_MESHES=NUMBER-NUMBER` some of the 200, and prints a line for each: `SINEW_MESHES=all cargo test --release -p mesher --test it scenes:: -- --nocapture`.
-//! `SINEW_TOLERANCE=2e-3` asks for another tolerance, as a share of the model's size, than 1e-2 for random scenes and 1e-3 for examples.
-//! Meshes of the 200 scenes and of all examples that take longer than a minute of a processor, or the seconds that `SINEW_SECONDS` says, are
-//! given up; they are told, and are not taken for wrong.
+//! By default a small sample. `SINEW_MESHES=all` meshes all examples and 200 random scenes,
+//! `SINEW_MESHES=NAME` one example, `SINEW_MESHES=NUMBER` one random scene with the care of the
+//! sample, `SINEW_MESHES=NUMBER-NUMBER` some of the 200, and prints a line for each:
+//! `SINEW_MESHES=all cargo test --release -p mesher --test it scenes:: -- --nocapture`.
+//! `SINEW_TOLERANCE=2e-3` asks for another tolerance, as a share of the model's size, than 1e-2 for
+//! random scenes and 1e-3 for examples. Meshes of the 200 scenes and of all examples that take
+//! longer than a minute of a processor, or the seconds that `SINEW_SECONDS` says, are given up;
+//! they are told, and are not taken for wrong.
 
 use crate::judges::{Distances, crossings, manifold, of_mesh, on_surface};
 use field::Kernel;
@@ -186,7 +189,8 @@ fn is_empty(scene: &Scene) -> Result<(), String> {
     Ok(())
 }
 
-/// Both distances, by sampling: of points of the mesh from the surface, and of crossings of rays from the mesh.
+/// Both distances, by sampling: of points of the mesh from the surface, and of crossings of rays
+/// from the mesh.
 fn distances(
     surface: &Surface,
     mesh: &TriangleMesh,
@@ -304,7 +308,8 @@ fn limit() -> f64 {
     asked.map_or(60.0, |asked| asked.parse().expect("SINEW_SECONDS"))
 }
 
-/// Measures how long this thread has had a processor, where the system tells, else how long it took.
+/// Measures how long this thread has had a processor, where the system tells, else how long it
+/// took.
 struct Clock {
     start: Instant,
     busy: Option<f64>,

@@ -1,5 +1,5 @@
-//! From clay to a printer: strokes make a mesh, flesh grows on it, the flesh is meshed and written as STL, and what a reader
-//! finds in the file is judged by another program.
+//! From clay to a printer: strokes make a mesh, flesh grows on it, the flesh is meshed and written
+//! as STL, and what a reader finds in the file is judged by another program.
 
 use crate::judges::assert_manifold;
 use mesh::{Export, Format, Part, TriangleMesh};
@@ -12,7 +12,8 @@ use std::ops::ControlFlow;
 const STROKES: &str =
     "strokes 1\nstart sphere 4\npull sphere 0.4 0.4 0.4 bell 0.9 : 0 0 0.9, 0.2 0 1.7\n";
 
-/// A mesh whose corners at the same place are one vertex, as a printer's program makes of a file that names each corner.
+/// A mesh whose corners at the same place are one vertex, as a printer's program makes of a file
+/// that names each corner.
 fn welded(mesh: &TriangleMesh) -> TriangleMesh {
     let mut places = BTreeMap::new();
     let mut positions = Vec::new();

@@ -82,8 +82,9 @@ fn each_kernel_gives_proved_meshes() {
 }
 
 /// Samples of mesh and surface alike stay within the share of the tolerance that leaves room for
-/// proofs. From mesh to surface alone that would not be so: the mesh may end before a limb does. The
-/// scenes are kept: a mesh that forgets places of the surface is 0.836 tolerances off in one of them.
+/// proofs. From mesh to surface alone that would not be so: the mesh may end before a limb does.
+/// The scenes are kept: a mesh that forgets places of the surface is 0.836 tolerances off in one of
+/// them.
 #[test]
 fn the_surface_is_near_the_mesh_as_well() {
     for seed in 1..7 {
@@ -153,7 +154,8 @@ fn tunnels_cavities_and_components_are_kept() {
     .into_iter()
     .flatten()
     .collect();
-    // Cells are at least two tolerances wide: a coarser mesh would leave the topology of the small ball open, and tell it.
+    // Cells are at least two tolerances wide: a coarser mesh would leave the topology of the small
+    // ball open, and tell it.
     check("spike", &thin, 1e-3, &[0, 0]);
 }
 
@@ -402,7 +404,8 @@ fn each_phase_reports_often_and_can_be_cancelled() {
     }
 }
 
-/// Relative tolerances against the size of the finished mesh: at most the share that was asked for, and at least 0.93 of it.
+/// Relative tolerances against the size of the finished mesh: at most the share that was asked for,
+/// and at least 0.93 of it.
 #[test]
 fn shares_are_of_the_size_that_the_mesh_has() {
     use mesher::{Tolerance, Wishes, mesh_scene};

@@ -1,4 +1,5 @@
-//! Parts of a surface that are thinner than the tolerance: each of their points is within the tolerance of the mesh.
+//! Parts of a surface that are thinner than the tolerance: each of their points is within the
+//! tolerance of the mesh.
 
 use crate::judges::{Distances, assert_embedded, assert_manifold, crossings, of_mesh, on_surface};
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
@@ -71,7 +72,8 @@ fn check(name: &str, sum: &Sum, parts: &[(DVec3, DVec3)], within: &dyn Fn(DVec3)
     );
     assert!(points > count(20) * parts.len(), "{name}: {points}");
     assert!(farthest <= TOLERANCE, "{name}: {farthest}");
-    // Back: the surface goes around the inside of the thin part, no farther from a point than that is.
+    // Back: the surface goes around the inside of the thin part, no farther from a point than that
+    // is.
     for _ in 0..count(2000) {
         let (_, point) = of_mesh(&mut random, mesh);
         let own = on_surface(sum, point).map_or(f64::INFINITY, |found| found.distance(point));

@@ -1,4 +1,5 @@
-//! Bounds that proofs rest on: of random scenes over all kernels and primitives, with kinks, and of composed functions.
+//! Bounds that proofs rest on: of random scenes over all kernels and primitives, with kinks, and of
+//! composed functions.
 
 use contact::{Bulge, Squashed};
 use field::{Ball, Blend, Exponentials, Implicit, Kernel, Slack, Variation};
@@ -7,8 +8,8 @@ use std::sync::Arc;
 use trials::scenes::{self, KINDS, Kind};
 use trials::{Random, count};
 
-/// Holds the bounds in some balls against samples. Returns the largest shares of the bounds that were met: of changes of the
-/// slope, and of its distance from its linear interpolant.
+/// Holds the bounds in some balls against samples. Returns the largest shares of the bounds that
+/// were met: of changes of the slope, and of its distance from its linear interpolant.
 fn check(
     name: &str,
     function: &dyn Implicit,

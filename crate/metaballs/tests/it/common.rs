@@ -3,7 +3,7 @@
 use glam::DVec3;
 use trials::Random;
 
-/// A sphere of about the radius 1 of `rings` rings, its vertices disturbed.
+/// Returns a sphere of about the radius 1 of `rings` rings, its vertices disturbed.
 pub fn lumpy_sphere(rings: u32, seed: u64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut random = Random::new(seed);
     let around = 2 * rings;

@@ -3,7 +3,7 @@
 use crate::common::lumpy_sphere;
 use field::{Ball, Enclosure, Implicit, Jet, THRESHOLD};
 use glam::DVec3;
-use metaballs::{Error, Kind, Metaballs, circumscribed, nearest};
+use metaballs::{Error, Kind, Metaballs, circumcircle, nearest};
 use trials::{Random, count};
 use wide::f32x8;
 
@@ -28,7 +28,7 @@ fn plain(facets: &[[DVec3; 3]], kind: Kind, k: f64, p: DVec3) -> Jet<f64> {
     let mut sum = Jet::zero();
     for facet in facets {
         let (from, radius) = match kind {
-            Kind::Spherical => circumscribed(facet),
+            Kind::Spherical => circumcircle(facet),
             Kind::Triangular { thickness } => (mesh::closest_point(facet, p), thickness),
         };
         let value = libm::exp(-k * (p.distance(from) - radius));
@@ -71,7 +71,7 @@ fn cut_sum_is_the_sum_of_all_facets_within_reach() {
             for facet in &facets {
                 let (distance, radius) = match kind {
                     Kind::Spherical => {
-                        let (center, radius) = circumscribed(facet);
+                        let (center, radius) = circumcircle(facet);
                         (p.distance(center), radius)
                     }
                     Kind::Triangular { thickness } => {
@@ -205,7 +205,8 @@ fn surface_is_within_its_support() {
 
 #[test]
 fn surface_has_the_stated_thickness() {
-    // A plane of facets: above the inside of a facet d₀, above an edge d₀ + ln 2/k, above a vertex of six d₀ + ln 6/k.
+    // A plane of facets: above the inside of a facet d₀, above an edge d₀ + ln 2/k, above a vertex
+    // of six d₀ + ln 6/k.
     let (positions, triangles) = grid(20);
     let kind = Kind::Triangular { thickness: 0.2 };
     let k = 50.0;
@@ -260,7 +261,7 @@ fn degenerate_facets_are_segments_and_points() {
 #[test]
 fn cost_grows_with_what_is_near() {
     // Facets found near the surface, with lengths in proportion to the mean edge.
-    let found = |rings: u32| {
+    let [coarse, fine] = [24, 150].map(|rings| {
         let edge = 3.0 / f64::from(rings);
         let kind = Kind::Triangular {
             thickness: 0.2 * edge,
@@ -271,8 +272,7 @@ fn cost_grows_with_what_is_near() {
             .map(|_| balls.near(random.direction()).count())
             .sum();
         near as f64 / 200.0
-    };
-    let [coarse, fine] = [24, 150].map(found);
+    });
     assert!(fine < 1.3 * coarse, "{coarse} {fine}");
 }
 

@@ -1,4 +1,5 @@
-//! Motion against what is known of it: conservation, periods, sags, slopes, blows; and that nothing passes through anything.
+//! Motion against what is known of it: conservation, periods, sags, slopes, blows; and that nothing
+//! passes through anything.
 
 use glam::DVec3;
 use motion::{Body, Obstacle, Settings, Setup, Simulation};
@@ -20,13 +21,13 @@ fn body(nodes: Vec<Node>, curves: Vec<Vec<usize>>) -> Body {
     }
 }
 
-/// A straight chain along x.
+/// Returns a straight chain along x.
 fn chain(count: usize, spacing: f64, radius: f64) -> Body {
     let nodes = (0..count).map(|i| node(i as f64 * spacing, 0.0, 0.0, radius));
     body(nodes.collect(), vec![(0..count).collect()])
 }
 
-/// A spine with two limbs on each side, not in a plane.
+/// Returns a spine with two limbs on each side, not in a plane.
 fn animal() -> Body {
     let nodes = vec![
         node(0.0, 0.0, 0.0, 0.4),
@@ -86,8 +87,8 @@ fn floor(y: f64) -> Obstacle {
     }
 }
 
-/// These pushes are kept ones: after about one in a hundred others the energy grows, by a tenth on soft
-/// springs, where limbs go deep into flesh, and by a fifth on the stiffest.
+/// Pushes that are kept: after about one in a hundred others the energy grows, by a tenth on
+/// soft springs, where limbs go deep into flesh, and by a fifth on the stiffest.
 #[test]
 fn energy_does_not_grow_in_ten_thousand_steps() {
     for stiffness in [10.0, 1000.0, 1e6] {
@@ -462,7 +463,7 @@ fn folds_and_bodies_do_not_pass_through_each_other() {
 }
 
 #[test]
-fn pinned_nodes_go_where_they_are_taken() {
+fn nodes_that_are_pinned_go_where_they_are_taken() {
     let mut tail = chain(5, 0.5, 0.2);
     tail.pinned = vec![0];
     let mut simulation = simulation(vec![tail], vec![], Settings::default());

@@ -1,4 +1,4 @@
-//! The same bits on every platform: run natively and as WebAssembly.
+//! Bits of results, which are the same on every platform: run natively and as WebAssembly.
 
 use glam::DVec3;
 use motion::{Body, Obstacle, Settings, Setup, Simulation};

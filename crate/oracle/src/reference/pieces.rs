@@ -418,7 +418,7 @@ fn outline(control: &[DVec3; 4]) -> f64 {
     control.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
 
-/// A square around a polygon, in its plane.
+/// Returns a square around a polygon, in its plane.
 fn around(rings: &[Vec<DVec3>]) -> Piece {
     let mut points = rings.iter().flatten();
     let origin = points.next().copied().unwrap_or_default();
@@ -470,7 +470,7 @@ fn flat(skeleton: &Skeleton) -> Option<(DVec3, Vec<(DVec3, DVec3)>)> {
     }
 }
 
-/// A polygon's edges.
+/// Returns a polygon's edges.
 fn edges(rings: &[Vec<DVec3>]) -> impl Iterator<Item = (DVec3, DVec3)> {
     rings
         .iter()

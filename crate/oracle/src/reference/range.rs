@@ -22,7 +22,7 @@ impl Range {
 /// start, 1 − f where it is above 1, and a bulge between.
 #[derive(Clone)]
 pub struct Deformation {
-    /// From where on it is not 0.
+    /// Value of the field from which on it is not 0.
     pub start: f64,
     formula: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
     /// The largest slope in the bulge.
@@ -42,7 +42,7 @@ const ENLARGED: f64 = 1.05;
 const PARTS: u32 = 16;
 
 impl Deformation {
-    /// A deformation by a formula that holds between its start and 1.
+    /// Returns a deformation by a formula that holds between its start and 1.
     #[must_use]
     pub fn new(start: f64, formula: Arc<dyn Fn(f64) -> f64 + Send + Sync>) -> Self {
         let at = |i: u32| start + (1.0 - start) * f64::from(i) / f64::from(SAMPLES);
@@ -55,7 +55,7 @@ impl Deformation {
         }
     }
 
-    /// Its value.
+    /// Returns g.
     pub(super) fn value(&self, f: f64) -> f64 {
         match f {
             f if f < self.start => 0.0,
@@ -64,13 +64,13 @@ impl Deformation {
         }
     }
 
-    /// Its slope, by a difference.
+    /// Returns its slope, by a difference.
     pub(super) fn slope(&self, f: f64) -> f64 {
         const STEP: f64 = 1e-6;
         (self.value(f + STEP) - self.value(f - STEP)) / (2.0 * STEP)
     }
 
-    /// Its range over an interval of f.
+    /// Returns its range over an interval of f.
     pub(super) fn range(&self, of: Range) -> Range {
         let mut all = Range {
             low: f64::INFINITY,

@@ -38,7 +38,7 @@ struct Stalk {
 #[derive(Clone, Debug)]
 struct Part {
     limb: usize,
-    /// From and to which arc length of it.
+    /// Arc lengths of its ends.
     stretch: [f64; 2],
     primitive: [Primitive; 1],
     bounds: Pieces,
@@ -50,7 +50,7 @@ struct Cluster {
     limb: usize,
     /// Parts of it.
     parts: [f64; 2],
-    /// On which side of the ball the planes before and behind it are; 0 at an end of the limb.
+    /// Sides of the ball on which the planes before and behind it are; 0 at an end of the limb.
     sides: [i8; 2],
     /// Whether there is a place for every point of the ball, here or in those that it goes on in.
     lasting: bool,
@@ -150,7 +150,7 @@ impl SkeletonTerms {
         least
     }
 
-    /// All places of a point: those whose planes hold it, ends and branches.
+    /// Returns all places of a point: those whose planes hold it, ends and branches.
     fn places(&self, point: DVec3) -> Vec<Place> {
         let mut found = Vec::new();
         for (number, limb) in (0..).zip(&self.limbs) {

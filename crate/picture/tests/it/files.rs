@@ -264,9 +264,9 @@ fn animations_come_back_frame_by_frame() {
 #[test]
 fn dots_mix_what_a_gif_lacks() {
     // A slow ramp through far more than 256 colours.
-    let ramp = |x: u32, y: u32| [(x / 2) as u8, (y / 2) as u8, ((x + y) / 4) as u8, 255];
     let pixels = (0..512 * 512)
-        .flat_map(|i| ramp(i % 512, i / 512))
+        .map(|i| (i % 512, i / 512))
+        .flat_map(|(x, y)| [(x / 2) as u8, (y / 2) as u8, ((x + y) / 4) as u8, 255])
         .collect();
     let picture = Picture::new(512, 512, pixels).expect("a picture");
     let error = |dither| {

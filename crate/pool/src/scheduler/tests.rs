@@ -263,8 +263,8 @@ fn worker_smooths_its_own_tiles_then_helps() {
     assert!(slow(Pass::Full) + slow(Pass::Smooth) < tiles.len() / 2 + 2);
 }
 
-/// How many tiles are made smooth by another worker than the one that has sampled them, with two workers and a picture of
-/// which each has a half.
+/// How many tiles are made smooth by another worker than the one that has sampled them, with two
+/// workers and a picture of which each has a half.
 fn helped(edges: fn(&Tile) -> u64) -> usize {
     let mut crowd = Crowd::new(2);
     crowd.edges = edges;

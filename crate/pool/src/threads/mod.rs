@@ -21,21 +21,21 @@ pub type Outlet<'a> = dyn Fn(Vec<u8>) -> bool + 'a;
 #[derive(Clone, Copy)]
 pub struct Program {
     /// Serves requests until its inbox is closed, or what it sends is not taken any more. The
-    /// number is that of the work wanted from it, as the last request said; it changes when the present
-    /// work is given up.
+    /// number is that of the work wanted from it, as the last request said; it changes when the
+    /// present work is given up.
     pub serve: fn(&Receiver<Vec<u8>>, &AtomicU64, &Outlet<'_>),
     /// Reads the number of the work that a packed request wants.
     pub number: fn(&[u8]) -> Option<u64>,
 }
 
-/// The program of tracing workers, with the root finders for comparison.
+/// The program of tracing workers that have the root finders for comparison, as all have here.
+pub const DIGGER: Program = TRACER;
+
+/// The program of tracing workers.
 pub const TRACER: Program = Program {
     serve: trace,
     number: generation,
 };
-
-/// The program of tracing workers that have the root finders for comparison.
-pub const COMPARING: Program = TRACER;
 
 /// The program of tools workers.
 pub const TOOLS: Program = Program {
@@ -140,7 +140,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         manager: impl FnOnce(PlatformWorkers) -> M,
     ) -> Self {
         let mut manager = manager(PlatformWorkers::new(program, count, repaint));
-        manager.open(Ok(()), 0.0);
+        manager.loaded(Ok(()), 0.0);
         let inner = Inner {
             manager: RefCell::new(manager),
             clock: Instant::now(),
@@ -150,13 +150,13 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         }
     }
 
-    /// Whether the workers can do what needs this program: there is one for all tracing.
-    pub fn serves(&self, _: Program) -> bool {
+    /// Has the workers' program loaded; a thread has it.
+    pub fn load(&self) {}
+
+    /// Whether the workers' program is there, as it always is.
+    pub fn is_loaded(&self) -> bool {
         true
     }
-
-    /// Loads the workers' program, which a thread has.
-    pub fn load(&self) {}
 
     /// Asks the manager.
     pub fn ask<T>(&self, question: impl FnOnce(&mut M, f64) -> T) -> T {

@@ -13,10 +13,10 @@ struct Thread {
     incarnation: u64,
 }
 
-/// Index of a thread, which thread of that index it was, and its message.
+/// A message with the index of its thread, and which thread of that index it was.
 type Report = (usize, u64, Message);
 
-/// Number of no work.
+/// No work has this number.
 pub const NONE: u64 = u64::MAX;
 
 /// Threads that run the same program.
@@ -83,9 +83,8 @@ impl Workers for Threads {
                     repaint();
                     sent
                 };
-                if let Err(panic) = catch_unwind(AssertUnwindSafe(|| {
-                    serve(&inbox, &shared, &|bytes| send(Message::Bytes(bytes)));
-                })) {
+                let work = || serve(&inbox, &shared, &|bytes| send(Message::Bytes(bytes)));
+                if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
                     let reason = panic
                         .downcast_ref::<String>()
                         .cloned()

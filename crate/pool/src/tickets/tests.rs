@@ -99,7 +99,7 @@ fn broken_file_is_an_error_not_a_failure_of_the_worker() {
     assert!(message.contains("PLY"), "{message}");
 }
 
-/// Workers of which none is ever started.
+/// A worker that is never started.
 struct Refused(u32);
 
 impl Workers for Refused {
@@ -118,7 +118,7 @@ impl Workers for Refused {
 #[test]
 fn jobs_fail_if_no_worker_can_be_started() {
     let mut jobs = Jobs::new(Refused(0));
-    jobs.open(Ok(()), 0.0);
+    jobs.loaded(Ok(()), 0.0);
     // The second job has one more attempt.
     for attempts in [crate::life::ATTEMPTS, crate::life::ATTEMPTS + 1] {
         let (_, news) = jobs.submit(read("a.obj"), 0.0);
@@ -137,10 +137,10 @@ fn jobs_fail_if_the_tools_cannot_be_loaded() {
     let mut jobs = Jobs::new(Refused(0));
     let (_, news) = jobs.submit(read("a.obj"), 0.0);
     assert!(news.borrow().result.is_none() && !jobs.is_busy());
-    jobs.open(Err(String::from("they are offline. Wait")), 0.0);
+    jobs.loaded(Err(String::from("offline")), 0.0);
     let result = news.borrow_mut().result.take();
     assert!(
-        matches!(&result, Some(Err(reason)) if reason.ends_with("offline. Wait and try again.")),
+        matches!(&result, Some(Err(reason)) if reason.contains("offline")),
         "{result:?}"
     );
     assert_eq!(jobs.workers.0, 0);

@@ -15,14 +15,12 @@ use workers::describe;
 
 pub use workers::WebWorkers as PlatformWorkers;
 
-/// The program that workers run.
-#[derive(Clone, Copy, PartialEq, Eq)]
+/// The program that workers run: their script and its wasm, relative to the page.
+#[derive(Clone, Copy)]
 pub struct Program {
-    /// The script of a worker, relative to the page.
     script: &'static str,
-    /// Path of its wasm, relative to the page.
     wasm: &'static str,
-    /// Name in messages.
+    /// Subject of a sentence about it.
     name: &'static str,
 }
 
@@ -33,8 +31,8 @@ pub const TRACER: Program = Program {
     name: "The tracer",
 };
 
-/// The program of tracing workers that have the root finders for comparison.
-pub const COMPARING: Program = Program {
+/// The program of tracing workers that have the root finders for comparison, too.
+pub const DIGGER: Program = Program {
     script: "./digger_worker.js",
     wasm: "./digger_bg.wasm",
     name: "The root finders for comparison (`digger`)",
@@ -108,15 +106,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         Self { inner }
     }
 
-    /// Whether the workers can do what needs this program: the larger build of the tracer, once it
-    /// is there, does all that the other one does.
-    pub fn serves(&self, program: Program) -> bool {
-        let inner = &mut *self.inner.borrow_mut();
-        inner.program == program
-            || inner.program == COMPARING && inner.manager.workers().has_module()
-    }
-
-    /// Loads the workers' program, unless that was done.
+    /// Has the workers' program loaded, unless that was done.
     pub fn load(&self) {
         let inner = &mut *self.inner.borrow_mut();
         if inner.is_loading || inner.manager.workers().has_module() {
@@ -131,11 +121,8 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
             let crew = Self { inner };
             crew.ask(|manager, now| {
                 let outcome = module.map(|module| manager.workers().set_module(module));
-                let outcome = outcome.map_err(|error| {
-                    let reason = describe(error);
-                    format!("{name} could not be loaded: {reason}. Check the connection")
-                });
-                manager.open(outcome, now);
+                let trouble = |error| format!("{name} could not be loaded: {}", describe(error));
+                manager.loaded(outcome.map_err(trouble), now);
             });
             {
                 let inner = &mut *crew.inner.borrow_mut();
@@ -144,6 +131,11 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
             }
             crew.watch();
         });
+    }
+
+    /// Whether the workers' program is there.
+    pub fn is_loaded(&self) -> bool {
+        self.inner.borrow_mut().manager.workers().has_module()
     }
 
     /// Asks the manager.

@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 use web_sys::{Response, Window};
 
-/// Milliseconds between looks for hanging workers while something is being done.
+/// How often hanging workers are looked for while something is being done, milliseconds.
 const TICK: i32 = 120;
 
 /// The page's window.

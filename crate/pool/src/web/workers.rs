@@ -123,8 +123,8 @@ impl Workers for WebWorkers {
     }
 }
 
-/// Returns the message of an error event. A worker whose script cannot be loaded sends one without
-/// a message.
+/// The message of an error event. A worker whose script cannot be loaded sends one without a
+/// message.
 fn reason(event: &JsValue, script: &str) -> String {
     event
         .dyn_ref::<ErrorEvent>()

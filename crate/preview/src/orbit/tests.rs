@@ -9,7 +9,7 @@ fn near(a: DVec3, b: DVec3) -> bool {
     a.distance(b) <= 1e-9 * (1.0 + a.length())
 }
 
-fn tilted() -> Camera {
+fn camera_from_above() -> Camera {
     Camera {
         eye: DVec3::new(3.0, -2.0, 5.0),
         target: DVec3::new(0.5, 0.25, -1.0),
@@ -21,7 +21,7 @@ fn tilted() -> Camera {
 
 #[test]
 fn orbit_keeps_target_distance_and_up() {
-    let before = tilted();
+    let before = camera_from_above();
     let after = orbit(before, 0.3, -0.1);
     assert_eq!(after.target, before.target);
     assert_eq!(after.up, before.up);
@@ -32,7 +32,7 @@ fn orbit_keeps_target_distance_and_up() {
 
 #[test]
 fn nothing_moves_without_the_pointer() {
-    let camera = tilted();
+    let camera = camera_from_above();
     assert!(near(orbit(camera, 0.0, 0.0).eye, camera.eye));
     assert!(near(pan(camera, 0.0, 0.0, [3, 2]).eye, camera.eye));
     assert!(near(zoom(camera, 1.0).eye, camera.eye));
@@ -41,7 +41,7 @@ fn nothing_moves_without_the_pointer() {
 #[test]
 fn points_in_front_follow_the_pointer() {
     // A point of the scene on the near side of the target must go right and down with the pointer.
-    let camera = tilted();
+    let camera = camera_from_above();
     let point = camera.target + (camera.eye - camera.target) * 0.1;
     let on_screen = |c: Camera| {
         let p = c.projection(1, 1);
@@ -56,23 +56,23 @@ fn points_in_front_follow_the_pointer() {
 
 #[test]
 fn a_full_turn_comes_back() {
-    let mut camera = tilted();
+    let mut camera = camera_from_above();
     for _ in 0..20 {
         camera = orbit(camera, 0.1, 0.0);
     }
-    assert!(near(camera.eye, tilted().eye));
+    assert!(near(camera.eye, camera_from_above().eye));
 }
 
 #[test]
 fn orbit_undoes_itself() {
-    let there = orbit(tilted(), 0.2, 0.15);
-    assert!(near(orbit(there, -0.2, -0.15).eye, tilted().eye));
+    let there = orbit(camera_from_above(), 0.2, 0.15);
+    assert!(near(orbit(there, -0.2, -0.15).eye, camera_from_above().eye));
 }
 
 #[test]
 fn the_poles_stop_without_a_flip() {
     for sign in [1.0, -1.0] {
-        let mut camera = tilted();
+        let mut camera = camera_from_above();
         let right = camera.projection(1, 1).world_from_view.x_axis;
         for _ in 0..200 {
             camera = orbit(camera, 0.0, 0.03 * sign);
@@ -102,7 +102,7 @@ fn orbit_leaves_a_pole_smoothly() {
 
 #[test]
 fn pan_moves_the_target_with_the_pointer() {
-    let camera = tilted();
+    let camera = camera_from_above();
     let size = [300, 200];
     let after = pan(camera, 0.25, 0.125, size);
     assert!(near(after.eye - after.target, camera.eye - camera.target));
@@ -114,7 +114,7 @@ fn pan_moves_the_target_with_the_pointer() {
 
 #[test]
 fn zoom_has_limits_and_keeps_the_direction() {
-    let camera = tilted();
+    let camera = camera_from_above();
     let direction = (camera.eye - camera.target).normalize();
     let mut nearer = camera;
     let mut farther = camera;
@@ -179,7 +179,7 @@ fn frame_sees_everything_and_no_more_than_needed() {
     };
     let scene = Scene {
         elements: vec![ball(-7.0), ball(4.0), ball(20.0)],
-        camera: tilted(),
+        camera: camera_from_above(),
         ..Scene::default()
     };
     for size in [[400, 300], [300, 400], [1000, 10]] {

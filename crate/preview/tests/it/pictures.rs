@@ -112,12 +112,12 @@ fn colours_at_the_corners_of_a_triangle_are_mixed() {
         [10.0 / 31.0, 21.0 / 63.0, 1.0],
     ];
     let mut scene = ball(Finish::default(), Vec::new());
-    let glow = |ambient| Finish {
+    let finishes = [[0.9; 3], [0.2, 0.9, 0.3]].map(|ambient| Finish {
         ambient,
         diffuse: [0.0; 3],
         ..Finish::default()
-    };
-    scene.finishes = vec![glow([0.9; 3]), glow([0.2, 0.9, 0.3])];
+    });
+    scene.finishes = finishes.to_vec();
     let flat = Shape::Triangle {
         corners,
         radius: 0.0,
@@ -153,16 +153,14 @@ fn colours_at_the_corners_of_a_triangle_are_mixed() {
             let mut seen = 0;
             for (x, y) in (0..48).flat_map(|y| (0..48).map(move |x| (x, y))) {
                 let point = place(x, y);
-                let opposite = |k: usize| area(point, corners[(k + 1) % 3], corners[(k + 2) % 3]);
-                let shares = [0, 1, 2].map(|k| opposite(k) / whole);
+                let shares = [0, 1, 2]
+                    .map(|k| area(point, corners[(k + 1) % 3], corners[(k + 2) % 3]) / whole);
                 if shares.iter().all(|share| *share > 1e-3) {
                     seen += 1;
-                    let mixed = |channel: usize| -> f64 {
-                        (0..3)
-                            .map(|k| shares[k] * f64::from(colors[k][channel]))
-                            .sum()
-                    };
-                    let expected = [0, 1, 2].map(|channel| 0.9 * mixed(channel));
+                    let expected = [0, 1, 2].map(|channel| {
+                        let parts = (0..3).map(|k| shares[k] * f64::from(colors[k][channel]));
+                        0.9 * parts.sum::<f64>()
+                    });
                     let drawn = picture.at(x, y);
                     assert!(
                         close(drawn, expected),
@@ -525,8 +523,7 @@ fn a_device_with_little_memory_draws_what_fits() {
 /// A unit ball of triangles, `rings` from pole to pole, all of one look: vertices and triangles.
 fn round(rings: u32, look: [f32; 10]) -> (Vec<u8>, Vec<u8>) {
     let across = 2 * rings;
-    let byte = |x: f32| (255.0 * x + 0.5) as u8;
-    let [ar, ag, ab, dr, dg, db, sr, sg, sb, shine] = look.map(byte);
+    let [ar, ag, ab, dr, dg, db, sr, sg, sb, shine] = look.map(|x| (255.0 * x + 0.5) as u8);
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..=rings {
         for k in 0..across {

@@ -1,8 +1,8 @@
-//! Each shape, pixel by pixel, against the reference: silhouettes, normals and what hides what.
+//! Shapes, pixel by pixel, against the reference: silhouettes, normals and what hides what.
 
 use crate::common::gpu::{Gpu, gpus};
 use crate::common::reference::{self, Met};
-use crate::common::scenes::{arc, by_index, by_normal, index_of, look, turned};
+use crate::common::scenes::{arc, by_index, by_normal, index_of, look, rotation};
 use core::f64::consts::TAU;
 use glam::{DMat3, DQuat, DVec3};
 use scene::{Camera, Quadric, Scene, Shape};
@@ -11,8 +11,8 @@ use trials::Random;
 
 const SIZE: [u32; 2] = [56, 42];
 
-/// Reference picture: rays through the middle of every pixel.
-fn seen(scene: &Scene) -> Vec<Option<Met>> {
+/// Traces the reference picture, by rays through the middle of every pixel.
+fn reference_picture(scene: &Scene) -> Vec<Option<Met>> {
     let projection = scene.camera.projection(SIZE[0], SIZE[1]);
     let mut all = Vec::new();
     for y in 0..SIZE[1] {
@@ -40,7 +40,7 @@ fn uniform<T: PartialEq>(x: u32, y: u32, of: impl Fn(u32, u32) -> T) -> bool {
 /// Draws shapes, compares every pixel, and counts those which show something.
 fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u32 {
     let scene = by_index(shapes, camera);
-    let expected = seen(&scene);
+    let expected = reference_picture(&scene);
     let at = |x: u32, y: u32| expected[(y * SIZE[0] + x) as usize];
     let index = |x: u32, y: u32| at(x, y).map(|met| met.element);
     let picture = gpu.draw(&scene, SIZE);
@@ -81,9 +81,9 @@ fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u3
         }
     }
     let name = &gpu.name;
-    // The cells of a quadric are flat, so its outlines are off by a small part of a pixel; where two
-    // of them nearly touch, a pixel that is uniform in the reference may see between them, and at the
-    // rim of its box the normals of a sliver's corners lie far apart.
+    // The cells of a quadric are flat, so its outlines are off by a small part of a pixel; where
+    // two of them nearly touch, a pixel that is uniform in the reference may see between them, and
+    // at the rim of its box the normals of a sliver's corners lie far apart.
     let has_cells = shapes.iter().any(|s| matches!(s, Shape::Quadric(_)));
     let (few, share) = if has_cells { (2, 0.04) } else { (0, 0.02) };
     assert!(
@@ -105,7 +105,7 @@ fn compare_pixels(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) -> u3
     hits
 }
 
-/// The same for a view in which something must be seen.
+/// Compares every pixel of shapes in a view in which something must be seen.
 fn compare(gpu: &Gpu, what: &str, shapes: &[Shape], camera: Camera) {
     let hits = compare_pixels(gpu, what, shapes, camera);
     assert!(hits > 0, "{what} on {}: nothing drawn", gpu.name);
@@ -190,7 +190,7 @@ fn arcs_of_every_angle() {
         6.3,
     ] {
         let angle = f64::min(angle, core::f64::consts::TAU);
-        let shape = arc(DVec3::ZERO, turned(), 0.8, angle, 0.25);
+        let shape = arc(DVec3::ZERO, rotation(), 0.8, angle, 0.25);
         compare_around(&format!("arc of {angle}"), shape, DVec3::ZERO, 1.0);
     }
 }
@@ -199,15 +199,15 @@ fn arcs_of_every_angle() {
 fn arcs_thin_fat_flat_and_self_crossing() {
     let thin = arc(DVec3::ZERO, DQuat::IDENTITY, 1.0, 4.0, 0.03);
     compare_around("thin", thin, DVec3::ZERO, 1.0);
-    let fat = arc(DVec3::ZERO, turned(), 0.5, 5.0, 0.49);
+    let fat = arc(DVec3::ZERO, rotation(), 0.5, 5.0, 0.49);
     compare_around("fat", fat, DVec3::ZERO, 1.0);
-    let spindle = arc(DVec3::ZERO, turned(), 0.4, 4.0, 0.7);
+    let spindle = arc(DVec3::ZERO, rotation(), 0.4, 4.0, 0.7);
     compare_around("spindle", spindle, DVec3::ZERO, 1.0);
-    let closed_spindle = arc(DVec3::ZERO, turned(), 0.4, core::f64::consts::TAU, 0.7);
+    let closed_spindle = arc(DVec3::ZERO, rotation(), 0.4, core::f64::consts::TAU, 0.7);
     compare_around("closed spindle", closed_spindle, DVec3::ZERO, 1.0);
     // Nearly straight: a piece 2 long of a circle of radius 500.
-    let center = turned() * DVec3::new(-500.0, 0.0, 0.0);
-    let rotation = turned() * DQuat::from_rotation_z(-0.002);
+    let center = rotation() * DVec3::new(-500.0, 0.0, 0.0);
+    let rotation = rotation() * DQuat::from_rotation_z(-0.002);
     let bent = arc(center, rotation, 500.0, 0.004, 0.2);
     for gpu in gpus() {
         compare(
@@ -272,7 +272,7 @@ fn pipes() {
 
 #[test]
 fn boxes() {
-    let rotation = turned();
+    let rotation = rotation();
     for (what, axes) in [
         ("cube", [DVec3::X, DVec3::Y, DVec3::Z]),
         ("board", [DVec3::X, DVec3::Y * 0.4, DVec3::Z * 0.05]),
@@ -316,7 +316,7 @@ fn quadrics() {
     let cut = |square: DMat3, linear: DVec3, constant: f64| {
         let half = DVec3::new(0.9, 1.0, 0.8);
         let mut quadric = Quadric::new(square, linear, constant, -half, half).expect("a quadric");
-        quadric.axes = quadric.axes.map(|axis| turned() * axis);
+        quadric.axes = quadric.axes.map(|axis| rotation() * axis);
         Shape::Quadric(Box::new(quadric))
     };
     let diagonal = |x, y, z| DMat3::from_diagonal(DVec3::new(x, y, z));
@@ -392,7 +392,7 @@ fn eyes_inside_see_the_inside() {
 #[test]
 fn eyes_in_the_box_but_outside_the_shape() {
     // In the hole of a ring, and beside a slanted rod.
-    let ring = arc(DVec3::ZERO, turned(), 1.0, 5.5, 0.2);
+    let ring = arc(DVec3::ZERO, rotation(), 1.0, 5.5, 0.2);
     let rod = cylinder([-1.0; 3], [1.0; 3], 0.1);
     for gpu in gpus() {
         let mut hits = [0; 2];
@@ -464,7 +464,7 @@ fn tiny_and_huge_worlds_look_the_same() {
         let shapes = [
             sphere(at(0.3, 0.2, 0.1), 0.5 * scale),
             cylinder(at(-1.0, -0.5, 0.0), at(1.0, 0.3, 0.2), 0.2 * scale),
-            arc(offset * scale, turned(), 0.8 * scale, 4.0, 0.2 * scale),
+            arc(offset * scale, rotation(), 0.8 * scale, 4.0, 0.2 * scale),
             triangle(
                 [at(-1.0, 0.0, 0.5), at(1.0, 0.2, -0.5), at(0.0, 1.0, 0.0)],
                 0.05 * scale,
@@ -485,7 +485,7 @@ fn a_grain_far_from_the_middle_of_a_large_scene_is_sharp() {
         sphere([-1000.0, 0.0, 0.0], 1.0),
         sphere([far, 0.0, 0.0], 1e-3),
         cylinder([far, -0.0015, 0.0], [far + 0.001, 0.0015, 0.0008], 3e-4),
-        arc(DVec3::new(far, 0.0, 0.0), turned(), 1.2e-3, 4.0, 2e-4),
+        arc(DVec3::new(far, 0.0, 0.0), rotation(), 1.2e-3, 4.0, 2e-4),
     ];
     let camera = look([far + 0.002, 0.001, 0.006], [far, 0.0, 0.0], 40.0);
     for gpu in gpus() {
@@ -517,7 +517,7 @@ fn a_mesh_of_patches_has_no_gaps() {
     }
     for gpu in gpus() {
         for (distance, fov) in [(3.0, 20.0), (300.0, 0.2), (3000.0, 0.02)] {
-            let way = turned() * DVec3::Z;
+            let way = rotation() * DVec3::Z;
             let way = way.with_z(way.z.abs() + 1.0).normalize();
             let camera = Camera {
                 eye: way * distance,

@@ -1,5 +1,6 @@
-//! The draft of every example of the gallery beside its traced picture, with the offset surfaces and with a mesh of the true surface: a
-//! contact sheet to look at, `target/tmp/drafts-N.png`, and what can be said of it in numbers.
+//! The draft of every example of the gallery beside its traced picture, with the offset surfaces
+//! and with a mesh of the true surface: a contact sheet to look at, `target/tmp/drafts-N.png`, and
+//! what can be said of it in numbers.
 
 use crate::common::gpu::{Gpu, Picture, gpus};
 use preview::{Draft, Mesh, Sampling, looks};
@@ -43,7 +44,7 @@ fn scene(name: &str) -> Scene {
 }
 
 /// The traced picture of an example, as the gallery shows it.
-fn traced(name: &str) -> Picture {
+fn gallery_picture(name: &str) -> Picture {
     let file = std::fs::File::open(examples().join(format!("{name}.png"))).unwrap();
     let mut decoder = png::Decoder::new(std::io::BufReader::new(file));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
@@ -62,7 +63,8 @@ fn traced(name: &str) -> Picture {
 /// Most elements of a scene that is meshed here: unoptimised code takes long for more.
 const MOST: usize = 150;
 
-/// Draws a scene as offset surfaces, and, if it has a finite soft surface of a moderate size, as a mesh.
+/// Draws a scene as offset surfaces, and, if it has a finite soft surface of a moderate size, as a
+/// mesh.
 fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>) {
     let mut draft = Draft::new(&gpu.device, &gpu.queue);
     draft.set_sampling(Sampling::Four);
@@ -95,8 +97,8 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
     (plain, Some(gpu.render(&mut draft, &scene.camera, size)))
 }
 
-/// Mean difference of two pictures of one size, of 255, after both were made coarser: where things are and what colours they have counts,
-/// not their edges.
+/// Mean difference of two pictures of one size, of 255, after both were made coarser: where things
+/// are and what colours they have counts, not their edges.
 fn difference(a: &Picture, b: &Picture) -> f64 {
     const BLOCK: u32 = 16;
     assert_eq!(a.size, b.size);
@@ -105,7 +107,7 @@ fn difference(a: &Picture, b: &Picture) -> f64 {
     for y in 0..height {
         for x in 0..width {
             for channel in 0..3 {
-                let mean = |picture: &Picture| {
+                let [mean_a, mean_b] = [a, b].map(|picture| {
                     let mut sum = 0.0;
                     for dy in 0..BLOCK {
                         for dx in 0..BLOCK {
@@ -114,8 +116,8 @@ fn difference(a: &Picture, b: &Picture) -> f64 {
                         }
                     }
                     sum / f64::from(BLOCK * BLOCK)
-                };
-                sum += (mean(a) - mean(b)).abs();
+                });
+                sum += (mean_a - mean_b).abs();
             }
         }
     }
@@ -169,7 +171,7 @@ fn drafts_of_all_examples_look_like_their_pictures() {
         let mut rows = Vec::new();
         for name in names {
             let scene = scene(name);
-            let traced = traced(name);
+            let traced = gallery_picture(name);
             let begun = std::time::Instant::now();
             let (plain, mesh) = drafts(gpu, &scene, traced.size);
             let off = difference(&plain, &traced);
@@ -193,8 +195,8 @@ fn drafts_of_all_examples_look_like_their_pictures() {
     assert!(bad.is_empty(), "{bad:#?}");
 }
 
-/// The largest differences of draft and mesh from the traced picture. Neither has shadows, and textures are their mean colours; what is
-/// seen in glass and mirrors is not drawn at all.
+/// The largest differences of draft and mesh from the traced picture. Neither has shadows, and
+/// textures are their mean colours; what is seen in glass and mirrors is not drawn at all.
 fn bounds(name: &str) -> (f64, f64) {
     match name {
         "glass-drops" | "diamond" | "pebbles" | "still-life" => (31.0, 25.0),

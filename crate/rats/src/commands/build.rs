@@ -46,8 +46,8 @@ macro_rules! flesh {
     };
 }
 
-/// Makes a routine that reads operands and hands their values, in this order, to a function; a list of
-/// options in brackets is handed on before them.
+/// Makes a routine that reads operands and hands their values, in this order, to a function; a list
+/// of options in brackets is handed on before them.
 ///
 /// All is read first; the function is only called if nothing was wrong.
 macro_rules! reads {
@@ -196,8 +196,8 @@ pub const fn structure(parameters: &'static [Parameter]) -> Form {
     }
 }
 
-/// The form of a command that is written in the language itself (see [`crate::library`]), which also
-/// tells its parameters.
+/// The form of a command that is written in the language itself (see [`crate::library`]), which
+/// also tells its parameters.
 pub const LIBRARY: Form = Form {
     parameters: &[],
     options: &[],

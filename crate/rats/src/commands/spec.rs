@@ -1,5 +1,5 @@
-//! The row of a command in the table: its name, its operands, its meaning, and the function that runs
-//! it.
+//! The row of a command in the table: its name, its operands, its meaning, and the function that
+//! runs it.
 
 use super::parameter::{Kind, OptionSpec, Parameter, join};
 use crate::evaluator::state::{Evaluator, Flow};
@@ -131,8 +131,8 @@ impl CommandSpec {
         }
     }
 
-    /// Whether a command of the same name that a text defines hides it, so that texts from before it still run: those of the
-    /// library, and those that are newer than the first published texts.
+    /// Whether a command of the same name that a text defines hides it, so that texts from before
+    /// it still run: those of the library, and those that are newer than the first published texts.
     #[must_use]
     pub fn yields(&self) -> bool {
         self.is_newer || self.is_library()

@@ -22,8 +22,8 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Deformations that are kept: a text is compiled at every keystroke, and while a control point is dragged only its move
-/// changes.
+/// Deformations that are kept: a text is compiled at every keystroke, and while a control point is
+/// dragged only its move changes.
 const KEPT: usize = 4;
 /// Deformations that are told of, at most: a loop may carry out many.
 const MOST_KEPT: usize = 64;
@@ -188,7 +188,8 @@ fn controls(text: &str, options: &Options<'_>) -> Outcome<Vec<Control>> {
     Ok(controls)
 }
 
-/// The range of a vector in a text, enlarged to the signs that open and close it where they are written.
+/// The range of a vector in a text, enlarged to the signs that open and close it where they are
+/// written.
 fn closed(text: &str, span: Range<usize>) -> Range<usize> {
     let parts = (
         text.get(..span.start),
@@ -330,7 +331,8 @@ fn corners(shape: &Shape) -> Option<Vec<DVec3>> {
     }
 }
 
-/// Normals of patches: each patch turns them as its plane turns; patches that shared a normal at a corner share the mean.
+/// Normals of patches: each patch turns them as its plane turns; patches that shared a normal at a
+/// corner share the mean.
 #[derive(Default)]
 struct Normals {
     sums: HashMap<[u64; 6], DVec3>,

@@ -33,7 +33,8 @@ impl Still {
 }
 
 impl Frozen {
-    /// For another moment of a frame whose own run froze these: nothing found yet, and where the frame's shapes are.
+    /// For another moment of a frame whose own run froze these: nothing found yet, and where the
+    /// frame's shapes are.
     pub fn of_frame(&self) -> Self {
         Self {
             found: Vec::new(),
@@ -41,8 +42,8 @@ impl Frozen {
         }
     }
 
-    /// Holds these shapes still: in the run of a frame it notes where they are, in that of another moment it puts them
-    /// back there.
+    /// Holds these shapes still: in the run of a frame it notes where they are, in that of another
+    /// moment it puts them back there.
     pub fn hold(&mut self, model: &mut Model<'_>, range: Range<usize>) {
         let parts = &mut model.parts[range];
         let number = self.found.len();

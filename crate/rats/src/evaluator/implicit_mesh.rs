@@ -17,7 +17,8 @@ use scene::{Form, Function, ImplicitMesh, Shape};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The least product of k and the mean edge: below it the balls of many facets add up, and the surface bulges.
+/// The least product of k and the mean edge: below it the balls of many facets add up, and the
+/// surface bulges.
 const LEAST: f64 = 10.0;
 
 const METABALLS: Choice<()> = choice!(
@@ -42,7 +43,8 @@ const TRIANGULAR: Choice<(f64, f64)> = choice!(
 /// `mesh` as an implicit surface.
 pub static MESH_OPTIONS: &[OptionSpec] = &[METABALLS.plain, SPHERICAL.plain, TRIANGULAR.plain];
 
-/// What surrounds the facets, and k, with the place of the numbers in the text; `None` if the mesh is to be drawn as it is.
+/// What surrounds the facets, and k, with the place of the numbers in the text; `None` if the mesh
+/// is to be drawn as it is.
 ///
 /// # Errors
 /// If `metaballs` has no kind, or two, or a kind stands alone.

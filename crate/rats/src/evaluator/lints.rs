@@ -1,8 +1,8 @@
-//! Warnings of scenes that are probably not meant: shapes outside the picture, an eye inside the surface,
-//! flesh too weak to be seen.
+//! Warnings of scenes that are probably not meant: shapes outside the picture, an eye inside the
+//! surface, flesh too weak to be seen.
 //!
-//! Lints are about the finished scene, so they are looked for only when the text has no errors. Those
-//! that evaluate the field are left out in large scenes: an edit must not wait for them.
+//! Lints are about the finished scene, so they are looked for only when the text has no errors.
+//! Those that evaluate the field are left out in large scenes: an edit must not wait for them.
 
 use super::state::Evaluator;
 use crate::Severity;
@@ -10,8 +10,8 @@ use field::{Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::{Element, Scene, Shape, SoftSurface, Surface};
 
-/// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]): limbs
-/// that taper take a millisecond each to prepare.
+/// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]):
+/// limbs that taper take a millisecond each to prepare.
 const MOST_WEIGHT: usize = 1000;
 /// Contacts up to which bulges are looked at.
 const MOST_CONTACTS: usize = 50;
@@ -135,8 +135,8 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Warns of flesh of one body that never reaches the threshold. Gives `false` when `left`, the evaluations that may still be made,
-    /// is used up.
+    /// Warns of flesh of one body that never reaches the threshold. Gives `false` when `left`, the
+    /// evaluations that may still be made, is used up.
     fn lint_body(&mut self, scene: &Scene, surface: &SoftSurface, left: &mut usize) -> bool {
         let terms = &surface.sum.primitives;
         let mut term = 0;
@@ -232,8 +232,8 @@ fn bone(shape: &Shape) -> Vec<DVec3> {
     }
 }
 
-/// A ball around a shape as it is drawn: soft flesh reaches a little farther than its radius. `None`
-/// for a plane, which is everywhere.
+/// A ball around a shape as it is drawn: soft flesh reaches a little farther than its radius.
+/// `None` for a plane, which is everywhere.
 fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
     if matches!(element.shape, Shape::Plane { .. }) {
         return None;

@@ -41,8 +41,8 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// All operands and options of a command, read as the table says. Within a chain its shapes leave
-    /// out the material's name, which is that of the chain.
+    /// All operands and options of a command, read as the table says. Within a chain its shapes
+    /// leave out the material's name, which is that of the chain.
     pub(super) fn given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
         let Some(spec) = command.spec else {
             return Ok(Given::default());

@@ -1,5 +1,5 @@
-//! Messages of the evaluator, and where they are shown: those about the library and its examples go to the place
-//! of the user's text that uses them.
+//! Messages of the evaluator, and where they are shown: those about the library and its examples go
+//! to the place of the user's text that uses them.
 
 use super::state::Evaluator;
 use crate::Severity;
@@ -56,8 +56,8 @@ impl Evaluator<'_> {
         self.report.is_new(file, severity, place)
     }
 
-    /// Tells that something is made anew under a name, so that what was made `earlier` was in vain. In a loop, a
-    /// branch or another file that may be meant, so nothing is said there.
+    /// Tells that something is made anew under a name, so that what was made `earlier` was in vain.
+    /// In a loop, a branch or another file that may be meant, so nothing is said there.
     pub(super) fn say_made_twice(
         &mut self,
         severity: Severity,

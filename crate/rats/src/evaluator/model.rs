@@ -1,8 +1,8 @@
 //! The shapes and objects that a running text has made.
 //!
-//! An object is a range of shapes. Transforms are applied at once to the shapes of their object, which
-//! comes to the same as applying them later: an inner object's before an outer one's. A body is an object whose shapes
-//! blend with no others.
+//! An object is a range of shapes. Transforms are applied at once to the shapes of their object,
+//! which comes to the same as applying them later: an inner object's before an outer one's. A body
+//! is an object whose shapes blend with no others.
 
 use crate::geometry::Transform;
 use crate::limits::{CURVE_WEIGHT, MAX_ELEMENTS, MAX_NESTED_OBJECTS, MAX_OBJECTS};
@@ -23,8 +23,8 @@ pub struct Part {
     pub element: Element,
     /// By how much it has been scaled, which its material's radius must follow.
     pub growth: f64,
-    /// From the coordinates of its command to those of the world, if they differ. (In a box, as there may be very
-    /// many shapes and few of them are moved.)
+    /// From the coordinates of its command to those of the world, if they differ. (In a box, as
+    /// there may be very many shapes and few of them are moved.)
     pub moved: Option<Box<DAffine3>>,
     /// Whether its command may have made other shapes too.
     pub repeated: bool,
@@ -353,8 +353,9 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Copies shapes as a new object, which becomes the last. Inside a body the copies join it; elsewhere each body among
-    /// them becomes a new one, which has the copy's name if all copies are of one body and else keeps its own.
+    /// Copies shapes as a new object, which becomes the last. Inside a body the copies join it;
+    /// elsewhere each body among them becomes a new one, which has the copy's name if all copies
+    /// are of one body and else keeps its own.
     ///
     /// # Errors
     /// If bodies would stand in a body; fatally, if there are too many shapes.
@@ -427,7 +428,8 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// Forgets all shapes and objects; objects that are open stay open. Bodies stay: what is open belongs to one.
+    /// Forgets all shapes and objects; objects that are open stay open. Bodies stay: what is open
+    /// belongs to one.
     pub fn clear(&mut self) {
         self.parts.clear();
         self.contacts.clear();

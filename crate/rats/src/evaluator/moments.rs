@@ -28,8 +28,8 @@ pub struct Exposure<'s, 'a> {
 }
 
 impl<'s, 'a: 's> Exposure<'s, 'a> {
-    /// The scenes at the middles of equal shares of the exposure: as many as the samples of a pixel if that is not too
-    /// much work. None if nothing moves.
+    /// The scenes at the middles of equal shares of the exposure: as many as the samples of a pixel
+    /// if that is not too much work. None if nothing moves.
     pub fn moments(self, frame: &Scene) -> Vec<Scene> {
         let rays = (frame.settings.samples * frame.settings.samples) as usize;
         let in_time = 4 * MAX_STEPS / self.steps.max(1);

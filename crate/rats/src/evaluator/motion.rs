@@ -1,8 +1,9 @@
 //! `motion`: skeletons that fall, swing and touch.
 //!
-//! The state in a frame follows from that in the frame before, so that frames are computed in order from frame 0 on. They are
-//! kept, and a text that is compiled again goes on from them. What a text says in frame 0 is what moves: in another frame a
-//! text whose variables change is run again for it, and for the places of pinned nodes in all frames up to the present one.
+//! The state in a frame follows from that in the frame before, so that frames are computed in order
+//! from frame 0 on. They are kept, and a text that is compiled again goes on from them. What a text
+//! says in frame 0 is what moves: in another frame a text whose variables change is run again for
+//! it, and for the places of pinned nodes in all frames up to the present one.
 
 use super::model::Part;
 use super::state::{Evaluator, Flow};
@@ -582,8 +583,8 @@ impl Kept {
 }
 
 impl Evaluator<'_> {
-    /// What the motion of this number is in frame 0, and where its pinned nodes are in the frames up to this one. `None` if there is
-    /// none in frame 0.
+    /// What the motion of this number is in frame 0, and where its pinned nodes are in the frames
+    /// up to this one. `None` if there is none in frame 0.
     fn told(&mut self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
         TOLD.with_borrow_mut(|told| {
             let texts = self.sources.all[..self.sources.own].iter();

@@ -303,7 +303,8 @@ fn middle(shape: &Shape) -> DVec3 {
     }
 }
 
-/// `transform [object]`: what has been done to the object so far holds still while the shutter is open.
+/// `transform [object]`: what has been done to the object so far holds still while the shutter is
+/// open.
 pub static TRANSFORM: CommandSpec = row(
     "transform",
     "hold an object still while the shutter is open",

@@ -40,7 +40,8 @@ pub static PACKINGS: &[OptionSpec] = &[
     .plain,
 ];
 
-/// `echo on|off`: nothing is echoed anyway, and every published dataset says it, so nothing is said.
+/// `echo on|off`: nothing is echoed anyway, and every published dataset says it, so nothing is
+/// said.
 pub static ECHO: CommandSpec = row("echo", "echo commands", takes!(silent_switch, ON_OFF))
     .default("on")
     .example("echo off");

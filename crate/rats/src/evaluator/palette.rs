@@ -1,7 +1,7 @@
 //! The materials and textures that a running text has made.
 //!
-//! A material that is made anew under an old name is a new one: shapes made before keep the old. So a
-//! dataset can vary one material along a row of shapes.
+//! A material that is made anew under an old name is a new one: shapes made before keep the old. So
+//! a dataset can vary one material along a row of shapes.
 
 use crate::limits::{MAX_LAYERS, MAX_MATERIALS};
 use crate::operands::Share;
@@ -192,7 +192,8 @@ impl<'a> Palette<'a> {
         Ok(together)
     }
 
-    /// Puts the layers of all `names` upon a texture; its own profile counts, else the first of theirs.
+    /// Puts the layers of all `names` upon a texture; its own profile counts, else the first of
+    /// theirs.
     ///
     /// # Errors
     /// As [`Self::layers`].

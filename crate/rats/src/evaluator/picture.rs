@@ -15,7 +15,8 @@ use std::collections::HashMap;
 const MEAN_SAMPLES: u32 = 4;
 
 impl Evaluator<'_> {
-    /// The settings, with as many samples as a picture of this kind needs if the text does not say how many.
+    /// The settings, with as many samples as a picture of this kind needs if the text does not say
+    /// how many.
     fn sampled_settings(&self) -> Settings {
         let sized = || self.lights.iter().any(|light| light.size > 0.0);
         let has_means = self.lens.aperture > 0.0

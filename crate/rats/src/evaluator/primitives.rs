@@ -403,7 +403,8 @@ fn curve<'a>(
     Ok(Flow::Next)
 }
 
-/// A primitive whose kernel the opcode names, and which has no radius of its own: its material's counts.
+/// A primitive whose kernel the opcode names, and which has no radius of its own: its material's
+/// counts.
 fn of_kernel<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,

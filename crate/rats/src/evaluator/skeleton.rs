@@ -92,7 +92,8 @@ pub static SKELETON_OPTIONS: &[OptionSpec] = &[
     LOCAL.plain,
 ];
 
-/// `skeleton sn, name [subdivide n] [scheme name] [local D] { node A <x y z> [radius r] … curve A B … … }`
+/// `skeleton sn, name [subdivide n] [scheme name] [local D] { node A <x y z> [radius r] … curve A B
+/// … … }`
 pub static SKELETON: CommandSpec = row(
     "skeleton",
     "curves that branch, with flesh around them",

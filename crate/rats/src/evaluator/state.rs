@@ -81,8 +81,8 @@ pub struct Evaluator<'a> {
     pub(super) file: usize,
     /// The files that are being read, the innermost last.
     pub(super) reading: Vec<usize>,
-    /// Where the texts of the project use the library, the innermost last: what is to be said about a
-    /// text of the library is said there.
+    /// Where the texts of the project use the library, the innermost last: what is to be said about
+    /// a text of the library is said there.
     pub(super) uses: Vec<(usize, Range<usize>)>,
     /// Files whose mistakes of form have been reported.
     pub(super) reported: Vec<bool>,
@@ -175,7 +175,8 @@ impl<'a> Evaluator<'a> {
         Reader::new(command, &source.syntax.items, source.text, &mut self.scope)
     }
 
-    /// Where an element of this command comes from: in the user's text, even if the library makes it.
+    /// Where an element of this command comes from: in the user's text, even if the library makes
+    /// it.
     pub(super) fn origin(&self, command: &Command) -> Origin {
         let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let (file, span) = match self.uses.last() {

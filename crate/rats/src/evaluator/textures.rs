@@ -331,7 +331,8 @@ fn own_layer<'a>(
     })
 }
 
-/// Applies the options to every layer, puts the other layers that they name upon them, and keeps the result.
+/// Applies the options to every layer, puts the other layers that they name upon them, and keeps
+/// the result.
 fn finish<'a>(
     run: &mut Evaluator<'a>,
     name: &Name<'a>,
@@ -368,7 +369,8 @@ fn finish<'a>(
     run.palette.insert_texture(name, texture)
 }
 
-/// Sets an option of every layer and of the profile. Returns what is to be said if it changes nothing.
+/// Sets an option of every layer and of the profile. Returns what is to be said if it changes
+/// nothing.
 fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
     let name = chosen.option.name;
     let layers = &mut texture.layers;

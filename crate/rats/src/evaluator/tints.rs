@@ -1,5 +1,6 @@
-//! Colours of a mesh's vertices: each triangle gets them as paint, and a tint of the mesh's material for what cannot mix
-//! colours within a triangle. Tints are rounded, so that a painted mesh needs few materials.
+//! Colours of a mesh's vertices: each triangle gets them as paint, and a tint of the mesh's
+//! material for what cannot mix colours within a triangle. Tints are rounded, so that a painted
+//! mesh needs few materials.
 
 use super::palette::Palette;
 use crate::problem::Outcome;
@@ -35,7 +36,8 @@ fn rounded(mesh: &TriangleMesh, colors: &[Rgb], steps: f32) -> Option<Vec<Tint>>
     Some(tints)
 }
 
-/// The material of each triangle of a mesh with colours; `None` if it has none, or nothing but white.
+/// The material of each triangle of a mesh with colours; `None` if it has none, or nothing but
+/// white.
 ///
 /// # Errors
 /// If there are too many materials.

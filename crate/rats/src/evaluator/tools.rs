@@ -1,5 +1,5 @@
-//! TOOLS: work on pictures. The compiler touches no files, so each command becomes a [`Tool`] in the
-//! result, for the program and the page to carry out.
+//! TOOLS: work on pictures. The compiler touches no files, so each command becomes a [`Tool`] in
+//! the result, for the program and the page to carry out.
 
 use super::state::{Evaluator, Flow};
 use crate::colours;

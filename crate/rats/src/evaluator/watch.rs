@@ -1,8 +1,9 @@
-//! Watching a run for one command: from where in the texts each of its numbers comes, so that a hand
-//! that moves the shape knows what to rewrite.
+//! Watching a run for one command: from where in the texts each of its numbers comes, so that a
+//! hand that moves the shape knows what to rewrite.
 //!
-//! The meaning of a word depends on the variables at that time, so the text is run up to the command, as
-//! for a picture, and the run notes where variables and the radii of materials were written.
+//! The meaning of a word depends on the variables at that time, so the text is run up to the
+//! command, as for a picture, and the run notes where variables and the radii of materials were
+//! written.
 
 use super::state::Evaluator;
 use crate::commands::slot::Named;
@@ -54,8 +55,8 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Notes where the radius of a material was given, with its place; a copy takes over that of the
-    /// old one. A radius follows from a depth if there is one.
+    /// Notes where the radius of a material was given, with its place; a copy takes over that of
+    /// the old one. A radius follows from a depth if there is one.
     pub(super) fn watch_material(
         &mut self,
         name: &Name<'a>,
@@ -134,8 +135,8 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// Reads a triple once more, number by number. What `rand` draws on the way does not matter: the
-    /// run ends here.
+    /// Reads a triple once more, number by number. What `rand` draws on the way does not matter:
+    /// the run ends here.
     fn triple(&mut self, command: &Command, span: Range<usize>) -> Option<(Vec<f64>, Vec<Source>)> {
         let source = &self.sources.all[self.file];
         let items = &source.syntax.items;
@@ -165,8 +166,8 @@ impl<'a> Evaluator<'a> {
         Some((values, sources))
     }
 
-    /// From where a number of the present file comes that an expression gives; of a triple the one with
-    /// this index.
+    /// From where a number of the present file comes that an expression gives; of a triple the one
+    /// with this index.
     fn source(&self, span: Range<usize>, index: usize) -> Source {
         let text = self.sources.all[self.file].text;
         let slice = &text[span.clone()];
@@ -220,8 +221,8 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// The places of the numbers in a range of a text, each with its sign, if there is nothing else there but
-/// separators.
+/// The places of the numbers in a range of a text, each with its sign, if there is nothing else
+/// there but separators.
 pub(super) fn written_out(text: &str, range: Range<usize>) -> Option<Vec<Range<usize>>> {
     let mut spans = Vec::new();
     let mut sign: Option<usize> = None;

@@ -1,6 +1,6 @@
-//! Commands that a run does not reach (in a branch not taken, in a defined command that is never called)
-//! are looked at all the same: one that is nowhere defined is a mistake. What follows a plain `return` or
-//! `quit` is not: published datasets keep notes and programs there.
+//! Commands that a run does not reach (in a branch not taken, in a defined command that is never
+//! called) are looked at all the same: one that is nowhere defined is a mistake. What follows a
+//! plain `return` or `quit` is not: published datasets keep notes and programs there.
 
 use super::state::Evaluator;
 use crate::Severity;
@@ -14,7 +14,8 @@ use std::collections::HashSet;
 const MOST: usize = 100;
 
 impl<'a> Evaluator<'a> {
-    /// Reports each command of the project's texts that is neither of the language nor defined anywhere.
+    /// Reports each command of the project's texts that is neither of the language nor defined
+    /// anywhere.
     pub(super) fn check_words(&mut self) {
         let mut defined = HashSet::new();
         for source in &self.sources.all {

@@ -89,7 +89,8 @@ fn surface_is_at_the_thickness_and_scales_with_the_mesh() {
         let compiled = run(&text);
         let surfaces = compiled.scene.surfaces();
         assert_eq!(surfaces.len(), 1);
-        // The gem's table is flat at z = 0.65 around the axis, but the vertex in its middle has eight facets.
+        // The gem's table is flat at z = 0.65 around the axis, but the vertex in its middle has
+        // eight facets.
         let above = |x: f64, rise: f64| {
             let point = DVec3::new(x, 0.0, 0.65 + rise) * growth;
             surfaces[0].function().jet(point).value > THRESHOLD

@@ -1,12 +1,13 @@
 //! Texts with mistakes and what is said about them.
 //!
-//! Each file of `tests/diagnostics` holds sections. A section begins with `### name`; `#file name` begins
-//! another file of the same project. What is expected stands under the line that it is about, as comments:
-//! `#! severity first..end: message → hint ⤷ line:column what is there`, where `first` and `end` are columns from 1 and `end` is `…` if
-//! the place goes on in another line. A section without such lines must compile without any message.
+//! Each file of `tests/diagnostics` holds sections. A section begins with `### name`; `#file name`
+//! begins another file of the same project. What is expected stands under the line that it is
+//! about, as comments: `#! severity first..end: message → hint ⤷ line:column what is
+//! there`, where `first` and `end` are columns from 1 and `end` is `…` if the place goes on in
+//! another line. A section without such lines must compile without any message.
 //!
-//! `UPDATE_EXPECT=1 cargo test -p rats --test it diagnostics::` writes what is said now into the files; read
-//! the difference before you commit it.
+//! `UPDATE_EXPECT=1 cargo test -p rats --test it diagnostics::` writes what is said now into the
+//! files; read the difference before you commit it.
 
 use rats::{Diagnostic, File, Project, Severity, compile};
 use std::fmt::Write;

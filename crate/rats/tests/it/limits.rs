@@ -238,8 +238,8 @@ fn nested_calls() {
 
 #[test]
 fn nested_files() {
-    // Each file reads the next one; there are fewer files than the limit of nesting, so a call in between
-    // is what can go deeper.
+    // Each file reads the next one; there are fewer files than the limit of nesting, so a call in
+    // between is what can go deeper.
     let files = (0..MAX_FILES)
         .map(|i| File {
             name: format!("{i}.rat"),

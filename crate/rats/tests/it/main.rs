@@ -1,4 +1,5 @@
-//! The tests of `rats`, as one program: a module for each subject. As wasm only the bits are tested.
+//! The tests of `rats`, as one program: a module for each subject. As wasm only the bits are
+//! tested.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod any_text;

@@ -68,7 +68,8 @@ fn a_frame_is_the_same_in_whatever_order_frames_are_asked_for() {
     let forwards: Vec<_> = (0..30)
         .map(|f| nodes(&run(&text, f64::from(f)), 0))
         .collect();
-    // Another text in between, and an edit that changes nothing of the motion: from the start again.
+    // Another text in between, and an edit that changes nothing of the motion: from the start
+    // again.
     run(&format!("{TAIL}motion TAIL {{ }}"), 5.0);
     let edited = format!("{text}\n# edited");
     for frame in [29, 3, 17, 0, 28] {

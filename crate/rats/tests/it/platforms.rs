@@ -1,4 +1,5 @@
-//! A text means the same scene, to the last bit, on every platform: run natively and as WebAssembly.
+//! A text means the same scene, to the last bit, on every platform: run natively and as
+//! WebAssembly.
 
 use rats::{Project, compile, link};
 use trials::bits::Hash;

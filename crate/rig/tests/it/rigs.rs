@@ -1,4 +1,5 @@
-//! Skins against the fields they come from: what is skinned stays on the surface of the scene that moved.
+//! Skins against the fields they come from: what is skinned stays on the surface of the scene that
+//! moved.
 
 use glam::DVec3;
 use mesh::{Export, Part, TriangleMesh};
@@ -70,18 +71,18 @@ fn skinned_vertices_stay_near_the_surface_that_moved() {
     assert_eq!(rig.joints.len(), 1 + 6);
     assert_eq!(rig.frames.len(), 16);
     // The tip has fallen by more than its thickness.
-    let tip = |frame: usize| {
+    let [first, last] = [0, 15].map(|frame: usize| {
         let curves = scenes[frame].elements[0].shape.curves().unwrap();
         curves.skeleton.nodes[4].position
-    };
-    assert!(tip(15).distance(tip(0)) > 1.0, "{}", tip(15));
+    });
+    assert!(last.distance(first) > 1.0, "{last}");
     for (frame, scene) in scenes.iter().enumerate() {
         let sum = &scene.soft_surfaces()[0].sum;
         let mut worst = 0.0f64;
         for (point, shares) in points.iter().zip(&rig.shares[0]) {
             let weights: f32 = shares.iter().map(|share| share.1).sum();
             assert!((weights - 1.0).abs() < 1e-5);
-            let moved = rig.skinned(*point, shares, &rig.frames[frame]);
+            let moved = rig.skin(*point, shares, &rig.frames[frame]);
             if frame == 0 {
                 assert!(moved.distance(*point) < 1e-6);
             }
@@ -89,7 +90,8 @@ fn skinned_vertices_stay_near_the_surface_that_moved() {
             let slope = DVec3::from(jet.gradient).length().max(0.5);
             worst = worst.max((jet.value - field::THRESHOLD).abs() / slope);
         }
-        // A linear skin of few joints is off where the body bends most: by less than half its thickness.
+        // A linear skin of few joints is off where the body bends most: by less than half its
+        // thickness.
         assert!(worst < 0.16, "frame {frame}: {worst}");
     }
 }
@@ -103,7 +105,7 @@ fn what_no_skeleton_holds_stays() {
         vec![],
     );
     let rig = rig::rig(&scenes, 25.0, &[(Some(0), &mesh)]).unwrap();
-    let moved = |i: usize| rig.skinned(mesh.positions[i], &rig.shares[0][i], &rig.frames[9]);
+    let moved = |i: usize| rig.skin(mesh.positions[i], &rig.shares[0][i], &rig.frames[9]);
     // The ball and the snake are one body, whose far ends have next to nothing of each other.
     assert_eq!(rig.shares[0][0][0], (0, 1.0));
     assert_eq!(moved(0), mesh.positions[0]);
@@ -149,7 +151,8 @@ fn scenes_that_cannot_be_rigged_say_why() {
     let why = rig::rig(&ball, 25.0, &[]).unwrap_err();
     assert!(why.contains("no skeleton"), "{why}");
     // A skeleton that changes ends the animation there.
-    let text = "var n = 2 += 1\nsurface s, kernel cauchy, diffuse Red, radius 0.3\nskeleton s, A { node A <0 0 0> node B <1 0 0> node C <2 0 0> curve A B }\n";
+    let text = "var n = 2 += 1\nsurface s, kernel cauchy, diffuse Red, radius 0.3\n\
+        skeleton s, A { node A <0 0 0> node B <1 0 0> node C <2 0 0> curve A B }\n";
     let project = Project::single(text);
     let mut all: Vec<Scene> = (0..3)
         .map(|f| compile_at(&project, &[], f64::from(f)).scene)

@@ -50,7 +50,8 @@ fn a_skeleton_is_soft_with_any_flesh() {
     let (surfaces, count) = only(&scene);
     assert_eq!(count, 8);
     let value = |x: f64, y: f64| surfaces[0].function().jet(DVec3::new(x, y, 0.0)).value;
-    // Half a radius beside the middle of a segment of eight radii it is inside, a radius and a half away outside.
+    // Half a radius beside the middle of a segment of eight radii it is inside, a radius and a half
+    // away outside.
     assert!(value(2.0, 0.25) > 1.0 && value(2.0, 0.75) < 1.0);
     scene.settings.soft = false;
     assert!(scene.surfaces().is_empty());
@@ -85,7 +86,8 @@ fn tapering_segments_meet_without_a_step() {
         panic!("no function")
     };
     let curves = function.curves().expect("curves");
-    // The surface's distance from the skeleton, at and between joints: it follows the radius without a bulge at any joint.
+    // The surface's distance from the skeleton, at and between joints: it follows the radius
+    // without a bulge at any joint.
     let distance = |foot: DVec3| {
         let (mut inside, mut outside) = (0.0, 2.0);
         for _ in 0..50 {

@@ -1,4 +1,5 @@
-//! The scene's own rules: the projection, whose radius counts, which elements blend, and the message form.
+//! The scene's own rules: the projection, whose radius counts, which elements blend, and the
+//! message form.
 
 use field::Skeleton;
 use glam::DVec3;
@@ -273,12 +274,13 @@ fn values(shape: Shape, flesh: Flesh) -> Vec<f64> {
     };
     scene.elements = vec![element(shape, 0)];
     let field = surface(&scene).sum;
-    let at = |i: u32| {
-        let t = f64::from(i);
-        let p = DVec3::new(libm::sin(t), libm::cos(1.7 * t), 0.3 * libm::sin(2.3 * t));
-        field.jet(p).value
-    };
-    (0..20).map(at).collect()
+    (0..20)
+        .map(|i| {
+            let t = f64::from(i);
+            let p = DVec3::new(libm::sin(t), libm::cos(1.7 * t), 0.3 * libm::sin(2.3 * t));
+            field.jet(p).value
+        })
+        .collect()
 }
 
 #[test]
@@ -378,7 +380,7 @@ fn shapes_without_a_skeleton_stay_hard() {
     );
 }
 
-/// Two balls in each of two bodies, one after the other, and one in none.
+/// Makes two balls in each of two bodies, one after the other, and one in none.
 #[test]
 fn elements_blend_within_their_body_only() {
     let mut scene = Scene {

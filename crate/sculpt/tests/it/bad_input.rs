@@ -1,4 +1,5 @@
-//! Meshes that are not what one would wish: opened and repaired, or refused in words, never a crash.
+//! Meshes that are not what one would wish: opened and repaired, or refused in words, never a
+//! crash.
 
 use glam::DVec3;
 use mesh::TriangleMesh;
@@ -28,7 +29,7 @@ fn sculpt_at(clay: Clay, seed: u64) -> usize {
     done
 }
 
-/// A tetrahedron about a place.
+/// Returns a tetrahedron about a place.
 fn tetrahedron(mesh: &mut TriangleMesh, place: DVec3) {
     let first = mesh.positions.len() as u32;
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
@@ -71,8 +72,7 @@ fn edges_of_three_faces_and_bow_ties_are_repaired() {
 
 #[test]
 fn faces_without_area_and_open_meshes_are_sculpted() {
-    let line = |k: u32| DVec3::new(f64::from(k), 0.0, 0.0);
-    let mut positions: Vec<DVec3> = (0..4).map(line).collect();
+    let mut positions: Vec<DVec3> = (0..4).map(|k| DVec3::new(f64::from(k), 0.0, 0.0)).collect();
     positions.push(DVec3::Y);
     // A face along a line, one that is no triangle, one twice, and a plain one.
     let triangles = vec![[0, 1, 2], [1, 1, 3], [0, 1, 4], [0, 1, 4], [2, 3, 4]];

@@ -1,4 +1,5 @@
-//! The creatures of the gallery, made by strokes: as many vertices and faces as those of Bill and Lodha (1995), within a fifth.
+//! The creatures of the gallery, made by strokes: as many vertices and faces as those of Bill and
+//! Lodha (1995), within a fifth.
 
 use sculpt::{Clay, Script, Stroke, replay};
 
@@ -26,10 +27,14 @@ const CREATURES: [(&str, &str, [usize; 2]); 4] = [
     ),
 ];
 
-fn made(text: &str) -> (Clay, usize) {
+/// Carries out a text. Returns the clay and the number of stages.
+fn make(text: &str) -> (Clay, usize) {
     let script: Script = text.parse().expect("a text of strokes");
-    let is_stage = |stroke: &&Stroke| matches!(stroke, Stroke::Stage(_));
-    let stages = script.strokes.iter().filter(is_stage).count();
+    let stages = script
+        .strokes
+        .iter()
+        .filter(|stroke| matches!(stroke, Stroke::Stage(_)))
+        .count();
     let mut load = |name: &str| Err(format!("there is no {name}"));
     let clay = replay(&script, &mut load, 20_000_000, |_, _, _| ())
         .expect("strokes that can be carried out");
@@ -39,7 +44,7 @@ fn made(text: &str) -> (Clay, usize) {
 #[test]
 fn creatures_have_the_printed_size() {
     for (name, text, printed) in CREATURES {
-        let (clay, stages) = made(text);
+        let (clay, stages) = make(text);
         let mesh = clay.mesh();
         mesh.validate().expect(name);
         assert!(mesh.is_closed() && mesh.shells().len() == 1, "{name}");
@@ -52,12 +57,12 @@ fn creatures_have_the_printed_size() {
         }
         assert!(stages >= 3, "{name}");
     }
-    assert_eq!(made(CREATURES[0].1).1, 6, "a dog in six stages");
+    assert_eq!(make(CREATURES[0].1).1, 6, "a dog in six stages");
 }
 
 #[test]
-fn smoothed_dog_has_four_times_the_faces() {
-    let (mut clay, _) = made(CREATURES[0].1);
+fn the_smoothed_dog_has_four_times_the_faces() {
+    let (mut clay, _) = make(CREATURES[0].1);
     let faces = clay.mesh().face_count();
     clay.smooth_loop(1).expect("room enough");
     // Figure 5 has 19,850 faces.

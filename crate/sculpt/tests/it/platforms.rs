@@ -4,7 +4,7 @@ use sculpt::{Clay, Script, Sculpture, Shape, Start, replay};
 use trials::Random;
 use trials::bits::Hash;
 
-/// A text with tools of all forms, all decays and all kinds of refinement.
+/// Text with tools of all forms, all decays and all kinds of refinement.
 const STROKES: &str = "\
 strokes 1
 start sphere 6 1 1.2 0.8

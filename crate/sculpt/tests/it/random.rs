@@ -9,8 +9,8 @@ use sculpt::{
 };
 use trials::{Random, count};
 
-/// The vertices that must stay.
-fn held(clay: &Clay) -> Vec<(VertexId, [u64; 3])> {
+/// Returns the vertices with a mask of 1, which must stay, and the bits of their places.
+fn vertices_that_stay(clay: &Clay) -> Vec<(VertexId, [u64; 3])> {
     let vertices = clay.mesh().vertices().filter(|v| clay.mask(*v) == 1.0);
     vertices
         .map(|v| (v, bits(clay.mesh().position(v))))
@@ -73,7 +73,7 @@ fn check(clay: &Clay, stroke: &Stroke, before: &Before) {
     }
 }
 
-/// What is compared after a stroke.
+/// Values that are compared after a stroke.
 struct Before {
     euler: i64,
     counts: [usize; 3],
@@ -86,13 +86,13 @@ impl Before {
         Self {
             euler: mesh.euler_characteristic(),
             counts: [mesh.vertex_count(), mesh.edge_count(), mesh.face_count()],
-            held: held(clay),
+            held: vertices_that_stay(clay),
         }
     }
 }
 
-/// Carries out so many random strokes, checks each, takes all back and carries them out again. Returns
-/// how many were refused.
+/// Carries out so many random strokes, checks each, takes all back and carries them out again.
+/// Returns how many were refused.
 fn run(seed: u64, count: usize) -> usize {
     let mut random = Random::new(seed);
     let shape = random.pick(&Shape::ALL);

@@ -288,7 +288,7 @@ fn what_cannot_be_deleted_is_refused_in_words_and_left_alone() {
 }
 
 #[test]
-fn masked_faces_are_not_deleted() {
+fn faces_with_a_mask_are_not_deleted() {
     let mut clay = shape(Shape::Sphere, 6);
     sweep(&mut clay, Action::Mask(1.0), DVec3::Z, 0.1);
     let chosen = choose(&mut clay, DVec3::Z, 0.6);

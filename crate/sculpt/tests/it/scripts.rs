@@ -34,7 +34,8 @@ fn what_is_written_is_read_again() {
 
 #[test]
 fn comments_blank_lines_and_what_may_be_left_out() {
-    let text = "# a clay\n\nstrokes 1 # first\r\n  start sphere 3 1 2 3\n\trefine\naverage 2\nregion grow\n\
+    let text = "# a clay\n\nstrokes 1 # first\r\n  start sphere 3 1 2 3\n\trefine\naverage 2\n\
+        region grow\n\
         push box 1 1 1 0.5 0.5 turn 0 0 45 goo 1 normal only:0 0 0 0.5,1 0 0\n";
     let script: Script = text.parse().unwrap();
     let written = script.to_string();
@@ -211,7 +212,8 @@ fn no_text_panics() {
 fn too_much_work_is_refused_at_its_line() {
     let path = vec!["0 0 0, 1 0 0"; 200].join(", ");
     let text = format!(
-        "strokes 1\nstart sphere 50\npush sphere 2 2 2 flat 0.1 : 0 0 0\npull sphere 3 3 3 : {path}\n"
+        "strokes 1\nstart sphere 50\npush sphere 2 2 2 flat 0.1 : 0 0 0\npull sphere 3 3 3 : \
+         {path}\n"
     );
     let script: Script = text.parse().unwrap();
     let problem = replay(

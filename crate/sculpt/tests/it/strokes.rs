@@ -45,7 +45,7 @@ pub fn sweep(random: &mut Random, action: Action) -> Sweep {
     sweep
 }
 
-/// A stroke for a mesh of so many faces; it keeps meshes small.
+/// Returns a stroke for a mesh of so many faces; it keeps meshes small.
 pub fn stroke(random: &mut Random, faces: usize) -> Stroke {
     if faces > 500 {
         return match random.below(8) {

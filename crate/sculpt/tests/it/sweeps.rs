@@ -1,4 +1,4 @@
-//! What tools do to a mesh.
+//! Effects of tools on a mesh.
 
 use glam::DVec3;
 use mesh::VertexId;
@@ -195,7 +195,7 @@ fn constraints_keep_motions_along_or_across_normals() {
 }
 
 #[test]
-fn mirrored_tools_make_mirror_images() {
+fn mirror_images_of_tools_make_mirror_images() {
     for planes in ["x", "y z", "x y z"] {
         let text = format!(
             "strokes 1\nstart sphere 8\nsymmetry {planes}\n\
@@ -213,12 +213,14 @@ fn mirrored_tools_make_mirror_images() {
         for (axis, name) in ["x", "y", "z"].iter().enumerate() {
             if planes.contains(name) {
                 signs[axis] = -1.0;
-                let nearest = |p: &DVec3| {
-                    all.iter()
-                        .map(|q| q.distance(*p * signs))
-                        .fold(9.0, f64::min)
-                };
-                let worst = all.iter().map(nearest).fold(0.0, f64::max);
+                let worst = all
+                    .iter()
+                    .map(|p| {
+                        all.iter()
+                            .map(|q| q.distance(*p * signs))
+                            .fold(9.0, f64::min)
+                    })
+                    .fold(0.0, f64::max);
                 assert!(worst < 1e-9, "{planes}: {worst}");
                 signs[axis] = 1.0;
             }
@@ -283,8 +285,13 @@ fn paint_and_smooth_do_what_they_say() {
     );
     let colors = clay.to_triangles().unwrap().colors.unwrap();
     let half = mesh::linear_from_srgb(128);
-    let is_pink = |c: &&[f32; 3]| c[0] == 1.0 && c[1] == 0.0 && (c[2] - half).abs() < 0.01;
-    assert_eq!(colors.iter().filter(is_pink).count(), 25);
+    assert_eq!(
+        colors
+            .iter()
+            .filter(|c| c[0] == 1.0 && c[1] == 0.0 && (c[2] - half).abs() < 0.01)
+            .count(),
+        25
+    );
     assert_eq!(colors.iter().filter(|c| **c == [1.0; 3]).count(), 441 - 25);
 
     let mut sweep = Sweep::new(Action::Pull, ball(0.01));
@@ -302,7 +309,7 @@ fn paint_and_smooth_do_what_they_say() {
 #[test]
 fn a_body_of_a_model_is_a_tool() {
     use field::{Ball, Enclosure, Implicit, Jet};
-    /// A ball of radius 1/2: its level is at T.
+    /// Ball of radius 1/2: its level is at T.
     #[derive(Debug)]
     struct Round;
     impl Implicit for Round {

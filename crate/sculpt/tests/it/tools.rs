@@ -75,11 +75,11 @@ fn solid_is_within_its_bounds_and_drives_vertices_onto_the_surface() {
             assert_eq!(inside, tool.gauge(p) < 1.0);
             if inside {
                 assert!(p.cmpge(bounds.min - 1e-12).all() && p.cmple(bounds.max + 1e-12).all());
-                let out = sculpt::Solid::driven_out(&solid, p).expect("a way out");
+                let out = sculpt::Solid::drive_out(&solid, p).expect("a way out");
                 assert!((tool.gauge(out) - 1.0).abs() < 1e-12);
                 assert!(out.cross(p).length() < 1e-12, "along the ray");
             } else {
-                assert_eq!(sculpt::Solid::driven_out(&solid, p), None);
+                assert_eq!(sculpt::Solid::drive_out(&solid, p), None);
             }
         }
     }

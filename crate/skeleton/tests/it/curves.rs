@@ -44,7 +44,8 @@ fn close(a: DVec4, b: DVec4) -> bool {
     (a - b).length() < 1e-12
 }
 
-/// A uniform B-spline's basis function of a degree, on the knots 0, 1, …, degree+1 (de Boor's recursion).
+/// Returns a uniform B-spline's basis function of a degree, on the knots 0, 1, …, degree+1 (de
+/// Boor's recursion).
 fn basis(degree: u32, t: f64) -> f64 {
     if degree == 0 {
         return f64::from(u8::from((0.0..1.0).contains(&t)));
@@ -53,7 +54,8 @@ fn basis(degree: u32, t: f64) -> f64 {
     t / d * basis(degree - 1, t) + (d + 1.0 - t) / d * basis(degree - 1, t - 1.0)
 }
 
-/// The spline of a degree with these control points at t, where the first full span begins at t = 0.
+/// The spline of a degree with these control points at t, where the first full span begins at t =
+/// 0.
 fn spline(degree: u32, control: &[DVec4], t: f64) -> DVec4 {
     let mut sum = DVec4::ZERO;
     for (i, point) in control.iter().enumerate() {
@@ -242,11 +244,13 @@ fn graphs_know_their_lengths_and_neighbours() {
             spans.dedup();
             assert_eq!(spans, (0..curve.len() - 1).collect::<Vec<_>>());
         }
-        let valence = |node: usize| {
-            let vertex = graph.vertices.iter().position(|v| v.node == Some(node));
-            graph.around(vertex.expect("a vertex")).len()
-        };
-        assert_eq!([0, 1, 2, 4, 5].map(valence), [1, 3, 1, 2, 1]);
+        assert_eq!(
+            [0, 1, 2, 4, 5].map(|node| {
+                let vertex = graph.vertices.iter().position(|v| v.node == Some(node));
+                graph.around(vertex.expect("a vertex")).len()
+            }),
+            [1, 3, 1, 2, 1]
+        );
         let total: usize = (0..graph.vertices.len())
             .map(|v| graph.around(v).len())
             .sum();
@@ -254,8 +258,8 @@ fn graphs_know_their_lengths_and_neighbours() {
     }
 }
 
-/// Straight lines, coincident nodes, loops of two nodes, nodes visited again: numbers, and nothing outside the hull
-/// by more than its size.
+/// Straight lines, coincident nodes, loops of two nodes, nodes visited again: numbers, and nothing
+/// outside the hull by more than its size.
 #[test]
 fn degenerate_skeletons_have_no_nan() {
     let at = |x: f64, radius: f64| Node {

@@ -40,59 +40,79 @@ fn node(x: f64, y: f64, z: f64, radius: f64) -> Node {
     }
 }
 
-/// Texts with a body of three nodes and two limbs, written in many ways; the skeleton of the given number is the animal.
+/// Texts with a body of three nodes and two limbs, written in many ways; the skeleton of the given
+/// number is the animal.
 const WAYS: [(&str, usize); 7] = [
     (
-        "surface a, radius 1\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\n",
+        "surface a, radius 1\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  \
+         node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  \
+         curve C E\n}\n",
         0,
     ),
     // Remarks, also with words of the block, and all on few lines.
     (
-        "surface a, radius 1\nskeleton a, s { # node X } curve\n  # curve A D\n  node A <0 0 0> node B <2 0 0> # the middle\n  node C <5 0 0>, node D <2 -2 0>\n  node E <5 -2 0> curve A B C # the body }\n  curve B D curve C E }\n",
+        "surface a, radius 1\nskeleton a, s { # node X } curve\n  # curve A D\n  \
+         node A <0 0 0> node B <2 0 0> # the middle\n  node C <5 0 0>, node D <2 -2 0>\n  \
+         node E <5 -2 0> curve A B C # the body }\n  curve B D curve C E }\n",
         0,
     ),
     // Words in any case, options, expressions, a variable of the text.
     (
-        "surface a, radius 1\nvar r = 0.5 hot\nSkeleton a, s subdivide 2 scheme chaikin {\n  NODE A <0, 0, 0> RADIUS 2*r\n  node B <4*r 0 0> radius r\n  node C <5 0 0>\n  node D <2 -2 0> radius (r)\n  node E <5 -2 0>\n  Curve A, B, C\n  curve B D\n  curve C E\n}\n",
+        "surface a, radius 1\nvar r = 0.5 hot\nSkeleton a, s subdivide 2 scheme chaikin {\n  \
+         NODE A <0, 0, 0> RADIUS 2*r\n  node B <4*r 0 0> radius r\n  node C <5 0 0>\n  \
+         node D <2 -2 0> radius (r)\n  node E <5 -2 0>\n  Curve A, B, C\n  curve B D\n  curve C E\n\
+         }\n",
         0,
     ),
     // A defined command and an object with skeletons of their own, before and behind.
     (
-        "surface a, radius 1\ndefine limb x {\n  skeleton a, part { node A <x 0 0> node B <x 1 0> curve A B }\n}\nlimb 9\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\nobject group\n  skeleton a, t { node A <0 9 0> node B <2 9 0> curve A B }\nclose\n",
+        "surface a, radius 1\ndefine limb x {\n  \
+         skeleton a, part { node A <x 0 0> node B <x 1 0> curve A B }\n}\nlimb 9\n\
+         skeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  \
+         node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\n\
+         object group\n  skeleton a, t { node A <0 9 0> node B <2 9 0> curve A B }\nclose\n",
         1,
     ),
     // A node whose name begins as the word does.
     (
-        "surface a, radius 1\nskeleton a, s {\n  node nodes <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve nodes B C\n  curve B D\n  curve C E\n}\n",
+        "surface a, radius 1\nskeleton a, s {\n  node nodes <0 0 0>\n  node B <2 0 0>\n  \
+         node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve nodes B C\n  curve B D\n  \
+         curve C E\n}\n",
         0,
     ),
     // Letters of several bytes.
     (
-        "surface a, radius 1 # größer\nskeleton a, s {\n  node Ä <0 0 0>\n  node ß <2 0 0> # ä\n  node é <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve Ä ß é\n  curve ß D\n  curve é E\n}",
+        "surface a, radius 1 # größer\nskeleton a, s {\n  node Ä <0 0 0>\n  node ß <2 0 0> # ä\n  \
+         node é <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve Ä ß é\n  curve ß D\n  \
+         curve é E\n}",
         0,
     ),
     // Another one before it.
     (
-        "surface a, radius 1\nskeleton a, t { node A <0 9 0> node B <2 9 0> curve A B }\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\nrotate 0 1 0 90, s\n",
+        "surface a, radius 1\nskeleton a, t { node A <0 9 0> node B <2 9 0> curve A B }\n\
+         skeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <5 0 0>\n  \
+         node D <2 -2 0>\n  node E <5 -2 0>\n  curve A B C\n  curve B D\n  curve C E\n}\n\
+         rotate 0 1 0 90, s\n",
         1,
     ),
 ];
 
-/// All ways, with both kinds of line ends.
+/// The ways of writing, with both kinds of line ends.
 fn ways() -> Vec<(String, usize)> {
-    let both = |&(text, which): &(&str, usize)| {
+    let ways = WAYS.iter().flat_map(|&(text, which)| {
         [text.to_owned(), text.replace('\n', "\r\n")].map(|text| (text, which))
-    };
-    WAYS.iter().flat_map(both).collect()
+    });
+    ways.collect()
 }
 
-/// What a text says outside of a command.
+/// The text before and after a command.
 fn around(text: &str, span: &Range<usize>) -> (String, String) {
     (text[..span.start].to_owned(), text[span.end..].to_owned())
 }
 
-/// The skeleton of a changed text. What is around the command stays, and so do the ends of lines.
-fn changed(before: &str, which: usize, after: &str) -> Skeleton {
+/// Checks that a change keeps the text around the command and the kind of line ends. Returns the
+/// changed skeleton.
+fn check_change(before: &str, which: usize, after: &str) -> Skeleton {
     let (span, _) = skeletons(before)[which].clone();
     let (head, tail) = around(before, &span);
     assert!(
@@ -129,10 +149,11 @@ fn each_way_of_writing_is_read_as_the_compiler_reads_it() {
 fn what_is_beyond_a_cut_falls_off() {
     for (text, which) in ways() {
         let (span, skeleton) = skeletons(&text)[which].clone();
-        // Through the body between B and C: C, E and the limb between them are the shorter side? B, A, D are 4 long, C, E are 2.
+        // Through the body between B and C: C, E and the limb between them are the shorter side? B,
+        // A, D are 4 long, C, E are 2.
         let end = node(3.0, 0.0, 0.0, 0.25);
         let cut_text = cut(&text, span.clone(), &skeleton, 0, 1, &end, 0.01).unwrap();
-        let left = changed(&text, which, &cut_text);
+        let left = check_change(&text, which, &cut_text);
         assert_eq!(left.curves.len(), 2, "{cut_text}");
         assert_eq!(left.nodes.len(), 4);
         let last = left.nodes[left.curves[0][2]];
@@ -141,18 +162,18 @@ fn what_is_beyond_a_cut_falls_off() {
         // Through the second limb, half way: a stump is left.
         let end = node(2.0, -1.0, 0.0, 0.25);
         let cut_text = cut(&text, span.clone(), &skeleton, 1, 0, &end, 0.01).unwrap();
-        let left = changed(&text, which, &cut_text);
+        let left = check_change(&text, which, &cut_text);
         assert_eq!((left.curves.len(), left.nodes.len()), (3, 5));
         assert_eq!(left.nodes[left.curves[1][1]].position, end.position);
         // At its root: nothing of it is left.
         let end = node(2.0, -0.2, 0.0, 0.25);
         let cut_text = cut(&text, span.clone(), &skeleton, 1, 0, &end, 0.01).unwrap();
-        let left = changed(&text, which, &cut_text);
+        let left = check_change(&text, which, &cut_text);
         assert_eq!((left.curves.len(), left.nodes.len()), (2, 4), "{cut_text}");
         // The beginning falls off where it is shorter.
         let end = node(0.5, 0.0, 0.0, 0.25);
         let cut_text = cut(&text, span.clone(), &skeleton, 0, 0, &end, 0.01).unwrap();
-        let left = changed(&text, which, &cut_text);
+        let left = check_change(&text, which, &cut_text);
         assert_eq!((left.curves.len(), left.nodes.len()), (3, 5));
         assert_eq!(left.nodes[left.curves[0][0]].position, end.position);
         assert_eq!(cut(&text, span.clone(), &skeleton, 0, 2, &end, 0.01), None);
@@ -165,11 +186,12 @@ fn what_is_beyond_a_cut_falls_off() {
 
 #[test]
 fn a_ring_is_opened_by_a_cut_and_the_last_curve_takes_the_command_along() {
-    let text = "surface a, radius 1\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  node C <2 2 0>\n  curve A B C A\n}\n";
+    let text = "surface a, radius 1\nskeleton a, s {\n  node A <0 0 0>\n  node B <2 0 0>\n  \
+        node C <2 2 0>\n  curve A B C A\n}\n";
     let (span, skeleton) = skeletons(text)[0].clone();
     let end = node(2.0, 1.0, 0.0, 0.1);
     let opened = cut(text, span.clone(), &skeleton, 0, 1, &end, 0.01).unwrap();
-    let left = changed(text, 0, &opened);
+    let left = check_change(text, 0, &opened);
     assert_eq!(left.curves, [vec![0, 1], vec![2, 0]]);
     let (span, skeleton) = skeletons(&opened)[0].clone();
     let opened = cut(
@@ -194,21 +216,21 @@ fn curves_and_nodes_are_taken_away_and_come() {
     for (text, which) in ways() {
         let (span, skeleton) = skeletons(&text)[which].clone();
         let less = remove_curve(&text, span.clone(), 1).unwrap();
-        let left = changed(&text, which, &less);
+        let left = check_change(&text, which, &less);
         assert_eq!((left.curves.len(), left.nodes.len()), (2, 4), "{less}");
         assert_eq!(remove_curve(&text, span.clone(), 3), None);
         let less = remove(&text, span.clone(), 1).unwrap();
-        let left = changed(&text, which, &less);
+        let left = check_change(&text, which, &less);
         assert_eq!((left.curves.len(), left.nodes.len()), (2, 3), "{less}");
         let new = node(3.5, 0.5, 0.0, 0.25);
         let more = insert(&text, span.clone(), 0, 1, &new, 0.01).unwrap();
-        let left = changed(&text, which, &more);
+        let left = check_change(&text, which, &more);
         assert_eq!(left.nodes.len(), 6);
         assert_eq!(left.nodes[5], new);
         assert_eq!(left.curves[0], [0, 1, 5, 2]);
         assert_eq!(insert(&text, span.clone(), 0, 2, &new, 0.01), None);
         let wide = widen(&text, span.clone(), 3, 0.127, 0.01).unwrap();
-        assert_eq!(changed(&text, which, &wide).nodes[3].radius, 0.13);
+        assert_eq!(check_change(&text, which, &wide).nodes[3].radius, 0.13);
         let limb = |start| Limb {
             start,
             nodes: vec![node(0.0, 4.0, 1.0, 0.3), node(0.0, 5.0, 1.0, 0.2)],
@@ -226,7 +248,7 @@ fn curves_and_nodes_are_taken_away_and_come() {
             limb(Start::End(3)),
         ];
         let more = extend(&text, span, &limbs, 0.01).unwrap();
-        let left = changed(&text, which, &more);
+        let left = check_change(&text, which, &more);
         let body: Vec<f64> = left.curves[0]
             .iter()
             .map(|i| left.nodes[*i].position.x)
@@ -288,11 +310,11 @@ fn new_names_are_new() {
     let texts = ["surface Skin, radius 1", "var skin2 = 1 # Skin4"];
     assert_eq!(free_name(texts, "Skin"), "Skin3");
     assert_eq!(free_name(texts, "Bead"), "Bead");
-    let limb = || Limb {
+    let limb = Limb {
         start: Start::Free,
         nodes: vec![node(0.0, 0.0, 0.0, 0.1), node(1.0, 0.0, 0.0, 0.1)],
     };
-    let text = create("surface a\r\n", "a", "s", &[limb()], 0.01).unwrap();
+    let text = create("surface a\r\n", "a", "s", &[limb], 0.01).unwrap();
     assert!(!text.replace("\r\n", "").contains('\n'), "{text:?}");
     assert_eq!(skeletons(&text)[0].1.nodes.len(), 2);
 }

@@ -29,7 +29,7 @@ fn span() -> std::ops::Range<usize> {
     start..TEXT.find("}\n").unwrap() + 1
 }
 
-fn added(limbs: &[Limb]) -> String {
+fn extend_text(limbs: &[Limb]) -> String {
     let text = extend(TEXT, span(), limbs, 0.01).unwrap();
     // What was there stays there.
     assert!(text.starts_with(&TEXT[..span().start]) && text.ends_with("rotate animal 0 90 0\n"));
@@ -69,26 +69,26 @@ fn a_limb_goes_on_or_branches() {
         nodes: vec![node(4.0, 0.5), node(5.126, 0.0)],
     };
     let lines = "    node n5 <4 0.5 0> radius 0.25\n    node n6 <5.13 0 0> radius 0.25\n";
-    let text = added(&[limb(Start::End(2))]);
+    let text = extend_text(&[limb(Start::End(2))]);
     assert!(text.contains("curve head neck tail n5 n6\n"), "{text}");
     assert!(
         text.contains(&format!("curve neck foot\n{lines}}}")),
         "{text}"
     );
-    let text = added(&[limb(Start::End(0))]);
+    let text = extend_text(&[limb(Start::End(0))]);
     assert!(text.contains("curve n6 n5 head neck tail\n"), "{text}");
     // Or branches there, at a corner.
-    let text = added(&[limb(Start::Node(2))]);
+    let text = extend_text(&[limb(Start::Node(2))]);
     assert!(
         text.contains(&format!("{lines}    curve tail n5 n6\n}}")),
         "{text}"
     );
-    let text = added(&[limb(Start::Node(1))]);
+    let text = extend_text(&[limb(Start::Node(1))]);
     assert!(
         text.contains(&format!("{lines}    curve neck n5 n6\n}}")),
         "{text}"
     );
-    let text = added(&[limb(Start::Free)]);
+    let text = extend_text(&[limb(Start::Free)]);
     assert!(
         text.contains(&format!("{lines}    curve n5 n6\n}}")),
         "{text}"
@@ -99,13 +99,13 @@ fn a_limb_goes_on_or_branches() {
         share: 0.5,
         node: node(2.0, 0.0),
     };
-    let text = added(&[limb(middle), limb(Start::Same)]);
+    let text = extend_text(&[limb(middle), limb(Start::Same)]);
     assert!(text.contains("curve head neck n5 tail\n"), "{text}");
     assert!(text.contains("    node n5 <2 0 0> radius 0.25\n"), "{text}");
     assert!(text.contains("    curve n5 n6 n7\n"), "{text}");
     assert!(text.contains("    curve n5 n8 n9\n}"), "{text}");
     // Both sides of an end: one goes on, the other branches.
-    let text = added(&[limb(Start::End(3)), limb(Start::Same)]);
+    let text = extend_text(&[limb(Start::End(3)), limb(Start::Same)]);
     assert!(text.contains("curve neck foot n5 n6\n"), "{text}");
     assert!(text.contains("    curve foot n7 n8\n}"), "{text}");
     let nowhere = extend(TEXT, span(), &[limb(Start::Node(9))], 0.01);
@@ -165,7 +165,8 @@ fn a_new_skeleton_stands_at_the_end() {
         nodes: vec![node(0.0, 0.0), node(1234.5, 1e-3)],
     };
     let text = create("surface a, radius 1", "a", "s", &[limb], 20.0).unwrap();
-    let expected = "surface a, radius 1\n\nskeleton a, s {\n  node n1 <0 0 0> radius 0\n  node n2 <1234 0 0> radius 0\n  curve n1 n2\n}\n";
+    let expected = "surface a, radius 1\n\nskeleton a, s {\n  node n1 <0 0 0> radius 0\n  \
+        node n2 <1234 0 0> radius 0\n  curve n1 n2\n}\n";
     assert_eq!(text, expected);
     let short = Limb {
         start: Start::Free,

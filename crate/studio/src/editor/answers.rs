@@ -147,7 +147,8 @@ impl Editor {
         }
     }
 
-    /// Shows a card about the name under the pointer, or with Ctrl and a click goes to its definition.
+    /// Shows a card about the name under the pointer, or with Ctrl and a click goes to its
+    /// definition.
     pub(super) fn pointed(
         &mut self,
         response: &egui::Response,

@@ -1,5 +1,6 @@
 //! Folding: blocks, objects and long remarks shut to their first line. The text stays whole: folded
-//! lines are laid out without height. A small triangle beside the first line, or F8, shuts and opens.
+//! lines are laid out without height. A small triangle beside the first line, or F8, shuts and
+//! opens.
 
 use crate::theme::Palette;
 use egui::text::{LayoutJob, LayoutSection};
@@ -81,8 +82,8 @@ impl Folding {
         is_shut.then_some(around)
     }
 
-    /// Draws the triangles at `x` beside the lines `rows` (from 0) that can be folded, and a mark behind
-    /// those that are. Gives the line whose triangle was clicked.
+    /// Draws the triangles at `x` beside the lines `rows` (from 0) that can be folded, and a mark
+    /// behind those that are. Gives the line whose triangle was clicked.
     pub fn show(
         &self,
         ui: &Ui,

@@ -1,4 +1,5 @@
-//! Colours of the command at the caret, shown behind its line: a click on one opens the colour picker, which writes into the text.
+//! Colours of the command at the caret, shown behind its line: a click on one opens the colour
+//! picker, which writes into the text.
 
 use super::place::Place;
 use crate::command::Command;
@@ -20,7 +21,8 @@ pub struct Tints {
     /// The place and the text that they are of.
     of: Option<(Place, u64)>,
     tints: Vec<Tint>,
-    /// The place of the colour that is being chosen: what is written moves the caret, perhaps into another command.
+    /// The place of the colour that is being chosen: what is written moves the caret, perhaps into
+    /// another command.
     anchor: Option<Place>,
     dragging: bool,
 }

@@ -1,5 +1,5 @@
-//! A knob on the picture that stands for numbers of the text: dragged by the pointer or a finger, or
-//! moved by the arrow keys.
+//! A knob on the picture that stands for numbers of the text: dragged by the pointer or a finger,
+//! or moved by the arrow keys.
 
 use crate::places;
 use assist::handles::{Editable, Handle};

@@ -1,8 +1,8 @@
 //! Editing by hand: a click on the picture finds the shape's place in the text and lights its bone;
 //! knobs on it move the numbers of the text.
 //!
-//! The chosen shape also follows the caret of the editor. Nothing is kept here that the text does not
-//! say: each change goes through [`Command::Edit`], and a drag is one undo step.
+//! The chosen shape also follows the caret of the editor. Nothing is kept here that the text does
+//! not say: each change goes through [`Command::Edit`], and a drag is one undo step.
 
 mod cage;
 mod knob;
@@ -93,8 +93,8 @@ impl Hands {
         ))
     }
 
-    /// Draws the bone and the knobs of the chosen shape over the picture in `rect`, and takes what is
-    /// done to them. `picture` is what the picture itself answered.
+    /// Draws the bone and the knobs of the chosen shape over the picture in
+    /// `rect`, and takes what is done to them. `picture` is what the picture itself answered.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -109,8 +109,8 @@ impl Hands {
             commands.push(Command::Release);
         }
         self.cage.release(ui, commands);
-        // Places in the text are only known of a text that was compiled, and without errors: else the
-        // picture is not of this text.
+        // Places in the text are only known of a text that was compiled, and without errors: else
+        // the picture is not of this text.
         if !session.is_compiled() || session.errors() > 0 || rect.width() < 1.0 {
             return;
         }
@@ -225,8 +225,8 @@ impl Hands {
     fn prepare(&mut self, session: &Session, sight: &Sight, chosen: usize, held: bool) {
         let key = (session.revision(), session.film_frame(), chosen);
         let camera = session.camera();
-        // While the picture turns, knobs may stay where they are on the shape: making them anew costs
-        // as much as compiling.
+        // While the picture turns, knobs may stay where they are on the shape: making them anew
+        // costs as much as compiling.
         let fresh = self
             .made
             .is_some_and(|(made, from)| made == key && (held || from == camera));

@@ -35,7 +35,8 @@ impl Sight {
         -self.view(place).z
     }
 
-    /// Projection of a point to the screen; `None` if it is not in front of the eye, or too far aside.
+    /// Projection of a point to the screen; `None` if it is not in front of the eye, or too far
+    /// aside.
     #[must_use]
     pub fn screen(&self, place: DVec3) -> Option<Pos2> {
         let view = self.view(place);
@@ -94,8 +95,8 @@ impl Sight {
         self.depth(place).max(1e-9) * 2.0 * self.projection.half_width / width
     }
 
-    /// Moves a point by `by` points on the screen, in the plane through it that is parallel to the screen;
-    /// with `deep` moving up takes it further away from the eye.
+    /// Moves a point by `by` points on the screen, in the plane through it that is parallel to the
+    /// screen; with `deep` moving up takes it further away from the eye.
     #[must_use]
     pub fn moved(&self, place: DVec3, by: Vec2, deep: bool) -> DVec3 {
         let axes = self.projection.world_from_view;

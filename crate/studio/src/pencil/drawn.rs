@@ -30,7 +30,8 @@ pub struct Drawn {
     pub growth: f64,
     /// The colour of its material.
     pub colour: scene::Rgb,
-    /// Where each node is taken hold of: on its curve where that can be, and by how much the node moves for that place to move by 1.
+    /// Where each node is taken hold of: on its curve where that can be, and by how much the node
+    /// moves for that place to move by 1.
     pub knobs: Vec<(DVec3, f64)>,
     /// The refined curves' points with their radii.
     points: Vec<(DVec3, f64)>,
@@ -180,8 +181,8 @@ impl Drawn {
         knobs
     }
 
-    /// Whether a node is an open end: one curve ends there and nothing goes on, but for limbs beside the mirror x = 0 where the
-    /// curve is in it.
+    /// Whether a node is an open end: one curve ends there and nothing goes on, but for limbs
+    /// beside the mirror x = 0 where the curve is in it.
     #[must_use]
     pub fn is_end(&self, node: usize) -> bool {
         self.before(node).is_some()
@@ -328,8 +329,8 @@ fn is_of(block: &Block, skeleton: &Skeleton) -> bool {
     block.nodes.len() == skeleton.nodes.len() && block.curves.len() == skeleton.curves.len()
 }
 
-/// The knob within `reach` points of a place of the screen: skeleton and node. With `ends` free ends only, each of which reaches at
-/// least as far as half of its flesh.
+/// The knob within `reach` points of a place of the screen: skeleton and node. With `ends` free
+/// ends only, each of which reaches at least as far as half of its flesh.
 #[must_use]
 pub fn node_at(
     all: &[Drawn],
@@ -361,8 +362,8 @@ pub fn node_at(
     best.map(|(_, found)| found)
 }
 
-/// The place of a curve whose flesh is seen at a place of the screen, the nearest to the eye, or that is at most `extra` points beside
-/// it.
+/// The place of a curve whose flesh is seen at a place of the screen, the nearest to the eye, or
+/// that is at most `extra` points beside it.
 #[must_use]
 pub fn spot_at(all: &[Drawn], sight: &Sight, at: Pos2, extra: f32) -> Option<Spot> {
     let mut best: Option<((bool, f64), Spot)> = None;

@@ -1,4 +1,5 @@
-//! From gestures to texts: where a stroke begins, which way it goes through space, and what it writes.
+//! From gestures to texts: where a stroke begins, which way it goes through space, and what it
+//! writes.
 
 use super::drawn::{Drawn, Spot, node_at, spot_at};
 use super::page;
@@ -11,22 +12,25 @@ use scene::Rgb;
 use skeleton::Node;
 use sketch::{Limb, Mark, Sample, Start, Stroke};
 
-/// Thickness of a long stroke at its free end, in shares of that at its root. A short one is a head or a paw, and as thick all along.
+/// Thickness of a long stroke at its free end, in shares of that at its root. A short one is a head
+/// or a paw, and as thick all along.
 const TIP: f64 = 0.6;
 /// Lengths in radii of strokes that are short and long in that sense.
 const SHORT: [f64; 2] = [3.5, 9.0];
 /// Thickness of the ends of a stroke that begins in the air, in shares of that of its middle.
 const ENDS: f64 = 0.75;
-/// Least distances of the limbs of a pair from the mirror, in radii of the brush and of the flesh that they grow from.
+/// Least distances of the limbs of a pair from the mirror, in radii of the brush and of the flesh
+/// that they grow from.
 const APART: [f64; 2] = [1.2, 0.85];
-/// A short stroke from an end is a head or a paw: lengths in radii at which it begins to be thicker, is thickest, and no longer is;
-/// and how thick it is then.
+/// A short stroke from an end is a head or a paw: lengths in radii at which it begins to be
+/// thicker, is thickest, and no longer is; and how thick it is then.
 const EGG: ([f64; 3], f64) = ([1.5, 6.0, 14.0], 1.8);
 /// Most radius of an end that is a neck or an ankle, in radii of the brush.
 const THIN: f64 = 1.3;
 /// Radius at no and at full pressure of a pen, in shares of the brush's.
 const PRESSED: [f64; 2] = [0.3, 1.5];
-/// Least cosine of the angle between the line of sight and the mirror's normal at which strokes are drawn on the mirror itself.
+/// Least cosine of the angle between the line of sight and the mirror's normal at which strokes are
+/// drawn on the mirror itself.
 const FACING: f64 = 0.6;
 
 /// What strokes are drawn with.
@@ -68,7 +72,8 @@ pub struct Begin {
     pub radius: f64,
     /// Whether the mirrored stroke is drawn as well.
     pub pair: bool,
-    /// Whether it goes on from an end that is hardly thicker than the brush: a short one is a head or a paw then.
+    /// Whether it goes on from an end that is hardly thicker than the brush: a short one is a head
+    /// or a paw then.
     pub tip: bool,
     /// From the model's own coordinates, in which the mirror is x = 0, to the world.
     pub to_world: DAffine3,
@@ -83,15 +88,17 @@ pub struct Wish {
     pub pair: Option<bool>,
 }
 
-/// Cosine of the angle between an end's direction and a stroke's below which the stroke has a curve of its own: the flesh keeps its
-/// corner.
+/// Cosine of the angle between an end's direction and a stroke's below which the stroke has a curve
+/// of its own: the flesh keeps its corner.
 const STRAIGHT: f32 = 0.6;
-/// The one below which a stroke that goes down from an end is a leg, and not the end's continuation.
+/// The one below which a stroke that goes down from an end is a leg, and not the end's
+/// continuation.
 const SIDEWAYS: f32 = 0.4;
 /// The one below which any stroke goes back, and grows beside the end.
 const BACK: f32 = -0.3;
 
-/// How a stroke leaves an open end: along its curve, round a corner, or as something that grows there.
+/// How a stroke leaves an open end: along its curve, round a corner, or as something that grows
+/// there.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Leave {
     On,
@@ -134,7 +141,8 @@ fn leave(drawn: &Drawn, node: usize, sight: &Sight, heading: Option<Vec2>) -> Le
     }
 }
 
-/// The skeleton that a stroke from nowhere belongs to: the last one that drawing can change, of the brush's colour if it has one.
+/// The skeleton that a stroke from nowhere belongs to: the last one that drawing can change, of the
+/// brush's colour if it has one.
 #[must_use]
 pub fn target(all: &[Drawn], colour: Option<Rgb>) -> Option<usize> {
     let fits = |drawn: &Drawn| drawn.block.is_some() && is_colour(drawn.colour, colour);
@@ -145,9 +153,10 @@ fn is_colour(own: Rgb, wanted: Option<Rgb>) -> bool {
     wanted.is_none_or(|wanted| own.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 2e-3))
 }
 
-/// Where a stroke begins that is put down at a place of the screen. From an open end it goes on, unless it goes down or back from
-/// there; from elsewhere on flesh that the mirror cuts it is one of a pair. `meets` says where a ray from the eye meets shapes that are no
-/// skeletons; `home` is the depth of strokes on an empty page.
+/// Where a stroke begins that is put down at a place of the screen. From an open end it goes on,
+/// unless it goes down or back from there; from elsewhere on flesh that the mirror cuts it is one
+/// of a pair. `meets` says where a ray from the eye meets shapes that are no skeletons; `home` is
+/// the depth of strokes on an empty page.
 #[must_use]
 pub fn begin(
     all: &[Drawn],
@@ -360,7 +369,8 @@ pub fn heading(stroke: &Stroke) -> Option<Vec2> {
     (half >= 6.0).then(|| at(mark) - start)
 }
 
-/// Turns a stroke round that begins in the air and ends on flesh: it grows from there. Gives how it begins then.
+/// Turns a stroke round that begins in the air and ends on flesh: it grows from there. Gives how it
+/// begins then.
 #[must_use]
 pub fn turned(
     all: &[Drawn],
@@ -389,8 +399,8 @@ pub fn turned(
     }
 }
 
-/// The text with a new curve along samples of the world, and its mirrored one. `point` is the length of a point of the screen there.
-/// `None` if the stroke is too short.
+/// The text with a new curve along samples of the world, and its mirrored one.
+/// `point` is the length of a point of the screen there. `None` if the stroke is too short.
 #[must_use]
 pub fn draw(
     project: &Project,
@@ -570,7 +580,8 @@ fn number(x: f64, grain: f64) -> String {
     if short == "-0" { "0" } else { short }.to_owned()
 }
 
-/// The text with the ground of the page under the lowest flesh: what is drawn stands. Unchanged if the text has another ground.
+/// The text with the ground of the page under the lowest flesh: what is drawn stands. Unchanged if
+/// the text has another ground.
 #[must_use]
 pub fn grounded(text: &str, all: &[Drawn]) -> String {
     let Some(range) = page::ground(text) else {
@@ -587,8 +598,8 @@ pub fn grounded(text: &str, all: &[Drawn]) -> String {
     format!("{}{height}{}", &text[..range.start], &text[range.end..])
 }
 
-/// Whether a change makes no new mistakes; else what is wrong with it. Gives the change with the ground under it, and what the text
-/// makes.
+/// Whether a change makes no new mistakes; else what is wrong with it. Gives the change with the
+/// ground under it, and what the text makes.
 ///
 /// # Errors
 /// Says why the change cannot be made: the compiler's message.
@@ -619,7 +630,8 @@ pub fn checked(
     Ok((TextEdit::whole(file, text), project, compiled))
 }
 
-/// Makes a change, and then what is the same on the other side of the mirror, in one step. `again` gets the skeletons after the first.
+/// Makes a change, and then what is the same on the other side of the mirror, in one step. `again`
+/// gets the skeletons after the first.
 ///
 /// # Errors
 /// As [`checked`].

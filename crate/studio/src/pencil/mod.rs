@@ -1,8 +1,9 @@
 //! Drawing creatures on the picture: strokes become curves of a skeleton, with flesh around them.
 //!
-//! Nothing is kept here that the text does not say: each gesture changes the text, in one undo step. [`drawn`] finds the text's
-//! skeletons in the picture, [`edits`] makes texts of gestures, [`page`] is the page that drawing begins with, [`paint`] shows what
-//! the hand does, [`bar`] is the strip with the tools.
+//! Nothing is kept here that the text does not say: each gesture changes the text, in one undo
+//! step. [`drawn`] finds the text's skeletons in the picture, [`edits`] makes texts of gestures,
+//! [`page`] is the page that drawing begins with, [`paint`] shows what the hand does, [`bar`] is
+//! the strip with the tools.
 
 pub mod bar;
 mod drawn;
@@ -90,7 +91,8 @@ pub struct Around<'a> {
     pub session: &'a Session,
     /// Whether something lies over the page.
     pub covered: bool,
-    /// Whether the picture on show is of an older scene: neither a draft nor a traced picture of this one.
+    /// Whether the picture on show is of an older scene: neither a draft nor a traced picture of
+    /// this one.
     pub late: bool,
     /// Whether fingers are likely.
     pub touch: bool,
@@ -138,7 +140,8 @@ impl Pencil {
         self.off = places;
     }
 
-    /// What the last stroke can be made, while the text is as that left it: `true` for one of a pair, `false` for a single one.
+    /// What the last stroke can be made, while the text is as that left it:
+    /// `true` for one of a pair, `false` for a single one.
     #[must_use]
     pub fn other(&self, session: &Session) -> Option<bool> {
         let other = self.other.as_ref().filter(|_| self.gesture.is_none())?;
@@ -201,7 +204,8 @@ impl Pencil {
         }
     }
 
-    /// Takes what is done to the picture in `rect`, and shows what it does. `picture` is what the picture itself answered.
+    /// Takes what is done to the picture in `rect`, and shows what it does. `picture` is what the
+    /// picture itself answered.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -565,7 +569,8 @@ impl Pencil {
                 }
             }
             Some(Gesture::Grip(_) | Gesture::Rim) => {
-                // What is drawn by the last move stands in the text already; the ground follows in the same step.
+                // What is drawn by the last move stands in the text already; the ground follows in
+                // the same step.
                 for drawn in self.all.iter().take(1) {
                     let text = session.text(drawn.file);
                     let new = edits::grounded(text, &self.all);
@@ -632,7 +637,8 @@ impl Pencil {
         Some(Ok(change))
     }
 
-    /// The text with a limb along a stroke, and whether it is one of a pair. `pair`: whether it is to be.
+    /// The text with a limb along a stroke, and whether it is one of a pair. `pair`: whether it is
+    /// to be.
     fn grown(
         &mut self,
         session: &Session,

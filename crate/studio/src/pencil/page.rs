@@ -17,8 +17,8 @@ pub const COLOURS: [(&str, Rgb); 8] = [
 /// The ground of the page, up to its height.
 const GROUND: &str = "ground <0.72 0.70 0.62>, height ";
 
-/// The text of an empty page to draw on: seen from the side and a little from before, so that what is drawn in pairs lies to the left
-/// and right of it. `ratio`: height of its place to width.
+/// The text of an empty page to draw on: seen from the side and a little from before, so that what
+/// is drawn in pairs lies to the left and right of it. `ratio`: height of its place to width.
 #[must_use]
 pub fn fresh(ratio: f64) -> String {
     let ratio = if ratio.is_finite() {
@@ -56,7 +56,8 @@ surface Skin, {skin}
     )
 }
 
-/// Bytes of the height of the page's ground. `None` if a text has no such ground, or no plain number there.
+/// Bytes of the height of the page's ground. `None` if a text has no such ground, or no plain
+/// number there.
 #[must_use]
 pub fn ground(text: &str) -> Option<std::ops::Range<usize>> {
     let starts = text.match_indices(GROUND).map(|(at, _)| at);
@@ -81,7 +82,8 @@ fn surface(colour: Rgb, soft: bool) -> String {
     }
 }
 
-/// A text that has a material of a colour, and its name: one that is written just so, or a new one at the end.
+/// A text that has a material of a colour, and its name: one that is written just so, or a new one
+/// at the end.
 pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
     text: &str,
     texts: impl Fn() -> T,

@@ -47,7 +47,8 @@ extern "C" {
     fn copy_to(this: &Chunk, bytes: &Uint8Array) -> Result<(), JsValue>;
 }
 
-/// Codecs to be asked for, the better ones of a kind first: H.264's profiles and VP9 at a level for 4096 × 2304 pixels.
+/// Codecs to be asked for, the better ones of a kind first: H.264's profiles and VP9 at a level for
+/// 4096 × 2304 pixels.
 const CODECS: [(Kind, &str); 5] = [
     (Kind::Mp4, "avc1.640033"),
     (Kind::Mp4, "avc1.4d0033"),
@@ -165,7 +166,8 @@ impl VideoEncoder {
         self.encoder.encode_queue_size() as usize
     }
 
-    /// Encodes a frame that is shown at a time, microseconds. With `is_key` it can be decoded by itself.
+    /// Encodes a frame that is shown at a time, microseconds. With `is_key` it can be decoded by
+    /// itself.
     ///
     /// # Errors
     /// If the encoder has failed.

@@ -23,7 +23,8 @@ thread_local! {
     static PEN: std::cell::Cell<Option<f32>> = const { std::cell::Cell::new(None) };
 }
 
-/// The pressure of the pen that touches the page, or that touched it last, 0 … 1; `None` for a mouse or a finger.
+/// The pressure of the pen that touches the page, or that touched it last, 0 … 1; `None` for a
+/// mouse or a finger.
 #[must_use]
 pub fn pen_pressure() -> Option<f32> {
     PEN.get()

@@ -1,5 +1,5 @@
-//! The files that a text's jobs find in the page: the images of the work, its traced picture, and what
-//! the jobs before wrote. Results live in memory and only as long as they are on the tray.
+//! The files that a text's jobs find in the page: the images of the work, its traced picture, and
+//! what the jobs before wrote. Results live in memory and only as long as they are on the tray.
 
 use crate::asset::{self, Asset};
 use crate::picture::Image;
@@ -38,8 +38,8 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// A desk with the images of the work. `picture` is the name of the traced picture, and whether it
-    /// is to be saved.
+    /// A desk with the images of the work. `picture` is the name of the traced picture, and whether
+    /// it is to be saved.
     #[must_use]
     pub fn new(assets: Vec<Asset>, picture: (String, bool)) -> Self {
         Self {

@@ -1,8 +1,9 @@
-//! The tray: what the commands of the TOOLS group made of the work's pictures, below its own picture.
+//! The tray: what the commands of the TOOLS group made of the work's pictures, below its own
+//! picture.
 //!
-//! The jobs of a text run when it has no errors and they, the images they read or the traced picture changed.
-//! They run in small steps, a few milliseconds in each frame, and wait for the traced picture only if
-//! they read it. The tray's contents stay until a new run is complete.
+//! The jobs of a text run when it has no errors and they, the images they read or the traced
+//! picture changed. They run in small steps, a few milliseconds in each frame, and wait for the
+//! traced picture only if they read it. The tray's contents stay until a new run is complete.
 
 pub mod desk;
 pub mod item;
@@ -22,7 +23,8 @@ use rats::Tool;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Seconds of quiet after an edit before its jobs begin, so that no half-written name is looked for.
+/// Seconds of quiet after an edit before its jobs begin, so that no half-written name is looked
+/// for.
 const QUIET: f64 = 0.3;
 /// Seconds of work in one frame of the page, after which what was begun is still finished.
 const SPELL: f64 = 0.008;
@@ -66,7 +68,8 @@ type Drawn = (u64, [u32; 2]);
 /// The jobs of the open text and their results.
 #[derive(Default)]
 pub struct Tray {
-    /// The state of the work that was looked at last: the text's revision and the frame of the film.
+    /// The state of the work that was looked at last: the text's revision and the frame of the
+    /// film.
     seen: Option<(u64, u32)>,
     /// When the jobs of what was seen may begin.
     due: Option<f64>,

@@ -227,7 +227,8 @@ fn the_last_stroke_is_made_a_pair_or_single() {
     window.key(Modifiers::COMMAND, Key::Z);
     window.steps(3);
     assert_eq!(skeletons(&window.text())[0].curves.len(), 1);
-    // Of a text that something else changed nothing is turned: the place belongs to the picture again.
+    // Of a text that something else changed nothing is turned: the place belongs to the picture
+    // again.
     let text = window.text();
     window.press(turn, true);
     window.steps(1);

@@ -1,5 +1,5 @@
-//! Editing by hand: what is clicked in the picture is found in the text, and what is dragged changes
-//! its numbers.
+//! Editing by hand: what is clicked in the picture is found in the text, and what is dragged
+//! changes its numbers.
 
 use crate::driver::Window;
 use assist::handles::Editable;

@@ -1,7 +1,9 @@
-//! A contact sheet of all methods on lit shapes: `cargo run -p texture --example swatches -- OUT.png`.
+//! Contact sheet of all methods on lit shapes:
+//! `cargo run -p texture --example swatches -- OUT.png`.
 //!
-//! Each swatch shows a ball and a block with a corner at the origin of texture space. Rows: solids; solids in other
-//! colours or as bumps; waves, masks, images; texture coordinates of each kind of primitive.
+//! Each swatch shows a ball and a block with a corner at the origin of texture space. Rows: solids;
+//! solids in other colours or as bumps; waves, masks, images; texture coordinates of each kind of
+//! primitive.
 
 mod shapes;
 
@@ -69,7 +71,8 @@ fn solid(target: Target, solid: Solid, low: DVec3, high: DVec3, scale: f64) -> T
     }
 }
 
-/// A picture with an up, a right and letters' shapes: a bird's-eye map with a red F on stripes.
+/// Returns a picture with an up, a right and letters' shapes: a bird's-eye map with a red F on
+/// stripes.
 fn picture() -> Rgb8 {
     const ROWS: [&str; 8] = [
         "........", ".RRRRRR.", ".R......", ".RRRR...", ".R......", ".R......", ".R......",
@@ -265,7 +268,7 @@ fn flat() -> Vec<Swatch> {
     ]
 }
 
-fn mapped() -> Vec<Swatch> {
+fn mappings() -> Vec<Swatch> {
     let white = plain(1.0, 1.0, 1.0, 0.25, 30.0);
     let image = Texture {
         replace: true,
@@ -455,7 +458,7 @@ fn main() {
         .into_iter()
         .chain(bumps())
         .chain(flat())
-        .chain(mapped())
+        .chain(mappings())
         .collect();
     let rows = swatches.len().div_ceil(COLUMNS);
     let (width, height) = (COLUMNS * CELL[0], rows * CELL[1]);

@@ -6,12 +6,12 @@ use texture::{Uv, uv};
 pub type Distance = Box<dyn Fn(DVec3) -> f64>;
 pub type Coordinates = Box<dyn Fn(DVec3) -> Uv>;
 
-/// A shape with texture coordinates, of its own space.
+/// Shape with texture coordinates, of its own space.
 pub struct Shape {
     pub distance: Distance,
     /// Weights and coordinates: one, or one for each element of a blend.
     pub parts: Vec<(Distance, Coordinates, usize)>,
-    /// From its own space to the world.
+    /// Map from the shape's own space to the world.
     pub turn: DMat3,
     pub shift: DVec3,
 }
@@ -35,7 +35,8 @@ pub fn ball(shift: DVec3, turn: DMat3) -> Shape {
     )
 }
 
-/// A block whose nearest corner is the origin: faces at x = 0, y = 0 and z = 0, all turned to the viewer.
+/// Returns a block whose nearest corner is the origin: faces at x = 0, y = 0 and z = 0, all turned
+/// to the viewer.
 pub fn block(shift: DVec3) -> Shape {
     let (half, center) = (DVec3::splat(0.8), DVec3::new(-0.8, -0.8, -0.8));
     let turn = DMat3::from_rotation_x(0.5) * DMat3::from_rotation_y(-0.6);

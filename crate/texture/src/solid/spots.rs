@@ -8,8 +8,8 @@ use glam::DVec3;
 /// Rings of ripples in a unit.
 pub const RIPPLES: f64 = 5.0;
 
-/// Height of a crater over the plain, in radii, at distance x radii from its middle: a bowl with a flat floor, a
-/// rim, and a slope outside that ends at 1.6.
+/// Height of a crater over the plain, in radii, at distance x radii from its middle: a bowl with a
+/// flat floor, a rim, and a slope outside that ends at 1.6.
 fn crater(x: f64) -> f64 {
     const FLOOR: f64 = -0.34;
     const RIM: f64 = 0.13;
@@ -72,7 +72,7 @@ pub fn ripples(q: DVec3, grain: Grain) -> f64 {
     sum / (1.0 + sum * sum).sqrt()
 }
 
-/// A bright colour: hue by a hash.
+/// Returns a bright colour: hue by a hash.
 fn bright(hash: u32) -> [f64; 3] {
     const COLOURS: [[f64; 3]; 7] = [
         [0.90, 0.10, 0.12],
@@ -86,8 +86,8 @@ fn bright(hash: u32) -> [f64; 3] {
     COLOURS[(hash >> 7) as usize % COLOURS.len()]
 }
 
-/// Colour and thickness (0 to 1) of splashes: large blots with ragged arms, then smaller ones and droplets upon
-/// them.
+/// Colour and thickness (0 to 1) of splashes: large blots with ragged arms, then smaller ones and
+/// droplets upon them.
 pub fn paint(q: DVec3, grain: Grain) -> ([f64; 3], f64) {
     let (mut colour, mut thick) = ([1.0; 3], 0.0_f64);
     let mut size = 1.5;

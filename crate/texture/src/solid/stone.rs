@@ -11,7 +11,8 @@ fn ridge(x: f64, width: f64) -> f64 {
     t * t
 }
 
-/// Planes across x, bent by noise: dark where `sin πx` crosses 0, with a soft shade around and finer veins between.
+/// Planes across x, bent by noise: dark where `sin πx` crosses 0, with a soft shade around and
+/// finer veins between.
 pub fn marble(q: DVec3, grain: Grain) -> f64 {
     let t = grain.turbulence;
     let bent = t * fractal(q, grain.octaves);
@@ -28,7 +29,7 @@ pub fn marble(q: DVec3, grain: Grain) -> f64 {
         - 0.34 * fine * (0.5 + 0.5 * strength)
 }
 
-/// A random number in [0, 1) for each whole number.
+/// Returns the random number in [0, 1) of a whole number.
 fn step(index: f64, seed: u32) -> f64 {
     unit(scramble(
         (index as i64 as u32).wrapping_mul(0x9e37_79b1) ^ seed,
@@ -42,7 +43,8 @@ fn bands(x: f64, seed: u32) -> f64 {
     mix(step(index - 1.0, seed), step(index, seed), t)
 }
 
-/// Level sets of a slow noise, banded coarsely and finely: bands close in on themselves around the noise's hills.
+/// Level sets of a slow noise, banded coarsely and finely: bands close in on themselves around the
+/// noise's hills.
 pub fn agate(q: DVec3, grain: Grain) -> f64 {
     let slow =
         noise(q * 0.9 + DVec3::new(0.4, 3.1, 7.7)) + 0.3 * noise(q * 1.9 + DVec3::splat(4.6));
@@ -54,21 +56,23 @@ pub fn agate(q: DVec3, grain: Grain) -> f64 {
     0.5 + 1.3 * (0.52 * coarse + 0.33 * medium + 0.15 * fine - 0.5)
 }
 
-/// Cells around scattered points, their borders frayed by noise: a cell is feldspar (light), quartz (grey) or mica
-/// (dark); and grains half as large between.
+/// Returns two random numbers in [0, 1) of the scattered point that is nearest.
+fn crystal(q: DVec3, seed: u32) -> (f64, f64) {
+    let (mut nearest, mut hash) = (f64::INFINITY, 0);
+    scatter(q, seed, |cell, at| {
+        let d = at.distance_squared(q);
+        if d < nearest {
+            (nearest, hash) = (d, cell);
+        }
+    });
+    (unit(hash), unit(scramble(hash)))
+}
+
+/// Cells around scattered points, their borders frayed by noise: a cell is feldspar (light), quartz
+/// (grey) or mica (dark); and grains half as large between.
 pub fn granite(q: DVec3, grain: Grain) -> f64 {
     let q = q * 11.0;
     let q = q + grain.turbulence * 0.22 * warp(q * 1.2, grain.octaves.min(3.0));
-    let crystal = |q: DVec3, seed: u32| {
-        let (mut nearest, mut hash) = (f64::INFINITY, 0);
-        scatter(q, seed, |cell, at| {
-            let d = at.distance_squared(q);
-            if d < nearest {
-                (nearest, hash) = (d, cell);
-            }
-        });
-        (unit(hash), unit(scramble(hash)))
-    };
     let (kind, shade) = crystal(q, 11);
     let (small, tone) = crystal(q * 2.1 + DVec3::splat(0.37), 12);
     let base = match kind {

@@ -39,8 +39,8 @@ pub fn sandal(q: DVec3, grain: Grain) -> f64 {
     0.66 + 0.2 * figure + 0.42 * streak + 0.12 * fibre - 0.4 * pores
 }
 
-/// Short dark dashes: balls around scattered points of a space that is stretched along z, in a share of the cells.
-/// 1 in the middle of a dash, 0 outside.
+/// Short dark dashes: balls around scattered points of a space that is stretched along z, in a
+/// share of the cells. 1 in the middle of a dash, 0 outside.
 fn pores(q: DVec3, scale: DVec3, share: f64) -> f64 {
     let p = q * scale;
     let mut most = 0.0_f64;

@@ -1,4 +1,4 @@
-//! The same bits natively and as wasm: hashes of many results, kept.
+//! Hashes of many results, which are the same natively and as wasm.
 
 use glam::{DVec3, Vec3};
 use texture::sequence::{Purpose, sample};

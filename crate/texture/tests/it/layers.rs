@@ -35,7 +35,7 @@ fn region() -> Region {
     }
 }
 
-/// One of each method.
+/// Returns a texture of each method.
 fn methods() -> Vec<Method> {
     let solids = Solid::ALL.into_iter().map(Method::Solid);
     let waves = Wave::ALL.into_iter().map(|w| Method::Waves([w, Wave::Hat]));
@@ -108,7 +108,7 @@ fn values_are_those_of_profiles() {
     }
 }
 
-/// A shift by XYZ moves the pattern by XYZ of the object, whatever the scale.
+/// Shift by XYZ moves the pattern by XYZ of the object, whatever the scale.
 #[test]
 fn translate_moves_and_scale_refines() {
     let still = Texture {
@@ -338,7 +338,8 @@ fn layers_go_on_one_another_in_order() {
     assert_eq!(apply(&[half, red], full(), &site, &[]).diffuse, Vec3::X);
 }
 
-/// Colour patterns give targets of one number their luminance; images that are missing change nothing.
+/// Colour patterns give targets of one number their luminance; images that are missing change
+/// nothing.
 #[test]
 fn images_are_read_by_number() {
     let image = ramp();
@@ -362,8 +363,8 @@ fn images_are_read_by_number() {
     );
 }
 
-/// The slope of a solid is the gradient of its relief along the surface, in units of the argument: stretched
-/// axes count in proportion, and the size of the whole does not.
+/// The slope of a solid is the gradient of its relief along the surface, in units of the argument:
+/// stretched axes count in proportion, and the size of the whole does not.
 #[test]
 fn bumps_of_solids_follow_their_relief() {
     let mut random = Random::new(33);
@@ -394,8 +395,11 @@ fn bumps_of_solids_follow_their_relief() {
                 let got = texture.slope(&site, &[]).unwrap();
                 let size = scale.abs().max_element();
                 // Height in space, whose waves are 1/size as high as in units of the argument.
-                let height = |p: DVec3| solid.relief(scale * p, texture.grain) / size;
-                let want = crate::common::slope(height, point, 1e-3 / size);
+                let want = crate::common::slope(
+                    |p: DVec3| solid.relief(scale * p, texture.grain) / size,
+                    point,
+                    1e-3 / size,
+                );
                 let want = want - want.dot(normal) * normal;
                 assert!(got.dot(normal).abs() < 1e-12);
                 all += 1;
@@ -437,7 +441,7 @@ fn bumps_of_waves_and_images_rise_towards_white() {
 }
 
 #[test]
-fn replaced_bumps_start_anew() {
+fn bumps_that_replace_others_start_anew() {
     let bump = Texture {
         scale: DVec3::new(3.0, 1.0, 1.0),
         ..Texture::new(Target::Normal, Method::Waves([Wave::Sin, Wave::One]))

@@ -265,7 +265,7 @@ fn images_interpolate_and_wrap() {
     assert_eq!(short.texel(8, 8), [0.0; 3]);
 }
 
-/// A slanted rectangle in space: points on the lines from its inside meet it where they came from.
+/// Slanted rectangle in space: points on the lines from its inside meet it where they came from.
 #[test]
 fn regions_catch_normals() {
     let mut random = Random::new(44);

@@ -96,8 +96,8 @@ fn dispersion_spreads_the_index() {
     assert_eq!(shares(a, b, true), [a + b, Vec3::ZERO]);
 }
 
-/// Areas go over into equal areas: rings and sectors of the disc get their share, and the middle of cosine-spread
-/// directions is at 2/3 of the axis.
+/// Areas go over into equal areas: rings and sectors of the disc get their share, and the middle of
+/// cosine-spread directions is at 2/3 of the axis.
 #[test]
 fn discs_and_directions_are_even() {
     let count = 4096_u32;
@@ -134,7 +134,7 @@ fn discs_and_directions_are_even() {
     assert!(light(DVec3::ONE, 0.5, DVec3::ONE, [0.1, 0.2]).is_finite());
 }
 
-/// All rays of a lens meet in the plane of focus, and elsewhere fill the circle of confusion.
+/// Rays of a lens meet in the plane of focus, and elsewhere fill the circle of confusion.
 #[test]
 fn lens_focuses() {
     let (eye, aperture, focus) = (DVec3::new(1.0, 2.0, 3.0), 0.3, 7.0);
@@ -142,8 +142,9 @@ fn lens_focuses() {
     let pinhole = DVec3::new(0.2, -0.3, -1.0).normalize();
     let target = eye + pinhole * (focus / -pinhole.z);
     for z in [2.0, 5.0, 7.0, 20.0] {
-        // A point at depth z, seen through all of the lens, lands on the plane of focus within a circle; here
-        // from the other end: where the rays towards one point of focus pass the depth z.
+        // A point at depth z, seen through all of the lens, lands on the plane of focus within a
+        // circle; here from the other end: where the rays towards one point of focus pass the depth
+        // z.
         let mut widest = 0.0_f64;
         for i in 0..512 {
             let (origin, way) = lens(
@@ -176,7 +177,7 @@ fn lens_focuses() {
     );
 }
 
-/// One sample in each box of every shape of area 2⁻ᵏ, for the first 2ᵏ of every pixel.
+/// The first 2ᵏ samples of a pixel have one in each box of every shape of area 2⁻ᵏ.
 #[test]
 fn samples_are_stratified() {
     for (pixel, purpose) in [
@@ -219,7 +220,8 @@ fn samples_spread_better_than_chance() {
     }
 }
 
-/// First samples of neighbouring pixels, and of purposes in one pixel, have nothing to do with each other.
+/// First samples of neighbouring pixels, and of purposes in one pixel, have nothing to do with each
+/// other.
 #[test]
 fn samples_of_pixels_and_purposes_are_independent() {
     let count = 4_000_u32;

@@ -55,7 +55,8 @@ fn odd_numbers_give_numbers() {
     }
 }
 
-/// A short step makes a short change, but for checkers, crystals and where paints meet.
+/// Patterns are continuous, but for checkers, crystals and where paints meet: short steps make
+/// short changes.
 #[test]
 fn patterns_do_not_jump() {
     let mut random = Random::new(22);
@@ -102,8 +103,8 @@ fn checker_is_a_checker() {
     assert_eq!(face(1e-12), face(-1e-12));
 }
 
-/// Without noise, onions depend on the distance from the middle but for their lines, and wood on the distance
-/// from the axis but for its fibres, which are then off.
+/// Without noise, onions depend on the distance from the middle but for their lines, and wood on
+/// the distance from the axis but for its fibres, which are then off.
 #[test]
 fn calm_wood_has_round_rings() {
     let mut random = Random::new(24);
@@ -153,8 +154,8 @@ fn ripples_are_five_a_unit() {
         }
         length += 2.0;
     }
-    // Rings are crossed at all angles: at most 10 a unit; on average over angles half of that, less where no
-    // drop fell.
+    // Rings are crossed at all angles: at most 10 a unit; on average over angles half of that, less
+    // where no drop fell.
     let rate = f64::from(crossings) / length;
     assert!((3.0..10.0).contains(&rate), "{rate}");
 }

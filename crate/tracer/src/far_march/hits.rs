@@ -42,8 +42,8 @@ impl FarQuery<'_> {
 }
 
 impl FarBody {
-    /// Follows rays through a piece of their way, among the blobs in `work`. Returns those that cross the surface there; `None` if
-    /// this is not the way.
+    /// Follows rays through a piece of their way, among the blobs in
+    /// `work`. Returns those that cross the surface there; `None` if this is not the way.
     pub(super) fn follow(
         &self,
         query: &FarQuery<'_>,
@@ -124,7 +124,8 @@ impl FarBody {
         self.first as u32..(self.first + self.count) as u32
     }
 
-    /// Repeats the search on the doubtful intervals of rays, in double precision and with all primitives.
+    /// Repeats the search on the doubtful intervals of rays, in double precision and with all
+    /// primitives.
     #[cold]
     #[inline(never)]
     fn isolate(
@@ -158,7 +159,8 @@ impl FarBody {
         marched.between = between.map(f32x8::new);
     }
 
-    /// Moves hits onto the surface and samples it there. `None` if the field's error moves one of them by more than the tolerance.
+    /// Moves hits onto the surface and samples it there. `None` if the field's error moves one of
+    /// them by more than the tolerance.
     pub(super) fn sample(
         &self,
         query: &FarQuery<'_>,
@@ -233,7 +235,8 @@ impl FarBody {
         gradient
     }
 
-    /// Samples the finishes' shares at hits. `None` if the beam is too wide for a finish's hierarchy.
+    /// Samples the finishes' shares at hits. `None` if the beam is too wide for a finish's
+    /// hierarchy.
     fn weigh(
         &self,
         query: &FarQuery<'_>,

@@ -1,20 +1,24 @@
 //! Certified marching among very many points of kernels that never end.
 //!
-//! Such a field is small nowhere, so no ball bounds what a ray meets. A [`FarField`] divides space into cells, each with a polynomial
-//! of what is far and a list of what is near. A packet visits the cells along its beam, front to back: those in which the field is
-//! below T are left at once, in the others
+//! Such a field is small nowhere, so no ball bounds what a ray meets. A [`FarField`] divides space
+//! into cells, each with a polynomial of what is far and a list of what is near. A packet visits
+//! the cells along its beam, front to back: those in which the field is below T are left at once,
+//! in the others
 //!
 //! - the far field is the cell's polynomial along each ray,
-//! - near points whose cubic Hermite span over the cell has a small enough error are added to it by that,
-//! - the rest are blobs, and [`march_before`](crate::blob_march::march_before) follows the rays among them.
+//! - near points whose cubic Hermite span over the cell has a small enough error are added to it by
+//!   that,
+//! - the rest are blobs, and [`march_before`](crate::blob_march::march_before) follows the rays
+//!   among them.
 //!
-//! A packet that is too wide for small cells where many points are near is divided, down to single rays.
+//! A packet that is too wide for small cells where many points are near is divided, down to single
+//! rays.
 //!
-//! So the surface found is that of a field that differs from the true one by a stated bound, which counts like rounding: what it may
-//! hide is searched again among all points in double precision.
+//! So the surface found is that of a field that differs from the true one by a stated bound, which
+//! counts like rounding: what it may hide is searched again among all points in double precision.
 //!
-//! `piece.rs` is a packet's way through a cell, `points.rs` prepares the points near it, `hits.rs` follows the rays and samples the
-//! surface where they meet it.
+//! `piece.rs` is a packet's way through a cell, `points.rs` prepares the points near it, `hits.rs`
+//! follows the rays and samples the surface where they meet it.
 mod hits;
 mod piece;
 mod points;
@@ -57,7 +61,8 @@ pub(crate) struct FarBody {
     first: usize,
     /// Number of its primitives.
     count: usize,
-    /// The finishes; if there are several, each with the field of those of its primitives that add to the body's.
+    /// The finishes; if there are several, each with the field of those of its primitives that add
+    /// to the body's.
     finishes: Vec<(u32, Option<FarField>)>,
     /// Ball that holds the surface.
     center: DVec3,
@@ -100,8 +105,9 @@ pub struct FarQuery<'r> {
 }
 
 impl FarBody {
-    /// Prepares a body of primitives numbered from `first` on, with the radius of a ball outside which the field is below T. `None`
-    /// if it is no body of many points of one endless kernel that add to the field. What is still true of an earlier body is taken over.
+    /// Prepares a body of primitives numbered from `first` on, with the radius of a ball outside
+    /// which the field is below T. `None` if it is no body of many points of one endless kernel
+    /// that add to the field. What is still true of an earlier body is taken over.
     pub fn new(
         primitives: &[Primitive],
         finishes: &[u32],
@@ -109,7 +115,8 @@ impl FarBody {
         (center, radius): (DVec3, f64),
         earlier: Option<&Self>,
     ) -> Option<Self> {
-        // A field that falls as 1/r is so large where there are many elements that its rounding leaves nothing to save.
+        // A field that falls as 1/r is so large where there are many elements that its rounding
+        // leaves nothing to save.
         if primitives.iter().any(|p| p.kernel == Kernel::Inverse) {
             return None;
         }
@@ -156,9 +163,10 @@ impl FarBody {
         &query.sight.primitives[self.first..self.first + self.count]
     }
 
-    /// Finds the first crossings of rays with the surface; for [`Quest::Entry`] only whether there is one from outside. Returns the
-    /// rays that cross, a bit each, with the surface there in `work.flesh`. `None` if this is not the way for these rays; the caller
-    /// then takes the general one.
+    /// Finds the first crossings of rays with the surface; for [`Quest::Entry`] only whether there
+    /// is one from outside. Returns the rays that cross, a bit each, with the surface there in
+    /// `work.flesh`. `None` if this is not the way for these rays; the caller then takes the
+    /// general one.
     pub fn first(&self, query: &FarQuery<'_>, work: &mut FarWork) -> Option<u32> {
         if query.quest != Quest::Entry {
             work.flesh.weights.clear();
@@ -263,7 +271,8 @@ impl FarBody {
         Some(met)
     }
 
-    /// Parameters between which a beam may be where the surface is; `None` if it is too wide for the hierarchy. Empty if it misses it.
+    /// Parameters between which a beam may be where the surface is; `None` if it is too wide for
+    /// the hierarchy. Empty if it misses it.
     fn range(&self, beam: &Beam) -> Option<[f64; 2]> {
         let away = self.center - beam.axis.origin;
         let along = away.dot(beam.axis.direction);
@@ -283,8 +292,9 @@ impl FarBody {
     }
 }
 
-/// Returns the middle and half the side of the hierarchy's cube, given the ball that holds the surface. Both are multiples of a step of
-/// 1/32 to 1/16 of the radius, so that small edits leave the cube where it is.
+/// Returns the middle and half the side of the hierarchy's cube, given the ball that holds the
+/// surface. Both are multiples of a step of 1/32 to 1/16 of the radius, so that small edits leave
+/// the cube where it is.
 fn cube(center: DVec3, radius: f64) -> (DVec3, f64) {
     let step = libm::exp2(libm::floor(libm::log2(radius))) / 16.0;
     let middle = center.to_array().map(|x| libm::round(x / step) * step);
@@ -401,7 +411,8 @@ mod tests {
         }
     }
 
-    /// Packets that are too wide for small cells among many points are divided, and no ray of them is lost.
+    /// Packets that are too wide for small cells among many points are divided, and no ray of them
+    /// is lost.
     #[test]
     fn wide_packets_meet_what_exact_rays_meet() {
         let mut numbers = Random::new(5);
@@ -462,7 +473,8 @@ mod tests {
         assert_eq!(first(outside, 1.0), Some(0));
     }
 
-    /// A scene in which one ball has moved takes over cells of the scene before, and gives the same picture as if it were made anew.
+    /// A scene in which one ball has moved takes over cells of the scene before, and gives the same
+    /// picture as if it were made anew.
     #[test]
     fn edits_give_the_picture_of_a_fresh_scene() {
         let mut numbers = Random::new(8);

@@ -41,8 +41,8 @@ pub struct Point {
 }
 
 impl FarBody {
-    /// Follows rays through a piece of their way among points. Returns those that cross the surface there; `None` if this is not the
-    /// way.
+    /// Follows rays through a piece of their way among points. Returns those that cross the surface
+    /// there; `None` if this is not the way.
     pub(super) fn follow_points(
         &self,
         query: &FarQuery<'_>,
@@ -90,7 +90,8 @@ impl Points {
         })
     }
 
-    /// Numbers of the points that differ from others, in ascending order. `None` if they are too many or not as many points.
+    /// Numbers of the points that differ from others, in ascending order. `None` if they are too
+    /// many or not as many points.
     pub fn changed_from(&self, others: &Self) -> Option<Vec<u32>> {
         let kernel = |points: &Self| (points.power, points.each.len());
         if kernel(self) != kernel(others) {
@@ -109,8 +110,8 @@ impl Points {
         Some(changed)
     }
 
-    /// Collects the blobs of a piece, and the backdrop of all that is not among them, with its error. `None` if the field is below T
-    /// in the whole piece.
+    /// Collects the blobs of a piece, and the backdrop of all that is not among them, with its
+    /// error. `None` if the field is below T in the whole piece.
     fn prepare(&self, piece: &Piece<'_>, work: &mut FarWork) -> Option<Known> {
         let cell = piece.cell;
         let count = cell.near.len();

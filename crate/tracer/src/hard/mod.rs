@@ -1,7 +1,7 @@
 //! Hard shapes: elements that do not blend, drawn as their offset surfaces.
 //!
-//! Each shape is a closed body (or, without thickness or lids, a sheet) and knows every place where a ray
-//! crosses its surface.
+//! Each shape is a closed body (or, without thickness or lids, a sheet) and knows every place where
+//! a ray crosses its surface.
 
 mod cone;
 mod cuboid;
@@ -210,8 +210,8 @@ impl Clip {
     }
 }
 
-/// Where `a·t² + 2·b·t + c` is zero, in order; an end is infinite where `a` vanishes. `None` where it
-/// is zero nowhere, or everywhere.
+/// Where `a·t² + 2·b·t + c` is zero, in order; an end is infinite where `a` vanishes. `None` where
+/// it is zero nowhere, or everywhere.
 fn zeros(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     let square = b * b - a * c;
     if square.is_nan() || square < 0.0 {

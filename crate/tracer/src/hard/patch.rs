@@ -16,7 +16,8 @@ pub struct Patch {
     reach: f64,
 }
 
-/// Overlap of a patch beyond its edges, relative to its size, so that no ray passes between neighbours.
+/// Overlap of a patch beyond its edges, relative to its size, so that no ray passes between
+/// neighbours.
 const EDGE: f64 = 1e-12;
 
 impl Patch {

@@ -454,7 +454,8 @@ fn patches_are_flat_but_lit_round() {
             left(a, b) && left(b, c) && left(c, a)
         };
         seen += check_sheet(&mut n, &solid, &|p| inside(p).then(|| (p - a).dot(normal)));
-        // In the middle of an edge it is the mean of two normals. (A ray along it is never edge-on.)
+        // In the middle of an edge it is the mean of two normals. (A ray along it is never
+        // edge-on.)
         let direction = (normals[0].normalize() + normals[1].normalize()).normalize();
         let ray = Ray {
             origin: a.midpoint(b) + (c - a) * 1e-9 - direction * 3.0,

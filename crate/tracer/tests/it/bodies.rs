@@ -211,7 +211,8 @@ impl Implicit for SmoothMaximum {
 
     fn enclose(&self, ball: Ball) -> Enclosure {
         let [a, b] = self.parts.each_ref().map(|part| part.enclose(ball));
-        // It grows with both; its gradient is a mean of theirs, and the shares change by no more than 1/(2k).
+        // It grows with both; its gradient is a mean of theirs, and the shares change by no more
+        // than 1/(2k).
         let both = a.slope + b.slope;
         Enclosure {
             value: [0, 1].map(|i| self.mixed(a.value[i], b.value[i]).0),
@@ -464,7 +465,8 @@ fn in_contact(seed: u64) -> Scene {
     scene
 }
 
-/// The crossings of all rays with bodies in contact are those that dense sampling finds: none is missed and none invented.
+/// The crossings of all rays with bodies in contact are those that dense sampling finds: none is
+/// missed and none invented.
 #[test]
 fn bodies_in_contact_are_seen_where_they_are() {
     let (mut crossings, mut shared) = (0, 0);
@@ -587,8 +589,8 @@ fn molecules(number: u32, apart: bool) -> Scene {
     scene
 }
 
-/// Thousands of bodies take about as long as one body of their elements. The goal is twice at most, `cargo xtask bench models`; a
-/// test may be disturbed.
+/// Thousands of bodies take about as long as one body of their elements. The goal is twice at most,
+/// `cargo xtask bench models`; a test may be disturbed.
 #[test]
 fn very_many_bodies_take_as_long_as_one() {
     const SIDE: u32 = 96;

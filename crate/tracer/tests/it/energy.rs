@@ -105,7 +105,8 @@ fn a_background_is_not_made_brighter_by_what_stands_before_it() {
     }
 }
 
-/// A scene with much that may go wrong: a lens and a tone that spread one bad number over neighbours are left out.
+/// A scene with much that may go wrong: a lens and a tone that spread one bad number over
+/// neighbours are left out.
 fn extreme(index: f32, dispersion: f32, thin: f64) -> Scene {
     let mut scene = dark();
     scene.background = Background::Colour([0.5, 0.6, 0.7]);
@@ -151,7 +152,8 @@ fn no_number_is_lost_in_glass() {
             for thin in [1e-3, 1e-9] {
                 let scene = extreme(index, dispersion, thin);
                 let pixels = draw(&scene, [13, 9]);
-                // A pixel whose light is no number would be black: everything here shines, mirrors or lets the background through.
+                // A pixel whose light is no number would be black: everything here shines, mirrors
+                // or lets the background through.
                 let black = pixels.iter().filter(|p| **p == [0; 3]).count();
                 assert_eq!(
                     black, 0,

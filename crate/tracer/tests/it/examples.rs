@@ -1,4 +1,5 @@
-//! Examples of the gallery whose skeletons fold and touch: what pictures show of them, against the reference.
+//! Examples of the gallery whose skeletons fold and touch: what pictures show of them, against the
+//! reference.
 //!
 //! With SINEW_SCENE only those of one; the counts are printed with `--nocapture`.
 

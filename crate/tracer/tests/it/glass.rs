@@ -8,7 +8,8 @@ use tracer::{Pass, Picture, Stats, Tile};
 
 const SIZE: [u32; 2] = [48, 36];
 
-/// The direction of a ray behind a surface, by angles: none at total reflection. The normal looks against the ray.
+/// The direction of a ray behind a surface, by angles: none at total reflection. The normal looks
+/// against the ray.
 fn bend(direction: DVec3, normal: DVec3, from: f64, to: f64) -> Option<DVec3> {
     let across = direction - normal * direction.dot(normal);
     let sine = across.length() * from / to;
@@ -157,7 +158,8 @@ fn slabs_shift_light_whether_boxes_or_meshes() {
     }
 }
 
-/// Adds a prism of glass, whose finish is number 1: legs towards −x and +z, the long side between them.
+/// Adds a prism of glass, whose finish is number 1: legs towards −x and +z, the long side between
+/// them.
 fn add_prism(scene: &mut Scene, index: f32) {
     assert_eq!(scene.finishes.len(), 1);
     scene.finishes.push(glass(index));
@@ -183,7 +185,8 @@ fn add_prism(scene: &mut Scene, index: f32) {
     }
 }
 
-/// Balls of half-silvered glass inside each other ask for twice the rays at each surface: without a limit 2³² for a pixel.
+/// Balls of half-silvered glass inside each other ask for twice the rays at each surface: without a
+/// limit 2³² for a pixel.
 #[test]
 fn rays_of_nested_glass_are_limited() {
     let mut scene = dark();
@@ -553,7 +556,8 @@ fn light_is_coloured_by_what_it_passes() {
 
 #[test]
 fn rays_skip_what_they_are_told_to() {
-    // A glowing ball behind the eye, seen in a mirror; and one in front, seen by itself and through a pane.
+    // A glowing ball behind the eye, seen in a mirror; and one in front, seen by itself and through
+    // a pane.
     let scene = |skip: fn(&mut scene::Skip)| {
         let mut scene = dark();
         let mut glow = Finish {

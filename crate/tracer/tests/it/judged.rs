@@ -1,4 +1,5 @@
-//! Scenes of bodies, skeletons and contacts as the reference knows them, and verdicts on rays through them.
+//! Scenes of bodies, skeletons and contacts as the reference knows them, and verdicts on rays
+//! through them.
 use contact::Bulge;
 use glam::DVec3;
 use oracle::reference::{Deformation, Near, Reference, Substance, TouchingBody};
@@ -42,7 +43,8 @@ pub fn deformation(bulge: Bulge) -> Deformation {
     Deformation::new(bulge.start(), formula)
 }
 
-/// The scene as the reference knows it: bodies of primitives, and bodies of one skeleton that is convolved locally.
+/// The scene as the reference knows it: bodies of primitives, and bodies of one skeleton that is
+/// convolved locally.
 pub fn reference(scene: &Scene) -> Reference {
     let partners = scene.partners();
     let surfaces = scene.surfaces_apart();

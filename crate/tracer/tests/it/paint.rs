@@ -12,7 +12,8 @@ const CORNERS: [DVec3; 3] = [
 ];
 const COLORS: [Rgb; 3] = [[1.0, 0.0, 0.2], [0.0, 1.0, 0.4], [0.3, 0.1, 1.0]];
 
-/// A scene with a painted triangle that glows in 0.9 times its colours. Its own finish is another one.
+/// A scene with a painted triangle that glows in 0.9 times its colours. Its own finish is another
+/// one.
 fn painted(shape: Shape) -> Scene {
     let mut scene = dark();
     let glow = |ambient: Rgb| Finish { ambient, ..black() };

@@ -1,7 +1,9 @@
-//! Hard shapes with mirrors and glass as POV-Ray draws them. Skipped where POV-Ray is not installed (Debian's package `povray`).
+//! Hard shapes with mirrors and glass as POV-Ray draws them. Skipped where POV-Ray is not installed
+//! (Debian's package `povray`).
 //!
-//! One light model on both sides: no fall of reflection with the angle, a mirror's and a glass's share as given, light of a point
-//! without attenuation, linear colours. Edges differ by where rays run between two pixels, so shares of pixels are bounded, not each.
+//! One light model on both sides: no fall of reflection with the angle, a mirror's and a glass's
+//! share as given, light of a point without attenuation, linear colours. Edges differ by where rays
+//! run between two pixels, so shares of pixels are bounded, not each.
 
 use crate::looks::*;
 use glam::DVec3;
@@ -12,7 +14,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 const SIZE: [u32; 2] = [160, 120];
-/// Largest mean difference, of 255, and largest share of pixels that differ visibly: edges that fall between two pixels.
+/// Largest mean difference, of 255, and largest share of pixels that differ visibly: edges that
+/// fall between two pixels.
 const BOUND: (f64, f64) = (0.05, 0.002);
 
 fn vector(v: DVec3) -> String {
@@ -23,7 +26,8 @@ fn colour(c: [f32; 3]) -> String {
     format!("<{},{},{}>", c[0], c[1], c[2])
 }
 
-/// The look in POV-Ray's words. What lets light through has no diffuse colour here: its pigment is the filter.
+/// The look in POV-Ray's words. What lets light through has no diffuse colour here: its pigment is
+/// the filter.
 fn look(finish: &Finish) -> String {
     let pigment = if finish.transparent == [0.0; 3] {
         format!("pigment {{ rgb {} }}", colour(finish.diffuse))
@@ -319,8 +323,9 @@ fn clear_glass_of_all_shapes() {
     }
 }
 
-/// Where light is reflected totally, POV-Ray colours it as if it had passed, and leaves the mirror's share out; here total reflection
-/// is total. A ball that is looked into from outside has none.
+/// Where light is reflected totally, POV-Ray colours it as if it had passed, and leaves the
+/// mirror's share out; here total reflection is total. A ball that is looked into from outside has
+/// none.
 #[test]
 fn a_ball_of_coloured_glass_that_mirrors_and_its_shadow() {
     let mut scene = room();

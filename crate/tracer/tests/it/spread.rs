@@ -37,7 +37,8 @@ fn columns(picture: &[[u8; 3]], width: u32) -> Vec<f64> {
     (0..width).map(mean).collect()
 }
 
-/// The mean square distance from the middle of an even disc is half its radius' square, and adds to that of the ball's image.
+/// The mean square distance from the middle of an even disc is half its radius' square, and adds to
+/// that of the ball's image.
 #[test]
 fn a_small_ball_is_blurred_to_the_circle_of_confusion() {
     const SIZE: [u32; 2] = [64, 64];
@@ -119,8 +120,8 @@ fn a_penumbra_is_the_share_of_the_disc_that_is_seen() {
         DVec3::new(-40.0, 0.0, 2.0),
     ];
     let (position, towards) = (DVec3::Z * 4.0, DVec3::Z);
-    // The line of sight to the edge, half way up, meets the light's height at −x; a distant light's disc, which is at the distance 1,
-    // at −x/2.
+    // The line of sight to the edge, half way up, meets the light's height at −x; a distant light's
+    // disc, which is at the distance 1, at −x/2.
     for (kind, size, reach) in [
         (LightKind::Point { position }, 1.0, 1.0),
         (LightKind::Distant { towards }, 0.3, 0.6),

@@ -29,7 +29,8 @@ fn bare() -> Surface {
     }
 }
 
-/// Checks each pixel that hits something against what `expect` says of the hit's position and normal.
+/// Checks each pixel that hits something against what `expect` says of the hit's position and
+/// normal.
 fn check(scene: &Scene, expect: impl Fn(DVec3, DVec3) -> Vec3) -> usize {
     let picture = Picture::new(scene, SIZE);
     let hits = picture.cast(&rays(scene, SIZE));

@@ -1,4 +1,5 @@
-//! Local convolution and contact, as pictures show them, against the reference: no crossing missed, none invented.
+//! Local convolution and contact, as pictures show them, against the reference: no crossing missed,
+//! none invented.
 
 use crate::judged::{Range, distances, packet, reference};
 use contact::Bulge;
@@ -229,8 +230,8 @@ fn certify(kinds: &[Kind]) {
     for &kind in kinds {
         let row = judge(kind, trials::count(600) / KINDS.len(), 0, |_, _| {});
         assert!(row.missed == 0 && row.invented == 0, "{kind:?} {row:?}");
-        // Of rays that graze folds the reference leaves 1.5 % undecided, counted over 10,000 of them; a packet of eight
-        // of them is alike.
+        // Of rays that graze folds the reference leaves 1.5 % undecided, counted over 10,000 of
+        // them; a packet of eight of them is alike.
         let few = match kind {
             Kind::Folds | Kind::SelfContact | Kind::Star => 60,
             Kind::Pair | Kind::Crowd | Kind::Grasp => 100,

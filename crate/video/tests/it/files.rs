@@ -10,12 +10,12 @@ const RECORD: &[u8] = &[
 ];
 
 fn packets(count: u64) -> Vec<Packet> {
-    let packet = |number| Packet {
+    let packets = (0..count).map(|number| Packet {
         time: number * 83_333,
         is_key: number % 10 == 0,
         bytes: vec![number as u8; 3 + number as usize % 7],
-    };
-    (0..count).map(packet).collect()
+    });
+    packets.collect()
 }
 
 fn video(codec: Codec, packets: Vec<Packet>) -> Video {
@@ -63,12 +63,12 @@ fn webm_is_read_back() {
 
 #[test]
 fn webm_of_one_key_frame_only_has_clusters_that_are_short_enough() {
-    let packet = |number: u64| Packet {
+    let packets = (0..100).map(|number| Packet {
         time: number * 1_000_000,
         is_key: number == 0,
         bytes: vec![1],
-    };
-    let bytes = webm(&video(Codec::Vp8, (0..100).map(packet).collect())).unwrap();
+    });
+    let bytes = webm(&video(Codec::Vp8, packets.collect())).unwrap();
     let mut file = MatroskaFile::open(Cursor::new(&bytes)).unwrap();
     let mut next = Frame::default();
     for second in 0..100 {

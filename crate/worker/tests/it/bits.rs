@@ -1,7 +1,7 @@
-//! Packed scenes, and tiles with the counts of the work for them, are the same to the last bit natively and as wasm. Whole
-//! pictures are compared in `pins.rs`.
+//! Packed scenes, and tiles with the counts of the work for them, are the same to the last bit
+//! natively and as wasm. Whole pictures are compared in `pins.rs`.
 
-use crate::common::{FEW, TILE, compile, traced};
+use crate::common::{FEW, TILE, compile, trace};
 use tracer::{Pass, tiles};
 use trials::bits::{Hash, compare};
 use worker::message::pack;
@@ -19,7 +19,7 @@ fn scenes_and_tiles_have_the_kept_bits() {
         let tile = tiles(size[0], size[1], TILE)[1];
         for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
             let mut hash = Hash::default();
-            for (_, pixels, stats) in traced(&scene, size, [(pass, tile)].into_iter()) {
+            for (_, pixels, stats) in trace(&scene, size, [(pass, tile)].into_iter()) {
                 hash.bytes(&pixels);
                 hash.bytes(&pack(&stats).expect("counts are packed"));
             }

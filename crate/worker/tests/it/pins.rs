@@ -1,9 +1,9 @@
-//! Whole pictures are the ones that `tests/pins.txt` keeps the hashes of: natively as the program traces them,
-//! as wasm as a worker does. A change of the pictures that is meant is written there by `cargo xtask pins`, which shows
-//! the old and the new ones.
+//! Whole pictures are the ones that `tests/pins.txt` keeps the hashes of: natively as the program
+//! traces them, as wasm as a worker does. A change of the pictures that is meant is written there
+//! by `cargo xtask pins`, which shows the old and the new ones.
 //!
-//! With `SINEW_PICTURES` set to a folder, the native tests compare nothing: they write each picture there as
-//! `NAME-PASS.ppm` and print its pin. The command runs them so.
+//! With `SINEW_PICTURES` set to a folder, the native tests compare nothing: they write each picture
+//! there as `NAME-PASS.ppm` and print its pin. The command runs them so.
 
 use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, compile_text, hash};
 use scene::Scene;
@@ -15,7 +15,8 @@ use tracer::{Pass, Tile};
 const PINS: &str = include_str!("../../../../tests/pins.txt");
 /// Width and height of the pictures, pixels.
 const SIZE: u32 = 256;
-/// Scenes that take too long, and the sides of the squares in the middle of their pictures that are traced instead, pixels.
+/// Scenes that take too long, and the sides of the squares in the middle of their pictures that are
+/// traced instead, pixels.
 const PARTS: [(&str, u32); 14] = [
     ("coils", 12),
     ("coral-crab", 128),
@@ -32,7 +33,7 @@ const PARTS: [(&str, u32); 14] = [
     ("still-life", 128),
     ("touching", 128),
 ];
-/// At most n×n rays a pixel, so that the smooth pass has something to do in every scene.
+/// The most rays a pixel is n×n, so that the smooth pass has something to do in every scene.
 const SAMPLES: u32 = 2;
 const PASSES: [Pass; 2] = [Pass::Full, Pass::Smooth];
 
@@ -74,7 +75,7 @@ fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
     let orders = PASSES
         .iter()
         .flat_map(|&pass| tiles.iter().map(move |&tile| (pass, tile)));
-    let done = crate::common::traced(scene, [SIZE; 2], orders);
+    let done = crate::common::trace(scene, [SIZE; 2], orders);
     assert_eq!(done.len(), 2 * tiles.len());
     [0, 1].map(|pass| {
         let mut picture = vec![0; 4 * (part.width * part.height) as usize];
@@ -89,7 +90,8 @@ fn pictures(scene: &Scene, part: Tile) -> [Vec<u8>; 2] {
     })
 }
 
-/// The pins of a text, `NAME PASS SIDE HASH` a line, by `NAME PASS`. Lines that begin with `#` are comments.
+/// The pins of a text, `NAME PASS SIDE HASH` a line, by `NAME PASS`. Lines that begin with `#` are
+/// comments.
 fn pins(text: &str) -> BTreeMap<String, String> {
     text.lines()
         .filter(|line| !line.starts_with('#'))
@@ -162,7 +164,8 @@ fn compare(place: &str, scenes: &[(&str, &str)]) {
     let said = changes(&pins(PINS), &drawn);
     assert!(
         said.is_empty(),
-        "\n{said}If that is meant, look at the old and new pictures and renew tests/pins.txt: cargo xtask pins\n"
+        "\n{said}If that is meant, look at the old and new pictures and renew tests/pins.txt: \
+         cargo xtask pins\n"
     );
 }
 

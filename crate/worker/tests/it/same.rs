@@ -1,20 +1,21 @@
-//! Pictures are equal bit for bit, traced by one worker or by two on threads. That they are the same as wasm, too, is seen in
-//! `pins.rs`; those of the page against those of the program are compared in `tests/agree.test.mjs`.
+//! Pictures are equal bit for bit, traced by one worker or by two on threads. That they are the
+//! same as wasm, too, is seen in `pins.rs`; those of the page against those of the program are
+//! compared in `tests/agree.test.mjs`.
 
-use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, FEW, TILE, compile, traced};
+use crate::common::{BENCH, EXAMPLES, EXAMPLES_WITH_FILES, FEW, TILE, compile, trace};
 use scene::Scene;
 use tracer::{Pass, Tile, tiles};
 
-/// So many tiles of a picture are traced, spread over its middle.
+/// Tiles of a picture that are traced, spread over its middle.
 const TILES: usize = 3;
 
 /// Pixels of each tile, by one worker.
 fn by_one(scene: &Scene, size: [u32; 2], pass: Pass, tiles: &[Tile]) -> Vec<Vec<u8>> {
-    let done = traced(scene, size, tiles.iter().map(|&tile| (pass, tile)));
+    let done = trace(scene, size, tiles.iter().map(|&tile| (pass, tile)));
     done.into_iter().map(|(_, pixels, _)| pixels).collect()
 }
 
-/// The same by two workers at the same time, the second of which takes every other tile.
+/// Pixels of each tile, by two workers at the same time, each of which takes every other tile.
 fn by_two(scene: &Scene, size: [u32; 2], pass: Pass, tiles: &[Tile]) -> Vec<Vec<u8>> {
     let [even, odd] = std::thread::scope(|scope| {
         let worker = |first: usize| {
@@ -43,8 +44,10 @@ fn workers_do_not_matter() {
         for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
             let done = by_one(&scene, size, pass, &some);
             assert_eq!(done.len(), some.len(), "{name}, {pass:?}");
-            let shows_something = |tile: &Vec<u8>| tile.chunks_exact(4).any(|p| p != &tile[..4]);
-            assert!(done.iter().any(shows_something), "{name} shows nothing");
+            let shows_something = done
+                .iter()
+                .any(|tile| tile.chunks_exact(4).any(|pixel| pixel != &tile[..4]));
+            assert!(shows_something, "{name} shows nothing");
             let others = by_two(&scene, size, pass, &some);
             assert!(done == others, "{name}, {pass:?}: workers matter");
         }

@@ -1,5 +1,5 @@
-//! Time of the worker's engine for the scenes of `tests/bench/`, natively and as wasm. A measurement:
-//! `cargo xtask bench wasm` runs it.
+//! Time of the worker's engine for the scenes of `tests/bench/`, natively and as wasm. A
+//! measurement: `cargo xtask bench wasm` runs it.
 
 use crate::common::{BENCH, compile_text};
 use scene::Scene;
@@ -10,11 +10,12 @@ use worker::{Engine, Kind, Order, Request, Step};
 
 /// Side of the tiles that the page asks for.
 const TILE: u32 = 64;
-/// Pictures of each scene, of which the quickest counts: so many at least …
+/// The least number of pictures of each scene, of which the quickest counts.
 const PICTURES: usize = 3;
-/// … and as many as are begun in so many seconds, as quick ones are easily disturbed, and wasm is first compiled in haste.
+/// Seconds in which more pictures are begun: quick ones are easily disturbed, and wasm is first
+/// compiled in haste.
 const SECONDS: f64 = 0.6;
-/// Enough, also where clocks are coarse.
+/// The most pictures of a scene, as clocks may be coarse.
 const MOST: usize = 1000;
 
 /// Scenes that tell something about speed and do not take long.
@@ -38,12 +39,12 @@ fn picture(scene: &Scene) -> f64 {
         kind: Kind::Colours,
         shared: false,
     });
-    let order = |tile| Order {
+    let tiles = tiles(size[0], size[1], TILE).into_iter();
+    let orders = tiles.map(|tile| Order {
         generation: 1,
         tile,
         pass: Pass::Full,
-    };
-    let orders = tiles(size[0], size[1], TILE).into_iter().map(order);
+    });
     engine.accept(Request::Trace(orders.collect()));
     while !matches!(engine.step(&|| false, &|| 0.0), Step::Idle) {}
     start.elapsed().as_secs_f64()

@@ -15,8 +15,8 @@ struct Built {
 }
 
 impl Built {
-    /// Returns `node --test` on a file in `tests/`, told of the page and the program: those of its tests
-    /// whose names have a pattern.
+    /// Returns `node --test` on a file in `tests/`, told of the page and the program: those of its
+    /// tests whose names have a pattern.
     fn tests(&self, pattern: Option<&str>, file: &str) -> Result<std::process::Command> {
         let screenshots = target().join("screenshots");
         std::fs::create_dir_all(&screenshots)?;

@@ -83,8 +83,8 @@ impl Watch {
         done
     }
 
-    /// Runs files of tests, as many at a time as there are cores, in their order, and gives how many
-    /// tests there were. A file that fails does not keep the others from being run.
+    /// Runs files of tests, as many at a time as there are cores, in their order, and gives how
+    /// many tests there were. A file that fails does not keep the others from being run.
     ///
     /// # Errors
     /// If a file fails: their names. What they wrote has been told.

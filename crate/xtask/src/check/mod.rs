@@ -20,8 +20,8 @@ use std::time::Instant;
 /// A part of the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Part {
-    /// After each edit: formatting, lints and tests, with a tenth of the random inputs, of the crates
-    /// that have been changed since the last commit, and the pins of pictures.
+    /// After each edit: formatting, lints and tests, with a tenth of the random inputs, of the
+    /// crates that have been changed since the last commit, and the pins of pictures.
     Quick,
     /// Formatting and lints.
     Lint,
@@ -44,8 +44,8 @@ const BASIC: &str = "1";
 const FEW: &str = "0.1";
 const MANY: &str = "10";
 
-/// Runs one part, or all but Firefox and the fuzzer. A part that fails does not keep the others from
-/// being run.
+/// Runs one part, or all but Firefox and the fuzzer. A part that fails does not keep the others
+/// from being run.
 pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     let begun = Instant::now();
     let done = match part {
@@ -87,8 +87,8 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     Ok(())
 }
 
-/// Runs all parts, in two lanes: the code's, and beside it the page is built. Its tests come last, as
-/// they want the machine for themselves.
+/// Runs all parts, in two lanes: the code's, and beside it the page is built. Its tests come last,
+/// as they want the machine for themselves.
 fn all(times: &'static str) -> Vec<Done> {
     let mut watch = Watch::default();
     let (mut done, page) = std::thread::scope(|scope| {

@@ -7,8 +7,8 @@ use crate::shell::{PORTABLE, cargo, executable};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
-/// The crates of this program. They are compiled apart from the others, as this program was: together
-/// features of others would reach what they depend on, and have it compiled anew.
+/// The crates of this program. They are compiled apart from the others, as this program was:
+/// together features of others would reach what they depend on, and have it compiled anew.
 const OURS: [&str; 2] = ["xtask", "bench"];
 
 /// Options that choose the tests of all other crates. Examples are for `clippy` to check; they are
@@ -22,7 +22,8 @@ const OTHERS: [&str; 6] = [
     "--tests",
 ];
 
-/// Tests that a build for any processor of this one's kind passes, too: some scenes have the same bits.
+/// Tests that a build for any processor of this one's kind passes, too: some scenes have the same
+/// bits.
 const PORTABLE_TESTS: [&str; 2] = ["bits::", "pictures_are_as_pinned_4"];
 
 /// Returns the program `sinew` that the tests of the crates use.

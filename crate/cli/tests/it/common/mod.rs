@@ -23,7 +23,7 @@ pub fn sinew(arguments: &[&str], input: &str) -> Output {
 }
 
 /// Standard output of a run, as text.
-pub fn printed(output: &Output) -> String {
+pub fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("UTF-8")
 }
 

@@ -1,4 +1,4 @@
-//! A small model, written in every format.
+//! Small model, written in every format.
 
 use glam::DVec3;
 
@@ -8,8 +8,8 @@ pub struct Model {
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// A tetrahedron about the origin, seen counter-clockwise from outside; its numbers are exact in
-/// every format.
+/// Returns a tetrahedron about the origin, seen counter-clockwise from outside; its numbers are
+/// exact in every format.
 pub fn tetrahedron() -> Model {
     let positions = [
         [1.0, 1.0, 1.5],
@@ -40,11 +40,15 @@ impl Model {
             text += &format!("vn {} {} {}\n", n.x, n.y, n.z);
         }
         for t in &self.triangles {
-            let corner = |i: &usize| match with_normals {
-                true => format!(" {}//{}", i + 1, i + 1),
-                false => format!(" {}", i + 1),
-            };
-            text += &format!("f{}\n", t.iter().map(corner).collect::<String>());
+            text += &format!(
+                "f{}\n",
+                t.iter()
+                    .map(|i| match with_normals {
+                        true => format!(" {}//{}", i + 1, i + 1),
+                        false => format!(" {}", i + 1),
+                    })
+                    .collect::<String>()
+            );
         }
         text.into_bytes()
     }
@@ -80,8 +84,8 @@ impl Model {
             "ply\nformat {format} 1.0\ncomment by hand\nelement vertex {}\n\
              property uchar shade\nproperty float x\nproperty double y\nproperty float z\n\
              property float nx\nproperty float ny\nproperty float nz\nelement other 1\n\
-             property list uchar short what\nelement face {}\nproperty list uchar int vertex_indices\n\
-             property short part\nend_header\n",
+             property list uchar short what\nelement face {}\n\
+             property list uchar int vertex_indices\nproperty short part\nend_header\n",
             self.positions.len(),
             self.triangles.len()
         )
@@ -99,7 +103,7 @@ impl Model {
         text.into_bytes()
     }
 
-    /// A GLB file with these nodes, of which the first is the scene's, and more fields.
+    /// Returns a GLB file with these nodes, of which the first is the scene's, and more fields.
     pub fn glb_with(&self, nodes: &str, more: &str) -> Vec<u8> {
         let mut numbers: Vec<u8> = Vec::new();
         // Positions and normals are interleaved.
@@ -122,7 +126,8 @@ impl Model {
                 {{"attributes":{{"POSITION":0}},"mode":1}}]}}],
             "accessors":[
                 {{"bufferView":0,"componentType":5126,"count":{count},"type":"VEC3"}},
-                {{"bufferView":0,"byteOffset":12,"componentType":5126,"count":{count},"type":"VEC3"}},
+                {{"bufferView":0,"byteOffset":12,"componentType":5126,"count":{count},
+                "type":"VEC3"}},
                 {{"bufferView":1,"componentType":5123,"count":{},"type":"SCALAR"}}],
             "bufferViews":[
                 {{"buffer":0,"byteOffset":0,"byteLength":{vertices},"byteStride":24}},

@@ -7,7 +7,8 @@ use manifold_rust::types::{Error, MeshGL64};
 use mesh::{Bvh, Topology, TriangleMesh, closest_point, self_intersections};
 use trials::{Random, count};
 
-/// Whether our half-edges and `manifold-rust` take a mesh for a closed manifold, of the volume that we say it has.
+/// Whether our half-edges and `manifold-rust` take a mesh for a closed manifold, of the volume that
+/// we say it has.
 pub fn manifold(mesh: &TriangleMesh) -> Result<(), String> {
     let topology = Topology::of(mesh).map_err(|error| error.to_string())?;
     if !topology.is_closed_manifold() {
@@ -86,7 +87,8 @@ impl<'a> Distances<'a> {
     }
 }
 
-/// The largest distances found, by sampling, from the mesh to the surface and from the surface to the mesh.
+/// The largest distances found, by sampling, from the mesh to the surface and from the surface to
+/// the mesh.
 pub fn distances(function: &dyn Implicit, mesh: &TriangleMesh, samples: usize) -> [f64; 2] {
     let near = Distances::new(mesh);
     let mut farthest = [0.0_f64; 2];
@@ -107,7 +109,8 @@ pub fn distances(function: &dyn Implicit, mesh: &TriangleMesh, samples: usize) -
     farthest
 }
 
-/// Crossings of a ray with a surface, by bounds in balls around its parts: none that is left out is wider than the resolution.
+/// Crossings of a ray with a surface, by bounds in balls around its parts: none that is left out is
+/// wider than the resolution.
 pub fn crossings(
     function: &dyn Implicit,
     origin: DVec3,

@@ -1,4 +1,5 @@
-//! Helpers of the draft's tests: devices, read-back of pictures, and independent definitions of shapes.
+//! Helpers of the draft's tests: devices, read-back of pictures, and independent definitions of
+//! shapes.
 
 pub mod gpu;
 pub mod reference;

@@ -93,11 +93,10 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
     let is_inside = |t: f64| inside(shape, radius, eye + direction * t);
     // An open surface ends where it is cut off, without a crossing.
     let reaches = |t: f64| reaches(shape, eye + direction * t);
-    let crossed = |&i: &u32| {
-        let (a, b) = (at(i - 1), at(i));
+    let change = (1..=STEPS).find(|i| {
+        let (a, b) = (at(i - 1), at(*i));
         is_inside(a) != is_inside(b) && reaches(a) && reaches(b)
-    };
-    let change = (1..=STEPS).find(crossed)?;
+    })?;
     let start = is_inside(at(change - 1));
     let (mut before, mut after) = (at(change - 1), at(change));
     for _ in 0..60 {
@@ -171,7 +170,8 @@ fn in_quadric(quadric: &Quadric, p: DVec3) -> DVec3 {
     along(quadric.axes, p - quadric.center)
 }
 
-/// Share of the way from one end to the other of the foot of p on an axis, and its distance from it.
+/// Share of the way from one end to the other of the foot of p on an axis, and its distance from
+/// it.
 fn about_axis(base: DVec3, apex: DVec3, p: DVec3) -> (f64, f64) {
     let way = apex - base;
     let share = (p - base).dot(way) / way.length_squared();

@@ -94,6 +94,6 @@ pub fn look(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {
 }
 
 /// A rotation without a pattern.
-pub fn turned() -> DQuat {
+pub fn rotation() -> DQuat {
     DQuat::from_xyzw(0.3, -0.5, 0.2, 0.8).normalize()
 }

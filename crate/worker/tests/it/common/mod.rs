@@ -22,11 +22,12 @@ macro_rules! examples {
 
 /// Names and texts of the examples.
 pub const EXAMPLES: [(&str, &str); 49] = examples![
-    "agate-shell" "blends" "coating" "coils" "coral-crab" "coral-tree" "cowrie" "drops" "falling" "fawn" "fireflies" "flakes" "floppy-ears"
-    "fog-stones" "folds" "generators" "glass-drops" "grasp" "hermite-crab" "icicle" "jelly" "octopus" "pebbles" "planets" "sea-urchin"
-    "seahorse" "seaweed" "shell-1" "shell-2" "shell-3" "snail" "sphereflake" "spinal-starecase" "squeeze" "starfish"
-    "starfish-a" "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f" "stem-flakes" "still-life" "tide"
-    "time-map" "touching" "tshape" "urchin-patterns" "wrinkles"
+    "agate-shell" "blends" "coating" "coils" "coral-crab" "coral-tree" "cowrie" "drops" "falling"
+    "fawn" "fireflies" "flakes" "floppy-ears" "fog-stones" "folds" "generators" "glass-drops"
+    "grasp" "hermite-crab" "icicle" "jelly" "octopus" "pebbles" "planets" "sea-urchin" "seahorse"
+    "seaweed" "shell-1" "shell-2" "shell-3" "snail" "sphereflake" "spinal-starecase" "squeeze"
+    "starfish" "starfish-a" "starfish-b" "starfish-c" "starfish-d" "starfish-e" "starfish-f"
+    "stem-flakes" "still-life" "tide" "time-map" "touching" "tshape" "urchin-patterns" "wrinkles"
 ];
 
 /// Names and texts of the examples that read meshes and strokes of their own.
@@ -70,7 +71,8 @@ pub const BENCH: [(&str, &str); 10] = [
     bench!("tee"),
 ];
 
-/// Scenes for what is not tried on all: a plain sum, far fields, contact and local convolution, textures and glass.
+/// Scenes for what is not tried on all: a plain sum, far fields, contact and local convolution,
+/// textures and glass.
 pub const FEW: [&str; 4] = ["tshape", "flake-820-cauchy", "squeeze", "glass-drops"];
 
 /// Compiles the scene of a name.
@@ -82,20 +84,19 @@ pub fn compile(name: &str) -> Scene {
 
 /// Compiles a text; it may read `flake.rat`, and the meshes and strokes of the examples.
 pub fn compile_text(text: &str) -> Scene {
-    let file = |name: &str, text: &str| File {
+    let read = [("main.rat", text), ("flake.rat", FLAKE)];
+    let files = read.into_iter().chain(STROKES).map(|(name, text)| File {
         name: name.into(),
         text: text.into(),
-    };
-    let read = [("main.rat", text), ("flake.rat", FLAKE)];
-    let files = read.into_iter().chain(STROKES);
+    });
     let project = Project {
-        files: files.map(|(name, text)| file(name, text)).collect(),
+        files: files.collect(),
     };
-    let asset = |(name, text): (&str, &str)| Asset {
+    let assets = MESHES.map(|(name, text)| Asset {
         name: name.into(),
         bytes: text.as_bytes().into(),
-    };
-    let compiled = rats::compile_at(&project, &MESHES.map(asset), 0.0);
+    });
+    let compiled = rats::compile_at(&project, &assets, 0.0);
     let mut errors = compiled.diagnostics.iter();
     assert_eq!(errors.find(|d| d.severity == rats::Severity::Error), None);
     Arc::unwrap_or_clone(compiled.scene)
@@ -108,8 +109,9 @@ pub fn hash(bytes: &[u8]) -> u64 {
     })
 }
 
-/// RGBA bytes and counts of the work of each tile, as a worker traces them, in the given order.
-pub fn traced(
+/// Traces tiles as a worker does; returns the RGBA bytes and counts of work of each, in the given
+/// order.
+pub fn trace(
     scene: &Scene,
     size: [u32; 2],
     orders: impl Iterator<Item = (Pass, Tile)>,
@@ -123,12 +125,12 @@ pub fn traced(
         kind: Kind::Colours,
         shared: false,
     });
-    let order = |(pass, tile)| Order {
+    let orders = orders.map(|(pass, tile)| Order {
         generation: 1,
         tile,
         pass,
-    };
-    engine.accept(Request::Trace(orders.map(order).collect()));
+    });
+    engine.accept(Request::Trace(orders.collect()));
     let mut done = Vec::new();
     loop {
         match engine.step(&|| false, &|| 0.0) {
