@@ -14,7 +14,7 @@ use worker::{Answer, Engine, Request, Step};
 
 pub use workers::Threads as PlatformWorkers;
 
-/// Sender of packed answers, which returns whether anybody listens.
+/// Sends a packed answer. Returns whether it is taken.
 pub type Outlet<'a> = dyn Fn(Vec<u8>) -> bool + 'a;
 
 /// The program that threads run.
