@@ -75,10 +75,13 @@ mod tests {
     use contact::Bulge;
     use glam::DVec3;
 
+    fn ball(radius: f64) -> Element {
+        let center = DVec3::ZERO;
+        Element::new(Shape::Sphere { center, radius })
+    }
+
     #[test]
     fn place_in_the_text_is_all_that_may_differ() {
-        let center = DVec3::ZERO;
-        let ball = |radius| Element::new(Shape::Sphere { center, radius });
         let scene = Scene {
             elements: vec![ball(1.0), ball(2.0)],
             moments: vec![Scene::default()],
