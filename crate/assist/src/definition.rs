@@ -3,8 +3,8 @@
 use crate::index::{Index, Place};
 use rats::Project;
 
-/// Where the name at a byte is made: of several places the one that counts there. A file's name
-/// leads to the beginning of the file.
+/// Returns the place where the name at a byte is made: of several the one that counts there. A
+/// file's name leads to the beginning of the file.
 ///
 /// ```
 /// let text = "var r = 1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, 0 0 0\n";

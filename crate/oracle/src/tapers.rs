@@ -9,7 +9,7 @@ use field::bound::Bound;
 use field::shaping::SLIMMEST;
 use field::{Kernel, Primitive, Shaping, Skeleton, THRESHOLD, Taper};
 use glam::DVec3;
-use trials::skeletons::{Kind, shaping};
+use trials::skeletons::{Kind, halves, shaping};
 use trials::{Random, count};
 use wide::f32x8;
 
@@ -169,59 +169,22 @@ pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
 
 /// Returns the parts of a bone before and after a fraction of its length.
 fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
-    match *skeleton {
-        Skeleton::Segment { base, apex } => {
-            let middle = base + (apex - base) * fraction;
-            [
-                Skeleton::Segment { base, apex: middle },
-                Skeleton::Segment { base: middle, apex },
-            ]
-        }
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let turn = angle * fraction;
-            let (sine, cosine) = libm::sincos(turn);
-            let part = |u, v, angle| Skeleton::Arc {
-                center,
-                u,
-                v,
-                radius,
-                angle,
-            };
-            [
-                part(u, v, turn),
-                part(u * cosine + v * sine, v * cosine - u * sine, angle - turn),
-            ]
-        }
-        Skeleton::Curve {
-            control: [a, b, c, d],
-        } => {
-            let cut = |at: f64| {
-                let mix = |p: DVec3, q: DVec3| p + (q - p) * at;
-                let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
-                let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
-                let m = mix(abc, bcd);
-                [[a, ab, abc, m], [m, bcd, cd, d]].map(|control| Skeleton::Curve { control })
-            };
-            let whole = skeleton.measure();
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..50 {
-                let middle = 0.5 * (low + high);
-                if cut(middle)[0].measure() < fraction * whole {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
+    let mut at = fraction;
+    if let Skeleton::Curve { .. } = skeleton {
+        let whole = skeleton.measure();
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let first = halves(skeleton, middle).map(|[first, _]| first.measure());
+            if first.is_some_and(|length| length < fraction * whole) {
+                low = middle;
+            } else {
+                high = middle;
             }
-            cut(low)
         }
-        _ => unreachable!("no bone"),
+        at = low;
     }
+    halves(skeleton, at).expect("a bone")
 }
 
 /// Checks that a bone cut in two, with the radius and blobbiness that it has there, is the same

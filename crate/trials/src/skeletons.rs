@@ -4,7 +4,7 @@ use crate::Random;
 use core::f64::consts::{PI, TAU};
 use field::local::Limb;
 use field::{BlobScale, Kernel, Local, Primitive, Shaping, Skeleton};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// A kind of skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -237,4 +237,131 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
         }
     });
     Local::new(&points, &limbs.collect::<Vec<_>>(), 1.2).expect("it is short")
+}
+
+/// Returns the parts of a skeleton that is cut in two at a fraction `at` of its parameter; `None` of
+/// one that has no such parts.
+#[must_use]
+pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
+    Some(match *skeleton {
+        Skeleton::Segment { base, apex } => {
+            let middle = base + (apex - base) * at;
+            [
+                Skeleton::Segment { base, apex: middle },
+                Skeleton::Segment { base: middle, apex },
+            ]
+        }
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => {
+            let turn = angle * at;
+            let (sine, cosine) = libm::sincos(turn);
+            let part = |u, v, angle| Skeleton::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            };
+            [
+                part(u, v, turn),
+                part(u * cosine + v * sine, v * cosine - u * sine, angle - turn),
+            ]
+        }
+        Skeleton::Triangle { corners: [a, b, c] } => {
+            let middle = a + (b - a) * at;
+            [
+                Skeleton::Triangle {
+                    corners: [a, middle, c],
+                },
+                Skeleton::Triangle {
+                    corners: [middle, b, c],
+                },
+            ]
+        }
+        Skeleton::Polygon { ref rings } => {
+            // From the centre of the star to two corners.
+            let ring = &rings[0];
+            if rings.len() > 1 || ring.len() < 4 {
+                return None;
+            }
+            let center = (ring[0] + ring[2]) * 0.5;
+            let half = ring.len() / 2;
+            let mut first: Vec<DVec3> = ring[..=half].to_vec();
+            first.push(center);
+            let mut second: Vec<DVec3> = ring[half..].to_vec();
+            second.extend([ring[0], center]);
+            // Only if both are simple, with areas that add up.
+            let whole = skeleton.measure();
+            let parts = [first, second].map(|ring| Skeleton::Polygon { rings: vec![ring] });
+            let sum = parts[0].measure() + parts[1].measure();
+            if (sum - whole).abs() > 1e-9 * whole {
+                return None;
+            }
+            parts
+        }
+        Skeleton::Curve {
+            control: [a, b, c, d],
+        } => {
+            let mix = |p: DVec3, q: DVec3| p + (q - p) * at;
+            let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
+            let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
+            let m = mix(abc, bcd);
+            [
+                Skeleton::Curve {
+                    control: [a, ab, abc, m],
+                },
+                Skeleton::Curve {
+                    control: [m, bcd, cd, d],
+                },
+            ]
+        }
+        Skeleton::Point { .. } | Skeleton::Plane { .. } => return None,
+    })
+}
+
+/// Returns a skeleton turned, scaled and shifted.
+#[must_use]
+pub fn move_by(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
+    let to = |p: DVec3| turn * p * scale + shift;
+    match *skeleton {
+        Skeleton::Point { center } => Skeleton::Point { center: to(center) },
+        Skeleton::Segment { base, apex } => Skeleton::Segment {
+            base: to(base),
+            apex: to(apex),
+        },
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => Skeleton::Arc {
+            center: to(center),
+            u: turn * u,
+            v: turn * v,
+            radius: radius * scale,
+            angle,
+        },
+        Skeleton::Triangle { corners } => Skeleton::Triangle {
+            corners: corners.map(to),
+        },
+        Skeleton::Plane { point, normal } => Skeleton::Plane {
+            point: to(point),
+            normal: turn * normal,
+        },
+        Skeleton::Polygon { ref rings } => Skeleton::Polygon {
+            rings: rings
+                .iter()
+                .map(|ring| ring.iter().map(|p| to(*p)).collect())
+                .collect(),
+        },
+        Skeleton::Curve { control } => Skeleton::Curve {
+            control: control.map(to),
+        },
+    }
 }
