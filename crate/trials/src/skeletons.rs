@@ -239,8 +239,8 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
     Local::new(&points, &limbs.collect::<Vec<_>>(), 1.2).expect("it is short")
 }
 
-/// Returns the parts of a skeleton that is cut in two at a fraction `at` of its parameter; `None` of
-/// one that has no such parts.
+/// Returns the parts of a skeleton that is cut in two at a fraction `at` of its parameter; `None`
+/// if it has no such parts.
 #[must_use]
 pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     Some(match *skeleton {
@@ -260,17 +260,17 @@ pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
         } => {
             let turn = angle * at;
             let (sine, cosine) = libm::sincos(turn);
-            let part = |u, v, angle| Skeleton::Arc {
+            let parts = [
+                (u, v, turn),
+                (u * cosine + v * sine, v * cosine - u * sine, angle - turn),
+            ];
+            parts.map(|(u, v, angle)| Skeleton::Arc {
                 center,
                 u,
                 v,
                 radius,
                 angle,
-            };
-            [
-                part(u, v, turn),
-                part(u * cosine + v * sine, v * cosine - u * sine, angle - turn),
-            ]
+            })
         }
         Skeleton::Triangle { corners: [a, b, c] } => {
             let middle = a + (b - a) * at;
@@ -307,10 +307,9 @@ pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
         Skeleton::Curve {
             control: [a, b, c, d],
         } => {
-            let mix = |p: DVec3, q: DVec3| p + (q - p) * at;
-            let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
-            let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
-            let m = mix(abc, bcd);
+            let [ab, bc, cd] = [[a, b], [b, c], [c, d]].map(|ends| mix(ends, at));
+            let [abc, bcd] = [[ab, bc], [bc, cd]].map(|ends| mix(ends, at));
+            let m = mix([abc, bcd], at);
             [
                 Skeleton::Curve {
                     control: [a, ab, abc, m],
@@ -324,10 +323,24 @@ pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     })
 }
 
+/// Returns the point at a fraction of the way from one end to the other.
+fn mix([from, to]: [DVec3; 2], at: f64) -> DVec3 {
+    from + (to - from) * at
+}
+
 /// Returns a skeleton turned, scaled and shifted.
 #[must_use]
 pub fn move_by(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
-    let to = |p: DVec3| turn * p * scale + shift;
+    map_points(skeleton, turn, scale, |p| turn * p * scale + shift)
+}
+
+/// Returns a skeleton with its points mapped, its directions turned and its radius scaled.
+fn map_points(
+    skeleton: &Skeleton,
+    turn: DQuat,
+    scale: f64,
+    to: impl Fn(DVec3) -> DVec3,
+) -> Skeleton {
     match *skeleton {
         Skeleton::Point { center } => Skeleton::Point { center: to(center) },
         Skeleton::Segment { base, apex } => Skeleton::Segment {
