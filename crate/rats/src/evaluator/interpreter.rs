@@ -95,7 +95,7 @@ impl<'a> Evaluator<'a> {
         if spec.yields() && self.definitions.contains_key(&command.word) {
             return self.call(command, command.word);
         }
-        self.tell_after_shot(command);
+        self.warn_after_shot(command);
         match spec.action {
             Action::Run(run) => run(self, command).inspect_err(|_| {
                 if let Some(mark) = spec.mark_failed {
@@ -107,12 +107,8 @@ impl<'a> Evaluator<'a> {
             Action::Library => self.call_library(command, spec.name),
             Action::NoEffect(reason) => {
                 self.given(command)?;
-                self.say(Severity::Note, command.word_span.clone(), || {
-                    (
-                        format!("`{}` changes nothing here: {reason}", spec.name),
-                        None,
-                    )
-                });
+                let message = format_args!("`{}` changes nothing here: {reason}", spec.name);
+                self.note(&command.word_span, message, "");
                 Ok(Flow::Next)
             }
         }
@@ -138,7 +134,7 @@ impl<'a> Evaluator<'a> {
         if read.keyword("step") {
             step = read.number("the step")?;
             if step == 0.0 {
-                return Err(Problem::new(read.since(start), "the step must not be 0"));
+                return Err(Problem::new(&read.since(start), "the step must not be 0"));
             }
         }
         read.end()?;
@@ -210,7 +206,7 @@ impl<'a> Evaluator<'a> {
         let values = self.arguments(command, define)?;
         if self.scope.calls() >= limits::MAX_NESTED_CALLS {
             return Err(Problem::new(
-                command.word_span.clone(),
+                &command.word_span,
                 format!(
                     "stopped here: commands call each other more than {} deep",
                     limits::MAX_NESTED_CALLS
@@ -248,7 +244,7 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// Runs another text; what is said about one of the library or an example is said here.
+    /// Runs another text; messages about one of the library or an example go here.
     pub(super) fn run_inner(&mut self, command: &'a Command, file: usize) -> Outcome<Flow> {
         self.enter(&command.word_span)?;
         let leaves_own = self.is_own() && file >= self.sources.own;
@@ -263,7 +259,7 @@ impl<'a> Evaluator<'a> {
         Ok(flow)
     }
 
-    /// The file of a name, of the project or the library.
+    /// Finds the file of a name, of the project or the library.
     pub(super) fn find_file(&self, name: &Name<'_>) -> Outcome<usize> {
         let places = places(&self.sources.all[self.file].name, name.text);
         let found = places.iter().find_map(|place| self.sources.find(place));
@@ -278,7 +274,7 @@ impl<'a> Evaluator<'a> {
             let hint = suggest::hint(bare, known.iter().copied())
                 .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
             Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("there is no file `{}` in the project", name.text),
             )
             .hint(hint)

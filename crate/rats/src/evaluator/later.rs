@@ -1,11 +1,13 @@
-//! Finds what is made further down in a text, for hints about what is used too soon.
+//! Finds materials that are made further down in a text, for hints about materials that are used
+//! too soon.
 
 use crate::reader::Name;
 use crate::sources::Source;
 use crate::syntax::{Block, Command, Node};
 use std::ops::Range;
 
-/// The place of the first command after `name` that makes a material of that name in the same file.
+/// Finds the place of the first command after `name` that makes a material of that name in the same
+/// file.
 pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<usize>> {
     let makes = |command: &Command| {
         let item = source.syntax.items.get(command.items.start);
@@ -20,7 +22,7 @@ pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<u
     Some(source.syntax.items[command.items.start].span())
 }
 
-/// The first command with a property.
+/// Finds the first command with a property.
 fn find<'s>(block: &'s Block, property: &dyn Fn(&Command) -> bool) -> Option<&'s Command> {
     block.iter().find_map(|node| match node {
         Node::Command(command) => property(command).then_some(command),

@@ -51,7 +51,7 @@ fn check(project: &Project) {
     assert_eq!(json.matches("null").count(), absent(scene));
 }
 
-/// How many optional things a scene leaves out.
+/// Share of the optional things that a scene leaves out.
 fn absent(scene: &scene::Scene) -> usize {
     let of = |m: &scene::Flesh| {
         [

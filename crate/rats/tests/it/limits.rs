@@ -87,7 +87,8 @@ fn steps() {
         "steps",
     );
     fails(
-        "define f(x) { f2 x\nf2 x }\ndefine f2(x) { f3 x\nf3 x }\ndefine f3(x) { for i = 1 to 1e4 { f4 x } }\n\
+        "define f(x) { f2 x\nf2 x }\ndefine f2(x) { f3 x\nf3 x }\n\
+         define f3(x) { for i = 1 to 1e4 { f4 x } }\n\
          define f4(x) { for i = 1 to 1e4 { var y = x } }\nf 1",
         "steps",
     );
@@ -120,7 +121,8 @@ fn heavy_elements() {
     let curves = MAX_ELEMENTS / CURVE_WEIGHT + 1;
     fails(
         format!(
-            "surface s diff Red, blob -1, rad 1\nfor i = 1 to {curves} {{ curve s 1 0 0 0 1 0 0 1 1 0 0 1 i }}"
+            "surface s diff Red, blob -1, rad 1\nfor i = 1 to {curves} \
+             {{ curve s 1 0 0 0 1 0 0 1 1 0 0 1 i }}"
         ),
         "shapes",
     );
@@ -256,7 +258,8 @@ fn magnitudes() {
     fails("eyep 2e12 0 0", "too large");
     fails("var x = 1e13", "too large");
     fails("var x = 1e400", "finite");
-    let text = "surface s diff Red\nobject A\nsphere s 1 1 0 0\nclose\nfor i = 1 to 400 { scale 10 10 10 }";
+    let text = "surface s diff Red\nobject A\nsphere s 1 1 0 0\nclose\n\
+        for i = 1 to 400 { scale 10 10 10 }";
     let compiled = run(text);
     assert!(compiled.scene.elements.is_empty());
     assert_eq!(compiled.diagnostics.len(), 1);
@@ -347,7 +350,7 @@ fn cut_image(side: u32) -> Vec<u8> {
     png
 }
 
-/// Each size is another height field, so none is kept, and a mistake is not either.
+/// Height fields of different sizes are different: none is kept, and a mistake is not either.
 #[test]
 fn a_large_image_in_a_loop() {
     let text = "surface s diff Red\nfor i = 1 to 1e6 { terra s big.png 0 0 0 i 1 1 }";
@@ -370,7 +373,8 @@ fn a_large_image_in_a_loop() {
 fn deformed_vertices() {
     let text = |turns: u32| {
         format!(
-            "surface s, diffuse Red\nmesh s gem.obj\nfor i = 1 to {turns} {{\n  deform {{ control <0 0 -1.2> move <0 0 0.001> }}\n}}\n"
+            "surface s, diffuse Red\nmesh s gem.obj\nfor i = 1 to {turns} {{\n  \
+             deform {{ control <0 0 -1.2> move <0 0 0.001> }}\n}}\n"
         )
     };
     fails(

@@ -25,7 +25,10 @@ fn framed(version: u8, json: &[u8]) -> String {
 }
 
 /// A link of version 1 as it was sent. It must open for ever.
-const FROZEN: &str = "AU2NQQ6CQAxFrzL5bgmBGDZzCRO3wKKBDmJkIB0wGjIH8hxezIIuTPMXfW3eXzHJeOVmhl3h-hsH2HKFp4FhMVDvU6EZCWZ-6A_CIo4aNsG0vXPmJOQ7PnNb-TBdWLZDbrJ9Dub9qjxiHRM06hPaOvip4vKYZsk3Ra1uko7VXmaKflG8TH8o35Eb77CF7jF-AA";
+const FROZEN: &str = "\
+    AU2NQQ6CQAxFrzL5bgmBGDZzCRO3wKKBDmJkIB0wGjIH8hxezIIuTPMXfW3eXzHJeOVmhl3h-hsH2HKFp4FhMVDvU6\
+    EZCWZ-6A_CIo4aNsG0vXPmJOQ7PnNb-TBdWLZDbrJ9Dub9qjxiHRM06hPaOvip4vKYZsk3Ra1uko7VXmaKflG8TH8o\
+    35Eb77CF7jF-AA";
 
 #[test]
 fn version_1_is_frozen() {
