@@ -25,7 +25,7 @@ impl<'a> Reader<'_, 'a> {
     /// If there is none or it cannot be computed.
     pub fn value(&mut self, what: &str) -> Outcome<Value> {
         if !self.more() {
-            return Err(self.expected(what));
+            return Err(self.missing(what));
         }
         self.binary(0, what)
     }
@@ -38,11 +38,11 @@ impl<'a> Reader<'_, 'a> {
         self.comparing = true;
         let start = self.here().start;
         if self.at >= self.items.len() {
-            return Err(self.expected("a condition"));
+            return Err(self.missing("a condition"));
         }
         let value = self.binary(0, "a condition")?;
         if self.at < self.items.len() {
-            let problem = self.expected("`{` after the condition");
+            let problem = self.missing("`{` after the condition");
             return Err(match self.datum() {
                 Some(Datum::Sign(b'=' | b'<' | b'>' | b'!')) => {
                     problem.hint("comparisons are ==, !=, <, <=, > and >=")
@@ -165,7 +165,7 @@ impl<'a> Reader<'_, 'a> {
                 let value = self.binary(0, "a number")?;
                 self.listed = listed;
                 if self.datum() != Some(Datum::Sign(b')')) {
-                    let problem = self.expected("`)`");
+                    let problem = self.missing("`)`");
                     return Err(match self.datum() {
                         Some(Datum::Sign(b'<' | b'>' | b'=' | b'!')) => {
                             problem.hint("comparisons stand only in `if`")
@@ -191,10 +191,10 @@ impl<'a> Reader<'_, 'a> {
                 Ok(value)
             }
             Some(Datum::Sign(b'<')) if !self.listed || what.contains("operator") => {
-                let problem = self.expected(what);
+                let problem = self.missing(what);
                 Err(problem.hint("in an expression a vector is written `vec(x, y, z)`"))
             }
-            _ => Err(self.expected(what)),
+            _ => Err(self.missing(what)),
         }
     }
 
@@ -235,7 +235,7 @@ impl<'a> Reader<'_, 'a> {
         }
         self.listed = listed;
         if self.datum() != Some(Datum::Sign(b')')) {
-            return Err(self.expected("`,` or `)`"));
+            return Err(self.missing("`,` or `)`"));
         }
         self.at += 1;
         if arguments.is_empty() && matches!(function.run, Run::Random) {

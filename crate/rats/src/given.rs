@@ -1,9 +1,9 @@
 //! Reads a command's operands as the table says, and keeps where each one stands.
 //!
-//! [`Reader::given`] goes through the parameters of a command, then through its options; so the
-//! table is the one place that knows what a command takes. From the operands it takes the values of
-//! the types in its [`Slot`]s. The few commands with a form of their own
-//! (`var`, the method of a `texture`) read their own part with the functions of [`crate::reader`].
+//! [`Reader::read_given`] goes through the parameters of a command, then through its options; so
+//! the table is the one place that knows what a command takes. From the operands it takes the
+//! values of the types in its [`Slot`]s. The few commands with a form of their own (`var`, the
+//! method of a `texture`) read their own part with the functions of [`crate::reader`].
 
 use crate::commands::slot::{Backdrop, Choice, Named, Placed, Slot, Text, Word};
 use crate::commands::{Arity, Kind, Names, OptionSpec, Parameter};
@@ -303,10 +303,10 @@ impl<A: Values, B: Values, C: Values> Values for (A, B, C) {
 
 /// Refuses a node's name that is a word of the block: in a `curve` it would begin another option.
 fn refuse_option(name: &Name<'_>, options: &'static [OptionSpec]) -> Outcome<()> {
-    let mut same = options
+    let same = options
         .iter()
-        .filter(|option| option.name.eq_ignore_ascii_case(name.text));
-    let Some(option) = same.next() else {
+        .find(|option| option.name.eq_ignore_ascii_case(name.text));
+    let Some(option) = same else {
         return Ok(());
     };
     let message = format!("a node cannot be called `{}`", name.text);
@@ -320,7 +320,7 @@ impl<'a> Reader<'_, 'a> {
     ///
     /// # Errors
     /// If one is missing, of the wrong kind or out of its range, or if something is left.
-    pub fn given(
+    pub fn read_given(
         &mut self,
         parameters: &'static [Parameter],
         options: &'static [OptionSpec],
@@ -355,7 +355,7 @@ impl<'a> Reader<'_, 'a> {
             }
             _ => self.operands(parameters, options)?,
         };
-        first.extend(self.chosen(options)?);
+        first.extend(self.read_options(options)?);
         self.end()?;
         Ok(Given {
             filled,
@@ -422,7 +422,7 @@ impl<'a> Reader<'_, 'a> {
     ///
     /// # Errors
     /// If there is something that is no option, or an option's operand is wrong.
-    pub fn chosen(&mut self, options: &'static [OptionSpec]) -> Outcome<Vec<Chosen<'a>>> {
+    pub fn read_options(&mut self, options: &'static [OptionSpec]) -> Outcome<Vec<Chosen<'a>>> {
         let mut chosen = Vec::new();
         if options.is_empty() {
             return Ok(chosen);
@@ -462,7 +462,7 @@ impl<'a> Reader<'_, 'a> {
 
     /// Makes the problem that none of these words stands here.
     fn no_such_word(&mut self, words: &'static [OptionSpec], what: &str) -> Box<Problem> {
-        let problem = self.expected(what);
+        let problem = self.missing(what);
         let names = words.iter().map(|word| word.name);
         let Some((_, found)) = self.peek_word() else {
             return problem;
@@ -492,22 +492,22 @@ impl<'a> Reader<'_, 'a> {
                     return Err(self.no_such_word(words, what));
                 }
                 let Some((word, _)) = self.option(words)? else {
-                    return Err(self.expected(what));
+                    return Err(self.missing(what));
                 };
                 self.operands(word.parameters, &[])?;
                 Operand::Word(word)
             }
             Kind::Copy(_) => {
                 if !self.sign(b'=') {
-                    return Err(self.expected("`=`"));
+                    return Err(self.missing("`=`"));
                 }
-                Operand::Name(self.known_name(what)?)
+                Operand::Name(self.old_name(what)?)
             }
             Kind::Known(Names::Texture) => {
                 self.sign(b'+');
-                Operand::Name(self.known_name(what)?)
+                Operand::Name(self.old_name(what)?)
             }
-            Kind::Known(_) => Operand::Name(self.known_name(what)?),
+            Kind::Known(_) => Operand::Name(self.old_name(what)?),
             Kind::New(_) => Operand::Name(self.new_name(what)?),
             Kind::File | Kind::NewFile => Operand::Name(self.file_name(what)?),
             Kind::Backdrop => match self.image_name() {

@@ -139,7 +139,7 @@ impl Reader<'_, '_> {
     pub fn vector(&mut self, what: &str) -> Outcome<DVec3> {
         match self.triple(what)? {
             Value::Vector(vector) | Value::Colour(vector) => Ok(vector),
-            Value::Scalar(_) | Value::Name(_) => Err(self.expected(what)),
+            Value::Scalar(_) | Value::Name(_) => Err(self.missing(what)),
         }
     }
 
@@ -183,7 +183,7 @@ impl Reader<'_, '_> {
             Ok(_) => None,
         };
         self.at = at;
-        let message = match self.found() {
+        let message = match self.next_text() {
             Some(found) => format!("{what} takes three numbers, found `{found}`"),
             None => format!("{what} takes three numbers, but the command ends here"),
         };

@@ -76,7 +76,7 @@ impl<'e, 'a> Reader<'e, 'a> {
 
     /// Lets `a -b` be a difference, as suits the head of a loop or choice.
     #[must_use]
-    pub fn unlisted(mut self) -> Self {
+    pub fn joining(mut self) -> Self {
         self.listed = false;
         self
     }
@@ -130,14 +130,14 @@ impl<'e, 'a> Reader<'e, 'a> {
     }
 
     /// Returns the text of the next item.
-    pub(crate) fn found(&self) -> Option<&'a str> {
+    pub(crate) fn next_text(&self) -> Option<&'a str> {
         let text = &self.text[self.items.get(self.at)?.span()];
         Some(quote(text))
     }
 
     /// Makes the problem that `what` is missing or something else stands there.
-    pub(crate) fn expected(&self, what: &str) -> Box<Problem> {
-        let message = match self.found() {
+    pub(crate) fn missing(&self, what: &str) -> Box<Problem> {
+        let message = match self.next_text() {
             Some(found) => format!("expected {what}, found `{found}`"),
             None => format!("expected {what}, but the command ends here"),
         };
@@ -156,7 +156,7 @@ impl<'e, 'a> Reader<'e, 'a> {
     }
 
     /// Returns the name of a parameter if `name =` comes next (and not `==`); takes nothing.
-    pub fn named_argument(&mut self) -> Option<(Symbol, &'a str)> {
+    pub fn peek_parameter(&mut self) -> Option<(Symbol, &'a str)> {
         let found = self.peek_word()?;
         let sign = |at: usize| self.items.get(at).map(|item| item.datum) == Some(Datum::Sign(b'='));
         (sign(self.at + 1) && !sign(self.at + 2)).then_some(found)
@@ -192,10 +192,10 @@ impl<'e, 'a> Reader<'e, 'a> {
     /// If there is none, or one with a hyphen, which would be a minus where the name is used.
     pub fn new_name(&mut self, what: &str) -> Outcome<Name<'a>> {
         let name = self.name(what)?;
-        if !matches!(self.glued(), Some(Datum::Sign(b'-'))) {
+        if !matches!(self.next_glued(), Some(Datum::Sign(b'-'))) {
             return Ok(name);
         }
-        while let Some(Datum::Word(_) | Datum::Number(_) | Datum::Sign(b'-')) = self.glued() {
+        while let Some(Datum::Word(_) | Datum::Number(_) | Datum::Sign(b'-')) = self.next_glued() {
             self.at += 1;
         }
         let span = self.since(name.span.start);
@@ -213,7 +213,7 @@ impl<'e, 'a> Reader<'e, 'a> {
     ///
     /// # Errors
     /// If there is none.
-    pub fn known_name(&mut self, what: &str) -> Outcome<Name<'a>> {
+    pub fn old_name(&mut self, what: &str) -> Outcome<Name<'a>> {
         let symbol = self.peek_word().map(|(symbol, _)| symbol);
         let mut name = self.name(what)?;
         if let Some(symbol) = symbol
@@ -247,7 +247,7 @@ impl<'e, 'a> Reader<'e, 'a> {
     }
 
     /// Returns the next item if no space comes before it.
-    fn glued(&self) -> Option<Datum> {
+    fn next_glued(&self) -> Option<Datum> {
         let item = self.items.get(self.at)?;
         (!item.spaced).then_some(item.datum)
     }
@@ -256,11 +256,11 @@ impl<'e, 'a> Reader<'e, 'a> {
     fn glue(&mut self, what: &str, sign: fn(Datum) -> bool) -> Outcome<Name<'a>> {
         let part = |datum| matches!(datum, Datum::Word(_) | Datum::Number(_)) || sign(datum);
         if !self.more() || !self.datum().is_some_and(part) {
-            return Err(self.expected(what));
+            return Err(self.missing(what));
         }
         let start = self.here().start;
         self.at += 1;
-        while self.glued().is_some_and(part) {
+        while self.next_glued().is_some_and(part) {
             self.at += 1;
         }
         let span = self.since(start);
@@ -280,7 +280,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         } else if self.keyword("off") {
             Ok(false)
         } else {
-            Err(self.expected("`on` or `off`"))
+            Err(self.missing("`on` or `off`"))
         }
     }
 
@@ -299,7 +299,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.scope.step(2, &self.here())?;
         let back = self.at;
         let Ok(name) = self.name("an option") else {
-            return Err(self.expected("an option"));
+            return Err(self.missing("an option"));
         };
         let mut fitting = options.iter().filter(|option| option.begins(name.text));
         let exact = options

@@ -67,7 +67,7 @@ impl<'a> Scope<'a> {
             return Ok(());
         }
         Err(Problem::new(
-            &span,
+            span,
             format!(
                 "stopped here: the text took more than {} steps",
                 limits::MAX_STEPS

@@ -223,7 +223,8 @@ fn press(own: &Grid, other: &Grid, bulge: impl Fn(f64) -> f64) -> Grid {
     }
 }
 
-/// Computes the volume that the figure encloses when it turns about its horizontal axis, by samples.
+/// Computes the volume that the figure encloses when it turns about its horizontal axis, by
+/// samples.
 fn volume(grid: &Grid) -> f64 {
     let [across, up] = [0, 1].map(|i| 2.0 * HALF[i] / (SAMPLES[i] - 1) as f64);
     let rows = grid.values.chunks_exact(grid.width).enumerate();
@@ -332,8 +333,10 @@ impl Contact {
              light White point, position 4 6 8, intensity 0.9\n\
              light SlateBlue point, position -6 -1 4, intensity 0.5, noshadow\n\n\
              var apart = {apart:.3} hot {low} {high}\n\n\
-             surface left, diffuse SummerSky, specular 0.5 0.5 0.5, shine 40, blobbiness {blob}, kernel {kernel}\n\
-             surface right, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness {blob}, kernel {kernel}\n\n\
+             surface left, diffuse SummerSky, specular 0.5 0.5 0.5, shine \
+             40, blobbiness {blob}, kernel {kernel}\n\
+             surface right, diffuse Coral, specular 0.5 0.5 0.5, shine \
+             40, blobbiness {blob}, kernel {kernel}\n\n\
              body LEFT\n  sphere left {RADIUS}, <-apart 0 0>\nclose\n\
              body RIGHT\n  sphere right {RADIUS}, <apart 0 0>\nclose\n\
              contact LEFT RIGHT {words}\n",

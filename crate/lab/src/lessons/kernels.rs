@@ -98,7 +98,8 @@ impl Figure for Kernels {
                 }
             }
             if self.chosen.iter().any(|kernel| !kernel.is_compact()) {
-                let text = "A kernel without end counts as over where its field is below a thousandth of T.";
+                let text = "A kernel without end counts as over where its \
+                    field is below a thousandth of T.";
                 remark(controls, text);
             }
             if (self.strength - 1.0).abs() > 1e-6 {
@@ -358,7 +359,8 @@ impl Kernels {
             self.chosen.clone()
         };
         let mut text = format!(
-            "# Two balls at the same distance, once for each kernel: how do they reach for each other?\n\
+            "# Two balls at the same distance, once for each kernel: \
+             how do they reach for each other?\n\
              # From the lab, lesson 1.\n\n\
              eyep 0 0 {eye:.2}\nvrp 0 0 0\nvup 0 1 0\nfov 40\nframesize 640 480\nsample 3\n\
              light White point, position 4 6 8, intensity 0.9\n\
@@ -387,7 +389,8 @@ impl Kernels {
                 String::new()
             };
             text.push_str(&format!(
-                "\nsurface {name}_flesh, diffuse {colour}, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}{strength}\n\
+                "\nsurface {name}_flesh, diffuse {colour}, specular \
+                 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}{strength}\n\
                  sphere {name}_flesh radius, <-gap/2 {y} 0>\n\
                  sphere {name}_flesh radius, < gap/2 {y} 0>\n"
             ));

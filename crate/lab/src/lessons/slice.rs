@@ -421,13 +421,15 @@ impl Slice {
     /// Writes three balls to cut, as a dataset.
     fn text(&self) -> String {
         String::from(
-            "# Three balls and a bar. Go back to the lab, lesson 3, to see their field from inside:\n\
+            "# Three balls and a bar. Go back to the lab, lesson 3, to see \
+             their field from inside:\n\
              # the outline of the flesh is the line F = T.\n\n\
              eyep 0 0 9\nvrp 0 0 0\nvup 0 1 0\nfov 36\nframesize 640 480\nsample 3\n\
              light White point, position 4 6 8, intensity 0.9\n\
              light SlateBlue point, position -6 -1 4, intensity 0.5, noshadow\n\n\
              var blobbiness = -1.5 hot    # near 0: the balls run together\n\
-             surface flesh, diffuse SummerSky, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness\n\n\
+             surface flesh, diffuse SummerSky, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness\n\n\
              sphere flesh 0.7, <-1.3  0.5 0>\n\
              sphere flesh 0.5, < 0.2  1.0 0>\n\
              sphere flesh 0.6, < 1.4 -0.2 0.4>\n\
@@ -515,7 +517,8 @@ fn frame(bodies: &[Surface], (center, reach): (DVec3, f64)) -> Option<(DVec3, f6
     Some(((low + high) / 2.0, (1.3 * half).min(reach)))
 }
 
-/// Returns the colour of a field value: F/(F+T) on the scale of `SHADES`; negative fields count as 0.
+/// Returns the colour of a field value: F/(F+T) on the scale of `SHADES`; negative fields count as
+/// 0.
 fn colour(value: f32, dark: bool) -> Color32 {
     let value = if value.is_finite() {
         value.max(0.0)
@@ -525,8 +528,8 @@ fn colour(value: f32, dark: bool) -> Color32 {
     shade(value / (value + THRESHOLD as f32), dark)
 }
 
-/// Scale from violet over green to yellow in even steps of lightness (the map "viridis"), which stays
-/// readable for the colour-blind and in grey.
+/// Scale from violet over green to yellow in even steps of lightness (the map "viridis"), which
+/// stays readable for the colour-blind and in grey.
 const SHADES: [[u8; 3]; 9] = [
     [68, 1, 84],
     [71, 44, 122],

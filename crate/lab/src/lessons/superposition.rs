@@ -50,10 +50,10 @@ pub static WORDS: Words = Words {
     short: "Superposition",
     about: "why a cut bone shows no seam",
     sentences: "Cut the bone wherever you like: an integral over the whole is the sum of the \
-                integrals over its parts, so a convolution surface does not notice. Below it, the \
-                fields of the same parts depend on the distance instead, and near the cut both \
-                parts count in full, so the surface bulges. That is why a skeleton may be put \
-                together from many pieces here.",
+                integrals over its parts, so a convolution surface does not notice. In the lower \
+                figure the fields of the same parts depend on the distance instead, and near the \
+                cut both parts count in full, so the surface bulges. That is why a skeleton may \
+                be put together from many pieces here.",
 };
 
 /// The lesson's state.
@@ -339,7 +339,8 @@ impl Superposition {
         let key = self.key;
         let name = key.kernel.name();
         let mut text = format!(
-            "# A bone in one piece (above) and the same bone in two (below): no seam is to be seen.\n\
+            "# A bone in one piece (above) and the same bone \
+             in two (below): no seam is to be seen.\n\
              # From the lab, lesson 7. Drag the cut.\n\n\
              eyep 0 0 11\nvrp 0 0 0\nvup 0 1 0\nfov 34\nframesize 640 480\nsample 3\n\
              light White point, position 4 6 8, intensity 0.9\n\
@@ -347,8 +348,10 @@ impl Superposition {
              var cut        = {cut:.3} hot    # where, 0 to 1\n\
              var radius     = {radius:.3} hot\n\
              var blobbiness = {blob:.3} hot\n\n\
-             surface whole, diffuse SummerSky, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}\n\
-             surface parts, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}\n\n",
+             surface whole, diffuse SummerSky, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness, kernel {name}\n\
+             surface parts, diffuse Coral, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness, kernel {name}\n\n",
             cut = key.cut,
             radius = key.radius,
             blob = -key.blobbiness,
@@ -374,7 +377,8 @@ impl Superposition {
                      arc whole {sweep} radius, <0 -0.6 0> <0 0 1> {from:.3} {whole:.3}\n\n\
                      var first = {whole:.3}*(1-cut)\n\
                      arc parts {sweep} radius, <0 -2.4 0> <0 0 1> {from:.3} first\n\
-                     arc parts {sweep} radius, <0 -2.4 0> <0 0 1> {from:.3}+first {whole:.3}-first\n",
+                     arc parts {sweep} radius, <0 -2.4 0> <0 0 1> {from:.3}+first \
+                     {whole:.3}-first\n",
                     ends[0], ends[1],
                 ));
             }

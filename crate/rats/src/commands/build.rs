@@ -51,7 +51,7 @@ macro_rules! flesh {
 macro_rules! reads {
     (|$run:ident, $command:ident $(, $value:ident)+| $does:expr, $($slot:expr),+ $(,)?) => {
         |$run, $command| {
-            let given = $run.given($command)?;
+            let given = $run.read_given($command)?;
             let mut values = given.values();
             let ($($value,)+) = ($(values.take(|| $slot)?,)+);
             $does
@@ -59,26 +59,26 @@ macro_rules! reads {
     };
     ($run:path) => {
         |run, command| {
-            run.given(command)?;
+            run.read_given(command)?;
             $run(run, command)
         }
     };
     ($run:path, [$options:expr]) => {
         |run, command| {
-            let given = run.given(command)?;
+            let given = run.read_given(command)?;
             $run(run, command, &given.options)
         }
     };
     ($run:path, [$options:expr], $($slot:expr),+ $(,)?) => {
         |run, command| {
-            let given = run.given(command)?;
+            let given = run.read_given(command)?;
             let mut values = given.values();
             $run(run, command, &given.options, $(values.take(|| $slot)?),+)
         }
     };
     ($run:path, $($slot:expr),+ $(,)?) => {
         |run, command| {
-            let given = run.given(command)?;
+            let given = run.read_given(command)?;
             let mut values = given.values();
             $run(run, command, $(values.take(|| $slot)?),+)
         }

@@ -38,7 +38,7 @@ impl<'a> Evaluator<'a> {
         let mut surfaces = Vec::new();
         let mut named = false;
         while read.more() {
-            let index = match read.named_argument() {
+            let index = match read.peek_parameter() {
                 Some((symbol, word)) => {
                     named = true;
                     take_parameter(&mut read, define, &values, symbol, word)?
@@ -78,7 +78,7 @@ impl<'a> Evaluator<'a> {
         for (parameter, (_, value)) in define.parameters.iter().zip(&values) {
             if value.is_none() && parameter.default.is_empty() {
                 return Err(read
-                    .expected(&parameter.shown)
+                    .missing(&parameter.shown)
                     .hint(usage(read.scope, define)));
             }
         }
@@ -101,7 +101,7 @@ impl<'a> Evaluator<'a> {
             let mut command = define.head.clone();
             command.items = parameter.default.clone();
             command.span = parameter.span.clone();
-            let mut read = self.reader(&command).unlisted();
+            let mut read = self.reader(&command).joining();
             let value = argument(&mut read, parameter)?;
             self.scope.set(*name, value);
         }
@@ -154,7 +154,7 @@ fn argument(read: &mut Reader<'_, '_>, parameter: &Formal) -> Outcome<Value> {
         Takes::Number => Ok(Value::Scalar(read.number(what)?)),
         Takes::Triple => read.triple(what),
         Takes::Surface => {
-            let name = read.known_name(what)?;
+            let name = read.old_name(what)?;
             match read.scope.symbols.find(name.text) {
                 Some(symbol) => Ok(Value::Name(symbol)),
                 None if name.text.parse::<f64>().is_ok() => Err(Problem::new(

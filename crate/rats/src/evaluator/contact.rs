@@ -92,7 +92,6 @@ fn contact<'a>(
     let bulge = bulge(options)?;
     let model = &mut run.model;
     let contacts = &mut model.contacts;
-    let same = |c: &Contact| c.bodies == bodies || c.bodies == [bodies[1], bodies[0]];
     if contacts.len() >= MAX_CONTACTS {
         return Err(Problem::new(
             &command.word_span,
@@ -100,15 +99,18 @@ fn contact<'a>(
         ));
     }
     // Of the same bodies the last one counts.
-    let earlier = contacts.iter().position(same);
+    let [first, second] = bodies;
+    let earlier = contacts
+        .iter()
+        .position(|c| c.bodies == [first, second] || c.bodies == [second, first]);
     if let Some(index) = earlier {
         contacts.remove(index);
         model.contact_places.remove(index);
     }
-    let shared = |c: &&Contact| {
-        c.bodies[0] != c.bodies[1] && !folds && c.bodies.iter().any(|body| bodies.contains(body))
-    };
-    let differs = contacts.iter().filter(shared).any(|c| c.bulge != bulge);
+    let differs = contacts.iter().any(|c| {
+        let shares = c.bodies.iter().any(|body| bodies.contains(body));
+        c.bodies[0] != c.bodies[1] && !folds && shares && c.bulge != bulge
+    });
     contacts.push(Contact { bodies, bulge });
     model.contact_places.push((run.file, command.span.clone()));
     let (a, b) = (a.text, b.text);

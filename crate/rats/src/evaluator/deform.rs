@@ -221,7 +221,7 @@ impl Vertices {
         for part in &model.parts[range] {
             let corners = corners(&part.element.shape).ok_or_else(|| {
                 Problem::new(
-                    &span,
+                    span,
                     "only triangles, patches and meshes can be deformed, and this object has \
                      other shapes",
                 )

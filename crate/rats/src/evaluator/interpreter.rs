@@ -106,7 +106,7 @@ impl<'a> Evaluator<'a> {
             Action::Structure => Ok(Flow::Next),
             Action::Library => self.call_library(command, spec.name),
             Action::NoEffect(reason) => {
-                self.given(command)?;
+                self.read_given(command)?;
                 let message = format_args!("`{}` changes nothing here: {reason}", spec.name);
                 self.note(&command.word_span, message, "");
                 Ok(Flow::Next)
@@ -116,17 +116,17 @@ impl<'a> Evaluator<'a> {
 
     fn repeat(&mut self, node: &'a For) -> Outcome<Flow> {
         self.scope.step(1, &node.head.word_span)?;
-        let mut read = self.reader(&node.head).unlisted();
+        let mut read = self.reader(&node.head).joining();
         let (name, word) = read
             .peek_word()
-            .ok_or_else(|| read.expected("the name of the loop's variable"))?;
+            .ok_or_else(|| read.missing("the name of the loop's variable"))?;
         read.at += 1;
         if !read.sign(b'=') {
-            return Err(read.expected(&format!("`=` after `{word}`")));
+            return Err(read.missing(&format!("`=` after `{word}`")));
         }
         let from = read.number("the first value")?;
         if !read.keyword("to") {
-            return Err(read.expected("`to`"));
+            return Err(read.missing("`to`"));
         }
         let to = read.number("the last value")?;
         let mut step = 1.0;
@@ -166,7 +166,7 @@ impl<'a> Evaluator<'a> {
 
     fn choose(&mut self, node: &'a If) -> Outcome<Flow> {
         self.scope.step(1, &node.head.word_span)?;
-        let branch = if self.reader(&node.head).unlisted().condition()? {
+        let branch = if self.reader(&node.head).joining().condition()? {
             &node.then
         } else {
             &node.otherwise

@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Finds the place of the first command after `name` that makes a material of that name in the same
 /// file.
 pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<usize>> {
-    let makes = |command: &Command| {
+    let command = find(&source.syntax.block, &|command| {
         let item = source.syntax.items.get(command.items.start);
         command.span.start > name.span.end
             && !command.items.is_empty()
@@ -17,8 +17,7 @@ pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<u
                 .spec
                 .is_some_and(|spec| matches!(spec.name, "surface" | "material"))
             && item.is_some_and(|item| &source.text[item.span()] == name.text)
-    };
-    let command = find(&source.syntax.block, &makes)?;
+    })?;
     Some(source.syntax.items[command.items.start].span())
 }
 

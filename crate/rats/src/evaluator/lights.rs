@@ -113,18 +113,19 @@ fn light<'a>(
     Ok(Flow::Next)
 }
 
+/// Returns the position of a light that needs one.
 fn position(options: &Options<'_>, command: &Command) -> Outcome<DVec3> {
     options.last(&POSITION).ok_or_else(|| {
         Problem::new(&command.span, "this light has no position").hint("add `position x y z`")
     })
 }
 
+/// Makes a distant light.
 fn distant(options: &Options<'_>, command: &Command) -> Outcome<LightKind> {
-    let from = || options.last(&POSITION).and_then(DVec3::try_normalize);
     let towards = options
         .last(&DIRECTION)
-        .map(|d| -d)
-        .or_else(from)
+        .map(|direction| -direction)
+        .or_else(|| options.last(&POSITION).and_then(DVec3::try_normalize))
         .ok_or_else(|| {
             Problem::new(&command.span, "a distant light needs a direction")
                 .hint("add `direction x y z`, or a `position x y z` from where it shines")
@@ -132,10 +133,12 @@ fn distant(options: &Options<'_>, command: &Command) -> Outcome<LightKind> {
     Ok(LightKind::Distant { towards })
 }
 
+/// Makes a spot.
 fn spot(options: &Options<'_>, command: &Command) -> Outcome<LightKind> {
     let position = position(options, command)?;
-    let to_origin = || (-position).try_normalize();
-    let direction = options.last(&DIRECTION).or_else(to_origin).ok_or_else(|| {
+    let direction = options.last(&DIRECTION);
+    let direction = direction.or_else(|| (-position).try_normalize());
+    let direction = direction.ok_or_else(|| {
         Problem::new(&command.span, "a spot at 0 0 0 needs a direction")
             .hint("add `direction x y z`")
     })?;

@@ -41,7 +41,7 @@ impl<'a> Evaluator<'a> {
 
     /// Reads the operands and options of a command as the table says. Within a chain its shapes
     /// leave out the material's name, which is that of the chain.
-    pub(super) fn given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
+    pub(super) fn read_given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
         let Some(spec) = command.spec else {
             return Ok(Given::default());
         };
@@ -54,7 +54,7 @@ impl<'a> Evaluator<'a> {
             let mut read = self.reader(command);
             read.more();
             let (at, datum, here) = (read.at, read.datum(), read.here());
-            let found = read.found().unwrap_or_default();
+            let found = read.next_text().unwrap_or_default();
             match datum {
                 Some(Datum::Word(symbol)) if in_chain => match self.scope.get(symbol) {
                     // A parameter of a defined command that stands for the material.
@@ -81,7 +81,7 @@ impl<'a> Evaluator<'a> {
         let chain = self.model.chain.clone().filter(|_| is_shape);
         let mut read = self.reader(command);
         read.at = skipped;
-        let given = read.given(spec.parameters, spec.options, chain)?;
+        let given = read.read_given(spec.parameters, spec.options, chain)?;
         if is_shape {
             self.watch_shape(command, &given);
         }
@@ -103,10 +103,10 @@ impl<'a> Evaluator<'a> {
     pub(super) fn strokes(&self, name: &Name<'_>) -> Outcome<usize> {
         let own = &self.sources.all[..self.sources.own];
         let places = places(&self.sources.all[self.file].name, name.text);
-        let mut found = places
+        let found = places
             .iter()
-            .filter_map(|place| own.iter().position(|source| source.name == *place));
-        found.next().ok_or_else(|| {
+            .find_map(|place| own.iter().position(|source| source.name == *place));
+        found.ok_or_else(|| {
             let texts = own.iter().map(|source| source.name.as_str());
             let known: Vec<&str> = texts.filter(|name| crate::is_strokes(name)).collect();
             let hint = suggest::hint(name.text, known.iter().copied()).unwrap_or_else(|| {

@@ -132,7 +132,7 @@ impl<'a> Model<'a> {
                 String::from("make fewer shapes, or fewer turns of a loop")
             };
             return Err(Problem::new(
-                &span,
+                span,
                 format!("stopped here: there are more than {MAX_ELEMENTS} shapes"),
             )
             .hint(hint)
@@ -215,7 +215,7 @@ impl<'a> Model<'a> {
         };
         let (file, place) = outer.place.clone();
         Err(Problem::new(
-            &span,
+            span,
             format!("a body cannot stand in another; `{}` is open", outer.name),
         )
         .hint(format!("`close {}` first, or use `object`", outer.name))
@@ -323,7 +323,7 @@ impl<'a> Model<'a> {
     /// If there is none.
     pub fn last(&self, span: &Range<usize>) -> Outcome<Range<usize>> {
         self.last.clone().ok_or_else(|| {
-            Problem::new(&span, "there is no object yet").hint("make an object or a shape first")
+            Problem::new(span, "there is no object yet").hint("make an object or a shape first")
         })
     }
 

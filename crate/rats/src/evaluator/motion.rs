@@ -544,11 +544,11 @@ impl Evaluator<'_> {
     fn motion_and_pins(&mut self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
         FRAMES.with_borrow_mut(|told| {
             let texts = self.sources.all[..self.sources.own].iter();
-            let is_same = |told: &Frames| {
+            let same = told.take().filter(|told| {
                 told.texts.len() == self.sources.own
                     && texts.clone().zip(&told.texts).all(|(a, b)| a.text == b)
-            };
-            let mut now = told.take().filter(is_same).unwrap_or_else(|| Frames {
+            });
+            let mut now = same.unwrap_or_else(|| Frames {
                 texts: texts.clone().map(|s| s.text.to_owned()).collect(),
                 first: Vec::new(),
                 pins: Vec::new(),

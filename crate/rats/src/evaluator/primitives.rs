@@ -32,7 +32,7 @@ macro_rules! makes {
     ($add:ident $(($kernel:expr))?, |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?) => {
         by_itself(
             |run, command| {
-                let given = run.given(command)?;
+                let given = run.read_given(command)?;
                 let mut values = given.values();
                 let sn = values.take(|| SN)?;
                 let ($($value,)+) = ($(values.take(|| $slot)?,)+);

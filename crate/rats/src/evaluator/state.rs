@@ -160,7 +160,7 @@ impl<'a> Evaluator<'a> {
     pub(super) fn enter(&mut self, span: &Range<usize>) -> Outcome<()> {
         if self.depth >= limits::MAX_NESTED {
             return Err(Problem::new(
-                &span,
+                span,
                 format!(
                     "stopped here: files, blocks and calls are more than {} deep",
                     limits::MAX_NESTED

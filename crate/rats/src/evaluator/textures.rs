@@ -210,14 +210,14 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let mut read = run.reader(command);
     let name = read.new_name("the texture's name")?;
     if read.sign(b'=') {
-        let old = read.known_name("the name of the old texture")?;
-        let options = read.chosen(TEXTURE_OPTIONS)?;
+        let old = read.old_name("the name of the old texture")?;
+        let options = read.read_options(TEXTURE_OPTIONS)?;
         read.end()?;
         let texture = run.palette.texture(&old)?.clone();
         return finish(run, &name, texture, options);
     }
     let Some((word, _)) = read.option(TARGETS)? else {
-        return Err(read.expected("what the texture changes, such as `pigment`"));
+        return Err(read.missing("what the texture changes, such as `pigment`"));
     };
     let below = read.operands(word.parameters, TEXTURE_OPTIONS)?;
     let start = read.start();
@@ -226,7 +226,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         _ => Some(method(&mut read)?),
     };
     let span = read.since(start);
-    let options = read.chosen(TEXTURE_OPTIONS)?;
+    let options = read.read_options(TEXTURE_OPTIONS)?;
     read.end()?;
     let texture = match method {
         None => {
@@ -337,10 +337,10 @@ fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
             ));
         }
     }
-    let is_solid = |layer: &texture::Texture| matches!(layer.method, texture::Method::Solid(_));
+    let mut methods = layers.iter().map(|layer| layer.method);
     if (TURBULENCE.is(chosen) || OCTAVES.is(chosen))
         && !layers.is_empty()
-        && !layers.iter().any(is_solid)
+        && !methods.any(|method| matches!(method, texture::Method::Solid(_)))
     {
         return Some(format!(
             "`{name}` says nothing here: it is the noise of solids such as `wood`"
@@ -394,7 +394,7 @@ fn method<'a>(read: &mut Reader<'_, 'a>) -> Outcome<Method<'a>> {
     if crate::reads::is_image(word.text) {
         let names: Vec<_> = MAPPINGS.iter().map(|m| format!("`{}`", m.name)).collect();
         return Err(read
-            .expected(&format!("how the image lies: {}", names.join(" or ")))
+            .missing(&format!("how the image lies: {}", names.join(" or ")))
             .hint(format!("write `{} plain`", word.text)));
     }
     if let Some(index) = index_of(SOLIDS, word.text) {

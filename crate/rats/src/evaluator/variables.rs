@@ -82,7 +82,7 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let word = spelled.text;
     let mut animated = per_frame(&mut read)?;
     if animated.is_none() && !read.sign(b'=') {
-        return Err(read.expected("`=`"));
+        return Err(read.missing("`=`"));
     }
     if animated.is_some() && read.scope.get(name).is_none() {
         return Err(
@@ -141,7 +141,7 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
 /// Reads the name of the variable that is made or changed.
 fn new_variable<'a>(read: &mut Reader<'_, 'a>) -> Outcome<(Symbol, Name<'a>)> {
     let Some((name, word)) = read.peek_word() else {
-        return Err(read.expected("the variable's name"));
+        return Err(read.missing("the variable's name"));
     };
     let spelled = read.new_name("the variable's name")?;
     if spelled.text != word {

@@ -72,8 +72,8 @@ impl<'a> Evaluator<'a> {
             source: self.source(span, 0),
         });
         let Some(watch) = &mut self.watch else { return };
-        let inherited = || watch.radii.get(old?.text).cloned();
-        let mut radius = own.or_else(inherited).unwrap_or(Number {
+        let copied = old.and_then(|old| watch.radii.get(old.text).cloned());
+        let mut radius = own.or(copied).unwrap_or(Number {
             value: 0.0,
             source: Source::Computed(String::from("is not given")),
         });

@@ -453,7 +453,7 @@ fn chains() {
 }
 
 #[test]
-fn scaled_flesh_scales_with_its_bones() {
+fn flesh_scales_with_its_bones() {
     for mode in ["relative", "absolute"] {
         let text = format!(
             "blobscale {mode}\nfragile all\nsurface s diff Red, blob -8, rad .25\nobject A\n\

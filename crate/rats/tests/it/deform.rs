@@ -70,7 +70,7 @@ fn coordinates_are_the_worlds_at_the_command() {
 }
 
 #[test]
-fn named_object_is_deformed_alone() {
+fn object_with_a_name_is_deformed_alone() {
     let text = "object A\n mesh s gem.obj\nclose\nobject B\n mesh s gem.obj\nclose\n";
     let plain = corners(&run(text));
     let bent = corners(&run(&format!(

@@ -201,7 +201,7 @@ fn operands() {
 }
 
 #[test]
-fn nested_expressions() {
+fn expressions_in_expressions() {
     for (open, close) in [("(", ")"), ("-", ""), ("sin(", ")"), ("2^", ""), ("+", "")] {
         let deep = open.repeat(1000) + "1" + &close.repeat(1000);
         fails(format!("var x = {deep}"), "nested");
@@ -214,7 +214,7 @@ fn nested_expressions() {
 }
 
 #[test]
-fn nested_blocks() {
+fn blocks_in_blocks() {
     for open in ["for i = 1 to 1 {", "if 1 {", "define f() {"] {
         let deep = open.repeat(10_000) + &"}".repeat(10_000);
         fails(deep, "inside each other");
@@ -229,7 +229,7 @@ fn nested_blocks() {
 }
 
 #[test]
-fn nested_calls() {
+fn calls_in_calls() {
     fails("define f() { f }\nf", "deep");
     // The deepest nest of blocks in the deepest nest of calls.
     let body = "if 1 {".repeat(40) + "f" + &"}".repeat(40);
@@ -239,7 +239,7 @@ fn nested_calls() {
 }
 
 #[test]
-fn nested_files() {
+fn files_in_files() {
     // Each file reads the next one; there are fewer files than the limit of nesting, so a call in
     // between is what can go deeper.
     let files = (0..MAX_FILES)
@@ -370,7 +370,7 @@ fn a_large_image_in_a_loop() {
 }
 
 #[test]
-fn deformed_vertices() {
+fn vertices_that_are_deformed() {
     let text = |turns: u32| {
         format!(
             "surface s, diffuse Red\nmesh s gem.obj\nfor i = 1 to {turns} {{\n  \

@@ -180,7 +180,7 @@ fn images_of_the_project() {
 }
 
 #[test]
-fn broken_and_huge_images_are_refused() {
+fn images_that_are_broken_or_huge_are_refused() {
     let mut broken = png("a.png", [0; 4]);
     broken.bytes = broken.bytes[..20].into();
     let compiled = run("background a.png", &[broken], 0.0);

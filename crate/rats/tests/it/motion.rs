@@ -83,7 +83,7 @@ fn a_frame_is_the_same_in_whatever_order_frames_are_asked_for() {
 }
 
 #[test]
-fn pinned_nodes_follow_the_text_and_the_rest_lags_behind() {
+fn nodes_follow_the_text_where_pinned_and_the_rest_lags_behind() {
     let text =
         format!("var x = 0 += 0.1\n{TAIL}translate x 0 0\nmotion {{ gravity 0 0 0, pin ROOT }}");
     let now = nodes(&run(&text, 20.0), 0);
