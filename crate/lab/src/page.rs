@@ -6,8 +6,8 @@ use crate::dataset::Dataset;
 use crate::lesson::Lesson;
 use crate::state::Lab;
 use egui::{
-    Align, Align2, Button, CentralPanel, Color32, FontId, Layout, Margin, Panel, Pos2, Rect,
-    RichText, ScrollArea, Sense, Stroke, Ui, vec2,
+    Align, Align2, Button, CentralPanel, Color32, FontId, Layout, Margin, Panel, Rect, RichText,
+    ScrollArea, Sense, Stroke, Ui, vec2,
 };
 use widgets::icon::{self, Icon};
 use widgets::{places, screen, theme};
