@@ -1,5 +1,5 @@
-//! The chart in words: which formula gives the field of a kernel on a primitive, and how it is
-//! computed (see `field`, `form.rs`).
+//! The chart in words: the formula of the field of a kernel on a primitive, and the method by which
+//! it is computed (see `field`, `form.rs`).
 
 use field::Kernel;
 
@@ -22,7 +22,7 @@ pub enum Bone {
     Curve,
 }
 
-/// All of them, in the order of the chart.
+/// The primitives, in the order of the chart.
 pub const BONES: [Bone; 7] = [
     Bone::Point,
     Bone::Line,
@@ -34,7 +34,7 @@ pub const BONES: [Bone; 7] = [
 ];
 
 impl Bone {
-    /// Its name.
+    /// Returns the name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -47,10 +47,8 @@ impl Bone {
             Self::Curve => "curve",
         }
     }
-}
 
-impl Bone {
-    /// Its name in a sentence.
+    /// Returns the name in a sentence.
     #[must_use]
     pub fn with_article(self) -> String {
         let article = if self == Self::Arc { "an" } else { "a" };
@@ -58,7 +56,7 @@ impl Bone {
     }
 }
 
-/// How a cell is computed, in a word.
+/// Returns the method by which a cell is computed, in a word.
 #[must_use]
 pub fn way(kernel: Kernel, bone: Bone) -> &'static str {
     match (kernel, bone) {
@@ -76,7 +74,7 @@ pub fn way(kernel: Kernel, bone: Bone) -> &'static str {
     }
 }
 
-/// The kernel, with u the distance in its widths.
+/// Returns the formula of a kernel, with u the distance in its widths.
 #[must_use]
 pub fn kernel(kernel: Kernel) -> &'static str {
     match kernel {
@@ -92,18 +90,24 @@ pub fn kernel(kernel: Kernel) -> &'static str {
     }
 }
 
-/// The field of a cell in units of the kernel's width, and what its letters mean.
+/// Returns the formula of a cell's field in units of the kernel's width, and the meaning of its
+/// letters.
 #[must_use]
 pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
     use Kernel::{Cauchy, Cubed, Gauss, Inverse, Metaballs, Squared};
-    const EDGE: &str = "a sum over the edges: h is the distance of the foot of the point from the edge's line, t runs along the edge, z is the height over the plane";
-    const ALONG: &str = "x runs along the line from the foot of the point to the ends x₁, x₂; ρ is the distance from the line";
-    const AROUND: &str = "r₀ is the arc's radius, φ the angle from the point's azimuth, ρ and z the point's distance from the axis and from the plane";
+    const EDGE: &str = "a sum over the edges: h is the distance of \
+        the foot of the point from the edge's line, t runs along \
+        the edge, z is the height over the plane";
+    const ALONG: &str = "x runs along the line from the foot of the point \
+        to the ends x₁, x₂; ρ is the distance from the line";
+    const AROUND: &str = "r₀ is the arc's radius, φ the angle from the \
+        point's azimuth, ρ and z the point's distance from the axis and from the plane";
     match (kernel, bone) {
         (_, Bone::Point) => ("F = h(|p − q|)", "q is the point of the skeleton"),
         (_, Bone::Curve) => (
             "F = Σ w · h(|p − c(t)|) · |dc/dt|  over the nodes t",
-            "the curve is cut into spans that are short in kernel widths, and each is summed at the nodes and with the weights w of Gauss and Legendre",
+            "the curve is cut into spans that are short in kernel widths, and \
+             each is summed at the nodes and with the weights w of Gauss and Legendre",
         ),
         (Cauchy, Bone::Line) => (
             "F = [ x/(2p²(p²+x²)) + atan(x/p)/(2p³) ] from x₁ to x₂,   p² = 1+ρ²",
@@ -115,7 +119,8 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
         (Cubed, Bone::Line) => ("F = [ x/√(ρ²+x²) ] / ρ² from x₁ to x₂", ALONG),
         (Metaballs, Bone::Line) => (
             "F = ∫ 3/2·(1−√(ρ²+x²))² dx, inside u < ⅓ replaced by ∫ (1−3(ρ²+x²)) dx",
-            "both integrals are elementary; the line is cut where it enters and leaves the two spheres",
+            "both integrals are elementary; the line is cut \
+             where it enters and leaves the two spheres",
         ),
         (_, Bone::Line) => (
             "F = ∫ (polynomial in 1−ρ²−x²) dx between the ends, cut to x² ≤ 1−ρ²",
@@ -155,7 +160,9 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
         ),
         (Gauss, Bone::Triangle | Bone::Polygon) => (
             "F = exp(−z²)/2 · Σ ∫ (1 − exp(−h²−t²)) · h/(h²+t²) dt",
-            "a sum over the edges, h and t as seen from the point's foot in the plane, z its height; each integral is an angle less Owen's T function",
+            "a sum over the edges, h and t as seen from the \
+             point's foot in the plane, z its height; each integral \
+             is an angle less Owen's T function",
         ),
         (Inverse, Bone::Triangle | Bone::Polygon) => (
             "F = Σ [ h·asinh(t/k) − |z|·atan2(ht, k²+|z|r) ] along each edge,   k² = h²+z²",
@@ -166,21 +173,27 @@ pub fn field(kernel: Kernel, bone: Bone) -> (&'static str, &'static str) {
         }
         (Cubed, Bone::Triangle | Bone::Polygon) => (
             "F = ( 2πw − Σ [ atan2(zt, h√(h²+t²+z²)) ] along each edge ) / z",
-            "the solid angle at which the polygon is seen, over the height z; w is the number of times the edges run around the foot of the point, h its distance from the edge's line, and t runs along the edge",
+            "the solid angle at which the polygon is seen, over the height \
+             z; w is the number of times the edges run around the foot \
+             of the point, h its distance from the edge's line, and t runs along the edge",
         ),
         (_, Bone::Triangle | Bone::Polygon) => (
-            "F = Σ h·[P(t)] along the part of each edge inside the disc, and G·(angle) along the rest",
-            "the disc is where the kernel's sphere meets the plane; P is a polynomial, G the field of the whole disc",
+            "F = Σ h·[P(t)] along the part of each edge inside \
+             the disc, and G·(angle) along the rest",
+            "the disc is where the kernel's sphere meets the \
+             plane; P is a polynomial, G the field of the whole disc",
         ),
         (Cauchy, Bone::Plane) => ("F = π/(1+d²)", "d is the distance from the plane"),
         (Gauss, Bone::Plane) => ("F = π · exp(−d²)", "d is the distance from the plane"),
         (Inverse, Bone::Plane) => (
             "F = 2π·(√(d²+w²) − d)",
-            "over the whole plane the integral is infinite; it is taken over a window of radius w around the foot of the point",
+            "over the whole plane the integral is infinite; \
+             it is taken over a window of radius w around the foot of the point",
         ),
         (Squared, Bone::Plane) => (
             "F = π·ln(1 + w²/d²)",
-            "over the whole plane the integral is infinite; it is taken over a window of radius w around the foot of the point",
+            "over the whole plane the integral is infinite; \
+             it is taken over a window of radius w around the foot of the point",
         ),
         (Cubed, Bone::Plane) => ("F = 2π/d", "d is the distance from the plane"),
         (Kernel::Quartic, Bone::Plane) => ("F = π/3 · (1−d²)³", "d is the distance from the plane"),
