@@ -21,7 +21,7 @@ use wide::f32x8;
 /// Half the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)).
 const COARSEST_OF_SPANS: f64 = 1e-4;
 
-/// A packet's hits, before refinement.
+/// The hits of a packet, before refinement.
 struct Hits<'a> {
     slabs: &'a Slabs<'a>,
     origin: [f32x8; 3],
@@ -30,12 +30,13 @@ struct Hits<'a> {
     start: f32x8,
     /// Crossings of the spans in double precision.
     exact: [f64; PACKET],
-    /// Largest distance of those from the surface.
+    /// Largest distance of those crossings from the surface.
     furthest: f32x8,
     /// Slabs of the hits, each with its lanes.
     places: &'a [(u32, u32)],
-    /// Lanes that hit, and those of them whose crossing is exact already.
+    /// Lanes that hit, a bit each.
     met: u32,
+    /// Lanes whose crossing is exact already, a bit each.
     isolated: u32,
 }
 
@@ -191,8 +192,8 @@ impl Soft {
         noise.to_array().map(f64::from)
     }
 
-    /// Refines a hit on the surface of some primitives by Newton steps in double precision; `start`
-    /// where no step improves it.
+    /// Refines a hit on the surface of some primitives by Newton steps in double precision. Returns
+    /// `start` if no step improves it.
     #[cold]
     fn refine_exactly(
         &self,
@@ -299,7 +300,7 @@ impl Soft {
     }
 }
 
-/// Evaluations at the hits. A Newton step from near the surface is exact to single precision, but
+/// Most evaluations at a hit. A Newton step from near the surface is exact to single precision, but
 /// normal and colours are those of its start.
 const MOST_POLISHING: usize = 3;
 /// Most primitives with which hits are refined in double precision.

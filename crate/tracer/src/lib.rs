@@ -14,10 +14,12 @@
 //! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
 //! for x in [-0.6, 0.6] {
 //!     let center = DVec3::X * x;
-//!     scene.elements.push(Element { flesh: Some(0), ..Element::new(Shape::Sphere { center, radius: 0.5 }) });
+//!     let shape = Shape::Sphere { center, radius: 0.5 };
+//!     scene.elements.push(Element { flesh: Some(0), ..Element::new(shape) });
 //! }
 //! let picture = Picture::new(&scene, [64, 64]);
-//! // A ray towards the first ball: the hit is nearer than the ball's own surface, which the other one inflates.
+//! // A ray towards the first ball: the hit is nearer than the ball's own surface, which the other
+//! // one inflates.
 //! let ray = (DVec3::new(-0.6, 0.0, 4.0), DVec3::NEG_Z);
 //! let hit = picture.cast(&[ray])[0].expect("a hit");
 //! assert!(hit.t < 3.5 && hit.enters(ray.1));
@@ -35,7 +37,7 @@
 //!
 //! Scenes that have more than Phong's model on one background colour
 //! (`rich`) are shaded in waves of rays instead (`paths`): each surface point adds its own light
-//! (`lamps`, `coloured`), with the material of its elements and their textures (`material`), and
+//! (`lamps`, `transmission`), with the material of its elements and their textures (`material`), and
 //! asks for reflected and refracted rays, which `free` follows; `air` is what they pass and see
 //! beside surfaces.
 //!
@@ -114,7 +116,7 @@ mod blob_set;
 mod body;
 mod cast;
 mod clusters;
-mod coloured;
+
 mod exposure;
 mod far_march;
 mod flesh;
@@ -165,6 +167,7 @@ mod surface_samples;
 #[cfg(test)]
 mod tests;
 pub mod tile;
+mod transmission;
 mod unit;
 mod view;
 mod walk;

@@ -12,7 +12,7 @@
 //! primitives ([`KnownPart`]).
 use crate::kinks::Kinks;
 use crate::ray::Ray;
-use crate::roots::bracketed;
+use crate::roots::refine_root;
 use crate::slabs::LARGE_TERM;
 use crate::spans::{KnownPart, Node, Span};
 use core::ops::Range;
@@ -400,7 +400,7 @@ impl RootIsolator {
             (rest.value + value, rest.slope + slope / (to - from))
         };
         let within = 1e-3 * along.resolution;
-        tell(bracketed(excess, from, to, within), enters)
+        tell(refine_root(excess, from, to, within), enters)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::layout::PACKET;
 use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
-use crate::roots::bracketed;
+use crate::roots::refine_root;
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::walk::{Bundle, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
@@ -331,7 +331,7 @@ impl Soft {
             range = [range[0].at_most(near), range[1].at_least(far)];
         });
         if let Some(ball) = &groups.inside {
-            range[0] = range[0].at_least(ball.left_at(&beam));
+            range[0] = range[0].at_least(ball.exit(&beam));
         }
         let [from, to] = [range[0], range[1].min(limit)];
         if from.is_nan() || to.is_nan() || from >= to {
@@ -654,7 +654,7 @@ impl Soft {
         for w in places.windows(2) {
             let after = excess(w[1]).0;
             if (before < 0.0) != (after < 0.0) {
-                let t = bracketed(
+                let t = refine_root(
                     |t| {
                         let (value, gradient) = excess(t);
                         (value, gradient.dot(ray.direction))

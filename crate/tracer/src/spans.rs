@@ -4,7 +4,7 @@
 //! both. Its four Bernstein coefficients bound it from both sides, halving it is exact, and the sum
 //! of spans over the same interval is a span.
 use crate::lanes::Lanes;
-use crate::roots::{Roots, bracketed_from, roots};
+use crate::roots::{Roots, refine_root_from, roots};
 
 /// A cubic on an interval, by its Bernstein coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -123,7 +123,7 @@ impl Span<f64> {
             };
             // The secant's root is near.
             let start = (level - a) / (d - a);
-            return Roots::one(bracketed_from(over, [0.0, 1.0], start, ROOT_ACCURACY));
+            return Roots::one(refine_root_from(over, [0.0, 1.0], start, ROOT_ACCURACY));
         }
         roots(
             &[

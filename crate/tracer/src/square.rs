@@ -166,7 +166,7 @@ impl<'a> Square<'a> {
         let (view, area, packets) = (self.view, self.area, self.packets);
         let levels = packets[0].ilog2() + packets[1].ilog2();
         let beams = move |base: f64| {
-            Beams::divided(levels, move |number| {
+            Beams::tree(levels, move |number| {
                 view.beam(division(area, packets, number)).from(base)
             })
         };

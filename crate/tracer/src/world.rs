@@ -111,7 +111,7 @@ impl World {
         let soft = Soft::new(scene, sums);
         Self {
             hard_lift: HARD_LIFT * (epsilon / EPSILON),
-            rich: rich.map(|rich| rich.with(&soft)),
+            rich: rich.map(|rich| rich.complete(&soft)),
             unit,
             soft,
             others,
@@ -187,7 +187,7 @@ impl World {
     }
 
     /// The finish mixed of those of some elements by weights ≥ 0.
-    pub fn mixed(&self, weights: impl Iterator<Item = (u32, f64)> + Clone) -> Finish {
+    pub fn mix(&self, weights: impl Iterator<Item = (u32, f64)> + Clone) -> Finish {
         let total: f64 = weights.clone().map(|(_, weight)| weight).sum();
         let mut finish = Finish::default();
         for (index, weight) in weights {
