@@ -65,7 +65,7 @@ impl Exposure {
         }
         let mut moments = Vec::new();
         for scene in scene.moments.iter().take(Scene::MAX_MOMENTS) {
-            let mut world = World::lit(scene, true);
+            let mut world = World::prepare(scene, true);
             let view = View::of(scene, &world.unit, size);
             world.soft.pixel = view.pixel();
             let lens = ThinLens::of(scene, &world.unit);
