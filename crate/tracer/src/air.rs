@@ -178,12 +178,12 @@ impl Air {
 
     /// Returns the share of light that passes the fog up to the distance `length`.
     fn clear(&self, fog: &Fog, origin: DVec3, direction: DVec3, length: f64) -> f32 {
-        let upright = |v: DVec3| DVec3::new(0.0, v.dot(self.up), 0.0);
+        let [origin, direction] = [origin, direction].map(|v| DVec3::new(0.0, v.dot(self.up), 0.0));
         let air = texture::fog::Fog {
             distance: fog.distance,
             height: fog.height,
         };
-        air.passes(upright(origin), upright(direction), length) as f32
+        air.passes(origin, direction, length) as f32
     }
 }
 
@@ -203,8 +203,8 @@ fn through(cloud: &Cloud, origin: DVec3, direction: DVec3, length: f64) -> f64 {
     let half = c.sqrt();
     let from = (-along).clamp(-half, half);
     let to = (length / radius - along).clamp(-half, half);
-    let whole = |u: f64| u * (c * c + u * u * (u * u / 5.0 - 2.0 * c / 3.0));
-    (cloud.density * (whole(to) - whole(from))).max(0.0)
+    let [before, all] = [from, to].map(|u| u * (c * c + u * u * (u * u / 5.0 - 2.0 * c / 3.0)));
+    (cloud.density * (all - before)).max(0.0)
 }
 
 #[cfg(test)]

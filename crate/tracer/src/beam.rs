@@ -144,8 +144,8 @@ mod tests {
         let mut numbers = Random::new(12);
         let (mut met, mut missed, mut behind) = (0, 0, 0);
         for case in 0..count(1000) {
-            let mut place = || numbers.vector(1.0);
-            let (origin, direction, center) = (place(), place().normalize(), 0.7 * place());
+            let [origin, direction, center] = core::array::from_fn(|_| numbers.vector(1.0));
+            let (direction, center) = (direction.normalize(), 0.7 * center);
             let beam = Beam {
                 axis: Ray { origin, direction },
                 radius: if case % 3 == 0 {

@@ -186,12 +186,12 @@ impl Soft {
         if let Some((looked, base)) =
             self.quick_alone(body, rays, limits, alive, Quest::First, quick)
         {
-            let t = scratch.quick.flesh.t;
+            let t = scratch.quick.samples.t;
             return core::array::from_fn(|i| (looked.met >> i & 1 != 0).then_some(base + t[i]));
         }
         let far = &mut scratch.far;
         if let Some(met) = self.far_first(body, rays, limits, alive, Quest::First, far) {
-            let t = scratch.far.flesh.t;
+            let t = scratch.far.samples.t;
             return core::array::from_fn(|i| (met >> i & 1 != 0).then_some(t[i]));
         }
         let lives = |lane: usize| alive >> lane & 1 != 0;
@@ -228,9 +228,9 @@ impl Soft {
         let found = self.walk(body, &mut slabs, bundle, Quest::First, scratch);
         if !found.is_empty() {
             // Refined on the surface, as in pictures.
-            self.flesh(&slabs, &based, base, &found, scratch);
+            self.sample_hits(&slabs, &based, base, &found, scratch);
             for hit in &found {
-                crossings[hit.lane] = Some(base + scratch.flesh.t[hit.lane]);
+                crossings[hit.lane] = Some(base + scratch.samples.t[hit.lane]);
             }
         }
         crossings

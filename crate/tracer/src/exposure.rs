@@ -161,11 +161,8 @@ impl Sampler {
         number: u32,
     ) -> Shot {
         let n = self.samples;
-        let part = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
-        let place = [
-            f64::from(pixel[0]) + part(number % n),
-            f64::from(pixel[1]) + part(number / n),
-        ];
+        let [across, down] = [number % n, number / n].map(|k| (f64::from(k) + 0.5) / f64::from(n));
+        let place = [f64::from(pixel[0]) + across, f64::from(pixel[1]) + down];
         Shot {
             ray: lens.ray(view, place, sample(pixel, number, Purpose::Lens)),
             owner,

@@ -264,13 +264,17 @@ fn isolate(
         if inside[0] == inside[1] {
             continue;
         }
-        let excess_and_slope = |t: f64| {
-            *evaluations += 1;
-            let jet = function.jet(ray.at(t));
-            let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
-            (jet.value - THRESHOLD, slope)
-        };
-        let t = refine_root(excess_and_slope, a, b, 1e-14 * (1.0 + b));
+        let t = refine_root(
+            |t| {
+                *evaluations += 1;
+                let jet = function.jet(ray.at(t));
+                let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
+                (jet.value - THRESHOLD, slope)
+            },
+            a,
+            b,
+            1e-14 * (1.0 + b),
+        );
         if !tell(t, inside[1]) {
             return false;
         }

@@ -58,9 +58,9 @@
 //!   is cut off: primitives so far away that they are smooth across the beam are interpolated once
 //!   for all its rays (`shared`), and distant primitives are bounded in groups (`clusters`); rays
 //!   that start deep inside of many poles are followed from where they leave a ball that is wholly
-//!   inside (`inner_ball`). `flesh` samples the surface at the hits. This way takes packets near
-//!   anything but blobs, or with a ray that starts inside, and all packets of a square whose beam
-//!   meets more than 16 other primitives.
+//!   inside (`inner_ball`). `refine_hits` samples the surface at the hits. This way takes packets
+//!   near anything but blobs, or with a ray that starts inside, and all packets of a square whose
+//!   beam meets more than 16 other primitives.
 //!
 //! Bodies that are met ray by ray ([`body`]) are those of other functions ([`function`]), and all
 //! if a picture is to be drawn by another root finder ([`root_finder`]); those of the literature
@@ -119,7 +119,7 @@ mod clusters;
 
 mod exposure;
 mod far_march;
-mod flesh;
+
 mod free;
 mod function;
 pub mod hard;
@@ -144,6 +144,7 @@ mod plain;
 mod quick;
 mod ray;
 mod refine;
+mod refine_hits;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
 mod rich;

@@ -232,13 +232,13 @@ impl World {
         let Scratch {
             quick, evaluations, ..
         } = &mut work.scratch;
-        let mut tell = |looked: Looked, flesh: &SurfaceSamples| {
+        let mut tell = |looked: Looked, samples: &SurfaceSamples| {
             *evaluations += looked.evaluations;
             if looked.met != 0 {
                 self.soft_points(
                     looked.body,
                     &wide(),
-                    flesh,
+                    samples,
                     near.base,
                     looked.met,
                     &mut seen.hits,
@@ -252,7 +252,7 @@ impl World {
                 .quick(near, lanes, wide, Asked::first(&limits, alive), quick);
             return match looked {
                 Some(looked) => {
-                    tell(looked, &quick.flesh);
+                    tell(looked, &quick.samples);
                     Vec::new()
                 }
                 None => vec![0],
@@ -279,8 +279,8 @@ impl World {
         scratch.evaluations += core::mem::take(&mut scratch.far.evaluations);
         let Some(met) = met else { return false };
         if met != 0 {
-            let flesh = &scratch.far.flesh;
-            self.soft_points(body, &seen.rays, flesh, 0.0, met, &mut seen.hits);
+            let samples = &scratch.far.samples;
+            self.soft_points(body, &seen.rays, samples, 0.0, met, &mut seen.hits);
         }
         true
     }
@@ -310,9 +310,16 @@ impl World {
         if found.is_empty() {
             return;
         }
-        self.soft.flesh(slabs, &based, base, &found, scratch);
+        self.soft.sample_hits(slabs, &based, base, &found, scratch);
         let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
-        self.soft_points(body, &seen.rays, &scratch.flesh, base, met, &mut seen.hits);
+        self.soft_points(
+            body,
+            &seen.rays,
+            &scratch.samples,
+            base,
+            met,
+            &mut seen.hits,
+        );
     }
 
     /// Returns the point of hard elements, or of their front faces only, that a ray meets first.
@@ -340,13 +347,13 @@ impl World {
         &self,
         body: u32,
         rays: &[Ray; PACKET],
-        flesh: &SurfaceSamples,
+        samples: &SurfaceSamples,
         base: f64,
         met: u32,
         hits: &mut [Option<SurfacePoint>; PACKET],
     ) {
         let surface = self.surface_of_body(self.soft.bodies[body as usize].number);
-        let gradients = flesh.gradients();
+        let gradients = samples.gradients();
         for lane in (0..PACKET).filter(|lane| met >> lane & 1 != 0) {
             let ray = &rays[lane];
             let gradient = gradients[lane];
@@ -354,8 +361,8 @@ impl World {
             let Some(normal) = (-gradient).try_normalize() else {
                 continue;
             };
-            let t = base + flesh.t[lane];
-            let finish = match &flesh.weights[..] {
+            let t = base + samples.t[lane];
+            let finish = match &samples.weights[..] {
                 [(only, _)] => self.finishes[*only as usize],
                 several => {
                     let mut finish = Finish::default();

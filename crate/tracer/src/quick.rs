@@ -41,7 +41,7 @@ pub struct Quick {
     /// orders them so.
     members: Vec<u64>,
     /// Surface samples at the hits of the last packet; parameters are counted from its list's base.
-    pub flesh: SurfaceSamples,
+    pub samples: SurfaceSamples,
 }
 
 /// The parts of a packet's rays within the reach of blobs.
@@ -399,7 +399,7 @@ impl Soft {
             };
             let (body, indices) = (body_of(&group[0]), group.iter().map(index_of));
             match self.follow(near, body, indices, rays, exact, asked, work) {
-                Some(looked) => (limits, alive) = tell(looked, &work.flesh),
+                Some(looked) => (limits, alive) = tell(looked, &work.samples),
                 None => left.push(body),
             }
         }
@@ -546,8 +546,8 @@ impl Soft {
         let tolerance = self.tolerance(near) as f32;
         let mut evaluations = evaluations + marched.evaluations;
         let mut at = marched.t;
-        let mut flesh = core::mem::take(&mut work.flesh);
-        let weights = &mut flesh.weights;
+        let mut samples = core::mem::take(&mut work.samples);
+        let weights = &mut samples.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
         let (first, last) = extremes(at, at, met);
         let [mut low, mut high] = marched.between;
@@ -594,9 +594,9 @@ impl Soft {
             }
         }
         field::heap_sort(weights, |a, b| a.0 < b.0);
-        flesh.gradient = gradient;
-        flesh.t = at.to_array().map(f64::from);
-        work.flesh = flesh;
+        samples.gradient = gradient;
+        samples.t = at.to_array().map(f64::from);
+        work.samples = samples;
         Looked {
             body: 0,
             met,

@@ -27,8 +27,8 @@ const PACKETS: [u32; 2] = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
 struct Closer {
     /// Packets of rays, of which the first are in use, as many as there are owners.
     seen: Vec<Seen>,
-    /// For each packet in use the number of its pixel, the number in the pixel of its first ray, and
-    /// the number of its rays in use.
+    /// Numbers of each packet in use: of its pixel, of its first ray in the pixel, and of its rays
+    /// in use.
     owners: Vec<(usize, u32, usize)>,
 }
 

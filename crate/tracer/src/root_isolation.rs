@@ -49,7 +49,7 @@ pub const STEEP: f64 = 1.34;
 struct Off {
     /// Error of the value.
     value: f64,
-    /// That error over the length of the interval.
+    /// Error of the value over the length of the interval.
     steep: f64,
 }
 

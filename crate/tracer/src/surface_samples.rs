@@ -1,5 +1,5 @@
 //! Data of the surface samples at a packet's hits;
-//! [`flesh`](crate::flesh) and [`quick`](crate::quick) fill them.
+//! [`refine_hits`](crate::refine_hits) and [`quick`](crate::quick) fill them.
 use crate::layout::PACKET;
 use crate::slabs::Slabs;
 use glam::DVec3;

@@ -209,9 +209,9 @@ impl FarBody {
         let lanes = mask(met);
         let t = at.to_array();
         for lane in (0..PACKET).filter(|i| met >> i & 1 != 0) {
-            work.flesh.t[lane] = piece.t + f64::from(t[lane]);
+            work.samples.t[lane] = piece.t + f64::from(t[lane]);
         }
-        for (own, new) in work.flesh.gradient.iter_mut().zip(gradient) {
+        for (own, new) in work.samples.gradient.iter_mut().zip(gradient) {
             *own = lanes.select(new, *own);
         }
         self.weigh(query, piece, at, met, work)
@@ -253,7 +253,7 @@ impl FarBody {
         let radius = 0.5 * (last - first) + piece.width;
         let place = piece.places(at);
         let world = piece.world(place);
-        for ((_, field), (_, weight)) in self.finishes.iter().zip(&mut work.flesh.weights) {
+        for ((_, field), (_, weight)) in self.finishes.iter().zip(&mut work.samples.weights) {
             let mut own = f32x8::splat(THRESHOLD as f32);
             if let Some(field) = field {
                 let cell = field.around(primitives, center, radius)?;

@@ -81,7 +81,7 @@ pub struct FarWork {
     strong: Vec<u32>,
     weak: Vec<u32>,
     /// Surface samples at the hits of the last packet.
-    pub flesh: SurfaceSamples,
+    pub samples: SurfaceSamples,
     pub evaluations: u64,
     /// Rays searched again in double precision.
     pub doubts: u64,
@@ -165,14 +165,14 @@ impl FarBody {
 
     /// Finds the first crossings of rays with the surface; for [`Quest::Entry`] only whether there
     /// is one from outside. Returns the rays that cross, a bit each, with the surface there in
-    /// `work.flesh`. `None` if this way does not serve these rays; the caller then takes the
+    /// `work.samples`. `None` if this way does not serve these rays; the caller then takes the
     /// general one.
     pub fn first(&self, query: &FarQuery<'_>, work: &mut FarWork) -> Option<u32> {
         if query.quest != Quest::Entry {
-            work.flesh.weights.clear();
+            work.samples.weights.clear();
             let zero = f32x8::splat(0.0);
             let weights = self.finishes.iter().map(|(finish, _)| (*finish, zero));
-            work.flesh.weights.extend(weights);
+            work.samples.weights.extend(weights);
         }
         self.first_of(query, query.alive, 0.0, work)
     }
@@ -384,11 +384,11 @@ mod tests {
                     assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{kernel:?} {ray:?}");
                     let Some((t, gradient)) = exact else { continue };
                     hits += 1;
-                    let flesh = &work.flesh;
+                    let samples = &work.samples;
                     // The second query has not changed the first one's samples.
-                    let off = (flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                    let off = (samples.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
                     assert!(off < 2e-4 * gradient.length(), "{kernel:?} {off}");
-                    let got = flesh.gradients()[lane];
+                    let got = samples.gradients()[lane];
                     assert!(got.distance(gradient) < 0.02 * gradient.length());
                     // Each finish has its share, T in all.
                     let place = ray.at(t).to_array();
@@ -396,8 +396,8 @@ mod tests {
                     for (p, finish) in soft.primitives.iter().zip(&soft.finish) {
                         shares[*finish as usize] += p.value(place);
                     }
-                    assert_eq!(flesh.weights.len(), 3);
-                    for (finish, weight) in &flesh.weights {
+                    assert_eq!(samples.weights.len(), 3);
+                    for (finish, weight) in &samples.weights {
                         let got = f64::from(weight.to_array()[lane]);
                         let want: f64 = shares[*finish as usize];
                         assert!((got - want).abs() < 2e-3, "{kernel:?} {got} {want}");
@@ -437,7 +437,7 @@ mod tests {
                 assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{ray:?}");
                 let Some((t, gradient)) = exact else { continue };
                 hits += 1;
-                let off = (work.flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                let off = (work.samples.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
                 assert!(off < 2e-4 * gradient.length(), "{off}");
             }
         }

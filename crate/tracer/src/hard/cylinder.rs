@@ -51,9 +51,9 @@ impl Cylinder {
 
 /// The part of a ray's line within an infinite cylinder.
 pub(super) enum Wall {
-    /// None of it.
+    /// No part.
     Outside,
-    /// All of it: the line runs along the axis.
+    /// The whole line, which runs along the axis.
     Inside,
     /// The part between the crossings where it enters and where it leaves.
     Between(Crossing, Crossing),
