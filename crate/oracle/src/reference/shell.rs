@@ -1,6 +1,6 @@
 //! Bounds on a kernel, its slope and its curvature in a shell of distances.
 //!
-//! With q the squared distance in kernel widths a kernel is G(q). Of `h(r) = G(r²)` the slope is
+//! A kernel is G(q) with q the squared distance in kernel widths. The slope of `h(r) = G(r²)` is
 //! `2rG′`, and the matrix of second derivatives of `h(|x|)` has the eigenvalues `2G′` (across) and
 //! `2G′ + 4qG″` (outward). Each of these rises to one peak and falls, so that its largest value in
 //! a shell is at the peak, or at the end of the shell that is nearer to it.
@@ -20,7 +20,7 @@ pub struct Largest {
 /// ε² of the kernels with a rounded pole (see [`Kernel`]).
 const POLE2: f64 = 1e-10;
 
-/// The bounds between two distances in units of the kernel's width.
+/// Returns the bounds between two distances in units of the kernel's width.
 pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
     let (p, q) = (near * near, far * far);
     // The argument between p and q at which a function with its peak at `peak` is largest.
@@ -126,13 +126,13 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
     }
 }
 
-/// The bound on the second derivatives `−2g` and `−2g + 4b`, where g falls from `first` to `last`
-/// and b is at most `bent`.
+/// Returns the bound on the second derivatives `−2g` and `−2g + 4b`, where g falls from `first` to
+/// `last` and b is at most `bent`.
 fn curvature(first: f64, last: f64, bent: f64) -> f64 {
     (2.0 * first).max(4.0 * bent - 2.0 * last)
 }
 
-/// `v²` with v = 1−q; p < 1.
+/// Returns the bounds of `v²` with v = 1−q; p < 1.
 fn quartic(p: f64, q: f64) -> Largest {
     let v = |q: f64| (1.0 - q).max(0.0);
     let s = (1.0f64 / 3.0).clamp(p, q);
@@ -143,7 +143,7 @@ fn quartic(p: f64, q: f64) -> Largest {
     }
 }
 
-/// `v³` with v = 1−q; p < 1.
+/// Returns the bounds of `v³` with v = 1−q; p < 1.
 fn compact6(p: f64, q: f64) -> Largest {
     let v = |q: f64| (1.0 - q).max(0.0);
     let s = 0.2f64.clamp(p, q);
