@@ -205,7 +205,8 @@ pub struct Marched {
     pub between: [f32x8; 2],
     /// Rays that cross, a bit each.
     pub met: u32,
-    /// Rays that passed so near to the surface that rounding may have hidden a crossing, a bit each.
+    /// Rays that passed so near to the surface that rounding may have hidden a crossing, a bit
+    /// each.
     pub doubtful: u32,
     /// Parameters between which the doubtful rays did so.
     pub doubt: [f32x8; 2],

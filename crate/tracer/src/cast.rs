@@ -27,8 +27,8 @@ pub(crate) struct Cast {
 }
 
 impl World {
-    /// Returns the first crossing, at t > 0, of each of some rays of the world. Neighbouring rays of
-    /// the list make packets: the nearer together they are, the faster it goes.
+    /// Returns the first crossing, at t > 0, of each of some rays of the world. Neighbouring rays
+    /// of the list make packets: the nearer together they are, the faster it goes.
     pub fn cast(&self, rays: &[(DVec3, DVec3)]) -> Vec<Option<Cast>> {
         let mut scratch = Scratch::default();
         let mut crossings = Vec::new();

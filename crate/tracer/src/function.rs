@@ -75,8 +75,8 @@ impl FunctionBody {
         }
     }
 
-    /// Calls `tell` with each crossing of a ray of the unit scene, and whether the ray enters there,
-    /// until `tell` returns false. Returns the number of evaluations.
+    /// Calls `tell` with each crossing of a ray of the unit scene, and whether the ray enters
+    /// there, until `tell` returns false. Returns the number of evaluations.
     fn crossings(&self, ray: &Ray, limit: f64, mut tell: impl FnMut(f64, bool) -> bool) -> u64 {
         let scale = self.unit.length(1.0);
         let ray = Ray {

@@ -71,8 +71,8 @@ impl Lens {
         }
     }
 
-    /// Returns the deviation of a ray's direction from the axis', given its place in pixels from the
-    /// square's middle.
+    /// Returns the deviation of a ray's direction from the axis', given its place in pixels from
+    /// the square's middle.
     #[inline(always)]
     fn deviation<R: Real>(&self, [x, y]: [R; 2]) -> [R; 3] {
         let one = R::splat(1.0);

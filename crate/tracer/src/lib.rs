@@ -37,8 +37,8 @@
 //!
 //! Scenes that have more than Phong's model on one background colour
 //! (`rich`) are shaded in waves of rays instead (`paths`): each surface point adds its own light
-//! (`lamps`, `transmission`), with the material of its elements and their textures (`material`), and
-//! asks for reflected and refracted rays, which `free` follows; `air` is what they pass and see
+//! (`lamps`, `transmission`), with the material of its elements and their textures (`material`),
+//! and asks for reflected and refracted rays, which `free` follows; `air` is what they pass and see
 //! beside surfaces.
 //!
 //! Crossings with the soft surface are found in one of three certified ways.

@@ -141,8 +141,8 @@ impl World {
         work.general = general;
     }
 
-    /// Replaces hits by nearer points on bodies near which a packet meets nothing but blobs, passing
-    /// over those bodies that take the general way.
+    /// Replaces hits by nearer points on bodies near which a packet meets nothing but blobs,
+    /// passing over those bodies that take the general way.
     #[expect(
         clippy::too_many_arguments,
         reason = "no type would hold some of them together"

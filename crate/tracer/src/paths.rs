@@ -141,8 +141,8 @@ impl World {
         work.samples = samples;
     }
 
-    /// Adds to the samples the light that the paths of a wave bring from where they end. Returns the
-    /// reflected paths and those that go on.
+    /// Adds to the samples the light that the paths of a wave bring from where they end. Returns
+    /// the reflected paths and those that go on.
     fn shade(
         &self,
         rich: &Rich,

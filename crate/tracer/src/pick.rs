@@ -53,9 +53,9 @@ impl Picker {
         }
     }
 
-    /// Returns the first crossing of a ray at t > 0. On a convolution surface the element is the one
-    /// that adds most to the field there. `None` if the ray meets nothing, is not finite or has no
-    /// direction.
+    /// Returns the first crossing of a ray at t > 0. On a convolution surface the element is the
+    /// one that adds most to the field there. `None` if the ray meets nothing, is not finite or has
+    /// no direction.
     #[must_use]
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let ray = Ray {

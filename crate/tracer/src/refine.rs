@@ -1,10 +1,10 @@
 //! Anti-aliasing: more rays for the pixels that need them.
 //!
 //! Every pixel has had one ray. A pixel that differs from a neighbour is sampled again on a regular
-//! grid of n×n, whose mean replaces the single sample. That depends on the first samples only, so it
-//! does not matter in which order, or in which tile, pixels are treated. If lights have a size, or
-//! there is a sky, all pixels that see a surface get more rays; behind a lens or an open shutter all
-//! do (`exposure`).
+//! grid of n×n, whose mean replaces the single sample. That depends on the first samples only, so
+//! it does not matter in which order, or in which tile, pixels are treated. If lights have a size,
+//! or there is a sky, all pixels that see a surface get more rays; behind a lens or an open shutter
+//! all do (`exposure`).
 use crate::area::{Area, Samples};
 use crate::lamps::Draw;
 use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
@@ -223,7 +223,8 @@ impl Sampler {
         self.exposure.is_some() || self.soft_light && sample.key != 0
     }
 
-    /// Returns the sample that a ray of a pixel belongs to, for the places on lights where rays end.
+    /// Returns the sample that a ray of a pixel belongs to, for the places on lights where rays
+    /// end.
     fn draw(&self, pixel: [u32; 2], number: u32) -> Draw {
         if self.soft_light {
             Draw::Sample { pixel, number }

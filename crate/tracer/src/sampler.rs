@@ -41,8 +41,8 @@ pub(crate) struct Sampler {
 
 impl Sampler {
     /// Takes one sample at the centre of each cell of an area, in units of cells of `scale` pixels.
-    /// Those of the cache, which is of single pixels, are not taken again. `None` if `stop` returned
-    /// true.
+    /// Those of the cache, which is of single pixels, are not taken again. `None` if `stop`
+    /// returned true.
     pub fn sample(
         &self,
         area: Area,

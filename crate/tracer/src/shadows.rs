@@ -1,7 +1,7 @@
 //! Light and shadow on the hits of packets of rays.
 //!
-//! The hits of several packets are looked at together, so that their rays to a light can share data:
-//! the rays from one patch of the surface have one list of blobs, or the slabs of one beam.
+//! The hits of several packets are looked at together, so that their rays to a light can share
+//! data: the rays from one patch of the surface have one list of blobs, or the slabs of one beam.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::layout::PACKET;
@@ -25,9 +25,10 @@ use scene::LightKind;
 const PATCH: f64 = 3.0;
 
 impl World {
-    /// Takes samples with the rays of some packets, and leaves them in the working space. Their hits
-    /// may share beams to the lights: they must be the same packets whatever the tiles. `across` is
-    /// their width together, per unit of distance, or less, if only nearer hits are to share.
+    /// Takes samples with the rays of some packets, and leaves them in the working space. Their
+    /// hits may share beams to the lights: they must be the same packets whatever the tiles.
+    /// `across` is their width together, per unit of distance, or less, if only nearer hits are to
+    /// share.
     pub fn shine(&self, seen: &[Seen], across: f64, work: &mut Workspace, stats: &mut Stats) {
         let mut samples = core::mem::take(&mut work.samples);
         samples.clear();

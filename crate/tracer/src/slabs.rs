@@ -34,8 +34,8 @@ pub struct Precision {
     pub first: f64,
     /// Largest error of the sum of spans in a slab whose crossings are decided.
     pub last: f64,
-    /// Largest additional error of all shared interpolants, which are never refined. 0 stands for no
-    /// shared interpolants and no groups.
+    /// Largest additional error of all shared interpolants, which are never refined. 0 stands for
+    /// no shared interpolants and no groups.
     pub shared: f64,
     /// Rounding of coordinates, and of values relative to a primitive's field.
     pub rounding: f64,
@@ -283,7 +283,8 @@ struct Rounding {
     sum: f64,
     /// Largest rounding of a term relative to it.
     part: f64,
-    /// Sum of the losses of formulas that subtract larger numbers, which `sum` and `part` leave out.
+    /// Sum of the losses of formulas that subtract larger numbers, which `sum` and `part` leave
+    /// out.
     cancelled: f64,
     /// Bound on the sum of negative terms.
     carved: f64,

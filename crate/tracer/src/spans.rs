@@ -156,8 +156,8 @@ pub struct KnownPart<'a> {
     /// Value and slope at a parameter.
     pub node: &'a dyn Fn(f64) -> Node<f64>,
     /// Bound on the error of the cubic between the interval's ends, and so, times about four over
-    /// the length, on the error of its slope. Terms that are left out may have a larger slope: where
-    /// the field is within `off` of T, it may cross T three times instead of once.
+    /// the length, on the error of its slope. Terms that are left out may have a larger slope:
+    /// where the field is within `off` of T, it may cross T three times instead of once.
     pub off: f64,
 }
 

@@ -25,8 +25,8 @@ pub enum Pass {
     Smooth,
 }
 
-/// Returns the tiles of a picture, those nearest to its centre first. Their sides are at most `side`
-/// (a side of 0 is read as 1), and together they cover every pixel exactly once.
+/// Returns the tiles of a picture, those nearest to its centre first. Their sides are at most
+/// `side` (a side of 0 is read as 1), and together they cover every pixel exactly once.
 #[must_use]
 pub fn tiles(width: u32, height: u32, side: u32) -> Vec<Tile> {
     let side = side.max(1);

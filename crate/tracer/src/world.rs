@@ -155,7 +155,8 @@ impl World {
         self.others.splice(0..0, found);
     }
 
-    /// Returns the number that tells the surface of a body, by its number in the scene, from others.
+    /// Returns the number that tells the surface of a body, by its number in the scene, from
+    /// others.
     pub fn surface_of_body(&self, number: u32) -> u32 {
         1 + number
     }

@@ -18,8 +18,8 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// Prepares the shape; `None` unless the length and one radius are positive, none is negative, and all numbers are
-    /// finite.
+    /// Prepares the shape; `None` unless the length and one radius are positive, none is negative,
+    /// and all numbers are finite.
     #[must_use]
     pub fn new([base, apex]: [DVec3; 2], [base_radius, apex_radius]: [f64; 2]) -> Option<Self> {
         let axis = (apex - base).try_normalize()?;

@@ -51,7 +51,7 @@ impl Cylinder {
 
 /// The part of a ray's line within an infinite cylinder.
 pub(super) enum Wall {
-    /// No part.
+    /// Nothing of the line.
     Outside,
     /// The whole line, which runs along the axis.
     Inside,

@@ -21,8 +21,8 @@ pub struct Patch {
 const EDGE: f64 = 1e-12;
 
 impl Patch {
-    /// Prepares the shape; `None` unless the triangle has an area and all numbers are finite. A normal without length
-    /// is taken to be the triangle's.
+    /// Prepares the shape; `None` unless the triangle has an area and all numbers are finite. A
+    /// normal without length is taken to be the triangle's.
     #[must_use]
     pub fn new(corners: [DVec3; 3], normals: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;

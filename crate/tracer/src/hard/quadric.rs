@@ -12,7 +12,8 @@ pub struct Quadric {
 }
 
 impl Quadric {
-    /// Prepares the shape; `None` unless it is a surface in a box with a volume, and all numbers are finite.
+    /// Prepares the shape; `None` unless it is a surface in a box with a volume, and all numbers
+    /// are finite.
     #[must_use]
     pub fn new(surface: &scene::Quadric) -> Option<Self> {
         let local_from_world = surface.local_from_world()?;

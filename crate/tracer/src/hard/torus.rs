@@ -33,8 +33,8 @@ pub struct Tube {
 }
 
 impl Tube {
-    /// Prepares the shape; `None` unless sweep, angle and radius are positive, u and v span a plane, and all numbers
-    /// are finite.
+    /// Prepares the shape; `None` unless sweep, angle and radius are positive, u and v span a
+    /// plane, and all numbers are finite.
     #[must_use]
     pub fn new(
         center: DVec3,

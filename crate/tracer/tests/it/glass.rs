@@ -19,8 +19,8 @@ fn bend(direction: DVec3, normal: DVec3, from: f64, to: f64) -> Option<DVec3> {
     })
 }
 
-/// Returns the point where a ray leaves the unit ball of glass, and its direction then; `None` if it
-/// passes by.
+/// Returns the point where a ray leaves the unit ball of glass, and its direction then; `None` if
+/// it passes by.
 fn through_ball(origin: DVec3, direction: DVec3, index: f64) -> Option<(DVec3, DVec3)> {
     let b = origin.dot(direction);
     let root = b * b - origin.length_squared() + 1.0;
@@ -251,7 +251,8 @@ fn a_prism_reflects_totally() {
     assert!(draw(&scene, [8, 8]).iter().all(|p| *p == [0, 0, 255]));
 }
 
-/// A prism whose index is near that of total reflection at 45°, √2, reflects blue and lets red pass.
+/// A prism whose index is near that of total reflection at 45°, √2, reflects blue and lets red
+/// pass.
 #[test]
 fn colours_part_at_total_reflection() {
     let mut scene = dark();

@@ -1,9 +1,10 @@
 //! Comparison of hard shapes with mirrors and glass to POV-Ray's pictures. The tests do nothing if
 //! POV-Ray (Debian's package `povray`) is not installed.
 //!
-//! Both sides use one model of light: reflection does not depend on the angle, the shares of mirrors
-//! and glass are as given, light of a point is not attenuated, colours are linear. Edges that fall
-//! between two pixels differ, so the share of differing pixels is bounded, not each difference.
+//! Both sides use one model of light: reflection does not depend on the angle, the shares of
+//! mirrors and glass are as given, light of a point is not attenuated, colours are linear. Edges
+//! that fall between two pixels differ, so the share of differing pixels is bounded, not each
+//! difference.
 
 use crate::looks::*;
 use glam::DVec3;
