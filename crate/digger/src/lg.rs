@@ -1,5 +1,5 @@
-//! Kalra and Barr's LG surfaces: the ray is halved until two Lipschitz constants isolate the root of
-//! each interval.
+//! Kalra and Barr's LG surfaces: the ray is halved until two Lipschitz constants isolate the root
+//! of each interval.
 //!
 //! Let d be half an interval's length and m its middle. If |F(m)−T| > L·d, where L bounds the rate
 //! of change of F, there is no root. If |F′(m)| > G·d, where G bounds that of F′, F is monotone, so

@@ -23,7 +23,7 @@
 //! |---|---|---|
 //! | `hermite` (the tracer's) | roots of spans with a bounded error | see the limits of `tracer` |
 //! | `hermite2` | roots of n Hermite spans a primitive | crossings that its spans miss |
-//! | `lagrange` | roots of polynomials through five samples | parts thinner than the samples' step |
+//! | `lagrange` | roots of polynomials through five samples | parts thinner than a step |
 //! | `brent`, `ridder`, `rf` | changes of sign between steps, refined | parts thinner than a step |
 //! | `lg` | monotone intervals, by Lipschitz constants | nothing longer than 10⁻⁷ |
 //! | `sphere` | the surface, by safe steps towards it | nothing longer than 10⁻⁶ |

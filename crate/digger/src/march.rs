@@ -9,7 +9,7 @@ use tracer::Quest;
 const STEPS: f64 = 8.0;
 /// Most steps on a ray.
 const MOST_MARCH_STEPS: usize = 4096;
-/// Most evaluations on a ray that meets very many primitives, about; but each is evaluated 64 times.
+/// Most evaluations on a ray, about, except that each primitive may be evaluated 64 times.
 const MOST_MARCH_LOOKS: usize = 1 << 18;
 /// Accuracy of refined roots.
 pub(crate) const TOLERANCE: f64 = 1e-9;

@@ -136,7 +136,8 @@ fn processor_time() -> Option<Duration> {
     Some(Duration::from_nanos(nanoseconds))
 }
 
-/// Returns the number of random inputs of a test: a basic number times `SINEW_TRIALS`, at least one.
+/// Returns the number of random inputs of a test: a basic number times `SINEW_TRIALS`, at least
+/// one.
 ///
 /// A test that also counts how often something happened scales that count alike.
 pub fn count(basic: usize) -> usize {
