@@ -14,7 +14,7 @@ const TOGETHER: u32 = 8;
 /// Result of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pixel {
-    /// No hit of either.
+    /// Misses of both.
     Empty,
     /// Hits of both, at this distance along the ray from each other.
     Off(f32),

@@ -87,7 +87,7 @@ fn packet(
     let eye = world.at(n.vector(1.0).normalize() * n.range(2.0, 6.0));
     let mut made: Vec<(DVec3, DVec3)> = Vec::new();
     // The point where a ray towards the bone meets the surface, and the normal there.
-    let met = |reference: &mut Reference| {
+    let foot = |reference: &mut Reference| {
         let direction = (aim - eye).try_normalize()?;
         let first = reference.crossings(eye, direction, 20.0 * scale, tolerance);
         let point = eye + direction * first.roots.first()?.t;
@@ -104,7 +104,7 @@ fn packet(
         }
         // Tangents, a little inside or outside.
         2..=4 => {
-            if let Some((point, normal)) = met(reference) {
+            if let Some((point, normal)) = foot(reference) {
                 let along = normal.cross(n.vector(1.0)).normalize_or_zero();
                 let back = n.range(0.5, 5.0) * scale;
                 for i in 0..PACKET {
@@ -117,7 +117,7 @@ fn packet(
         }
         // From inside, in all directions; or from just outside.
         5 => {
-            if let Some((point, normal)) = met(reference) {
+            if let Some((point, normal)) = foot(reference) {
                 let depth = n.range(-0.1, 0.3) * scale;
                 for _ in 0..PACKET {
                     made.push((point - normal * depth, n.vector(1.0)));

@@ -28,12 +28,13 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
     match kernel {
         Kernel::Cauchy => {
             let g1 = |q: f64| 2.0 / ((1.0 + q) * (1.0 + q) * (1.0 + q));
-            let bent = |q: f64| q * 6.0 / ((1.0 + q) * (1.0 + q) * (1.0 + q) * (1.0 + q));
             let s = at(0.2);
+            let b = at(1.0 / 3.0);
+            let bent = b * 6.0 / ((1.0 + b) * (1.0 + b) * (1.0 + b) * (1.0 + b));
             Largest {
                 value: 1.0 / ((1.0 + p) * (1.0 + p)),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(1.0 / 3.0))),
+                curvature: curvature(g1(p), g1(q), bent),
             }
         }
         Kernel::Gauss => {
@@ -49,46 +50,41 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
         Kernel::Inverse => {
             let g = |q: f64| 1.0 / (q + POLE2).sqrt();
             let g1 = |q: f64| 0.5 * g(q) / (q + POLE2);
-            let bent = |q: f64| q * 0.75 * g(q) / ((q + POLE2) * (q + POLE2));
             let s = at(POLE2 / 2.0);
+            let b = at(2.0 * POLE2 / 3.0);
+            let bent = b * 0.75 * g(b) / ((b + POLE2) * (b + POLE2));
             Largest {
                 value: g(p),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(2.0 * POLE2 / 3.0))),
+                curvature: curvature(g1(p), g1(q), bent),
             }
         }
         Kernel::Squared => {
             let g = |q: f64| 1.0 / (q + POLE2);
             let g1 = |q: f64| g(q) * g(q);
-            let bent = |q: f64| q * 2.0 * g(q) * g(q) * g(q);
             let s = at(POLE2 / 3.0);
+            let b = at(POLE2 / 2.0);
             Largest {
                 value: g(p),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(POLE2 / 2.0))),
+                curvature: curvature(g1(p), g1(q), b * 2.0 * g(b) * g(b) * g(b)),
             }
         }
         Kernel::Cubed => {
             let g = |q: f64| 1.0 / ((q + POLE2) * (q + POLE2).sqrt());
             let g1 = |q: f64| 1.5 * g(q) / (q + POLE2);
-            let bent = |q: f64| q * 3.75 * g(q) / ((q + POLE2) * (q + POLE2));
             let s = at(POLE2 / 4.0);
+            let b = at(0.4 * POLE2);
+            let bent = b * 3.75 * g(b) / ((b + POLE2) * (b + POLE2));
             Largest {
                 value: g(p),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(0.4 * POLE2))),
+                curvature: curvature(g1(p), g1(q), bent),
             }
         }
         _ if p > 1.0 => Largest::default(),
         Kernel::Metaballs => {
             let inner = 1.0 / 9.0;
-            let value = |q: f64| {
-                if q <= inner {
-                    1.0 - 3.0 * q
-                } else {
-                    1.5 * (1.0 - q.sqrt()) * (1.0 - q.sqrt())
-                }
-            };
             let g1 = |q: f64| {
                 if q <= inner {
                     3.0
@@ -106,7 +102,11 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
                 0.75 / p.max(inner).sqrt()
             };
             Largest {
-                value: value(p),
+                value: if p <= inner {
+                    1.0 - 3.0 * p
+                } else {
+                    1.5 * (1.0 - p.sqrt()) * (1.0 - p.sqrt())
+                },
                 slope: 2.0 * s.sqrt() * g1(s),
                 curvature: curvature(g1(p), g1(q), bent),
             }
