@@ -178,9 +178,16 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
         Skeleton::Curve { control } => {
             let c = cubic(control);
             let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-            let speed = |t: f64| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
+
             let breaks = breaks_along(k, &|t| s * at(t).distance(point));
-            integral(&mut |t| h(at(t)) * speed(t), &breaks, 1e-13)
+            integral(
+                &mut |t| {
+                    let speed = (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
+                    h(at(t)) * speed
+                },
+                &breaks,
+                1e-13,
+            )
         }
         Skeleton::Plane { point: p, normal } => {
             let d = (point - p).dot(normal.normalize());
@@ -258,8 +265,7 @@ fn integrate_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> 
             // One panel is nearly always enough, and most of the time goes here.
             Skeleton::Curve { .. } => {
                 let (low, high) = (place(i), t.max(place(i)));
-                let mut speed = |t: f64| at(t).1;
-                of_one_panel(&mut speed, low, high, 1e-11)
+                of_one_panel(&mut |t| at(t).1, low, high, 1e-11)
             }
             _ => (t - place(i)) * total,
         };

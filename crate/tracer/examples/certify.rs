@@ -39,14 +39,13 @@ fn cast_picking(trial: &Trial, picture: &Picture) -> Vec<Option<f64>> {
 
 fn main() {
     let mut args: Vec<String> = std::env::args().skip(1).collect();
-    let mut option = |name: &str| {
+    let [exact, endless, clouds] = ["--exact", "--endless", "--clouds"].map(|name| {
         let is_given = args.first().is_some_and(|a| a == name);
         if is_given {
             args.remove(0);
         }
         is_given
-    };
-    let [exact, endless, clouds] = ["--exact", "--endless", "--clouds"].map(&mut option);
+    });
     let cast = if exact { cast_picking } else { cast_pictures };
     let number =
         |i: usize, default: usize| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(default);

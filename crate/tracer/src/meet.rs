@@ -143,10 +143,7 @@ impl World {
 
     /// Replaces hits by nearer points on bodies near which a packet meets nothing but blobs,
     /// passing over those bodies that take the general way.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "no type would hold some of them together"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
     fn meet_blobs(
         &self,
         near: &Nearby,
@@ -214,10 +211,7 @@ impl World {
     /// Replaces hits of some lanes by nearer points on bodies near which a packet meets nothing but
     /// blobs, given its rays in single precision; `wide` returns them in double precision. Returns
     /// the bodies whose march gave up.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "no type would hold some of them together"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
     pub fn meet_blobs_by(
         &self,
         near: &Nearby,

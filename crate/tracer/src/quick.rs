@@ -196,7 +196,7 @@ pub struct Rays {
 }
 
 impl Rays {
-    /// Converts rays in double precision.
+    /// Converts rays from double precision.
     #[must_use]
     pub fn new(rays: &[Ray; PACKET], near: &Nearby) -> Self {
         let start = rays.map(|ray| ray.at(near.base) - near.middle);
@@ -357,10 +357,7 @@ impl Soft {
     /// [`Soft::quick`] for several bodies except those in `pass_over`, the nearest first as far as
     /// the list tells. Calls `tell` with each result; it returns the rays' new limits and the rays
     /// to follow from then on. Returns the bodies that need the general way.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "no type would hold some of them together"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
     pub fn quick_each(
         &self,
         near: &Nearby,
@@ -408,10 +405,7 @@ impl Soft {
     }
 
     /// Follows rays among some blobs of a list, all of one body, given in the list's order.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "no type would hold some of them together"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
     #[inline(always)]
     fn follow(
         &self,

@@ -48,7 +48,7 @@ pub fn deformation(bulge: Bulge) -> Deformation {
 pub fn reference(scene: &Scene) -> Reference {
     let partners = scene.partners();
     let surfaces = scene.surfaces_apart();
-    let place = |body: u32| surfaces.iter().position(|surface| surface.body() == body);
+
     let mut bodies = Vec::new();
     for surface in &surfaces {
         let body = surface.body();
@@ -75,7 +75,10 @@ pub fn reference(scene: &Scene) -> Reference {
         bodies.push(TouchingBody {
             substance,
             partners: others
-                .filter_map(|(j, by)| Some((place(*j)?, deformation(*by))))
+                .filter_map(|(j, by)| {
+                    let place = surfaces.iter().position(|surface| surface.body() == *j)?;
+                    Some((place, deformation(*by)))
+                })
                 .collect(),
         });
     }
