@@ -178,7 +178,6 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
         Skeleton::Curve { control } => {
             let c = cubic(control);
             let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-
             let breaks = breaks_along(k, &|t| s * at(t).distance(point));
             integral(
                 &mut |t| {

@@ -116,10 +116,8 @@ mod blob_set;
 mod body;
 mod cast;
 mod clusters;
-
 mod exposure;
 mod far_march;
-
 mod free;
 mod function;
 pub mod hard;

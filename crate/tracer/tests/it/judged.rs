@@ -48,7 +48,6 @@ pub fn deformation(bulge: Bulge) -> Deformation {
 pub fn reference(scene: &Scene) -> Reference {
     let partners = scene.partners();
     let surfaces = scene.surfaces_apart();
-
     let mut bodies = Vec::new();
     for surface in &surfaces {
         let body = surface.body();
