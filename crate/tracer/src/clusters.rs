@@ -39,7 +39,7 @@ struct Facts {
     table: [[f32; 2]; ENTRIES],
     /// Largest relative slope, |slope|/field, of a member where its field is not negligible.
     steep: f32,
-    /// Largest [`Bound::power`] of a member: beyond that over the distance no relative slope is.
+    /// Largest [`Bound::power`] of a member: no relative slope exceeds that over the distance.
     power: f32,
     /// Sum of the members' [`Bound::cancels`].
     cancels: f32,
