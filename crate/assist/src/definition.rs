@@ -2,8 +2,8 @@
 
 use crate::index::{Index, Place};
 use rats::Project;
-
-/// Finds the place where the name at a byte is made: of several places the one that counts there. A
+/// Finds the place where the name at a byte is made: of several places the one that counts
+/// there. A file's name leads to the beginning of the file.
 /// file's name leads to the beginning of the file.
 ///
 /// ```

@@ -32,6 +32,7 @@ const SINGLE: Accuracy = Accuracy {
     floor: 2e-6,
 };
 
+/// Returns a random shaping of radius 1 with a kernel.
 fn shape(random: &mut Random, kernel: Kernel) -> Shaping {
     Shaping {
         kernel,
@@ -213,18 +214,18 @@ pub fn rigid_motion_and_scale(kernel: Kernel, kind: Kind, evaluate: Evaluation<'
         let scale = random.decades(-1.0, 1.0);
         let point = random.near(&skeleton, -2.0, 0.5);
         let here = primitive(skeleton.clone(), &shaping, None);
-        let to = |p: DVec3| turn * p * scale + shift;
+        let place = turn * point * scale + shift;
         let there = Shaping {
             radius: shaping.radius * scale,
             ..shaping
         };
         let there = primitive(move_by(&skeleton, turn, scale, shift), &there, None);
         let (value, gradient) = evaluate(&here, point);
-        let (after, slopes) = evaluate(&there, to(point));
+        let (after, slopes) = evaluate(&there, place);
         let Accuracy { relative, floor } = DOUBLE;
         let tolerance = 2.0 * relative * value.abs()
             + 4.0 * floor * peak(&here)
-            + 64.0 * f64::EPSILON * (sensitivity(&here, point) + sensitivity(&there, to(point)));
+            + 64.0 * f64::EPSILON * (sensitivity(&here, point) + sensitivity(&there, place));
         assert!(
             (after - value).abs() <= tolerance,
             "{after:e} instead of {value:e}: {here:?} at {point:?}"
@@ -354,6 +355,7 @@ pub fn degenerate_geometry(kernel: Kernel, kind: Kind, [evaluate, eight]: [Evalu
     }
 }
 
+/// Returns skeletons of a kind that are degenerate, or nearly.
 fn degenerate(kind: Kind) -> Vec<Skeleton> {
     let arc = |radius: f64, angle: f64| Skeleton::Arc {
         center: DVec3::ZERO,

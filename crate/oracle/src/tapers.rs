@@ -30,6 +30,7 @@ fn taper(random: &mut Random, kernel: Kernel) -> Shaping {
     }
 }
 
+/// Returns a random tapered bone, of at least these decades of its radius.
 fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, low: f64) -> Primitive {
     let size = random.decades(low, 1.0);
     let skeleton = random.skeleton(kind, size);
@@ -243,7 +244,7 @@ pub fn superposition(kernel: Kernel, evaluate: Evaluation<'_>) {
     }
 }
 
-/// Magnified with its radii, a bone has the same field at magnified places.
+/// Checks that a bone magnified with its radii has the same field at magnified places.
 pub fn scale_invariance(kernel: Kernel, evaluate: Evaluation<'_>) {
     for kind in KINDS {
         let mut random = Random::new(405);
@@ -299,7 +300,7 @@ pub fn scale_invariance(kernel: Kernel, evaluate: Evaluation<'_>) {
     }
 }
 
-/// The distance from the axis x at which the field is T.
+/// Returns the distance from the axis x at which the field is T.
 fn surface(primitive: &Primitive, x: f64) -> f64 {
     let (mut low, mut high) = (1e-3, 10.0);
     for _ in 0..60 {
@@ -404,8 +405,8 @@ pub fn bounds_hold(kernel: Kernel) {
     }
 }
 
-/// Tips of radius 0 are finite, cut at [`SLIMMEST`]; a bone whose ends are equal is no tapered one;
-/// nothing comes of negative radii or of bones of no length.
+/// Checks that tips of radius 0 are finite, cut at [`SLIMMEST`]; that a bone whose ends are equal
+/// is no tapered one; and that there is no primitive of negative radii.
 pub fn degenerate_tapers(kernel: Kernel) {
     let with = |start: f64, end: f64, blobbiness: f64| Shaping {
         kernel,
@@ -487,7 +488,7 @@ pub fn degenerate_tapers(kernel: Kernel) {
         let (value, gradient) = jet::<f32x8>(&short, DVec3::Y * 0.1);
         assert!(value.is_finite() && gradient.is_finite());
     }
-    // A taper says nothing to other skeletons.
+    // Other skeletons have no taper.
     let point = Skeleton::Point {
         center: DVec3::ZERO,
     };

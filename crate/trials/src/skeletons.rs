@@ -34,7 +34,7 @@ pub const KINDS: [Kind; 5] = [
     Kind::Plane,
 ];
 
-/// All kinds.
+/// Every kind.
 pub const ALL_KINDS: [Kind; 7] = [
     Kind::Point,
     Kind::Segment,
@@ -161,7 +161,8 @@ impl Random {
         }
     }
 
-    /// Returns a point at a distance of these decades from such a place.
+    /// Returns a point at a distance of these decades from a natural place of the skeleton
+    /// ([`Random::place`]).
     pub fn near(&mut self, skeleton: &Skeleton, low: f64, high: f64) -> DVec3 {
         let place = self.place(skeleton);
         let direction = match *skeleton {
@@ -179,7 +180,7 @@ impl Random {
         place + direction * self.decades(low, high)
     }
 
-    /// Returns a shaping of width about 1/R.
+    /// Returns a shaping of a radius R, whose width is about 1/R.
     pub fn shaping(&mut self, radius: f64) -> Shaping {
         Shaping {
             blobbiness: -self.decades(-1.0, 1.0),

@@ -1,6 +1,6 @@
 //! Bounds on a kernel, its slope and its curvature in a shell of distances.
 //!
-//! With q the squared distance in kernel widths a kernel is G(q). Of `h(r) = G(r²)` the slope is
+//! A kernel is G(q) with q the squared distance in kernel widths. The slope of `h(r) = G(r²)` is
 //! `2rG′`, and the matrix of second derivatives of `h(|x|)` has the eigenvalues `2G′` (across) and
 //! `2G′ + 4qG″` (outward). Each of these rises to one peak and falls, so that its largest value in
 //! a shell is at the peak, or at the end of the shell that is nearer to it.
@@ -20,7 +20,7 @@ pub struct Largest {
 /// ε² of the kernels with a rounded pole (see [`Kernel`]).
 const POLE2: f64 = 1e-10;
 
-/// The bounds between two distances in units of the kernel's width.
+/// Returns the bounds between two distances in units of the kernel's width.
 pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
     let (p, q) = (near * near, far * far);
     // The argument between p and q at which a function with its peak at `peak` is largest.
@@ -28,12 +28,13 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
     match kernel {
         Kernel::Cauchy => {
             let g1 = |q: f64| 2.0 / ((1.0 + q) * (1.0 + q) * (1.0 + q));
-            let bent = |q: f64| q * 6.0 / ((1.0 + q) * (1.0 + q) * (1.0 + q) * (1.0 + q));
             let s = at(0.2);
+            let b = at(1.0 / 3.0);
+            let bent = b * 6.0 / ((1.0 + b) * (1.0 + b) * (1.0 + b) * (1.0 + b));
             Largest {
                 value: 1.0 / ((1.0 + p) * (1.0 + p)),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(1.0 / 3.0))),
+                curvature: curvature(g1(p), g1(q), bent),
             }
         }
         Kernel::Gauss => {
@@ -49,46 +50,41 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
         Kernel::Inverse => {
             let g = |q: f64| 1.0 / (q + POLE2).sqrt();
             let g1 = |q: f64| 0.5 * g(q) / (q + POLE2);
-            let bent = |q: f64| q * 0.75 * g(q) / ((q + POLE2) * (q + POLE2));
             let s = at(POLE2 / 2.0);
+            let b = at(2.0 * POLE2 / 3.0);
+            let bent = b * 0.75 * g(b) / ((b + POLE2) * (b + POLE2));
             Largest {
                 value: g(p),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(2.0 * POLE2 / 3.0))),
+                curvature: curvature(g1(p), g1(q), bent),
             }
         }
         Kernel::Squared => {
             let g = |q: f64| 1.0 / (q + POLE2);
             let g1 = |q: f64| g(q) * g(q);
-            let bent = |q: f64| q * 2.0 * g(q) * g(q) * g(q);
             let s = at(POLE2 / 3.0);
+            let b = at(POLE2 / 2.0);
             Largest {
                 value: g(p),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(POLE2 / 2.0))),
+                curvature: curvature(g1(p), g1(q), b * 2.0 * g(b) * g(b) * g(b)),
             }
         }
         Kernel::Cubed => {
             let g = |q: f64| 1.0 / ((q + POLE2) * (q + POLE2).sqrt());
             let g1 = |q: f64| 1.5 * g(q) / (q + POLE2);
-            let bent = |q: f64| q * 3.75 * g(q) / ((q + POLE2) * (q + POLE2));
             let s = at(POLE2 / 4.0);
+            let b = at(0.4 * POLE2);
+            let bent = b * 3.75 * g(b) / ((b + POLE2) * (b + POLE2));
             Largest {
                 value: g(p),
                 slope: 2.0 * s.sqrt() * g1(s),
-                curvature: curvature(g1(p), g1(q), bent(at(0.4 * POLE2))),
+                curvature: curvature(g1(p), g1(q), bent),
             }
         }
         _ if p > 1.0 => Largest::default(),
         Kernel::Metaballs => {
             let inner = 1.0 / 9.0;
-            let value = |q: f64| {
-                if q <= inner {
-                    1.0 - 3.0 * q
-                } else {
-                    1.5 * (1.0 - q.sqrt()) * (1.0 - q.sqrt())
-                }
-            };
             let g1 = |q: f64| {
                 if q <= inner {
                     3.0
@@ -106,7 +102,11 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
                 0.75 / p.max(inner).sqrt()
             };
             Largest {
-                value: value(p),
+                value: if p <= inner {
+                    1.0 - 3.0 * p
+                } else {
+                    1.5 * (1.0 - p.sqrt()) * (1.0 - p.sqrt())
+                },
                 slope: 2.0 * s.sqrt() * g1(s),
                 curvature: curvature(g1(p), g1(q), bent),
             }
@@ -126,13 +126,13 @@ pub fn largest(kernel: Kernel, near: f64, far: f64) -> Largest {
     }
 }
 
-/// The bound on the second derivatives `−2g` and `−2g + 4b`, where g falls from `first` to `last`
-/// and b is at most `bent`.
+/// Returns the bound on the second derivatives `−2g` and `−2g + 4b`, where g falls from `first` to
+/// `last` and b is at most `bent`.
 fn curvature(first: f64, last: f64, bent: f64) -> f64 {
     (2.0 * first).max(4.0 * bent - 2.0 * last)
 }
 
-/// `v²` with v = 1−q; p < 1.
+/// Returns the bounds of `v²` with v = 1−q; p < 1.
 fn quartic(p: f64, q: f64) -> Largest {
     let v = |q: f64| (1.0 - q).max(0.0);
     let s = (1.0f64 / 3.0).clamp(p, q);
@@ -143,7 +143,7 @@ fn quartic(p: f64, q: f64) -> Largest {
     }
 }
 
-/// `v³` with v = 1−q; p < 1.
+/// Returns the bounds of `v³` with v = 1−q; p < 1.
 fn compact6(p: f64, q: f64) -> Largest {
     let v = |q: f64| (1.0 - q).max(0.0);
     let s = 0.2f64.clamp(p, q);
