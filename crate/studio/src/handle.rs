@@ -50,7 +50,7 @@
 //! which stops the program as a mistake in it would.
 
 use crate::app::Parts;
-use crate::intake::Taken;
+use crate::intake::Incoming;
 use crate::mesh_export::Order;
 use crate::picture;
 use crate::platform;
@@ -60,7 +60,7 @@ use js_sys::{Function, JSON, Object, Promise, Reflect};
 use rats::{File, Project};
 use wasm_bindgen::prelude::*;
 
-/// Makes `window.sinew`. What is given back rejects `ready`.
+/// Makes `window.sinew`. Returns the function that rejects `ready`.
 ///
 /// # Errors
 /// If the window takes no new property.
@@ -99,7 +99,7 @@ fn texts(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     })?;
     let p = parts.clone();
     method(sinew, "take", move |files, _| {
-        p.requests.ask(Request::Files(taken(&files)?));
+        p.requests.ask(Request::Files(self::files(&files)?));
         Ok(JsValue::UNDEFINED)
     })?;
     let p = parts.clone();
@@ -267,13 +267,12 @@ fn to_js(value: &impl serde::Serialize) -> Result<JsValue, JsValue> {
     JSON::parse(&json)
 }
 
-/// A mesh that a script asks for.
+/// Returns the mesh that a script asks for.
 fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     let mut order = Order::default();
     if options.is_undefined() || options.is_null() {
         return Ok(order);
     }
-    let wrong = |what: &str| js_sys::TypeError::new(what);
     let part = |name: &str| {
         let value = Reflect::get(options, &name.into())?;
         Ok::<_, JsValue>((!value.is_undefined()).then_some(value))
@@ -281,7 +280,8 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     if let Some(format) = part("format")? {
         let name = format.as_string().unwrap_or_default();
         let format = mesh::Format::of_name(&format!("model.{name}"));
-        order.format = format.ok_or_else(|| wrong("format is one of stl, 3mf, glb, obj, ply"))?;
+        order.format = format
+            .ok_or_else(|| js_sys::TypeError::new("format is one of stl, 3mf, glb, obj, ply"))?;
     }
     for (name, place) in [
         ("tolerance", &mut order.tolerance),
@@ -289,7 +289,8 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     ] {
         if let Some(number) = part(name)? {
             let number = number.as_f64();
-            *place = number.ok_or_else(|| wrong("tolerance and size are numbers"))?;
+            *place = number
+                .ok_or_else(|| js_sys::TypeError::new("tolerance and size are numbers"))?;
         }
     }
     for (name, place) in [("union", &mut order.union), ("rig", &mut order.rig)] {
@@ -300,7 +301,7 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     Ok(order)
 }
 
-/// Texts given by a script as a project.
+/// Returns the project of texts that a script gives.
 fn project(texts: &JsValue) -> Result<Project, JsValue> {
     let file = |name: String, text: String| File { name, text };
     if let Some(text) = texts.as_string() {
@@ -323,7 +324,8 @@ fn project(texts: &JsValue) -> Result<Project, JsValue> {
     Ok(Project { files })
 }
 
-fn taken(files: &JsValue) -> Result<Vec<Taken>, JsValue> {
+/// Returns the files that a script gives.
+fn files(files: &JsValue) -> Result<Vec<Incoming>, JsValue> {
     let wrong = || js_sys::TypeError::new("take() takes an object {name: text or Uint8Array, …}");
     let object = files.dyn_ref::<Object>().ok_or_else(wrong)?;
     let mut taken = Vec::new();
@@ -335,7 +337,7 @@ fn taken(files: &JsValue) -> Result<Vec<Taken>, JsValue> {
             (None, None) => return Err(wrong().into()),
         };
         let name = name.as_string().ok_or_else(wrong)?;
-        taken.push(Taken {
+        taken.push(Incoming {
             name,
             bytes: Ok(bytes),
         });

@@ -6,7 +6,7 @@
 //! files count as if they were dropped on the page one by one.
 
 use crate::asset::{Asset, MAX_ALL, MAX_ASSET, MAX_ASSETS};
-use crate::intake::{self, Sorted, Taken};
+use crate::intake::{self, Sorted, Incoming};
 use crate::session::{MAX_FILES, MAX_TEXT};
 use ::archive::{Archive, Entry, Error, Member};
 use rats::File;
@@ -169,7 +169,7 @@ fn foreign(archive: &Archive<'_>) -> (Project, Vec<String>) {
     let mut taken = Vec::new();
     for entry in archive.entries().iter().filter(|entry| is_meant(entry)) {
         let is_text = crate::asset::kind(&entry.name).is_none();
-        taken.push(Taken {
+        taken.push(Incoming {
             name: entry.name[common..].to_owned(),
             bytes: content(archive, entry, is_text, &mut all),
         });

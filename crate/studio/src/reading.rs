@@ -52,7 +52,7 @@ impl MeshReading {
             }
             None => true,
         });
-        let wanted: Vec<Asset> = if session.enabled() {
+        let wanted: Vec<Asset> = if session.is_enabled() {
             session.unread_meshes().cloned().collect()
         } else {
             Vec::new()
@@ -135,7 +135,7 @@ mod tests {
         session.compile();
         assert!(session.is_compiled());
         assert_eq!(session.diagnostics(), []);
-        assert_eq!(session.compiled().scene.elements.len(), 1);
+        assert_eq!(session.compilation().scene.elements.len(), 1);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! itself.
 
 use crate::asset::Asset;
-use crate::intake::Taken;
+use crate::intake::Incoming;
 use crate::mesh_export::{Order, Taker};
 use crate::picture::Image;
 use crate::recording::VideoFormat;
@@ -27,7 +27,7 @@ pub enum Request {
     /// Open these texts; the answer is given when they are compiled.
     Load(Project, Answer),
     /// Take in files that the user dropped or chose.
-    Files(Vec<Taken>),
+    Files(Vec<Incoming>),
     /// Open an example of the gallery with its text, `None` if that did not come, and its images
     /// and meshes, which were fetched.
     Example(usize, Option<String>, Vec<Asset>),

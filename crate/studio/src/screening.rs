@@ -134,6 +134,6 @@ impl App {
         let text = format!("Saved {name}, {} frames, {size}.", self.player.count);
         self.forced_size = saving.forced;
         self.go_to_frame(saving.before);
-        self.notice = Some(Notice::done(text, now));
+        self.notice = Some(Notice::success(text, now));
     }
 }

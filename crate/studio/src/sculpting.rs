@@ -199,7 +199,7 @@ impl App {
             let result = self.work.open_files(project);
             if result.is_ok() {
                 platform::set_hash("");
-                self.opened(ctx);
+                self.reset_panels(ctx);
             }
             result
         } else {
@@ -234,7 +234,7 @@ impl App {
         let requests = self.parts.requests.clone();
         let taker = Box::new(move |result| requests.ask(Request::SculptModel(result)));
         let text = String::from("The model is being meshed; then you can sculpt it.");
-        self.notice = Some(Notice::done(text, now));
+        self.notice = Some(Notice::success(text, now));
         let session = &self.work.session;
         let film = self.film();
         self.mesh_export
@@ -369,7 +369,7 @@ impl App {
         let result = session.edit(&[TextEdit::whole(index, text)], now);
         session.end_step();
         self.notice = Some(match result {
-            Ok(()) => Notice::done(
+            Ok(()) => Notice::success(
                 String::from("The text says so now; the picture follows."),
                 now,
             ),

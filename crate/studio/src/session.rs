@@ -442,7 +442,7 @@ impl Session {
 
     /// Result of the last [`Session::compile`].
     #[must_use]
-    pub fn compiled(&self) -> &Compiled {
+    pub fn compilation(&self) -> &Compiled {
         &self.compiled
     }
 
@@ -520,7 +520,7 @@ impl Session {
 
     /// The camera chosen by hand, if any.
     #[must_use]
-    pub fn chosen_camera(&self) -> Option<Camera> {
+    pub fn user_camera(&self) -> Option<Camera> {
         self.camera
     }
 
@@ -592,7 +592,7 @@ impl Session {
 
     /// Whether texts are compiled. False after a start that failed, until the user asks.
     #[must_use]
-    pub fn enabled(&self) -> bool {
+    pub fn is_enabled(&self) -> bool {
         self.enabled
     }
 
@@ -741,7 +741,7 @@ mod tests {
         let mut session = Session::of_text(TEXT);
         assert!(Arc::ptr_eq(
             session.scene().unwrap(),
-            &session.compiled().scene
+            &session.compilation().scene
         ));
         let met = |session: &Session| {
             let picker = session.picker(true).unwrap();
@@ -785,7 +785,7 @@ mod tests {
             ..chosen
         };
         session.set_camera(Some(broken));
-        assert_eq!(session.chosen_camera(), None);
+        assert_eq!(session.user_camera(), None);
     }
 
     #[test]
@@ -793,7 +793,7 @@ mod tests {
         let mut session = Session::of_text(TEXT);
         session.hold();
         for step in 1..20 {
-            let literal = session.compiled().hot[0].literal.clone().unwrap();
+            let literal = session.compilation().hot[0].literal.clone().unwrap();
             let value = format!("0.{step}");
             session
                 .edit(&[TextEdit::new(0, literal, value)], f64::from(step))

@@ -145,7 +145,7 @@ pub fn show(
                 ui.ctx().request_repaint();
             }
         }
-        (None, None) if session.enabled() => {
+        (None, None) if session.is_enabled() => {
             let place = Rect::from_center_size(rect.center(), Vec2::splat(28.0));
             ui.place(place, egui::Spinner::new().color(palette.weak));
         }

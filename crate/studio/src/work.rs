@@ -88,7 +88,7 @@ impl Work {
         };
         let shared = shared?;
         let same = self.session.project() == &shared.project
-            && self.session.chosen_camera() == shared.camera;
+            && self.session.user_camera() == shared.camera;
         if same {
             return Ok(false);
         }
@@ -243,7 +243,7 @@ impl Work {
     /// Puts what changed on the shelf, from where it is written even if the program stops, and then
     /// compiles it.
     pub fn settle(&mut self, now: f64) {
-        let state = (self.session.revision(), self.session.chosen_camera());
+        let state = (self.session.revision(), self.session.user_camera());
         if state != self.noted {
             let edited = state.0 != self.noted.0;
             self.noted = state;
@@ -337,7 +337,7 @@ impl Work {
     }
 
     fn note(&mut self) {
-        self.noted = (self.session.revision(), self.session.chosen_camera());
+        self.noted = (self.session.revision(), self.session.user_camera());
     }
 }
 

@@ -24,7 +24,7 @@ impl Handles {
                 session.project(),
                 session.assets(),
                 session.film_frame(),
-                session.compiled(),
+                session.compilation(),
                 element,
                 &sight.projection.world_from_view,
             );
@@ -103,7 +103,7 @@ impl Grip {
         }
         self.at = at;
         let before = self.target;
-        self.target = sight.moved(before, by, false);
+        self.target = sight.drag(before, by, false);
         if self.flat {
             // In the mirror, and still under the pointer if that is seen from the side.
             let mirror = drawn.to_world.matrix3.inverse().transpose() * DVec3::X;

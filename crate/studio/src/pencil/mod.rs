@@ -190,7 +190,7 @@ impl Pencil {
     /// Whether the text has a skeleton that can be drawn on.
     #[must_use]
     pub fn has_skeleton(session: &Session) -> bool {
-        let all = Drawn::all(session.project(), session.compiled());
+        let all = Drawn::all(session.project(), session.compilation());
         all.iter().any(|drawn| drawn.block.is_some())
     }
 
@@ -238,7 +238,7 @@ impl Pencil {
                 other.revision = Some(key.0);
             }
             self.made = Some(key);
-            self.all = Drawn::all(session.project(), session.compiled());
+            self.all = Drawn::all(session.project(), session.compilation());
             let there = |found: &(usize, usize)| {
                 let drawn = self.all.get(found.0);
                 drawn.is_some_and(|drawn| found.1 < drawn.knobs.len() && drawn.block.is_some())
@@ -676,10 +676,10 @@ impl Pencil {
         if let Some(hit) = hit(session, sight, at, 0.0)
             && let Some(element) = hit.element
         {
-            let scene = &session.compiled().scene;
+            let scene = &session.compilation().scene;
             let element = element as usize;
             let shape = &scene.elements[element];
-            let alone = !session.compiled().placements[element].repeated;
+            let alone = !session.compilation().placements[element].repeated;
             if matches!(shape.shape, Shape::Sphere { .. }) && alone {
                 let origin = shape.origin;
                 let (file, span) = (

@@ -1,6 +1,6 @@
 //! Stand-ins for tests: an address and a storage in memory, for each thread its own.
 
-use crate::intake::Taken;
+use crate::intake::Incoming;
 use crate::recording::{Encoded, Kind, VideoFormat};
 use crate::request::{Request, Requests};
 use crate::storage::Store;
@@ -29,7 +29,7 @@ pub fn pen_pressure() -> Option<f32> {
 }
 
 /// Says whether each frame keeps the tracer waiting.
-pub fn set_frames_dear(_dear: bool) {}
+pub fn set_frames_slow(_is_slow: bool) {}
 
 /// Milliseconds since 1970.
 #[must_use]
@@ -80,7 +80,7 @@ pub fn download(name: &str, _mime: &str, bytes: &[u8]) {
 
 /// Reads files that were dropped on the window and asks for them to be taken in.
 pub fn read_dropped(files: Vec<egui::DroppedFileHandle>, requests: &Requests) {
-    let taken = files.iter().map(|file| Taken {
+    let taken = files.iter().map(|file| Incoming {
         name: file.path().display().to_string(),
         bytes: file.bytes(),
     });
@@ -105,18 +105,18 @@ pub fn downloaded() -> Option<(String, Vec<u8>)> {
 }
 
 thread_local! {
-    static TROUBLED: RefCell<bool> = const { RefCell::new(false) };
+    static STOPPED: RefCell<bool> = const { RefCell::new(false) };
 }
 
 /// Whether the program stopped unexpectedly the last time in this tab.
 #[must_use]
-pub fn troubled() -> bool {
-    TROUBLED.with_borrow(|troubled| *troubled)
+pub fn stopped_last_time() -> bool {
+    STOPPED.with_borrow(|stopped| *stopped)
 }
 
 /// Notes that the program may stop unexpectedly, or with `false` that it works.
-pub fn set_troubled(troubled: bool) {
-    TROUBLED.set(troubled);
+pub fn set_stopped(has_stopped: bool) {
+    STOPPED.set(has_stopped);
 }
 
 /// Whether what is stored lasts.
@@ -129,7 +129,7 @@ pub fn has_storage() -> bool {
 pub fn set_title(_name: &str) {}
 
 /// There is none apart from the window's.
-pub fn pretended_card(_done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {}
+pub fn ask_emulated_card(_done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {}
 
 /// Reads a file of the page.
 #[must_use]

@@ -1,6 +1,6 @@
 //! The browser.
 
-use crate::intake::{self, Taken};
+use crate::intake::{self, Incoming};
 use crate::request::{Request, Requests};
 use crate::storage::Store;
 use egui_wgpu::wgpu;
@@ -53,8 +53,8 @@ pub fn watch_pens() {
 }
 
 /// Says whether each frame keeps the tracer waiting.
-pub fn set_frames_dear(dear: bool) {
-    crate::frames::dear(dear);
+pub fn set_frames_slow(is_slow: bool) {
+    crate::frames::set_slow(is_slow);
 }
 
 /// Milliseconds since 1970.
@@ -212,7 +212,7 @@ fn read_files(files: Vec<web_sys::File>, requests: Requests) {
                 Ok(()) => Ok(Vec::new()),
                 Err(reason) => Err(reason),
             };
-            taken.push(Taken { name, bytes });
+            taken.push(Incoming { name, bytes });
         }
         if !taken.is_empty() {
             requests.ask(Request::Files(taken));
@@ -231,23 +231,23 @@ pub fn blob(mime: &str, bytes: &[u8]) -> Result<web_sys::Blob, JsValue> {
     web_sys::Blob::new_with_u8_array_sequence_and_options(&parts, &options)
 }
 
-const TROUBLED: &str = "sinew/troubled";
+const STOPPED: &str = "sinew/troubled";
 
 /// Whether the program stopped unexpectedly the last time in this tab. Kept for the tab alone, so
 /// that another tab that is just starting is not taken for one that stopped.
 #[must_use]
-pub fn troubled() -> bool {
-    matches!(window().session_storage(), Ok(Some(storage)) if matches!(storage.get_item(TROUBLED), Ok(Some(_))))
+pub fn stopped_last_time() -> bool {
+    matches!(window().session_storage(), Ok(Some(storage)) if matches!(storage.get_item(STOPPED), Ok(Some(_))))
 }
 
 /// Notes that the program may stop unexpectedly, or with `false` that it works.
-pub fn set_troubled(troubled: bool) {
+pub fn set_stopped(has_stopped: bool) {
     if let Ok(Some(storage)) = window().session_storage() {
         // Without storage, a bad start is simply tried again.
-        let _ = if troubled {
-            storage.set_item(TROUBLED, "1")
+        let _ = if has_stopped {
+            storage.set_item(STOPPED, "1")
         } else {
-            storage.remove_item(TROUBLED)
+            storage.remove_item(STOPPED)
         };
     }
 }
@@ -283,7 +283,7 @@ async fn bytes_of(path: &str) -> Result<Vec<u8>, JsValue> {
 }
 
 /// Asks for a graphics card that the browser has, or pretends to have, apart from the window's.
-pub fn pretended_card(done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {
+pub fn ask_emulated_card(done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {
     wasm_bindgen_futures::spawn_local(async move {
         if let Some((device, queue)) = card().await {
             done(device, queue);

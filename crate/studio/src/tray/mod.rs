@@ -43,7 +43,7 @@ struct Order {
 
 impl Order {
     fn of(session: &Session) -> Self {
-        let compiled = session.compiled();
+        let compiled = session.compilation();
         let picture = (compiled.output.file(), compiled.output.saved);
         let mut read: Vec<&str> = compiled.tools.iter().flat_map(Tool::reads).collect();
         field::heap_sort(&mut read, |a, b| a < b);
@@ -139,7 +139,7 @@ impl Tray {
     /// Place of the command that made a result, if the text is still the same.
     #[must_use]
     pub fn place_of(&self, index: usize, session: &Session) -> Option<(usize, Range<usize>)> {
-        let compiled = session.compiled();
+        let compiled = session.compilation();
         let item = self.items().get(index)?;
         let origin = compiled.tool_origins.get(item.job)?;
         // Results shown while new ones are made may be of an older text.

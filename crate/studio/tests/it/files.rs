@@ -7,7 +7,7 @@ use rats::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use studio::app::Parts;
-use studio::intake::Taken;
+use studio::intake::Incoming;
 use studio::request::Request;
 use studio::{platform, share, storage};
 
@@ -21,7 +21,7 @@ sphere flesh 0.5, 0 0 0
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 fn take_in(window: &mut Window, files: &[(&str, &[u8])]) {
-    let taken = files.iter().map(|(name, bytes)| Taken {
+    let taken = files.iter().map(|(name, bytes)| Incoming {
         name: (*name).to_owned(),
         bytes: Ok(bytes.to_vec()),
     });
@@ -95,7 +95,7 @@ fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
     window.write("# mine\n");
     let png: &[u8] = include_bytes!("../../../../www/examples/cowrie.png");
     take_in(&mut window, &[("wood.png", png), ("tri.obj", OBJ)]);
-    window.harness.get_by_label_contains("3 corners, 1 faces");
+    window.harness.get_by_label_contains("3 corners, 1 face");
     let tab = window.place("tab wood.png").center();
     window.click(tab);
     window.harness.get_by_label_contains("pixels, ");

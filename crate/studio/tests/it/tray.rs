@@ -4,7 +4,7 @@ use crate::driver::Window;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use studio::app::Parts;
-use studio::intake::Taken;
+use studio::intake::Incoming;
 use studio::picture::Image;
 use studio::request::Request;
 use studio::{picture, places, platform};
@@ -24,7 +24,7 @@ fn png(size: [u32; 2], level: u8) -> Vec<u8> {
 
 /// Drops two pictures on the page.
 fn drop_two(window: &mut Window) {
-    let taken = [("one.png", 200), ("two.png", 90)].map(|(name, level)| Taken {
+    let taken = [("one.png", 200), ("two.png", 90)].map(|(name, level)| Incoming {
         name: name.to_owned(),
         bytes: Ok(png([40, 30], level)),
     });

@@ -466,7 +466,7 @@ fn large_mesh_is_read_apart_while_the_picture_stays() {
     }
     mesh.push_str("f 1 2 3\n");
     let text = TEXT.replace("sphere flesh size, 0 0 0", "mesh flesh big.obj");
-    let taken = |name: &str, text: &str| studio::intake::Taken {
+    let taken = |name: &str, text: &str| studio::intake::Incoming {
         name: name.to_owned(),
         bytes: Ok(text.as_bytes().to_vec()),
     };
