@@ -496,11 +496,7 @@ impl App {
 
     fn share(&mut self, ctx: &Context, now: f64) {
         let session = &self.work.session;
-        match share::link(
-            &platform::page(),
-            session.project(),
-            session.user_camera(),
-        ) {
+        match share::link(&platform::page(), session.project(), session.user_camera()) {
             Ok(link) => {
                 if let Some((_, fragment)) = link.split_once('#') {
                     platform::set_hash(&format!("#{fragment}"));

@@ -36,9 +36,9 @@ enum Card {
     /// The card was not asked for.
     #[default]
     Unknown,
-    /// It was asked for, or refused.
+    /// The card was asked for, or refused.
     Away,
-    /// It is there.
+    /// The card is there.
     Here(Box<Drawer>),
 }
 

@@ -210,7 +210,7 @@ impl App {
         backend: Backend,
         parts: Parts,
     ) -> Self {
-        let is_calm = !platform::stopped_last_time();
+        let is_calm = !platform::has_stopped_before();
         // Until the start has gone well, a stop counts as a bad start.
         platform::set_stopped(true);
         let hash = platform::hash();

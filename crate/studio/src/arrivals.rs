@@ -4,7 +4,7 @@
 use crate::app::{App, Tab};
 use crate::asset::Asset;
 use crate::examples;
-use crate::intake::{self, Sorted, Incoming};
+use crate::intake::{self, Incoming, Sorted};
 use crate::notice::Notice;
 use crate::platform;
 use crate::project_file::{self, Project};

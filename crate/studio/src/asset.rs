@@ -104,7 +104,11 @@ impl Counts {
     fn words(self) -> String {
         match self.corners {
             Some(corners) => {
-                format!("{}, {}", number(corners, "corner"), number(self.faces, "face"))
+                format!(
+                    "{}, {}",
+                    number(corners, "corner"),
+                    number(self.faces, "face")
+                )
             }
             None => number(self.faces, "triangle"),
         }

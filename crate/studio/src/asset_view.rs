@@ -34,7 +34,8 @@ impl AssetView {
                 ui.label(RichText::new(format!("{facts}, {size}")).color(palette.text));
                 ui.label(
                     RichText::new(
-                        "It belongs to this work and stays in this browser. Links carry texts only.",
+                        "It belongs to this work and stays in this browser. \
+                            Links carry texts only.",
                     )
                     .color(palette.weak)
                     .size(12.5),

@@ -3,8 +3,8 @@
 //!
 //! A browser may claim more than it can do: `navigator.gpu` may be there without an adapter, a
 //! context may be refused, and a device may be lost while the page runs. So each [`Backend`] is
-//! probed, then tried, and when it fails the next one is tried on a fresh canvas (a canvas that once
-//! had a context of one kind never gives another).
+//! probed, then tried, and when it fails the next one is tried on a fresh canvas (a canvas that
+//! once had a context of one kind never gives another).
 //!
 //! If the browser emulates WebGL2 on the processor, the processor draws the window itself: it does
 //! so many times more quickly, as it draws only what changed, and leaves the time to the workers.

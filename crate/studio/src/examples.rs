@@ -14,8 +14,8 @@ pub struct Example {
     pub name: &'static str,
     /// Address of the text, a file beside the page.
     pub path: &'static str,
-    /// The text, if it is part of the program: the first visit's and those of sculptures. All others
-    /// are fetched when they are opened, so that no visitor waits for them.
+    /// The text, if it is part of the program: the first visit's and those of sculptures. All
+    /// others are fetched when they are opened, so that no visitor waits for them.
     pub text: Option<&'static str>,
     /// Address of the thumbnail, a PNG file beside the page: fetched when the gallery is opened, as
     /// few visits open it.
@@ -137,7 +137,9 @@ pub static ALL: [Example; 57] = [
     example!(GROWN, "Generators", "six commands, a line each", "generators"),
     example!(GROWN, "Flakes on stems", "Gaussian balls on Cauchy bows", "stem-flakes"),
     example!(GROWN, "Four flakes", "10, 91, 820 and 7,381 balls", "flakes"),
-    example!(GROWN, "A queen grows old", "1,242 triangles, smooth and wrinkled", "queen", "queen.obj"),
+    example!(
+        GROWN, "A queen grows old", "1,242 triangles, smooth and wrinkled", "queen", "queen.obj"
+    ),
     example!(GROWN, "Elder", "3,422 triangles and what age does to them", "elder", "elder.obj"),
     example!(GROWN, "Three heads", "a coarse mesh, as balls and as shells", "heads", "head.obj"),
     example!(MATTER, "Glass drops", "water, a mirror ball and a board", "glass-drops"),

@@ -44,8 +44,8 @@ pub fn show(
             if tab.clicked() {
                 editor.open(index);
             }
-            let menu_of_tab = Popup::context_menu(&tab)
-                .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+            let menu_of_tab =
+                Popup::context_menu(&tab).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             menu_of_tab.show(|ui| menu(ui, index, &file.name, commands));
         }
         for asset in session.assets() {

@@ -15,10 +15,10 @@ pub const MAX_RATE: u16 = 50;
 pub enum Playback {
     /// The film ends.
     Once,
-    /// It begins again with the first frame.
+    /// The film begins again with the first frame.
     #[default]
     Loop,
-    /// It runs backwards to the first frame, and so on.
+    /// The film runs backwards to the first frame, and so on.
     Mirror,
 }
 

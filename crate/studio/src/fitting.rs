@@ -50,9 +50,9 @@ impl Measured {
 /// A mesh that can be fitted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
-    /// One whose `deform`, by its index in the compiled text's list, has control points.
+    /// The mesh of a `deform`, by its index in the compiled text's list.
     Deform(usize),
-    /// That of a `mesh` command, which gets an automatic cage.
+    /// The mesh of a `mesh` command, which gets an automatic cage.
     Mesh(Origin),
 }
 
@@ -256,8 +256,8 @@ impl Fitting {
         let elements = compiled.scene.elements.iter().zip(&compiled.placements);
         for (element, placement) in elements {
             let origin = element.origin;
-            // The triangles of a mesh are always repeated, as their command makes many. The compiler
-            // says when the fit begins whether the command itself is.
+            // The triangles of a mesh are always repeated, as their command makes many. The
+            // compiler says when the fit begins whether the command itself is.
             let is_mesh = match &element.shape {
                 Shape::Triangle { .. } | Shape::Patch { .. } => true,
                 Shape::Function(function) => {
@@ -735,7 +735,10 @@ mod tests {
         fitting.settings.count = 16;
         fitting.settings.surface = Surface::Explicit;
         fitting.start(&session, 0.0);
-        assert!(fitting.message.take().is_some_and(|(_, bad)| bad), "no data");
+        assert!(
+            fitting.message.take().is_some_and(|(_, bad)| bad),
+            "no data"
+        );
         fitting.add(String::from("cloud.xyz"), cloud());
         until(&mut fitting, &mut session, Fitting::has_data);
         assert_eq!(fitting.files[0].words(), "500 points");
@@ -778,7 +781,9 @@ mod tests {
         let mut session = session(TEXT);
         let mut fitting = Fitting::new(Tools::new(|| {}));
         fitting.add(String::from("bad.xyz"), b"1 2\n".to_vec());
-        until(&mut fitting, &mut session, |fitting| fitting.message.is_some());
+        until(&mut fitting, &mut session, |fitting| {
+            fitting.message.is_some()
+        });
         let said = fitting
             .message
             .take()

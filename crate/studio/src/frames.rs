@@ -2,10 +2,10 @@
 //!
 //! eframe asks the browser for an animation frame after every one, drawn or not, which costs a
 //! processor 8 % of its time in Chromium (60 Hz, nothing ever drawn), at the expense of the workers
-//! or of a battery. So the page's `requestAnimationFrame` is replaced: a request gets its frame when
-//! there may be something to draw, that is when egui has asked for it or one of the events came
-//! that eframe listens to, else a few times a second ([`QUIET`]), for changes without an event, such
-//! as another colour scheme of the system.
+//! or of a battery. So the page's `requestAnimationFrame` is replaced: a request gets its frame
+//! when there may be something to draw, that is when egui has asked for it or one of the events
+//! came that eframe listens to, else a few times a second ([`QUIET`]), for changes without an
+//! event, such as another colour scheme of the system.
 //!
 //! egui draws twice more after each event, to let things settle. Where each frame keeps the tracer
 //! waiting, these come [`PACE`] apart, unless a pointer is at work ([`LIVELY`]).
@@ -22,8 +22,8 @@ const QUIET: f64 = 250.0;
 /// Milliseconds between the frames that egui requests without delay, while frames are slow.
 const PACE: f64 = 100.0;
 
-/// Milliseconds after an event of a pointer in which no frame counts as slow: scrolling and dragging
-/// must stay smooth.
+/// Milliseconds after an event of a pointer in which no frame counts as slow: scrolling and
+/// dragging must stay smooth.
 const LIVELY: f64 = 500.0;
 
 /// Frames that are given without delay once something happens: egui and eframe often want another

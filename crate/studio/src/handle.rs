@@ -1,22 +1,30 @@
 //! The page handle: `window.sinew`, for scripts of a page that embeds Sinew and for tests.
 //!
-//! | member | what it does |
-//! |---|---|
-//! | `ready` | promise, resolved when the app runs; rejected with the reason when it cannot start |
-//! | `load(text)`, `load({name: text, …})` | opens texts (the first one is run) like an example: the user's own work is kept; promise, resolved when they are compiled, rejected when they are too long |
-//! | `take({name: text or Uint8Array, …})` | takes in texts, images, meshes and projects (.zip) as if they were dropped on the page |
-//! | `text()` | the text of the first file |
-//! | `files()` | all texts, as `{name: text, …}` |
-//! | `status()` | the state, see below |
-//! | `finished()` | promise of a `status()`, resolved when the picture of the present text, camera and size is finished or was stopped; rejected while the lab keeps that picture waiting |
-//! | `image()` | promise of a PNG `Blob` of the traced picture as it is now; rejected while there is none |
-//! | `mesh({format, tolerance, size, union, rig})` | promise of a `Uint8Array`: the model as a file of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`, `tolerance` the largest distance from the surface as a part of the longest side (0.0015), `size` the longest side in millimetres (100), `union` whether bodies that overlap become one, `rig` (GLB only) whether skeletons become joints and the film an animation |
-//! | `link()` | the full address that Share copies |
-//! | `camera()` | `{eye, target, up, fov}` in use |
-//! | `setCamera(camera)` | looks from there; `null` goes back to the camera of the text |
-//! | `cancel()`, `render()` | stops the picture; traces it again |
-//! | `lab()` | the open lesson of the lab, see below; null in the editor |
-//! | `sculpture()` | the sculpture that is worked on: `{name, counts: [vertices, faces], depth: [undo, redo]}`; null in the editor |
+//! - `ready`: promise, resolved when the app runs; rejected with the reason when it cannot start
+//! - `load(text)`, `load({name: text, …})`: opens texts (the first one is run) like an example: the
+//!   user's own work is kept; promise, resolved when they are compiled, rejected when they are too
+//!   long
+//! - `take({name: text or Uint8Array, …})`: takes in texts, images, meshes and projects (.zip) as
+//!   if they were dropped on the page
+//! - `text()`: the text of the first file
+//! - `files()`: all texts, as `{name: text, …}`
+//! - `status()`: the state, see below
+//! - `finished()`: promise of a `status()`, resolved when the picture of the present text, camera
+//!   and size is finished or was stopped; rejected while the lab keeps that picture waiting
+//! - `image()`: promise of a PNG `Blob` of the traced picture as it is now; rejected while there is
+//!   none
+//! - `mesh({format, tolerance, size, union, rig})`: promise of a `Uint8Array`: the model as a file
+//!   of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`,
+//!   `tolerance` the largest distance from the surface as a part of the longest side (0.0015),
+//!   `size` the longest side in millimetres (100), `union` whether bodies that overlap become one,
+//!   `rig` (GLB only) whether skeletons become joints and the film an animation
+//! - `link()`: the full address that Share copies
+//! - `camera()`: `{eye, target, up, fov}` in use
+//! - `setCamera(camera)`: looks from there; `null` goes back to the camera of the text
+//! - `cancel()`, `render()`: stops the picture; traces it again
+//! - `lab()`: the open lesson of the lab, see below; null in the editor
+//! - `sculpture()`: the sculpture that is worked on: `{name, counts: [vertices, faces], depth:
+//!   [undo, redo]}`; null in the editor
 //!
 //! `status()` gives `phase` (`"idle"`, `"waiting"` for a pause in typing, `"tracing"`, `"done"`,
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null),
@@ -289,8 +297,8 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     ] {
         if let Some(number) = part(name)? {
             let number = number.as_f64();
-            *place = number
-                .ok_or_else(|| js_sys::TypeError::new("tolerance and size are numbers"))?;
+            *place =
+                number.ok_or_else(|| js_sys::TypeError::new("tolerance and size are numbers"))?;
         }
     }
     for (name, place) in [("union", &mut order.union), ("rig", &mut order.rig)] {

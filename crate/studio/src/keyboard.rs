@@ -56,7 +56,7 @@ enum Focus {
     Moves,
     /// A widget.
     Stays,
-    /// No widget: each key is a command.
+    /// The app itself: each key is a command.
     Nowhere,
 }
 

@@ -16,12 +16,16 @@ const DARK: f32 = 1.01 * Finish::AMBIENT_SHARE;
 #[must_use]
 pub fn is_dark(scene: &Scene) -> bool {
     let is_lit = !scene.lights.is_empty() || scene.sky.is_some() || !scene.clouds.is_empty();
-    !is_lit && !scene.elements.is_empty()
+    !is_lit
+        && !scene.elements.is_empty()
         && !scene.elements.iter().any(|element| {
-            scene.finishes.get(element.finish as usize).is_some_and(|finish| {
-                let mut pairs = finish.ambient.iter().zip(&finish.diffuse);
-                pairs.any(|(ambient, diffuse)| *ambient > DARK * diffuse + 1e-3)
-            })
+            scene
+                .finishes
+                .get(element.finish as usize)
+                .is_some_and(|finish| {
+                    let mut pairs = finish.ambient.iter().zip(&finish.diffuse);
+                    pairs.any(|(ambient, diffuse)| *ambient > DARK * diffuse + 1e-3)
+                })
         })
 }
 

@@ -429,7 +429,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
             touch: app.touch == Some(true),
         };
         app.pencil.show(ui, rect, &picture, &around, commands);
-        if let Some(pair) = app.pencil.other(session)
+        if let Some(pair) = app.pencil.alternative(session)
             && session.is_enabled()
             && pencil::bar::turn(ui, rect, pair)
         {
@@ -622,7 +622,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                 Dialog::Gallery => {
                     let shelf = app.work.shelf().borrow();
                     app.gallery
-                        .show(ui, shelf.opened(), platform::unix_time(), commands);
+                        .show(ui, shelf.open_id(), platform::unix_time(), commands);
                 }
                 Dialog::Result => {
                     let inner = size - Vec2::splat(inner);

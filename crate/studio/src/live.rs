@@ -1,8 +1,8 @@
 //! A mesh of the model's true surface for the draft, while the user turns the model or drags a part
 //! of it.
 //!
-//! A tools worker makes it, apart from the page's thread: a coarse one while the text changes, and a
-//! fine one once nothing changes and no picture is traced. Until it is there, and where it would
+//! A tools worker makes it, apart from the page's thread: a coarse one while the text changes, and
+//! a fine one once nothing changes and no picture is traced. Until it is there, and where it would
 //! come too late to follow a drag, the draft shows the elements before they melt together. No mesh
 //! is made, and no worker fetched, before the user turns or drags for the first time.
 
@@ -196,9 +196,9 @@ impl LiveMesh {
     #[must_use]
     pub fn mesh(&self, session: &Session, now: f64) -> Option<&Made> {
         let follows = self.seconds <= QUICK && self.hopeless != Some(session.shape());
-        self.made.as_ref().filter(|made| {
-            made.shape == session.shape() || (follows && now - made.current <= LATE)
-        })
+        self.made
+            .as_ref()
+            .filter(|made| made.shape == session.shape() || (follows && now - made.current <= LATE))
     }
 
     /// Returns the seconds until [`LiveMesh::tick`] begins a fine mesh; `None` if it will not.
@@ -218,11 +218,7 @@ fn elements(session: &Session) -> usize {
 /// Returns a scene of the soft elements and everything that their surfaces depend on; `None` if
 /// there are none, too many, or one that has no end.
 fn soft_part(scene: &Scene) -> Option<Scene> {
-    let soft: Vec<&Element> = scene
-        .elements
-        .iter()
-        .filter(|e| scene.is_soft(e))
-        .collect();
+    let soft: Vec<&Element> = scene.elements.iter().filter(|e| scene.is_soft(e)).collect();
     let is_endless = |element: &&Element| matches!(element.shape, Shape::Plane { .. });
     if !(1..=MOST).contains(&soft.len()) || soft.iter().any(is_endless) {
         return None;

@@ -184,9 +184,9 @@ pub struct MeshExport {
 
 /// The progress of the dialog's mesh.
 pub(crate) enum State<'a> {
-    /// This fraction is done.
+    /// The mesh is being made; the fraction done.
     Making(f32),
-    /// There will be none, for this reason.
+    /// The mesh cannot be made, for this reason.
     Trouble(&'a str),
     /// The mesh and its file are there.
     Done(&'a MeshFacts, &'a Written),
@@ -639,8 +639,7 @@ fn surface(parts: &[(String, TriangleMesh)], is_closed: bool) -> Surface {
         // Each edge of a closed mesh has two triangles, in opposite directions.
         for [a, b, c] in &all.triangles {
             let edges = [[*a, *b], [*b, *c], [*c, *a]].into_iter();
-            all.edges
-                .extend(edges.filter(|[a, b]| a < b || !is_closed));
+            all.edges.extend(edges.filter(|[a, b]| a < b || !is_closed));
         }
     }
     all
@@ -752,8 +751,8 @@ mod tests {
         assert!(make_for_script(ARM, other).unwrap_err().contains("GLB"));
     }
 
-    /// Follows the settings until their file is there or has failed. Returns the number of jobs that
-    /// were begun.
+    /// Follows the settings until their file is there or has failed. Returns the number of jobs
+    /// that were begun.
     fn follow(export: &mut MeshExport, session: &Session) -> usize {
         let film = Film { count: 5, rate: 12 };
         let deadline = Instant::now() + Duration::from_secs(120);
@@ -825,7 +824,7 @@ mod tests {
     }
 
     #[test]
-    fn stopped_mesh_is_not_made_until_the_user_asks() {
+    fn a_stopped_mesh_is_not_made_until_the_user_asks() {
         let ball = Session::of_text(BALL);
         let film = Film { count: 5, rate: 12 };
         let mut export = MeshExport::new(Tools::new(|| {}));

@@ -116,8 +116,7 @@ fn square(ui: &mut Ui, name: &str, vector: &mut [f64; 3], bounds: Bounds, side: 
         info
     });
     paint(ui, &response, rect, *vector, bounds.range);
-    response
-        .on_hover_text("Drag or arrow keys: x and y. Wheel, Page Up and Page Down: z.")
+    response.on_hover_text("Drag or arrow keys: x and y. Wheel, Page Up and Page Down: z.")
 }
 
 /// Returns x and y at the pointer; y grows upwards.

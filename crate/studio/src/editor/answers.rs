@@ -123,7 +123,12 @@ impl Editor {
     }
 
     /// Goes to the definition of the name at a place.
-    pub(super) fn go_to_definition(&self, session: &Session, place: Place, commands: &mut Vec<Command>) {
+    pub(super) fn go_to_definition(
+        &self,
+        session: &Session,
+        place: Place,
+        commands: &mut Vec<Command>,
+    ) {
         let found = assist::definition(session.project(), place.file, place.byte);
         commands.push(match found {
             Some(found) => Command::Jump {

@@ -1,8 +1,8 @@
 //! The list of what can be written at the caret: opened by typing a word or with Ctrl+Space, used
 //! with the arrow keys, Enter or Tab, closed with Escape.
 //!
-//! While the user types, a list that takes long to make waits for a short rest, so that typing never
-//! waits for it.
+//! While the user types, a list that takes long to make waits for a short rest, so that typing
+//! never waits for it.
 
 use super::place::{self, Place};
 use crate::session::Session;

@@ -79,8 +79,8 @@ impl Folding {
         is_shut.then_some(around)
     }
 
-    /// Draws triangles at `x` beside the lines `rows` (from 0) that can be folded, and a mark behind
-    /// those that are folded. Returns the line whose triangle was clicked.
+    /// Draws triangles at `x` beside the lines `rows` (from 0) that can be folded, and a mark
+    /// behind those that are folded. Returns the line whose triangle was clicked.
     pub fn show(
         &self,
         ui: &Ui,
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn hidden_lines_can_be_revealed() {
+    fn lines_in_folds_can_be_revealed() {
         let mut folding = Folding::default();
         folding.update(0, TEXT);
         folding.toggle(0, 0);
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn hidden_bytes_are_cut_out_of_their_sections() {
+    fn bytes_in_folds_are_cut_out_of_their_sections() {
         let job = LayoutJob::simple(
             String::from("abc\ndef\nghi"),
             FontId::monospace(13.0),

@@ -18,7 +18,8 @@ pub struct Hover {
     /// The command that the card on show is about.
     command: Option<&'static str>,
     revision: u64,
-    /// Whether the pointer has not moved since the text changed: no card comes while the user types.
+    /// Whether the pointer has not moved since the text changed: no card comes while the user
+    /// types.
     still: bool,
     pointer: Option<egui::Pos2>,
     pictures: Thumbnails,

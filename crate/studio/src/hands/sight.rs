@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn dragged_points_follow_the_pointer() {
+    fn points_follow_the_pointer() {
         let sight = sight();
         let before = sight.screen(DVec3::ONE).expect("visible");
         let by = vec2(12.0, -7.0);
