@@ -97,12 +97,11 @@ fn texts(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     method(sinew, "load", move |texts, _| {
         let project = project(&texts)?;
         Ok(promise(|yes, no| {
-            let answer = move |result: Result<(), String>| match result {
+            let answer = Box::new(move |result: Result<(), String>| match result {
                 Ok(()) => call(&yes, &JsValue::UNDEFINED),
                 Err(reason) => call(&no, &js_sys::Error::new(&reason)),
-            };
-            p.requests
-                .ask(Request::Load(project.clone(), Box::new(answer)));
+            });
+            p.requests.ask(Request::Load(project.clone(), answer));
         }))
     })?;
     let p = parts.clone();
@@ -170,11 +169,11 @@ fn state(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     method(sinew, "mesh", move |order, _| {
         let order = order_of(&order)?;
         Ok(promise(|yes, no| {
-            let answer = move |result: Result<Vec<u8>, String>| match result {
+            let answer = Box::new(move |result: Result<Vec<u8>, String>| match result {
                 Ok(bytes) => call(&yes, &js_sys::Uint8Array::from(&bytes[..])),
                 Err(reason) => call(&no, &js_sys::Error::new(&reason)),
-            };
-            p.requests.ask(Request::Mesh(order, Box::new(answer)));
+            });
+            p.requests.ask(Request::Mesh(order, answer));
         }))
     })?;
     let p = parts.clone();

@@ -219,8 +219,8 @@ fn elements(session: &Session) -> usize {
 /// there are none, too many, or one that has no end.
 fn soft_part(scene: &Scene) -> Option<Scene> {
     let soft: Vec<&Element> = scene.elements.iter().filter(|e| scene.is_soft(e)).collect();
-    let is_endless = |element: &&Element| matches!(element.shape, Shape::Plane { .. });
-    if !(1..=MOST).contains(&soft.len()) || soft.iter().any(is_endless) {
+    let mut shapes = soft.iter().map(|element| &element.shape);
+    if !(1..=MOST).contains(&soft.len()) || shapes.any(|s| matches!(s, Shape::Plane { .. })) {
         return None;
     }
     Some(Scene {

@@ -23,7 +23,7 @@ impl Bounds {
     fn snap(self, value: f64) -> f64 {
         let (low, high) = self.range;
         let value = value.clamp(low, high);
-        slider::stepped(value, low, self.step, slider::decimals(high - low))
+        slider::snap(value, low, self.step, slider::decimals(high - low))
     }
 }
 

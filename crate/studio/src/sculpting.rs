@@ -497,12 +497,13 @@ mod tests {
             let main = format!("{STUDIO}{}", lines("", "a.strokes", CLAY));
             let compiled = compile(&main, &format!("strokes 1\n{start}\n"));
             // A corner of the box may be outside the picture, which is worth a note.
-            let is_note = |d: &rats::Diagnostic| d.severity == rats::Severity::Note;
-            assert!(
-                compiled.diagnostics.iter().all(is_note),
-                "{name}: {:?}",
-                compiled.diagnostics
-            );
+            for diagnostic in &compiled.diagnostics {
+                assert_eq!(
+                    diagnostic.severity,
+                    rats::Severity::Note,
+                    "{name}: {diagnostic:?}"
+                );
+            }
             let faces = compiled.scene.elements.len();
             assert!((700..1300).contains(&faces), "{name}: {faces}");
         }
@@ -511,8 +512,9 @@ mod tests {
         let soft = grow(text, "a.strokes", Flesh::Convolved, 0.4).unwrap();
         assert!(soft.contains("mesh ClayFlesh a.strokes"), "{soft}");
         let diagnostics = compile(&soft, strokes).diagnostics;
-        let is_error = |d: &rats::Diagnostic| d.severity == rats::Severity::Error;
-        assert!(!diagnostics.iter().any(is_error), "{diagnostics:?}");
+        for diagnostic in &diagnostics {
+            assert_ne!(diagnostic.severity, rats::Severity::Error, "{diagnostic:?}");
+        }
         let balls = grow(&soft, "a.strokes", Flesh::Metaballs, 0.4).unwrap();
         assert!(
             balls.ends_with("mesh Clay a.strokes metaballs triangular 0.0600 35.0\n"),

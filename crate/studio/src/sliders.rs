@@ -3,7 +3,7 @@
 
 use crate::command::Command;
 use crate::pad::{self, Bounds};
-use crate::slider::{colours, counts, decimals, fitting_range, stepped};
+use crate::slider::{colours, counts, decimals, fitting_range, snap};
 use crate::{places, theme};
 use egui::{DragValue, RichText, Slider, SliderClamping, Ui};
 use rats::{HotValue, HotVariable, TextEdit, hot};
@@ -136,10 +136,7 @@ impl Sliders {
                 self.ranges.insert(key, fresh);
             }
         }
-        (
-            dragged,
-            changed.then(|| stepped(value, low, step, decimals)),
-        )
+        (dragged, changed.then(|| snap(value, low, step, decimals)))
     }
 
     /// Shows a pad. Returns whether a drag continues, and the vector if it changed.

@@ -25,22 +25,22 @@ pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
             angle,
             ..
         } => {
-            let at = |i: usize| {
+            let line = (0..=ARC_LINES).map(|i| {
                 let (sine, cosine) = libm::sincos(angle * i as f64 / ARC_LINES as f64);
                 *center + (*u * cosine + *v * sine) * *sweep
-            };
-            vec![(0..=ARC_LINES).map(at).collect()]
+            });
+            vec![line.collect()]
         }
         Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => vec![ring(corners)],
         Shape::Polygon { rings, .. } => rings.iter().map(|corners| ring(corners)).collect(),
         Shape::Curve { control, .. } => {
             let [a, b, c, d] = *control;
-            let at = |i: usize| {
+            let line = (0..=CURVE_LINES).map(|i| {
                 let t = i as f64 / CURVE_LINES as f64;
                 let s = 1.0 - t;
                 a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
-            };
-            vec![(0..=CURVE_LINES).map(at).collect(), vec![a, b], vec![c, d]]
+            });
+            vec![line.collect(), vec![a, b], vec![c, d]]
         }
         Shape::Plane { point, normal, .. } => {
             let (u, v) = normal.any_orthonormal_pair();
@@ -58,11 +58,11 @@ pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
         Shape::Function(function) => match function.curves() {
             None => cross(function.middle(), 0.15 * size),
             Some(curves) => {
-                let place = |(p, _)| function.to_world.transform_point3(p);
-                curves
-                    .pieces()
-                    .map(|ends| ends.map(place).to_vec())
-                    .collect()
+                let lines = curves.pieces().map(|ends| {
+                    ends.map(|(p, _)| function.to_world.transform_point3(p))
+                        .to_vec()
+                });
+                lines.collect()
             }
         },
     }
