@@ -24,7 +24,7 @@ pub struct Plan {
     pub generation: u64,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Rays a pixel, at most n×n of them; with 1 there is no [`Pass::Smooth`].
+    /// Square root of the most rays a pixel; with 1 there is no [`Pass::Smooth`].
     pub samples: u32,
     /// Whether only the last pass is wanted, in one go.
     pub small: bool,
