@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3};
 use rats::{Project, TextEdit};
 use scene::Rgb;
 use skeleton::Node;
-use sketch::{Limb, Mark, Sample, Start, Stroke};
+use sketch::{Limb, Sample, Start, Stroke};
 
 /// Thickness of a long stroke at its free end, as a share of that at its root. A short one is a
 /// head or a paw, and equally thick all along.
