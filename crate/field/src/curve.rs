@@ -57,28 +57,24 @@ pub fn jet<R: Real>(kernel: Kernel, bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R
 
 #[inline(always)]
 fn smooth<R: Real>(bone: &Curve<R::Scalar>, p: [R; 3], pair: impl Fn(R) -> (R, R)) -> Jet<R> {
-    let mut sum = Jet::zero();
-    for node in &bone.nodes {
+    let [value, x, y, z] = R::add_over([R::splat(0.0); 4], &bone.nodes, |node| {
         let d: [R; 3] = core::array::from_fn(|i| p[i] - R::lift(node.position[i]));
         let weight = R::lift(node.weight);
         let square = dot(d, d);
-        let slope;
-        if bone.tapered {
+        let (value, slope) = if bone.tapered {
             let thinness = R::lift(node.thinness);
             let (value, rate) = pair(thinness * square);
-            sum.value = sum.value + weight * value;
-            slope = weight * thinness * rate;
+            (weight * value, weight * thinness * rate)
         } else {
             let (value, rate) = pair(square);
-            sum.value = sum.value + weight * value;
-            slope = weight * rate;
-        }
-        for (sum, d) in sum.gradient.iter_mut().zip(d) {
-            *sum = *sum + slope * d;
-        }
+            (weight * value, weight * rate)
+        };
+        [value, slope * d[0], slope * d[1], slope * d[2]]
+    });
+    Jet {
+        value,
+        gradient: [x + x, y + y, z + z],
     }
-    sum.gradient = sum.gradient.map(|g| g + g);
-    sum
 }
 
 #[inline(always)]
@@ -91,8 +87,7 @@ fn with_pole<R: Real>(
     let one = R::splat(1.0);
     let half = R::splat(0.5);
     let twice = twice || R::DOUBLE;
-    let mut total = Jet::zero();
-    for span in &bone.spans {
+    let total = R::add_over([R::splat(0.0); 4], &bone.spans, |span| {
         let mut t = Slope::new(span, p).extremum(|slope, t| slope.at(t));
         // Converge to the last digit, since the peak may be that narrow.
         for _ in 0..if R::DOUBLE { 4 } else { 3 } {
@@ -120,8 +115,7 @@ fn with_pole<R: Real>(
         });
         let (middle, reach) = (half * (high + low), half * (high - low));
         let (half_b, half_steep) = (half * b, half * steep);
-        let mut sums = Sums::zero();
-        for [node, weight] in &bone.rule {
+        let sums = R::add_over([R::splat(0.0); 5], &bone.rule, |[node, weight]| {
             let mut x = middle + reach * R::lift(*node);
             let mut rate = R::lift(*weight) * reach;
             if twice {
@@ -133,11 +127,11 @@ fn with_pole<R: Real>(
             let grown = x.exp();
             let shrunk = one / grown;
             let s = half_b * (grown - shrunk);
-            sums.add(&around, s, rate * half_b * (grown + shrunk), &pair);
-        }
-        total = total.plus(sums.finish(&around));
-    }
-    total
+            around.terms(s, rate * half_b * (grown + shrunk), &pair)
+        });
+        around.jet(sums)
+    });
+    jet_of(total)
 }
 
 #[inline(always)]
@@ -147,55 +141,73 @@ fn compact<R: Real>(
     metaballs: bool,
     pair: impl Fn(R) -> (R, R),
 ) -> Jet<R> {
-    let one = R::splat(1.0);
-    let mut total = Jet::zero();
-    for span in &bone.spans {
+    let total = R::add_over([R::splat(0.0); 4], &bone.spans, |span| {
         let away: [R; 3] = core::array::from_fn(|i| p[i] - R::lift(span.position[0][i]));
         // Out of every lane's reach the span adds 0.
-        if !R::any(dot(away, away).lt(R::lift(span.reach2))) {
-            continue;
-        }
-        let slope = Slope::new(span, p);
-        let t = if bone.tapered {
-            slope.extremum(|slope, t| {
-                let (thinness, rate) = polynomial(&span.thinness, t);
-                // Half the derivative of ωg.
-                thinness * slope.at(t) + R::splat(0.5) * rate * slope.square(t)
-            })
-        } else {
-            slope.extremum(|slope, t| slope.at(t))
+        let near = dot(away, away).lt(R::lift(span.reach2));
+        R::where_any(near, || over_span(bone, span, p, metaballs, &pair))
+    });
+    jet_of(total)
+}
+
+/// Computes value and gradient of a span for a compact kernel.
+#[inline(always)]
+fn over_span<R: Real>(
+    bone: &Curve<R::Scalar>,
+    span: &Span<R::Scalar>,
+    p: [R; 3],
+    metaballs: bool,
+    pair: impl Fn(R) -> (R, R),
+) -> [R; 4] {
+    let one = R::splat(1.0);
+    let slope = Slope::new(span, p);
+    let t = if bone.tapered {
+        slope.extremum(|slope, t| {
+            let (thinness, rate) = polynomial(&span.thinness, t);
+            // Half the derivative of ωg.
+            thinness * slope.at(t) + R::splat(0.5) * rate * slope.square(t)
+        })
+    } else {
+        slope.extremum(|slope, t| slope.at(t))
+    };
+    let around = Around::new(span, bone.tapered, t, p);
+    let mut sums = [R::splat(0.0); 5];
+    for end in [-one - t, one - t] {
+        let length = end.abs();
+        let mut integrate = |[low, high]: [R; 2]| {
+            let half = R::splat(0.5);
+            let (middle, reach) = (half * (high + low), half * (high - low));
+            sums = R::add_over(sums, &bone.rule, |[node, weight]| {
+                let s = end * (middle + reach * R::lift(*node));
+                let weight = R::lift(*weight) * reach * length;
+                around.terms(s, weight, &pair)
+            });
         };
-        let around = Around::new(span, bone.tapered, t, p);
-        let mut sums = Sums::zero();
-        for end in [-one - t, one - t] {
-            let length = end.abs();
-            let mut integrate = |[low, high]: [R; 2]| {
-                let half = R::splat(0.5);
-                let (middle, reach) = (half * (high + low), half * (high - low));
-                for [node, weight] in &bone.rule {
-                    let s = end * (middle + reach * R::lift(*node));
-                    let weight = R::lift(*weight) * reach * length;
-                    sums.add(&around, s, weight, &pair);
-                }
-            };
-            let side = Side::new(&around, end);
-            let outer = side.inside(&around, one);
-            if metaballs {
-                let inner = side.inside(&around, R::splat(INNER2));
-                integrate(inner);
-                // The outer piece continues on the far side of the inner one.
-                let rising = side.start.lt(side.stop);
-                integrate([
-                    R::select(rising, inner[1], outer[0]),
-                    R::select(rising, outer[1], inner[0]),
-                ]);
-            } else {
-                integrate(outer);
-            }
+        let side = Side::new(&around, end);
+        let outer = side.inside(&around, one);
+        if metaballs {
+            let inner = side.inside(&around, R::splat(INNER2));
+            integrate(inner);
+            // The outer piece continues on the far side of the inner one.
+            let rising = side.start.lt(side.stop);
+            integrate([
+                R::select(rising, inner[1], outer[0]),
+                R::select(rising, outer[1], inner[0]),
+            ]);
+        } else {
+            integrate(outer);
         }
-        total = total.plus(sums.finish(&around));
     }
-    total
+    around.jet(sums)
+}
+
+/// Makes a jet of a value and three derivatives.
+#[inline(always)]
+fn jet_of<R>([value, x, y, z]: [R; 4]) -> Jet<R> {
+    Jet {
+        value,
+        gradient: [x, y, z],
+    }
 }
 
 /// Half the derivative of g on a span, a polynomial in t.
@@ -334,6 +346,36 @@ impl<'a, R: Real> Around<'a, R> {
             (value, slope)
         }
     }
+
+    /// Computes a node's contributions to the field and to `∫αωG′|q′|sᵏ`, k from 0 to 3.
+    #[inline(always)]
+    fn terms(&self, s: R, weight: R, pair: impl Fn(R) -> (R, R)) -> [R; 5] {
+        let zero = R::splat(0.0);
+        let square = horner(&self.square, s).max(zero);
+        let mut weight = weight * horner(&self.speed, s).max(zero).sqrt();
+        let (value, moment) = if self.tapered {
+            let (thinness, _) = self.thinness(s);
+            weight = weight * polynomial(&self.span.density, self.t + s).0;
+            let (value, rate) = pair(thinness * square);
+            (weight * value, weight * thinness * rate)
+        } else {
+            let (value, rate) = pair(square);
+            (weight * value, weight * rate)
+        };
+        let second = moment * s;
+        let third = second * s;
+        [value, moment, second, third, third * s]
+    }
+
+    /// Computes value and gradient from the sums of all nodes' [`Around::terms`].
+    #[inline(always)]
+    fn jet(&self, [value, m0, m1, m2, m3]: [R; 5]) -> [R; 4] {
+        let [e0, e1, e2, e3] = self.position;
+        let [x, y, z] = core::array::from_fn(|i| {
+            R::splat(-2.0) * (e0[i] * m0 + e1[i] * m1 + e2[i] * m2 + e3[i] * m3)
+        });
+        [value, x, y, z]
+    }
 }
 
 /// ωg from t* to an end of the span, as a function of σ, 0 ≤ σ ≤ 1, s = end·σ. It is monotonic.
@@ -394,59 +436,6 @@ impl<R: Real> Side<R> {
             R::select(starts, zero, R::select(stops, place, deep)),
             R::select(stops, one, R::select(starts, place, deep)),
         ]
-    }
-}
-
-/// Integrals over a span.
-struct Sums<R> {
-    value: R,
-    /// `∫αωG′|q′|sᵏ`.
-    moments: [R; 4],
-}
-
-impl<R: Real> Sums<R> {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self {
-            value: R::splat(0.0),
-            moments: [R::splat(0.0); 4],
-        }
-    }
-
-    /// Adds a node's contribution.
-    #[inline(always)]
-    fn add(&mut self, around: &Around<'_, R>, s: R, weight: R, pair: impl Fn(R) -> (R, R)) {
-        let zero = R::splat(0.0);
-        let square = horner(&around.square, s).max(zero);
-        let mut weight = weight * horner(&around.speed, s).max(zero).sqrt();
-        let mut moment;
-        if around.tapered {
-            let (thinness, _) = around.thinness(s);
-            weight = weight * polynomial(&around.span.density, around.t + s).0;
-            let (value, rate) = pair(thinness * square);
-            self.value = self.value + weight * value;
-            moment = weight * thinness * rate;
-        } else {
-            let (value, rate) = pair(square);
-            self.value = self.value + weight * value;
-            moment = weight * rate;
-        }
-        for sum in &mut self.moments {
-            *sum = *sum + moment;
-            moment = moment * s;
-        }
-    }
-
-    #[inline(always)]
-    fn finish(self, around: &Around<'_, R>) -> Jet<R> {
-        let [m0, m1, m2, m3] = self.moments;
-        let [e0, e1, e2, e3] = around.position;
-        Jet {
-            value: self.value,
-            gradient: core::array::from_fn(|i| {
-                R::splat(-2.0) * (e0[i] * m0 + e1[i] * m1 + e2[i] * m2 + e3[i] * m3)
-            }),
-        }
     }
 }
 

@@ -11,6 +11,7 @@
 //! and 2.4·10⁻⁶ at κ = 3, 2·10⁻¹⁰ and 3·10⁻⁹ at κ = 6, below 10⁻¹³ from κ = 16 on; with 1/r a tenth
 //! of it.
 use crate::bone::{Edge, Triangle};
+use crate::real::Scalar;
 use crate::{Jet, Kernel, Real, inverse};
 
 /// Barycentric coordinates and weight: the middle, three orbits of three nodes, one of six.
@@ -62,7 +63,7 @@ pub fn or_near<'a, R: Real>(
     near: Jet<R>,
 ) -> Jet<R> {
     let reach2 = reach2(edges);
-    if !R::DOUBLE && reach2.lane(0) > 4.0 {
+    if !R::DOUBLE && R::Scalar::decide(<R::Scalar as Real>::splat(4.0).lt(reach2)) {
         return near;
     }
     let ratio: f64 = if R::DOUBLE { 18.0 } else { 3.5 };

@@ -124,7 +124,7 @@ pub use shaping::{BlobScale, Shaping, Taper};
 pub use skeleton::Skeleton;
 pub use sort::heap_sort;
 pub use sum::{Sum, sum};
-pub use term::Evaluate;
+pub use term::{Evaluate, Term};
 
 /// The iso-value T: the surface is where the field equals it.
 pub const THRESHOLD: f64 = 1.0;

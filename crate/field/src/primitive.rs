@@ -156,6 +156,12 @@ impl Primitive {
         })
     }
 
+    /// Returns the formula and its constants in single precision.
+    #[must_use]
+    pub fn term(&self) -> &Term<f32> {
+        &self.prepared.single
+    }
+
     /// Value and gradient at a point.
     #[inline]
     #[must_use]

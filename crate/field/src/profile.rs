@@ -25,6 +25,21 @@ pub enum Wave {
     Step,
 }
 
+impl Wave {
+    /// All waves.
+    pub const ALL: [Self; 9] = [
+        Self::One,
+        Self::X,
+        Self::Sin,
+        Self::Cos,
+        Self::Sin2,
+        Self::Cos2,
+        Self::Saw,
+        Self::Hat,
+        Self::Step,
+    ];
+}
+
 /// `times · (low + (high−low)·fu(scale_u·u)·fv(scale_v·v))` with u, v in [0, 1] along the
 /// primitive; on a triangle also times `1 − restriction·(1−b)`, where `b = 27·λ₀λ₁λ₂` of the
 /// barycentric coordinates is 1 in the middle and 0 on and beyond the edges. So a restricted

@@ -6,6 +6,7 @@
 //! our own are used, never a fused multiply-add and never a platform's `sin` or `atan`. So results
 //! have the same bits on every platform, and a lane of `f32x8` has the same bits as `f32` alone.
 
+use crate::error_function;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 mod double;
@@ -68,16 +69,62 @@ pub trait Real:
     /// bit of the result: else lanes would differ from `f32`.
     fn any(mask: Self::Mask) -> bool;
 
-    /// `Q(y)` of `arctan x = x − x³/3 + x⁵·Q(x²)`, for 0 ≤ y ≤ tan²(π/8), to the type's precision.
-    fn arctangent_tail(square: Self) -> Self;
-    /// Sine and cosine, for |x| up to 10⁴ or so.
-    fn sin_cos(self) -> (Self, Self);
+    /// Does work only where the mask holds in a lane, else returns zeros: for work that gives 0
+    /// where the mask does not hold, or is not used there.
+    #[inline(always)]
+    fn where_any<const N: usize>(mask: Self::Mask, work: impl FnOnce() -> [Self; N]) -> [Self; N] {
+        if Self::any(mask) {
+            work()
+        } else {
+            [Self::splat(0.0); N]
+        }
+    }
+    /// Adds terms, one for each item, to sums.
+    #[inline(always)]
+    fn add_over<T, const N: usize>(
+        mut sums: [Self; N],
+        items: &[T],
+        mut term: impl FnMut(&T) -> [Self; N],
+    ) -> [Self; N] {
+        for item in items {
+            for (sum, part) in sums.iter_mut().zip(term(item)) {
+                *sum = *sum + part;
+            }
+        }
+        sums
+    }
+    /// Computes that one of `count` functions which a constant selects: `choice` is its value.
+    #[inline(always)]
+    fn one_of<const N: usize>(
+        _selector: Self::Scalar,
+        choice: usize,
+        _count: usize,
+        function: impl Fn(usize) -> [Self; N],
+    ) -> [Self; N] {
+        function(choice)
+    }
 
+    /// `Q(y)` of `arctan x = x − x³/3 + x⁵·Q(x²)`, for 0 ≤ y ≤ tan²(π/8), to the type's precision.
+    #[inline(always)]
+    fn arctangent_tail(square: Self) -> Self {
+        single::arctangent_tail(square)
+    }
+    /// Sine and cosine, for |x| up to 10⁴ or so.
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        single::sin_cos(self)
+    }
     /// Sine and cosine, for |x| ≤ π/4.
-    fn sin_cos_octant(self) -> (Self, Self);
+    #[inline(always)]
+    fn sin_cos_octant(self) -> (Self, Self) {
+        single::sin_cos_octant(self)
+    }
     /// `erfc x` of x ≥ 0, the complementary error function, to the last digits also where it is
     /// tiny. `bell` is e^(−x²), which callers mostly have already.
-    fn erfc(self, bell: Self) -> Self;
+    #[inline(always)]
+    fn erfc(self, bell: Self) -> Self {
+        error_function::erfc(self, bell)
+    }
 
     /// e^(−x), x ≥ −88. In single precision 0 for x from 87.69 on, and meaningless below −88.
     fn decay(self) -> Self;
@@ -130,6 +177,8 @@ pub trait Real:
 pub trait Scalar: Real<Scalar = Self> + PartialEq + core::fmt::Debug {
     /// The nearest number of this type.
     fn round(value: f64) -> Self;
+    /// Whether a condition on constants of a bone holds.
+    fn decide(condition: Self::Mask) -> bool;
 }
 
 /// `c₀ + c₁x + c₂x² + …`

@@ -84,6 +84,67 @@ pub struct Term<S> {
 }
 
 impl<S: Copy> Term<S> {
+    /// Converts the constants, those of the profile apart, one by one in an order that is the same
+    /// for all terms of a cell of the chart; a curve's pieces, of which there are more or fewer,
+    /// come last.
+    pub fn cast<Q>(
+        &self,
+        f: impl Fn(S) -> Q + Copy,
+        of_profile: impl Fn(S) -> Q + Copy,
+    ) -> Term<Q> {
+        Term {
+            frame: self.frame.cast(f),
+            amplitude: f(self.amplitude),
+            form: self.form.cast(f),
+            waves: (self.waves.as_ref()).map(|waves| Box::new(waves.cast(of_profile))),
+        }
+    }
+
+    /// Returns the names of the kernel and of the kind of bone: together the cell of the chart.
+    #[must_use]
+    pub fn cell(&self) -> [&'static str; 2] {
+        let bone = match &self.form.bone {
+            Bone::Point => "point",
+            Bone::Segment(_) => "segment",
+            Bone::Arc(_) => "arc",
+            Bone::Triangle(_) => "triangle",
+            Bone::Polygon(_) => "polygon",
+            Bone::Plane => "plane",
+            Bone::Curve(curve) if curve.cone.is_some() => "cone",
+            Bone::Curve(curve) if curve.tapered => "taper",
+            Bone::Curve(_) => "curve",
+        };
+        [self.form.kernel.name(), bone]
+    }
+
+    /// Returns the name of the place that the profile's waves run along; `None` without a profile.
+    #[must_use]
+    pub fn course(&self) -> Option<&'static str> {
+        self.waves.as_ref().map(|waves| waves.course())
+    }
+
+    /// Computes value and gradient at a position in the world, without the profile.
+    pub fn plain_jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+        if matches!(self.form.bone, Bone::Point) {
+            return self.point_jet_inline(p);
+        }
+        let jet = self.form.jet(self.frame.local(p));
+        let amplitude = R::lift(self.amplitude);
+        Jet {
+            value: amplitude * jet.value,
+            gradient: self.frame.world(jet.gradient.map(|g| amplitude * g)),
+        }
+    }
+
+    /// Computes the profile's factor and its gradient at a position in the world.
+    pub fn factor<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Option<Jet<R>> {
+        let factor = self.waves.as_ref()?.jet(self.frame.local(p));
+        Some(Jet {
+            value: factor.value,
+            gradient: self.frame.world(factor.gradient),
+        })
+    }
+
     /// Value and local gradient at a local position.
     #[inline(always)]
     pub(crate) fn local_jet<R: Evaluate<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
@@ -156,16 +217,10 @@ pub struct Prepared {
 impl Prepared {
     pub fn new(double: Term<f64>) -> Self {
         let round = |value: f64| value as f32;
-        let single = Term {
-            frame: double.frame.cast(round),
-            form: double.form.cast(round),
-            amplitude: round(double.amplitude),
-            waves: double
-                .waves
-                .as_ref()
-                .map(|waves| Box::new(waves.cast(round))),
-        };
-        Self { double, single }
+        Self {
+            single: double.cast(round, round),
+            double,
+        }
     }
 }
 

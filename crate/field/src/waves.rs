@@ -30,6 +30,8 @@ pub(crate) enum Parameters<S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Waves<S> {
     pub waves: [Wave; 2],
+    /// Their places in [`Wave::ALL`].
+    kinds: [S; 2],
     pub scale: [S; 2],
     pub low: S,
     pub rise: S,
@@ -68,6 +70,7 @@ impl Waves<f64> {
         };
         Self {
             waves: profile.waves,
+            kinds: profile.waves.map(|wave| wave as u8 as f64),
             scale: profile.scale,
             low: profile.times * profile.bounds[0],
             rise: profile.times * (profile.bounds[1] - profile.bounds[0]),
@@ -112,6 +115,7 @@ impl<S: Copy> Waves<S> {
     pub fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Waves<Q> {
         Waves {
             waves: self.waves,
+            kinds: self.kinds.map(f),
             scale: self.scale.map(f),
             low: f(self.low),
             rise: f(self.rise),
@@ -136,6 +140,15 @@ impl<S: Copy> Waves<S> {
                     mean: f(*mean),
                 },
             },
+        }
+    }
+
+    /// Returns the name of the place that the waves run along.
+    pub fn course(&self) -> &'static str {
+        match self.parameters {
+            Parameters::None => "nowhere",
+            Parameters::Linear { .. } => "plane",
+            Parameters::Angle { .. } => "circle",
         }
     }
 
@@ -193,7 +206,12 @@ impl<S: Copy> Waves<S> {
         let factors = [0, 1].map(|i| {
             let scale = R::lift(self.scale[i]);
             let cut = parameters[i].max(zero).min(one);
-            let (value, slope) = wave(self.waves[i], scale * cut);
+            let [value, slope] = R::one_of(
+                self.kinds[i],
+                self.waves[i] as usize,
+                Wave::ALL.len(),
+                |kind| wave(Wave::ALL[kind], scale * cut).into(),
+            );
             let inside = R::both(zero.lt(parameters[i]), parameters[i].lt(one));
             (value, R::select(inside, scale * slope, zero))
         });

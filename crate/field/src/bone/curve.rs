@@ -166,11 +166,12 @@ impl<S: Copy> Curve<S> {
     pub(crate) fn cast<Q>(&self, f: impl Fn(S) -> Q + Copy) -> Curve<Q> {
         let source = self.single.as_deref().unwrap_or(self);
         Curve {
+            rule: source.rule.iter().map(|pair| pair.map(f)).collect(),
+            cone: source.cone.as_ref().map(|cone| cone.cast(f)),
+            // The lists whose lengths differ from curve to curve come last, as `Term::cast` says.
             nodes: source.nodes.iter().map(|node| node.cast(f)).collect(),
             spans: source.spans.iter().map(|span| span.cast(f)).collect(),
-            rule: source.rule.iter().map(|pair| pair.map(f)).collect(),
             tapered: source.tapered,
-            cone: source.cone.as_ref().map(|cone| cone.cast(f)),
             piece_bounds: Vec::new(),
             single: None,
         }

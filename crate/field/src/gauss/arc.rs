@@ -28,6 +28,7 @@
 //! `−2zf`.
 use crate::angle::direction;
 use crate::bone::Arc;
+use crate::real::Scalar;
 use crate::{Jet, Real, legendre};
 use core::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
@@ -67,7 +68,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     let end_y = radius * R::lift(arc.sine);
     // The other end is further away, as y ≥ 0.
     let near_end = beyond(end_x, end_y);
-    let sums = if arc.side.lane(0) > 0.0 {
+    let sums = if R::Scalar::decide(R::Scalar::splat(0.0).lt(arc.side)) {
         piece(coupling, near_end, -azimuth, [-half_angle, half_angle])
     } else {
         // Azimuths count from the gap's middle. The halves meet opposite, at the same bits of u;

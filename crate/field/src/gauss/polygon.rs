@@ -34,6 +34,7 @@
 //! but long, an error of 10⁻⁷ of what a wide polygon would give.
 use crate::angle::direction;
 use crate::bone::Edge;
+use crate::real::Scalar;
 use crate::{Jet, Real, legendre};
 use core::f64::consts::{FRAC_2_SQRT_PI, FRAC_PI_2};
 
@@ -49,16 +50,18 @@ const DOUBLE: [(f64, f64); 6] = legendre::pairs();
 /// Value and gradient at a local position.
 #[inline(always)]
 pub fn jet<R: Real>(edges: &[Edge<R::Scalar>], p: [R; 3]) -> Jet<R> {
-    let mut square: f64 = 0.0;
-    let mut double_area = 0.0;
+    let constant = <R::Scalar as Real>::splat;
+    let (mut square, mut double_area) = (constant(0.0), constant(0.0));
     for edge in edges {
-        let (start, offset) = (edge.start.lane(0), edge.offset.lane(0));
+        let (start, offset) = (edge.start, edge.offset);
         square = square.max(start * start + offset * offset);
-        double_area += offset.abs() * edge.length.lane(0);
+        double_area = double_area + offset.abs() * edge.length;
     }
     // A polygon too thin for (1) still gets its area.
     let unseen = if R::DOUBLE { 1e-15 } else { 1e-6 };
-    if square < SMALL * SMALL || double_area < unseen {
+    if R::Scalar::decide(square.lt(constant(SMALL * SMALL)))
+        || R::Scalar::decide(double_area.lt(constant(unseen)))
+    {
         small(edges, p)
     } else {
         large(edges, p)

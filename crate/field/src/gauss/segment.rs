@@ -17,6 +17,7 @@
 //! `e^(−t²)` at 0, (2n)!/n!: for l = 1 it is 2·10⁻¹⁰ of the length with the 6 nodes of single and
 //! below 10⁻²⁰ with the 14 of double precision.
 use crate::bone::Segment;
+use crate::real::Scalar;
 use crate::{Jet, Real, legendre};
 use core::f64::consts::FRAC_2_SQRT_PI;
 
@@ -29,7 +30,7 @@ const DOUBLE: [(f64, f64); 7] = legendre::pairs();
 #[inline(always)]
 pub fn jet<R: Real>(segment: &Segment<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let half = R::lift(segment.half);
-    if segment.half.lane(0) < SHORT {
+    if R::Scalar::decide(segment.half.lt(R::Scalar::splat(SHORT))) {
         short(half, p)
     } else {
         long(half, p)

@@ -17,7 +17,7 @@
 //! its value at m plus what m lacks.
 use crate::angle::direction;
 use crate::bone::Arc;
-use crate::real::polynomial;
+use crate::real::{Scalar, polynomial};
 use crate::{Jet, Real};
 use core::f64::consts::TAU;
 
@@ -148,14 +148,12 @@ impl<R: Real> AzimuthRange<R> {
     /// digits.
     #[inline(always)]
     pub fn of(arc: &Arc<R::Scalar>, place: &FromCircle<R>) -> [Option<Self>; 2] {
-        // Of the arc, not of lanes.
-        let [side, radius, sine, end_angle] =
-            [arc.side, arc.radius, arc.sine, arc.end_angle].map(|x| R::lift(x).lane(0));
+        let constant = <R::Scalar as Real>::splat;
         let zero = R::splat(0.0);
         let turn = R::splat(TAU);
         let end = R::lift(arc.end_angle);
-        let longer = side < 0.0;
-        if longer && end_angle == 0.0 {
+        let longer = R::Scalar::decide(arc.side.lt(constant(0.0)));
+        if longer && !R::Scalar::decide(constant(0.0).lt(arc.end_angle)) {
             let half = R::splat(0.5) * turn;
             let whole = Self {
                 base: zero,
@@ -174,7 +172,7 @@ impl<R: Real> AzimuthRange<R> {
             (
                 span(near, far + turn),
                 span(near - turn, far),
-                radius * sine,
+                arc.radius * arc.sine,
             )
         } else {
             let span = |base| Self {
@@ -182,9 +180,10 @@ impl<R: Real> AzimuthRange<R> {
                 low: -end,
                 high: end,
             };
-            (span(-place.azimuth), span(turn - place.azimuth), radius)
+            (span(-place.azimuth), span(turn - place.azimuth), arc.radius)
         };
-        [Some(first), (gap <= 1.0).then_some(second)]
+        let beyond = R::Scalar::decide(constant(1.0).lt(gap));
+        [Some(first), (!beyond).then_some(second)]
     }
 
     /// The piece between two azimuths.

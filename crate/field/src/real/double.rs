@@ -6,6 +6,11 @@ impl Scalar for f64 {
     fn round(value: f64) -> Self {
         value
     }
+
+    #[inline(always)]
+    fn decide(condition: bool) -> bool {
+        condition
+    }
 }
 
 impl Real for f64 {

@@ -1,11 +1,15 @@
 //! `f32`, one lane of the shipping path.
 use super::{Real, Scalar, polynomial};
-use crate::error_function;
 
 impl Scalar for f32 {
     #[inline(always)]
     fn round(value: f64) -> Self {
         value as f32
+    }
+
+    #[inline(always)]
+    fn decide(condition: bool) -> bool {
+        condition
     }
 }
 
@@ -80,26 +84,6 @@ impl Real for f32 {
     #[inline(always)]
     fn any(mask: bool) -> bool {
         mask
-    }
-
-    #[inline(always)]
-    fn arctangent_tail(square: Self) -> Self {
-        arctangent_tail(square)
-    }
-
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        sin_cos(self)
-    }
-
-    #[inline(always)]
-    fn sin_cos_octant(self) -> (Self, Self) {
-        sin_cos_octant(self)
-    }
-
-    #[inline(always)]
-    fn erfc(self, bell: Self) -> Self {
-        error_function::erfc(self, bell)
     }
 
     #[inline(always)]

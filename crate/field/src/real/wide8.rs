@@ -1,7 +1,6 @@
 //! `wide::f32x8`, eight lanes of the shipping path.
 use super::single::Binary;
 use super::{Real, single};
-use crate::error_function;
 use wide::bytemuck::cast;
 use wide::{f32x8, i32x8};
 
@@ -75,26 +74,6 @@ impl Real for f32x8 {
     #[inline(always)]
     fn any(mask: Self) -> bool {
         mask.any()
-    }
-
-    #[inline(always)]
-    fn arctangent_tail(square: Self) -> Self {
-        single::arctangent_tail(square)
-    }
-
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        single::sin_cos(self)
-    }
-
-    #[inline(always)]
-    fn sin_cos_octant(self) -> (Self, Self) {
-        single::sin_cos_octant(self)
-    }
-
-    #[inline(always)]
-    fn erfc(self, bell: Self) -> Self {
-        error_function::erfc(self, bell)
     }
 
     #[inline(always)]

@@ -1,0 +1,5 @@
+//! Tests of the formulas in WGSL: they are those of `field`.
+
+mod files;
+mod gpu;
+mod values;

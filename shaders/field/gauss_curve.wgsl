@@ -1,0 +1,45 @@
+// b0 b1 b2 b3 b4 b5 b6 b7 b8 b9 b10 b11 b12 | 25+5: 0 1 2 3
+fn gauss_curve(at: u32, count: u32, p: vec3<f32>) -> vec4<f32> {
+    let c0 = constant(at + 0u);
+    let c1 = constant(at + 1u);
+    let c2 = constant(at + 2u);
+    let c3 = constant(at + 3u);
+    let t1 = p.x - c0.x;
+    let t2 = p.y - c0.y;
+    let t3 = p.z - c0.z;
+    let t4 = min((((c0.w * t1) + (c1.x * t2)) + (c1.y * t3)), 1000000000.0);
+    let t5 = max(t4, (-1000000000.0));
+    let t6 = min((((c1.z * t1) + (c1.w * t2)) + (c2.x * t3)), 1000000000.0);
+    let t7 = max(t6, (-1000000000.0));
+    let t8 = min((((c2.y * t1) + (c2.z * t2)) + (c2.w * t3)), 1000000000.0);
+    let t9 = max(t8, (-1000000000.0));
+    var t10_0 = 0.0;
+    var t10_1 = 0.0;
+    var t10_2 = 0.0;
+    var t10_3 = 0.0;
+    for (var t11 = 0u; t11 < count; t11++) {
+        let t11_0_0 = constant(at + 4u + 1u * t11);
+        let t12 = t5 - t11_0_0.x;
+        let t13 = t7 - t11_0_0.y;
+        let t14 = t9 - t11_0_0.z;
+        let t15 = ((t12 * t12) + (t13 * t13)) + (t14 * t14);
+        let t16 = decay(t15);
+        let t17 = t11_0_0.w * t16;
+        let t18 = t11_0_0.w * (-t16);
+        let t19 = t18 * t12;
+        let t20 = t18 * t13;
+        let t21 = t18 * t14;
+        t10_0 += t17;
+        t10_1 += t19;
+        t10_2 += t20;
+        t10_3 += t21;
+    }
+    let t22 = c3.x * t10_0;
+    let t23 = c3.x * (t10_1 + t10_1);
+    let t24 = c3.x * (t10_2 + t10_2);
+    let t25 = c3.x * (t10_3 + t10_3);
+    let t26 = ((c0.w * t23) + (c1.z * t24)) + (c2.y * t25);
+    let t27 = ((c1.x * t23) + (c1.w * t24)) + (c2.z * t25);
+    let t28 = ((c1.y * t23) + (c2.x * t24)) + (c2.w * t25);
+    return vec4<f32>(t22, t26, t27, t28);
+}

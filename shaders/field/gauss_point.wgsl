@@ -1,0 +1,16 @@
+// b0 b1 b2 b3 b12
+fn gauss_point(at: u32, count: u32, p: vec3<f32>) -> vec4<f32> {
+    let c0 = constant(at + 0u);
+    let c1 = constant(at + 1u);
+    let t1 = max(min(((p.x - c0.x) * c0.w), 1000000000.0), (-1000000000.0));
+    let t2 = max(min(((p.y - c0.y) * c0.w), 1000000000.0), (-1000000000.0));
+    let t3 = max(min(((p.z - c0.z) * c0.w), 1000000000.0), (-1000000000.0));
+    let t4 = decay((((t1 * t1) + (t2 * t2)) + (t3 * t3)));
+    let t5 = (-2.0) * t4;
+    let t6 = c1.x * c0.w;
+    let t7 = c1.x * t4;
+    let t8 = t6 * (t5 * t1);
+    let t9 = t6 * (t5 * t2);
+    let t10 = t6 * (t5 * t3);
+    return vec4<f32>(t7, t8, t9, t10);
+}

@@ -1,0 +1,22 @@
+// b0 b1 b2 b3 b4 b5 b6 b7 b8 b9 b10 b11 b12
+fn inverse_plane(at: u32, count: u32, p: vec3<f32>) -> vec4<f32> {
+    let c0 = constant(at + 0u);
+    let c1 = constant(at + 1u);
+    let c2 = constant(at + 2u);
+    let c3 = constant(at + 3u);
+    let t1 = (c2.y * (p.x - c0.x)) + (c2.z * (p.y - c0.y));
+    let t2 = min((t1 + (c2.w * (p.z - c0.z))), 1000000000.0);
+    let t3 = max(t2, (-1000000000.0));
+    let t4 = (t3 * t3) + 1e-10;
+    let t5 = sqrt(t4);
+    let t6 = sqrt((t4 + 100.0));
+    let t7 = t5 + t6;
+    let t8 = ((-6.2831855) * t3) * (100.0 / ((t7 * t5) * t6));
+    let t9 = c3.x * (628.31854 / t7);
+    let t10 = c3.x * 0.0;
+    let t11 = c3.x * t8;
+    let t12 = ((c0.w * t10) + (c1.z * t10)) + (c2.y * t11);
+    let t13 = ((c1.x * t10) + (c1.w * t10)) + (c2.z * t11);
+    let t14 = ((c1.y * t10) + (c2.x * t10)) + (c2.w * t11);
+    return vec4<f32>(t9, t12, t13, t14);
+}
