@@ -26,7 +26,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// All waves.
+    /// The waves in the order of the language.
     pub const ALL: [Self; 9] = [
         Self::One,
         Self::X,

@@ -30,7 +30,7 @@ pub(crate) enum Parameters<S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Waves<S> {
     pub waves: [Wave; 2],
-    /// Their places in [`Wave::ALL`].
+    /// The waves' places in [`Wave::ALL`].
     kinds: [S; 2],
     pub scale: [S; 2],
     pub low: S,

@@ -38,16 +38,16 @@ pub fn all() -> Vec<Cell> {
             |course| format!("profile_{course}"),
         );
         if cells.iter().all(|cell| cell.name != name) {
-            cells.push(recorded(name, term));
+            cells.push(record_cell(name, term));
         }
     }
     cells
 }
 
 /// Records the factor of a term's profile, or the field of a term that has none.
-fn recorded(name: String, term: &Term<f32>) -> Cell {
+fn record_cell(name: String, term: &Term<f32>) -> Cell {
     let (tape, results) = record(|| {
-        let term = converted(term);
+        let term = with_recorded_constants(term);
         let jet = term.factor(position());
         let jet = jet.unwrap_or_else(|| term.plain_jet(position()));
         let [x, y, z] = jet.gradient;
@@ -63,13 +63,17 @@ fn recorded(name: String, term: &Term<f32>) -> Cell {
 }
 
 /// Returns a term whose constants are recorded.
-fn converted(term: &Term<f32>) -> Term<Recorded> {
+fn with_recorded_constants(term: &Term<f32>) -> Term<Recorded> {
     let [bone, profile] = [0; 2].map(Counter::new);
-    let next = |counter: &Counter<u32>| counter.replace(counter.get() + 1);
     term.cast(
-        |_| Recorded::constant(Source::Bone, next(&bone)),
-        |_| Recorded::constant(Source::Profile, next(&profile)),
+        |_| Recorded::constant(Source::Bone, take(&bone)),
+        |_| Recorded::constant(Source::Profile, take(&profile)),
     )
+}
+
+/// Returns the number that a counter has, and counts on.
+fn take(counter: &Counter<u32>) -> u32 {
+    counter.replace(counter.get() + 1)
 }
 
 fn position() -> [Recorded; 3] {
@@ -134,6 +138,5 @@ fn elements(kernel: Kernel) -> Vec<Primitive> {
 fn with_profile(primitive: Primitive) -> Primitive {
     let profile = Profile::default();
     let shaping = shaping(primitive.kernel);
-    Primitive::new(primitive.skeleton.clone(), &shaping, Some(profile))
-        .unwrap_or(primitive)
+    Primitive::new(primitive.skeleton.clone(), &shaping, Some(profile)).unwrap_or(primitive)
 }

@@ -16,10 +16,10 @@ pub enum Source {
 /// The constants that a function loads, in its order: four by four, each record of a list from a
 /// multiple of four on.
 ///
-/// Its text, the first line of the function's file, is `b0 b1 b4 p3 | 13+2x6: 0 1 | 25+5: 0 3`: places
-/// of constants of bone and profile; then lists, each with the place where it begins, the number of
-/// constants and the number of records (for the last one left out, as it differs from element to
-/// element), and the places in a record.
+/// Its text, the first line of the function's file, is `b0 b1 b4 p3 | 13+2x6: 0 1 | 25+5: 0 3`:
+/// places of constants of bone and profile; then lists, each with the place where it begins, the
+/// number of constants and the number of records (for the last one left out, as it differs from
+/// element to element), and the places in a record.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     /// The constants outside of lists.
@@ -59,32 +59,39 @@ impl Layout {
     pub fn pack(&self, term: &Term<f32>) -> (Vec<[f32; 4]>, u32) {
         let [bone, profile] = constants(term);
         let mut vectors = Vec::new();
-        let mut append = |numbers: &mut dyn Iterator<Item = f32>| loop {
-            let mut vector = [0.0; 4];
-            let mut any = false;
-            for (slot, number) in vector.iter_mut().zip(&mut *numbers) {
-                (*slot, any) = (number, true);
-            }
-            if !any {
-                break;
-            }
-            vectors.push(vector);
-        };
-        append(&mut self.fixed.iter().map(|(source, place)| match source {
-            Source::Bone => bone[*place as usize],
-            Source::Profile => profile[*place as usize],
-        }));
+        append(
+            &mut vectors,
+            self.fixed.iter().map(|(source, place)| match source {
+                Source::Bone => bone[*place as usize],
+                Source::Profile => profile[*place as usize],
+            }),
+        );
         let mut records = 0;
         for list in &self.lists {
             let rest = bone.len() as u32 - list.base;
             records = list.count.unwrap_or(rest / list.stride);
             for record in 0..records {
                 let start = list.base + record * list.stride;
-                append(&mut list.reads.iter().map(|read| bone[(start + read) as usize]));
+                let reads = list.reads.iter().map(|read| start + read);
+                append(&mut vectors, reads.map(|place| bone[place as usize]));
             }
         }
         (vectors, records)
     }
+}
+
+/// Appends numbers in vectors of four.
+fn append(vectors: &mut Vec<[f32; 4]>, numbers: impl Iterator<Item = f32>) {
+    let start = vectors.len();
+    for (i, number) in numbers.enumerate() {
+        vectors.resize(start + i / 4 + 1, [0.0; 4]);
+        vectors[start + i / 4][i % 4] = number;
+    }
+}
+
+/// Reads a whole number.
+fn number(text: &str) -> Result<u32, NoLayout> {
+    text.trim().parse().map_err(|_| NoLayout)
 }
 
 /// Returns the constants of a term, and those of its profile.
@@ -126,25 +133,26 @@ impl FromStr for Layout {
     type Err = NoLayout;
 
     fn from_str(text: &str) -> Result<Self, NoLayout> {
-        let number = |text: &str| text.parse::<u32>().map_err(|_| NoLayout);
         let mut parts = text.split('|');
         let fixed = parts.next().unwrap_or_default().split_whitespace();
-        let fixed = fixed.map(|word| match (word.strip_prefix('b'), word.strip_prefix('p')) {
-            (Some(place), _) => Ok((Source::Bone, number(place)?)),
-            (_, Some(place)) => Ok((Source::Profile, number(place)?)),
-            _ => Err(NoLayout),
-        });
+        let fixed = fixed.map(
+            |word| match (word.strip_prefix('b'), word.strip_prefix('p')) {
+                (Some(place), _) => Ok((Source::Bone, number(place)?)),
+                (_, Some(place)) => Ok((Source::Profile, number(place)?)),
+                _ => Err(NoLayout),
+            },
+        );
         let fixed = fixed.collect::<Result<_, _>>()?;
         let lists = parts.map(|part| {
             let (shape, reads) = part.split_once(':').ok_or(NoLayout)?;
             let (base, shape) = shape.split_once('+').ok_or(NoLayout)?;
             let (stride, count) = match shape.split_once('x') {
-                Some((stride, count)) => (stride, Some(number(count.trim())?)),
+                Some((stride, count)) => (stride, Some(number(count)?)),
                 None => (shape, None),
             };
             Ok(List {
-                base: number(base.trim())?,
-                stride: number(stride.trim())?,
+                base: number(base)?,
+                stride: number(stride)?,
                 count,
                 reads: (reads.split_whitespace())
                     .map(number)

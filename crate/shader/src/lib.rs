@@ -1,8 +1,8 @@
 //! The chart's formulas as WGSL.
 //!
-//! Every formula of `field` is generic over the type of number. [`recorded::Recorded`] is one that
+//! Every formula of `field` is generic over the type of number. `Recorded` is one that
 //! appends each operation to a list: run once through a cell of the chart it leaves straight-line
-//! code, which [`write`] makes a function of. So no formula is written twice.
+//! code, which `write.rs` makes a function of. So no formula is written twice.
 //!
 //! - Constants of an element are loads; which of them, and in what order, a [`Layout`] says.
 //! - Conditions on constants are branches: the formula is run for each outcome.
@@ -10,13 +10,13 @@
 //!   and made one, in which they differ in records of constants or tables of numbers alone.
 //! - What is not arithmetic is called in `shaders/field/math.wgsl`.
 //!
-//! The program `shader` writes `shaders/field/`; a test fails where that is not what it writes.
+//! `cargo xtask shaders` writes `shaders/field/`; a test fails where that is not what it writes.
 pub mod cells;
 pub mod layout;
 mod order;
-pub mod recorded;
-pub mod tape;
-pub mod write;
+mod recorded;
+mod tape;
+mod write;
 
 pub use cells::Cell;
 pub use layout::Layout;

@@ -1,5 +1,5 @@
-//! The order in which recorded expressions are computed: each outside the loops in whose steps it is
-//! the same, and only in those branches that need it.
+//! The order in which recorded expressions are computed: each outside the loops in whose steps it
+//! is the same, and only in those branches that need it.
 //!
 //! Blocks form a tree; the whole function is block 0. An expression must be computed in a block
 //! that holds all its uses. Among those it goes to one in the fewest loops, and among these to the

@@ -114,37 +114,49 @@ impl Expression {
 
     /// Returns the same expression of other operands.
     fn with(&self, operands: &[Place]) -> Self {
-        let mut rest = operands.iter().copied();
-        let mut next = || rest.next().unwrap_or_default();
-        match self {
-            E::Number(_)
-            | E::Truth(_)
-            | E::Coordinate(_)
-            | E::Constant(..)
-            | E::Record { .. }
-            | E::Table { .. } => self.clone(),
-            E::One(operation, _) => E::One(*operation, next()),
-            E::Part(_, i) => E::Part(next(), *i),
-            E::Two(operation, _) => E::Two(*operation, [next(), next()]),
-            E::Select(_) => E::Select([next(), next(), next()]),
-            E::Call(name, _) => E::Call(name, operands.into()),
-            E::Sum { of, count, .. } => E::Sum {
-                of: *of,
-                count: *count,
-                terms: operands.into(),
+        match (self.clone(), operands) {
+            (E::One(operation, _), [a]) => E::One(operation, *a),
+            (E::Part(_, i), [a]) => E::Part(*a, i),
+            (E::Two(operation, _), [a, b]) => E::Two(operation, [*a, *b]),
+            (E::Select(_), [on, yes, no]) => E::Select([*on, *yes, *no]),
+            (E::Call(name, _), all) => E::Call(name, all.into()),
+            (E::Sum { of, count, .. }, all) => E::Sum {
+                of,
+                count,
+                terms: all.into(),
             },
-            E::Branch { arms, .. } => E::Branch {
-                on: next(),
-                arms: arms.clone().map(|arm| arm.iter().map(|_| next()).collect()),
+            (E::Branch { arms: [yes, _], .. }, [on, all @ ..]) => {
+                let (yes, no) = all.split_at(yes.len());
+                E::Branch {
+                    on: *on,
+                    arms: [yes.into(), no.into()],
+                }
+            }
+            (E::Switch { arms, .. }, [on, all @ ..]) => E::Switch {
+                on: *on,
+                // All arms yield as many numbers.
+                arms: all.chunks(all.len() / arms.len()).map(Rc::from).collect(),
             },
-            E::Switch { arms, .. } => E::Switch {
-                on: next(),
-                arms: (arms.iter())
-                    .map(|arm| arm.iter().map(|_| next()).collect())
-                    .collect(),
-            },
+            (leaf, _) => leaf,
         }
     }
+
+    /// Returns the same expression as one of another loop.
+    fn with_loop(&self, of: Loop) -> Self {
+        let mut other = self.clone();
+        match &mut other {
+            E::Record { of: own, .. } | E::Table { of: own, .. } | E::Sum { of: own, .. } => {
+                *own = of;
+            }
+            _ => {}
+        }
+        other
+    }
+}
+
+/// Returns a number as an expression.
+fn literal(number: f32) -> Expression {
+    E::Number(number.to_bits())
 }
 
 /// The list.
@@ -217,7 +229,6 @@ impl Tape {
     /// Returns the place of an equal expression that is simpler, or the expression in its usual
     /// order.
     fn simplify(&mut self, expression: Expression) -> Result<Place, Expression> {
-        let number = |value: f32| E::Number(value.to_bits());
         match expression {
             E::One(operation, a) => {
                 if let (One::Negate, E::One(One::Negate, inner)) = (operation, self.at(a)) {
@@ -226,7 +237,7 @@ impl Tape {
                 let Some(x) = self.number(a) else {
                     return Err(expression);
                 };
-                Err(number(match operation {
+                Err(literal(match operation {
                     One::Negate => -x,
                     One::Root => x.sqrt(),
                     One::Size => x.abs(),
@@ -243,12 +254,12 @@ impl Tape {
                 let (x, y) = (self.number(a), self.number(b));
                 if let (Some(x), Some(y)) = (x, y) {
                     return Err(match operation {
-                        Two::Add => number(x + y),
-                        Two::Subtract => number(x - y),
-                        Two::Multiply => number(x * y),
-                        Two::Divide => number(x / y),
-                        Two::Min => number(x.min(y)),
-                        Two::Max => number(x.max(y)),
+                        Two::Add => literal(x + y),
+                        Two::Subtract => literal(x - y),
+                        Two::Multiply => literal(x * y),
+                        Two::Divide => literal(x / y),
+                        Two::Min => literal(x.min(y)),
+                        Two::Max => literal(x.max(y)),
                         Two::Less => E::Truth(x < y),
                         Two::Both => E::Truth(false),
                     });
@@ -321,44 +332,23 @@ impl Tape {
             E::Record { .. } | E::Table { .. } => {
                 let inner: Vec<Loop> = all.iter().map(inner_loop).collect();
                 let inner = *memory.loops.get(&inner).expect("a loop within the loop");
-                let within = |e: &Expression| match e.clone() {
-                    E::Record {
-                        first,
-                        stride,
-                        count,
-                        ..
-                    } => E::Record {
-                        of: inner,
-                        first,
-                        stride,
-                        count,
-                    },
-                    E::Table { numbers, .. } => E::Table { of: inner, numbers },
-                    other => other,
-                };
-                let unified = within(&all[0]);
-                let alike = all.iter().all(|e| within(e) == unified);
+                let unified = all[0].with_loop(inner);
+                let alike = all.iter().all(|e| e.with_loop(inner) == unified);
                 assert!(alike, "loops in the steps of a loop differ: {all:?}");
                 unified
             }
             model => {
+                let mut inner = 0;
                 if let E::Sum { .. } = model {
-                    let inner: Vec<Loop> = all.iter().map(inner_loop).collect();
-                    let made = self.new_loop();
-                    memory.loops.insert(inner, made);
+                    inner = self.new_loop();
+                    (memory.loops).insert(all.iter().map(inner_loop).collect(), inner);
                 }
                 let operands: Vec<Vec<Place>> = all.iter().map(Expression::operands).collect();
                 let zeros = vec![0; operands[0].len()];
-                let shape = |e: &Expression| match e.with(&zeros) {
-                    E::Sum { count, terms, .. } => E::Sum {
-                        of: 0,
-                        count,
-                        terms,
-                    },
-                    other => other,
-                };
-                let alike = (all.iter().zip(&operands))
-                    .all(|(e, own)| own.len() == zeros.len() && shape(e) == shape(model));
+                let shape = model.with(&zeros).with_loop(0);
+                let alike = (all.iter().zip(&operands)).all(|(e, own)| {
+                    own.len() == zeros.len() && e.with(&zeros).with_loop(0) == shape
+                });
                 assert!(alike, "steps of a loop differ: {all:?}");
                 let unified: Vec<Place> = (0..zeros.len())
                     .map(|i| {
@@ -366,14 +356,7 @@ impl Tape {
                         self.step(of, &steps, memory)
                     })
                     .collect();
-                match model.with(&unified) {
-                    E::Sum { count, terms, .. } => E::Sum {
-                        of: memory.loops[&all.iter().map(inner_loop).collect::<Vec<_>>()],
-                        count,
-                        terms,
-                    },
-                    other => other,
-                }
+                model.with(&unified).with_loop(inner)
             }
         };
         let place = self.push(unified);

@@ -117,7 +117,10 @@ impl Writer<'_> {
                 let i = self.new_name();
                 let steps = self.order.inner(place)[0];
                 let count = self.count(of, count);
-                self.line(indent, &format!("for (var {i} = 0u; {i} < {count}; {i}++) {{"));
+                self.line(
+                    indent,
+                    &format!("for (var {i} = 0u; {i} < {count}; {i}++) {{"),
+                );
                 self.records(of, &i, indent + 1);
                 self.block(steps, indent + 1);
                 for (sum, term) in sums.iter().zip(terms.iter()) {
@@ -181,10 +184,10 @@ impl Writer<'_> {
     fn joins(&self, place: Place, text: &str, indent: usize) -> bool {
         self.order.uses[&place] == 1
             && 4 * indent + text.len() < WIDE / 2
-            && self.used_beside(place)
+            && self.is_used_beside(place)
     }
 
-    fn used_beside(&self, place: Place) -> bool {
+    fn is_used_beside(&self, place: Place) -> bool {
         let block = self.order.block_of[&place];
         self.order.places[block].iter().any(|user| {
             let plain = !matches!(
@@ -220,7 +223,9 @@ impl Writer<'_> {
     fn lists_of(&self, of: Loop) -> Vec<usize> {
         let mut lists = BTreeSet::new();
         for place in self.order.block_of.keys() {
-            if let Expression::Record { of: other, first, .. } = self.tape.at(*place)
+            if let Expression::Record {
+                of: other, first, ..
+            } = self.tape.at(*place)
                 && *other == of
             {
                 lists.insert(self.list_of(*first));
@@ -235,8 +240,8 @@ impl Writer<'_> {
     }
 
     fn count(&self, of: Loop, count: u32) -> String {
-        let varies = (self.lists_of(of).into_iter())
-            .any(|list| self.layout.lists[list].count.is_none());
+        let varies =
+            (self.lists_of(of).into_iter()).any(|list| self.layout.lists[list].count.is_none());
         if varies {
             "count".into()
         } else {
@@ -258,7 +263,9 @@ impl Writer<'_> {
             let mut needed = BTreeSet::new();
             let mut texts = Vec::new();
             for place in self.order.block_of.keys() {
-                if let Expression::Record { of: other, first, .. } = self.tape.at(*place)
+                if let Expression::Record {
+                    of: other, first, ..
+                } = self.tape.at(*place)
                     && *other == of
                     && self.list_of(*first) == index
                 {
@@ -269,8 +276,9 @@ impl Writer<'_> {
             }
             for vector in needed {
                 let place = start + vector as u32;
-                let text =
-                    format!("let {i}_{index}_{vector} = constant(at + {place}u + {vectors}u * {i});");
+                let text = format!(
+                    "let {i}_{index}_{vector} = constant(at + {place}u + {vectors}u * {i});"
+                );
                 self.line(indent, &text);
             }
             for (place, slot) in texts {
@@ -298,7 +306,10 @@ impl Writer<'_> {
     fn table(&mut self, numbers: &[u32]) -> String {
         let texts: Vec<String> = numbers.iter().map(|bits| literal(*bits)).collect();
         let rest = format!("= array<f32, {}>({});\n", texts.len(), texts.join(", "));
-        let known = self.tables.lines().position(|line| rest.starts_with(&line[line.find('=').unwrap_or(0)..]));
+        let known = self
+            .tables
+            .lines()
+            .position(|line| rest.starts_with(&line[line.find('=').unwrap_or(0)..]));
         let index = known.unwrap_or_else(|| self.tables.lines().count());
         let name = format!("{}_{index}", self.name);
         if known.is_none() {
@@ -315,7 +326,6 @@ impl Writer<'_> {
     }
 
     fn expression(&self, expression: &Expression) -> String {
-        let text = |place: &Place| self.operand(*place);
         match expression {
             Expression::Number(bits) => literal(*bits),
             Expression::Truth(known) => known.to_string(),
@@ -324,12 +334,16 @@ impl Writer<'_> {
                 let slot = (self.layout.fixed).partition_point(|other| *other < (*source, *place));
                 format!("c{}.{}", slot / 4, axis(slot))
             }
-            Expression::One(One::Negate, a) => format!("(-{})", text(a)),
-            Expression::One(One::Root, a) => format!("sqrt({})", text(a)),
-            Expression::One(One::Size, a) => format!("abs({})", text(a)),
-            Expression::One(One::Floor, a) => format!("floor({})", text(a)),
-            Expression::Two(Two::Min, [a, b]) => format!("min({}, {})", text(a), text(b)),
-            Expression::Two(Two::Max, [a, b]) => format!("max({}, {})", text(a), text(b)),
+            Expression::One(One::Negate, a) => format!("(-{})", self.operand(*a)),
+            Expression::One(One::Root, a) => format!("sqrt({})", self.operand(*a)),
+            Expression::One(One::Size, a) => format!("abs({})", self.operand(*a)),
+            Expression::One(One::Floor, a) => format!("floor({})", self.operand(*a)),
+            Expression::Two(Two::Min, [a, b]) => {
+                format!("min({}, {})", self.operand(*a), self.operand(*b))
+            }
+            Expression::Two(Two::Max, [a, b]) => {
+                format!("max({}, {})", self.operand(*a), self.operand(*b))
+            }
             Expression::Two(operation, [a, b]) => {
                 let sign = match operation {
                     Two::Add => "+",
@@ -339,18 +353,24 @@ impl Writer<'_> {
                     Two::Less => "<",
                     _ => "&&",
                 };
-                format!("({} {sign} {})", text(a), text(b))
+                format!("({} {sign} {})", self.operand(*a), self.operand(*b))
             }
             Expression::Select([on, yes, no]) => {
-                format!("select({}, {}, {})", text(no), text(yes), text(on))
+                format!(
+                    "select({}, {}, {})",
+                    self.operand(*no),
+                    self.operand(*yes),
+                    self.operand(*on)
+                )
             }
             Expression::Call(name, operands) => {
-                let operands: Vec<String> = operands.iter().map(text).collect();
+                let operands: Vec<String> =
+                    operands.iter().map(|place| self.operand(*place)).collect();
                 format!("{name}({})", operands.join(", "))
             }
             Expression::Part(whole, i) => match self.tape.at(*whole) {
-                Expression::Call(..) => format!("{}.{}", text(whole), axis(*i as usize)),
-                _ => format!("{}_{i}", text(whole)),
+                Expression::Call(..) => format!("{}.{}", self.operand(*whole), axis(*i as usize)),
+                _ => format!("{}_{i}", self.operand(*whole)),
             },
             other => panic!("{other:?} is no expression of one number"),
         }
@@ -359,7 +379,10 @@ impl Writer<'_> {
 
 /// Removes parentheses around all of a text.
 fn bare(text: &str) -> &str {
-    let Some(inner) = text.strip_prefix('(').and_then(|text| text.strip_suffix(')')) else {
+    let Some(inner) = text
+        .strip_prefix('(')
+        .and_then(|text| text.strip_suffix(')'))
+    else {
         return text;
     };
     let mut depth = 0;

@@ -54,6 +54,8 @@ enum Command {
     Figures,
     /// Write the reference page, www/reference.html, and draw the pictures of its examples.
     Reference,
+    /// Write shaders/field/, the formulas of the chart for the graphics card.
+    Shaders,
     /// Renew tests/pins.txt, the hashes that pictures must have, after an intended change of the
     /// pictures, and show the old and the new ones.
     Pins,
@@ -76,6 +78,7 @@ fn run(command: Command) -> Result<()> {
         Command::Examples { names } => examples::draw(&names),
         Command::Figures => figures::figures(),
         Command::Reference => examples::reference(),
+        Command::Shaders => shell::run(&mut shell::cargo(&shell::words("run --package shader"))),
         Command::Pins => pins::renew(),
     }
 }

@@ -13,6 +13,7 @@ fn programs() -> BTreeMap<String, String> {
     let mut files: BTreeMap<String, String> = std::fs::read_dir(&folder)
         .expect("the folder shaders/")
         .map(|entry| entry.expect("an entry of shaders/"))
+        .filter(|entry| entry.path().is_file())
         .map(|entry| {
             let name = entry.file_name().into_string().expect("a name in Unicode");
             let text = std::fs::read_to_string(entry.path()).expect("a text file");

@@ -39,6 +39,15 @@ pub fn gpu() -> Option<&'static Gpu> {
 }
 
 impl Gpu {
+    fn input(&self, contents: &[u8]) -> wgpu::Buffer {
+        let descriptor = wgpu::util::BufferInitDescriptor {
+            label: None,
+            contents,
+            usage: wgpu::BufferUsages::STORAGE,
+        };
+        self.device.create_buffer_init(&descriptor)
+    }
+
     /// Evaluates a cell: value and gradient of each term at its points, as many for each.
     pub fn evaluate(
         &self,
@@ -88,13 +97,6 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        let input = |contents: &[u8]| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: None,
-                contents,
-                usage: wgpu::BufferUsages::STORAGE,
-            })
-        };
         let size = size_of_val(&points[..]) as u64;
         let [output, copy] = [
             wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
@@ -109,9 +111,9 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{
             })
         });
         let buffers = [
-            input(bytemuck::cast_slice(&constants)),
-            input(bytemuck::cast_slice(&elements)),
-            input(bytemuck::cast_slice(&points)),
+            self.input(bytemuck::cast_slice(&constants)),
+            self.input(bytemuck::cast_slice(&elements)),
+            self.input(bytemuck::cast_slice(&points)),
             output,
         ];
         let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)

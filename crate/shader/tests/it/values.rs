@@ -50,10 +50,14 @@ fn element(random: &mut Random, kernel: Kernel, bone: &str) -> Option<Primitive>
 fn point(random: &mut Random, primitive: &Primitive) -> Option<[f32; 3]> {
     let near = random.near(&primitive.skeleton, -2.0, 0.5);
     let point = near.to_array().map(|x| x as f32);
-    let far_enough = !primitive.kernel.has_pole()
-        || primitive.skeleton.distance(near) * primitive.width > 1e-2;
+    let far_enough =
+        !primitive.kernel.has_pole() || primitive.skeleton.distance(near) * primitive.width > 1e-2;
     let value = f64::from(primitive.jet(point).value);
     (far_enough && value.abs() >= THRESHOLD / 10.0).then_some(point)
+}
+
+fn vector(gradient: [f32; 3]) -> DVec3 {
+    DVec3::from_array(gradient.map(f64::from))
 }
 
 #[test]
@@ -92,8 +96,11 @@ fn cells_are_as_in_single_precision() {
             // Where single precision is off by more, so may be its other order of sums.
             let exact = primitive.value(point.map(f64::from));
             let off = (f64::from(jet[0]) - value).abs() - 2.0 * (value - exact).abs();
-            worst = worst.max(if off.is_nan() { f64::INFINITY } else { off / value.abs() });
-            let vector = |g: [f32; 3]| DVec3::from_array(g.map(f64::from));
+            worst = worst.max(if off.is_nan() {
+                f64::INFINITY
+            } else {
+                off / value.abs()
+            });
             let slope = vector(want.gradient);
             let off = (vector([jet[1], jet[2], jet[3]]) - slope).length();
             // Of the steepness that the field has for its value.
@@ -120,9 +127,8 @@ fn profiles_are_as_in_single_precision() {
         let mut random = Random::new(46);
         let mut elements = Vec::new();
         while elements.len() < count(100) as usize {
-            let wave = |random: &mut Random| Wave::ALL[random.below(Wave::ALL.len())];
             let profile = Profile {
-                waves: [wave(&mut random), wave(&mut random)],
+                waves: [random.pick(&Wave::ALL), random.pick(&Wave::ALL)],
                 scale: [random.range(-9.0, 9.0), random.range(-9.0, 9.0)],
                 bounds: [random.range(-1.0, 1.0), random.range(-1.0, 1.0)],
                 times: random.range(0.5, 2.0),
@@ -136,7 +142,10 @@ fn profiles_are_as_in_single_precision() {
         let points: Vec<[f32; 3]> = (0..elements.len() * EACH)
             .map(|i| {
                 let skeleton = &elements[i / EACH].skeleton;
-                random.near(skeleton, -2.0, 0.5).to_array().map(|x| x as f32)
+                random
+                    .near(skeleton, -2.0, 0.5)
+                    .to_array()
+                    .map(|x| x as f32)
             })
             .collect();
         let terms: Vec<_> = elements.iter().map(Primitive::term).collect();
@@ -149,7 +158,12 @@ fn profiles_are_as_in_single_precision() {
         off.sort_unstable_by(f32::total_cmp);
         // Waves that jump do so a rounding apart.
         let index = off.len() - 1 - off.len() / 1000;
-        println!("{}: {:.1e}, all but 1 of 1000 {:.1e}", cell.name, off[off.len() - 1], off[index]);
+        println!(
+            "{}: {:.1e}, all but 1 of 1000 {:.1e}",
+            cell.name,
+            off[off.len() - 1],
+            off[index]
+        );
         assert!(off[index] <= 1e-4, "{}: {}", cell.name, off[index]);
     }
 }
