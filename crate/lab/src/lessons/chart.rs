@@ -143,10 +143,10 @@ const CURVE: [[f64; 2]; 4] = [[-1.1, -0.8], [-0.2, 1.9], [0.2, -1.9], [1.1, 0.8]
 
 /// Writes the line of the language that makes the bone.
 fn line(bone: Bone) -> String {
-    let list = |points: &[[f64; 2]]| -> String {
+    fn list(points: &[[f64; 2]]) -> String {
         let points = points.iter().map(|[x, y]| format!(" <{x} {y} 0>"));
         points.collect()
-    };
+    }
     match bone {
         Bone::Point => String::from("sphere flesh radius, <0 0 0>"),
         Bone::Line => String::from("cylinder flesh radius, <-1 -0.35 0> <1 0.35 0>"),
