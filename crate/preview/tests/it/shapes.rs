@@ -498,17 +498,18 @@ fn a_grain_far_from_the_middle_of_a_large_scene_is_sharp() {
 /// A ball of patches, of which no ray passes between two.
 #[test]
 fn a_mesh_of_patches_has_no_gaps() {
+    fn at(i: u32, j: u32) -> DVec3 {
+        let (a, b) = (f64::from(i) * TAU / 48.0, f64::from(j) * TAU / 80.0 - 0.3);
+        let (sine, cosine) = libm::sincos(a);
+        let (low, high) = libm::sincos(b);
+        DVec3::new(cosine * high, sine * high, low)
+    }
     // More than the half of the ball that is seen, in one colour.
     let mut shapes = Vec::new();
     for i in 0..48 {
         for j in 0..24 {
             for (a, b, c) in [((0, 0), (1, 0), (1, 1)), ((0, 0), (1, 1), (0, 1))] {
-                let corners = [a, b, c].map(|(x, y)| {
-                    let (a, b) = (f64::from(i + x) * TAU / 48.0, f64::from(j + y) * TAU / 80.0);
-                    let (sine, cosine) = libm::sincos(a);
-                    let (low, high) = libm::sincos(b - 0.3);
-                    DVec3::new(cosine * high, sine * high, low)
-                });
+                let corners = [a, b, c].map(|(x, y)| at(i + x, j + y));
                 shapes.push(Shape::Patch {
                     corners,
                     normals: corners,
