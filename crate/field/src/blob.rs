@@ -14,11 +14,11 @@
 //! the field is `g·r`, so that −(gr)″ is at most `−g″·r + 2|g′||r′|` between the ramp's kinks; in a
 //! kink the slope falls by no more than `g·|r′|`.
 use crate::bone::{Bone, Segment};
-use crate::inverse::POLE2;
+use crate::kernel::gauss;
 use crate::ramp::Ramp;
 use crate::real::Scalar;
 use crate::term::{Evaluate, Frame, Prepared};
-use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
+use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, point};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
 
@@ -283,13 +283,7 @@ impl<S: Scalar> Blob<S> {
     #[must_use]
     pub fn square_of(&self, field: f64) -> f64 {
         let ratio = self.amplitude.lane(0) / field;
-        match self.kernel {
-            Kernel::Cauchy => ratio.sqrt() - 1.0,
-            Kernel::Inverse => ratio * ratio - POLE2,
-            Kernel::Squared => ratio - POLE2,
-            Kernel::Cubed => libm::cbrt(ratio * ratio) - POLE2,
-            _ => self.core(1.0, THRESHOLD),
-        }
+        self.kernel.square_of(ratio)
     }
 
     /// The kernel's width parameter, and the field where q is 0 over the kernel's value there.

@@ -1,5 +1,5 @@
 //! Kernels' widths and heights from the user's radius, blobbiness and strength.
-use crate::{Kernel, Skeleton, THRESHOLD, endless, metaballs, plane};
+use crate::{Kernel, Skeleton, THRESHOLD, plane};
 use serde::{Deserialize, Serialize};
 
 /// Ways to read a blobbiness B (`blobscale`).
@@ -109,6 +109,29 @@ impl Shaping {
     /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative (the radius), or
     /// not finite.
     ///
+    /// Cauchy and Gauss `√|B|/R`. Compact kernels have the depth 1/s at which their logarithmic
+    /// slope at R is Blinn's, `−2|B|`. Kernels with a pole have no width: 1/R, whatever B is. The
+    /// formulas stand in the kernels' files.
+    #[must_use]
+    pub fn widths_along(&self, length: f64) -> f64 {
+        let [start, end] = [0.0, 1.0].map(|at| self.at(at).width().unwrap_or(0.0));
+        length * (start * end).sqrt()
+    }
+
+    /// Returns the blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given
+    /// absolutely.
+    fn relative(&self) -> f64 {
+        let b = self.blobbiness.abs();
+        match self.blob_scale {
+            BlobScale::Relative => b,
+            BlobScale::Absolute => b * self.radius * self.radius,
+        }
+    }
+
+    /// The kernel's width parameter, an inverse length: distances times it are the kernel's u
+    /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative (the radius), or
+    /// not finite.
+    ///
     /// Cauchy and Gauss `√|B|/R`. For compact kernels 1/D, with the depth D at which their
     /// logarithmic slope at R is Blinn's, `−2|B|`: quartic `D = R√(1+2/|B|)`, compact6
     /// `R√(1+3/|B|)`, metaballs `R/u` with `u = |B|/(1+|B|)` if that is over ⅓, else
@@ -117,32 +140,7 @@ impl Shaping {
     #[must_use]
     pub fn width(&self) -> Option<f64> {
         let b = self.relative();
-        let at_radius = match self.kernel {
-            Kernel::Cauchy | Kernel::Gauss => b.sqrt(),
-            Kernel::Inverse | Kernel::Squared | Kernel::Cubed => 1.0,
-            Kernel::Quartic => 1.0 / (1.0 + 2.0 / b).sqrt(),
-            Kernel::Compact6 => 1.0 / (1.0 + 3.0 / b).sqrt(),
-            Kernel::Metaballs => {
-                let outer = b / (1.0 + b);
-                if outer > metaballs::INNER {
-                    outer
-                } else {
-                    (outer / 3.0).sqrt()
-                }
-            }
-            Kernel::Soft => {
-                let (two_a, half_b) = (12.0 + 4.0 * b, (5.0 * b - 2.0) / 2.0);
-                // The stable one of the two forms of the positive root.
-                let root = (half_b * half_b + 10.0 * two_a).sqrt();
-                let v = if half_b > 0.0 {
-                    10.0 / (half_b + root)
-                } else {
-                    (root - half_b) / two_a
-                };
-                (1.0 - v).max(0.0).sqrt()
-            }
-        };
-        let width = at_radius / self.radius;
+        let width = self.kernel.width(b) / self.radius;
         let usable = |x: f64| x.is_finite() && x > 0.0;
         (usable(self.radius) && b.is_finite() && usable(width)).then_some(width)
     }
@@ -163,7 +161,7 @@ impl Shaping {
         let x = s * self.radius;
         let field_at_radius = match skeleton.dimension() {
             0 => self.kernel.value(x),
-            1 => endless::line(self.kernel, x) / s,
+            1 => self.kernel.line(x) / s,
             _ => plane::jet(self.kernel, [0.0, 0.0, x]).value / (s * s),
         };
         let height = self.strength * THRESHOLD / field_at_radius;
@@ -178,7 +176,7 @@ impl Shaping {
         let kernel = self.kernel;
         let reference = |u: f64| match dimension {
             0 => kernel.value(u),
-            1 => endless::line(kernel, u),
+            1 => kernel.line(u),
             _ => plane::jet(kernel, [0.0, 0.0, u]).value,
         };
         let field_at = |radius: f64| {
