@@ -1,17 +1,5 @@
-//! The chart: which formula serves which kernel on which bone.
-//!
-//! | | point | segment | arc | triangle, polygon | plane | curve |
-//! |---|---|---|---|---|---|---|
-//! | cauchy | closed | closed | closed | closed | closed | G–L |
-//! | gauss | closed | closed (erf) | G–L | closed (Owen's T, by recurrence) | closed | G–L |
-//! | inverse | closed | closed | elliptic (Carlson) | closed | closed, windowed | G–L |
-//! | squared | closed | closed | closed | closed (Clausen) | closed, windowed | G–L |
-//! | metaballs | closed | closed | closed, G–L outside | closed, G–L outside | closed | G–L |
-//! | soft, quartic, compact6 | closed | closed (exact rule) | closed | closed | closed | G–L |
-//! | cubed | closed | closed | elliptic (Carlson) | closed | closed | G–L |
-//!
-//! G–L: Gauss–Legendre integrals (*outside*: from u = ⅓ on), whose errors stand in the cells' own
-//! files. BENCHMARKS.md lists each cell's cost and the worst error of single precision.
+//! A kernel on a bone. Which formula serves it stands in the kernel's file; BENCHMARKS.md lists each
+//! one's cost and the worst error of single precision.
 use crate::bone::Bone;
 use crate::{Jet, Kernel, Real, plane, point};
 

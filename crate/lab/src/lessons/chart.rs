@@ -42,7 +42,7 @@ pub static WORDS: Words = Words {
     title: "The chart",
     name: "The chart",
     short: "Chart",
-    about: "nine kernels × seven primitives",
+    about: "every kernel on every primitive",
     sentences: "Every kernel can be convolved with every primitive; this is the whole table, \
                 traced just now. Some cells have a closed formula, some need an elliptic \
                 integral, some a small numerical one, and that shows in the time they take. \

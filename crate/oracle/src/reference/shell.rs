@@ -49,13 +49,16 @@ fn kernel(kernel: Kernel, q: f64) -> [f64; 3] {
 /// Returns the places q of the peaks of `√q·G′` and of `q·G″`.
 fn peaks(of: Kernel) -> [f64; 2] {
     static PEAKS: OnceLock<Vec<[f64; 2]>> = OnceLock::new();
-    let find = |of| {
-        [
-            peak(&|q| q.sqrt() * kernel(of, q)[1]),
-            peak(&|q| q * kernel(of, q)[2]),
-        ]
-    };
-    PEAKS.get_or_init(|| Kernel::ALL.map(find).to_vec())[of as usize]
+    let all = PEAKS.get_or_init(|| {
+        let find = Kernel::ALL.iter().map(|of| {
+            [
+                peak(&|q| q.sqrt() * kernel(*of, q)[1]),
+                peak(&|q| q * kernel(*of, q)[2]),
+            ]
+        });
+        find.collect()
+    });
+    all[of as usize]
 }
 
 /// Returns the place of a function's peak between 10⁻¹⁴ and 1.
