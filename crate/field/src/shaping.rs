@@ -113,31 +113,6 @@ impl Shaping {
     /// slope at R is Blinn's, `−2|B|`. Kernels with a pole have no width: 1/R, whatever B is. The
     /// formulas stand in the kernels' files.
     #[must_use]
-    pub fn widths_along(&self, length: f64) -> f64 {
-        let [start, end] = [0.0, 1.0].map(|at| self.at(at).width().unwrap_or(0.0));
-        length * (start * end).sqrt()
-    }
-
-    /// Returns the blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given
-    /// absolutely.
-    fn relative(&self) -> f64 {
-        let b = self.blobbiness.abs();
-        match self.blob_scale {
-            BlobScale::Relative => b,
-            BlobScale::Absolute => b * self.radius * self.radius,
-        }
-    }
-
-    /// The kernel's width parameter, an inverse length: distances times it are the kernel's u
-    /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative (the radius), or
-    /// not finite.
-    ///
-    /// Cauchy and Gauss `√|B|/R`. For compact kernels 1/D, with the depth D at which their
-    /// logarithmic slope at R is Blinn's, `−2|B|`: quartic `D = R√(1+2/|B|)`, compact6
-    /// `R√(1+3/|B|)`, metaballs `R/u` with `u = |B|/(1+|B|)` if that is over ⅓, else
-    /// `u² = |B|/(3(1+|B|))`; soft: v = 1−u² solves `(12+4|B|)v² + (5|B|−2)v = 10`. The inverse,
-    /// the squared and the cubed kernel have no width: 1/R, whatever B is.
-    #[must_use]
     pub fn width(&self) -> Option<f64> {
         let b = self.relative();
         let width = self.kernel.width(b) / self.radius;

@@ -7,7 +7,6 @@
 use super::falloff::{Falloff, Tail};
 use crate::bone::{Arc, Edge, Segment};
 use crate::integral::{integral, of_one_panel};
-use crate::real::Scalar;
 use crate::{Jet, Real, heap_sort};
 use core::f64::consts::{FRAC_PI_2, PI};
 
