@@ -1,7 +1,7 @@
 //! Writes the two fonts of the page without their hinting programs.
 //!
-//! Half of what a font weighs are programs that move its outlines to whole pixels; the page draws
-//! its letters with a hinter that needs none (see `src/fonts.rs`). The outlines, the widths, the
+//! Half of a font's bytes are programs that move its outlines to whole pixels; the page draws its
+//! letters with a hinter that needs none (see `src/fonts.rs`). The outlines, the widths, the
 //! kerning and the notice of the font's authors stay as they are.
 
 use std::path::Path;
@@ -33,7 +33,7 @@ fn u32_at(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_be_bytes(bytes.try_into().ok()?)).ok()
 }
 
-/// The font without hinting; `None` if it cannot be understood.
+/// Returns a font without hinting; `None` if it cannot be understood.
 fn lean(font: &[u8]) -> Option<Vec<u8>> {
     let count = u16_at(font, 4)?;
     let mut tables: Vec<([u8; 4], Vec<u8>)> = Vec::new();
@@ -74,15 +74,15 @@ fn lean(font: &[u8]) -> Option<Vec<u8>> {
     tables[loca].1 = places.into_iter().flat_map(u32::to_be_bytes).collect();
     tables[glyf].1 = glyphs;
     // Version 3: without the names of the glyphs, which only printers ask for.
-    let mut unnamed = post_bytes.get(..32)?.to_vec();
-    unnamed[..4].copy_from_slice(&0x0003_0000_u32.to_be_bytes());
-    tables[post].1 = unnamed;
+    let mut nameless = post_bytes.get(..32)?.to_vec();
+    nameless[..4].copy_from_slice(&0x0003_0000_u32.to_be_bytes());
+    tables[post].1 = nameless;
     tables.retain(|(tag, _)| !LEFT_OUT.contains(&tag));
     Some(assemble(&font[..4], &tables))
 }
 
-/// A glyph without its instructions. Its outline follows them (or, if it is made of other glyphs,
-/// goes before them).
+/// Returns a glyph without its instructions. Its outline follows them (or, if it is made of other
+/// glyphs, goes before them).
 fn glyph(bytes: &[u8]) -> Option<Vec<u8>> {
     const WORDS: usize = 0x0001;
     const SCALE: usize = 0x0008;

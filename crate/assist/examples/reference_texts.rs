@@ -8,7 +8,7 @@ fn main() -> std::io::Result<()> {
         eprintln!("usage: reference_texts FOLDER");
         std::process::exit(2);
     };
-    for (name, text) in assist::manual::pictured() {
+    for (name, text) in assist::manual::texts_with_pictures() {
         std::fs::write(folder.join(format!("{name}.rat")), text)?;
     }
     Ok(())

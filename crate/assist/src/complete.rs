@@ -2,7 +2,7 @@
 
 use crate::grammar::Param;
 use crate::index::{Here, Index, SymbolKind};
-use crate::mend::mended;
+use crate::mend::mend;
 use crate::place;
 use crate::slots::{Type, Want, What};
 use rats::commands::{self, Group, Kind, Names, OptionSpec, options};
@@ -10,7 +10,7 @@ use rats::{Project, colours, functions, library, suggest};
 use std::collections::HashSet;
 use std::ops::Range;
 
-/// At most so many are offered.
+/// Most completions that are offered.
 pub const MAX_COMPLETIONS: usize = 50;
 
 /// The completions at a place.
@@ -22,20 +22,20 @@ pub struct Completions {
     pub items: Vec<Completion>,
 }
 
-/// One thing that can be written.
+/// Word that can be written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Completion {
-    /// As it is shown.
+    /// The text that is shown.
     pub text: String,
-    /// Its kind.
+    /// The kind.
     pub kind: CompletionKind,
     /// More about it, in a line.
     pub detail: String,
     /// The text that is inserted.
     pub insert: String,
-    /// Its colour, if it is one: red, green, blue.
+    /// The colour, if it is one: red, green, blue.
     pub swatch: Option<[f32; 3]>,
-    /// The address of its picture beside the page, if it has one ([`swatches`](crate::swatches)).
+    /// The address of the picture beside the page, if there is one ([`swatches`](crate::swatches)).
     pub picture: Option<&'static str>,
 }
 
@@ -56,7 +56,7 @@ pub enum CompletionKind {
     Colour,
 }
 
-/// The completions at a byte: commands where one begins, else values for the operand there.
+/// Finds the completions at a byte: commands where one begins, else values for the operand there.
 ///
 /// ```
 /// let text = "surface Clay, diffuse Sandy";
@@ -91,7 +91,7 @@ pub fn complete(project: &Project, file: usize, byte: usize) -> Completions {
     let mut index = Index::at(project, Some((file, byte)));
     let mended = match index.here {
         Some(_) => None,
-        None => mended(project, file, byte),
+        None => mend(project, file, byte),
     };
     if let Some(mended) = &mended {
         index = Index::at(mended, Some((file, byte)));
@@ -111,7 +111,7 @@ pub fn complete(project: &Project, file: usize, byte: usize) -> Completions {
         _ if place::begins_command(text, replace.start) => offers.commands(&index),
         _ => {}
     }
-    let items = ranked(offers.items, &text[replace.start..byte]);
+    let items = rank(offers.items, &text[replace.start..byte]);
     Completions { replace, items }
 }
 
@@ -133,7 +133,7 @@ impl Offers {
         });
     }
 
-    /// Commands: those of the text, then the groups that models are made of.
+    /// Adds commands: those of the text, then the groups that models are made of.
     fn commands(&mut self, index: &Index<'_>) {
         for name in index.names(SymbolKind::Command) {
             self.add(
@@ -153,14 +153,12 @@ impl Offers {
             Group::Run,
             Group::Tools,
         ];
-        let group = |wanted| {
-            commands::GROUPS
-                .iter()
-                .filter(move |(group, _)| *group == wanted)
-                .flat_map(|(_, list)| list.iter().copied())
-        };
+        let groups = order.map(|wanted| {
+            let mut groups = commands::GROUPS.iter();
+            groups.find(|(group, _)| *group == wanted)
+        });
         for idle in [false, true] {
-            for spec in order.into_iter().flat_map(group) {
+            for spec in groups.iter().flatten().flat_map(|(_, list)| *list) {
                 if spec.idle().is_some() == idle {
                     self.add(spec.name, CompletionKind::Command, spec.meaning);
                 }
@@ -183,7 +181,7 @@ impl Offers {
         }
     }
 
-    /// The images of the library.
+    /// Adds the images of the library.
     fn images(&mut self) {
         for asset in library::assets() {
             if rats::is_image(&asset.name) {
@@ -213,22 +211,23 @@ impl Offers {
         }
         let at_operand = matches!(here.wants.first(), Some(Want::Parameter { part: 0, .. }));
         if here.grammar.named && at_operand {
-            self.named(here, before);
+            self.parameter_names(here, before);
         }
     }
 
-    /// The parameters of a defined command that can be given by name.
-    fn named(&mut self, here: &Here<'_>, before: usize) {
-        let given = |parameter: &Param<'_>| {
-            here.operands.iter().any(|(span, slot)| {
+    /// Adds the parameters of a defined command that can be given by name.
+    fn parameter_names(&mut self, here: &Here<'_>, before: usize) {
+        for parameter in &here.grammar.parameters {
+            let is_given = here.operands.iter().any(|(span, slot)| {
                 span.end < before && slot.parameter.is_some_and(|p| p.name == parameter.name)
-            })
-        };
-        for parameter in here.grammar.parameters.iter().filter(|p| !given(p)) {
+            });
+            if is_given {
+                continue;
+            }
             self.items.push(Completion {
                 text: format!("{}=", parameter.name),
                 kind: CompletionKind::Name(SymbolKind::Parameter),
-                detail: described(parameter),
+                detail: describe(parameter),
                 insert: format!("{}=", parameter.name),
                 swatch: None,
                 picture: None,
@@ -236,7 +235,7 @@ impl Offers {
         }
     }
 
-    /// The option words, those first that are not given yet.
+    /// Adds the option words, those first that are not given yet.
     fn options(&mut self, here: &Here<'_>, list: &'static [OptionSpec], before: usize) {
         let is_given = |option: &OptionSpec| {
             here.operands.iter().any(|(span, slot)| {
@@ -267,7 +266,7 @@ impl Offers {
         }
     }
 
-    /// Gives the last one its picture.
+    /// Gives the last completion its picture.
     fn picture(&mut self, here: &Here<'_>, word: &OptionSpec) {
         if let (Some(spec), Some(last)) = (here.spec, self.items.last_mut()) {
             last.picture = crate::swatches::picture(spec.name, word.name);
@@ -283,7 +282,7 @@ impl Offers {
         parameter: &Param<'_>,
         part: u8,
     ) {
-        let detail = described(parameter);
+        let detail = describe(parameter);
         match parameter.kind {
             Kind::Known(names) => self.names(index, here, names),
             Kind::Copy(names) if part > 0 => self.names(index, here, names),
@@ -358,14 +357,14 @@ impl Offers {
         }
     }
 
-    /// Variables of a type (or all), functions and constants.
+    /// Adds variables of a type (or all), functions and constants.
     fn values(&mut self, here: &Here<'_>, wanted: Option<Type>, detail: &str) {
         self.variables(here, wanted, detail);
         self.functions(|_| true);
         self.add("pi", CompletionKind::Function, "3.14159…");
     }
 
-    /// Variables of a type (or all), then the parts of triples where a number is wanted.
+    /// Adds variables of a type (or all), then the parts of triples where a number is wanted.
     fn variables(&mut self, here: &Here<'_>, wanted: Option<Type>, detail: &str) {
         let fits = |value: Type| match value {
             Type::Name => false,
@@ -424,21 +423,21 @@ impl Offers {
     }
 }
 
-/// Whether a texture's target is the strength, which takes waves only.
+/// Returns whether a texture's target is the strength, which takes waves only.
 fn is_strength(here: &Here<'_>) -> bool {
     here.operands
         .iter()
         .any(|(_, slot)| matches!(slot.what, What::Word(word) if word.name == "strength"))
 }
 
-/// A colour as `#rrggbb`.
+/// Writes a colour as `#rrggbb`.
 pub(crate) fn hex(colour: [f32; 3]) -> String {
     let [r, g, b] = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A parameter's meaning, unit and range.
-pub(crate) fn described(parameter: &Param<'_>) -> String {
+/// Returns a parameter's meaning, unit, range and default.
+pub(crate) fn describe(parameter: &Param<'_>) -> String {
     let mut text = if parameter.meaning.is_empty() {
         parameter.name.to_owned()
     } else {
@@ -456,8 +455,8 @@ pub(crate) fn described(parameter: &Param<'_>) -> String {
     text
 }
 
-/// Those that fit what is typed, the best first.
-fn ranked(items: Vec<Completion>, typed: &str) -> Vec<Completion> {
+/// Returns the completions that fit the letters typed, the best first.
+fn rank(items: Vec<Completion>, typed: &str) -> Vec<Completion> {
     let mut seen = HashSet::new();
     let mut fitting: Vec<(usize, usize, Completion)> = items
         .into_iter()
@@ -470,7 +469,8 @@ fn ranked(items: Vec<Completion>, typed: &str) -> Vec<Completion> {
     fitting.into_iter().map(|(_, _, item)| item).collect()
 }
 
-/// How well a text fits what is typed, in any case: 0 begins so, 1 holds it, 2 nearly.
+/// Returns how well a text fits the letters typed, in any case: 0 begins with them, 1 holds them, 2
+/// nearly.
 fn fit(text: &str, typed: &str) -> Option<usize> {
     let (lower, typed_lower) = (text.to_lowercase(), typed.to_lowercase());
     if lower.starts_with(&typed_lower) {

@@ -1,10 +1,10 @@
-//! Where a name is made, and where it is used.
+//! Finds the places where a name is made and used.
 
 use crate::index::{Index, Place};
 use rats::Project;
-
-/// Where the name at a byte is made: of several places the one that counts there. A file's name
-/// leads to the beginning of the file.
+/// Finds the place where the name at a byte is made: of several places the one that counts
+/// there. A file's name leads to the beginning of the file.
+/// file's name leads to the beginning of the file.
 ///
 /// ```
 /// let text = "var r = 1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, 0 0 0\n";
@@ -17,7 +17,8 @@ pub fn definition(project: &Project, file: usize, byte: usize) -> Option<Place> 
     Index::of(project).definition_at(file, byte)
 }
 
-/// All places of the name at a byte, those that make it too, in the order of files and places.
+/// Finds all places of the name at a byte, those that make it too, in the order of files and
+/// places.
 ///
 /// ```
 /// let text = "var r = 1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, r 0 0\n";
@@ -29,14 +30,14 @@ pub fn references(project: &Project, file: usize, byte: usize) -> Vec<Place> {
 }
 
 impl Index<'_> {
-    /// As [`definition`].
+    /// Finds the definition of a name, as [`definition`] does.
     #[must_use]
     pub fn definition_at(&self, file: usize, byte: usize) -> Option<Place> {
         let definition = self.definition(self.occurrence(file, byte)?)?;
         Some(definition.place.clone())
     }
 
-    /// As [`references`].
+    /// Finds the places of a name, as [`references`] does.
     #[must_use]
     pub fn references_at(&self, file: usize, byte: usize) -> Vec<Place> {
         let Some(occurrence) = self.occurrence(file, byte) else {

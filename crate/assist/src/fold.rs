@@ -7,7 +7,7 @@ use rats::parser::parse;
 use rats::symbol::Symbols;
 use std::ops::Range;
 
-/// The ranges of lines, from 0, that can be folded into their first: blocks, lists in braces,
+/// Finds the ranges of lines, from 0, that can be folded into their first: blocks, lists in braces,
 /// objects and chains up to their `close`, and comments of several lines. Each has two lines or
 /// more; they begin in different lines, come in the order of the text, and each lies within another
 /// or apart from it.
@@ -28,11 +28,12 @@ pub fn folds(text: &str) -> Vec<Range<usize>> {
         (a.start, usize::MAX - a.end) < (b.start, usize::MAX - b.end)
     });
     folds.dedup_by_key(|fold| fold.start);
-    nested(folds)
+    nest(folds)
 }
 
-/// Shortens what would overlap: the last line of `} else {` belongs to what begins there.
-fn nested(folds: Vec<Range<usize>>) -> Vec<Range<usize>> {
+/// Shortens ranges that would overlap: the last line of `} else {` belongs to the one that begins
+/// there.
+fn nest(folds: Vec<Range<usize>>) -> Vec<Range<usize>> {
     let mut kept: Vec<Range<usize>> = Vec::with_capacity(folds.len());
     let mut open: Vec<usize> = Vec::new();
     for fold in folds {
@@ -51,7 +52,7 @@ fn nested(folds: Vec<Range<usize>>) -> Vec<Range<usize>> {
     kept
 }
 
-/// Where lines begin.
+/// Bytes where lines begin.
 struct Lines(Vec<usize>);
 
 impl Lines {
@@ -60,18 +61,18 @@ impl Lines {
         Self(std::iter::once(0).chain(ends).collect())
     }
 
-    /// The line of a byte.
+    /// Returns the line of a byte.
     fn line(&self, byte: usize) -> usize {
         self.0.partition_point(|start| *start <= byte) - 1
     }
 
-    /// The lines from one byte to another.
+    /// Returns the lines from one byte to another.
     fn range(&self, first: usize, last: usize) -> Range<usize> {
         self.line(first)..self.line(last) + 1
     }
 }
 
-/// Lines that hold a comment and nothing else, as long as they follow each other.
+/// Finds runs of lines that hold a comment and nothing else.
 fn comments(text: &str, lines: &Lines) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (line, start) in lines.0.iter().enumerate() {
@@ -89,6 +90,7 @@ fn comments(text: &str, lines: &Lines) -> Vec<Range<usize>> {
     runs
 }
 
+/// Finds the lines from `{` to `}`.
 fn braces(text: &str, lines: &Lines) -> Vec<Range<usize>> {
     let mut open = Vec::new();
     let mut folds = Vec::new();
@@ -105,7 +107,7 @@ fn braces(text: &str, lines: &Lines) -> Vec<Range<usize>> {
     folds
 }
 
-/// From `object` or `chain` to `close`.
+/// Finds the lines from `object` or `chain` to `close`.
 fn objects(text: &str, lines: &Lines) -> Vec<Range<usize>> {
     let mut symbols = Symbols::default();
     let syntax = parse(text, &mut symbols);

@@ -17,11 +17,12 @@ use std::ops::Range;
 
 /// Spaces of one level.
 const INDENT: usize = 2;
-/// Deeper levels are not indented further.
+/// Most levels; deeper ones are not indented further.
 const MAX_LEVELS: usize = 40;
 
-/// The text, laid out. What it means does not change, nor does it when it is laid out again. A text
-/// with braces that do not match, or one that would outgrow [`MAX_TEXT`], is given back as it is.
+/// Lays a text out. Its meaning does not change, nor does the text when it is laid out again. A
+/// text with braces that do not match, or one that would outgrow [`MAX_TEXT`], is returned as it
+/// is.
 ///
 /// ```
 /// let text = "for i=1 to 3 {\nsphere Clay 1,i 0 0\n}";
@@ -48,6 +49,7 @@ pub fn format(text: &str) -> String {
     page.out
 }
 
+/// Returns whether every brace has its partner.
 fn braces_match(text: &str, tokens: &[Token]) -> bool {
     let mut depth = 0_usize;
     for token in tokens.iter().filter(|t| t.kind == TokenKind::Sign) {
@@ -64,15 +66,15 @@ fn braces_match(text: &str, tokens: &[Token]) -> bool {
 /// The parser's knowledge of a token.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mark {
-    /// A space goes before it.
+    /// Space goes before the token.
     before: bool,
-    /// A space goes after it.
+    /// Space goes after the token.
     after: bool,
-    /// It begins an object or chain.
+    /// The token begins an object or chain.
     opens: bool,
-    /// It is a `close`.
+    /// The token is a `close`.
     closes: bool,
-    /// It stands in operands that count letter by letter, space included.
+    /// The token stands in operands that count letter by letter, space included.
     verbatim: bool,
 }
 
@@ -91,7 +93,7 @@ impl Marks {
         marks
     }
 
-    /// The mark of the token that begins at a byte.
+    /// Returns the mark of the token that begins at a byte.
     fn at(&mut self, tokens: &[Token], byte: usize) -> &mut Mark {
         let index = tokens.partition_point(|token| token.start < byte);
         &mut self.0[index]
@@ -148,21 +150,21 @@ impl Marks {
         }
     }
 
-    /// Spaces around `=`, or around `+=` and `*=`.
+    /// Puts spaces around `=`, or around `+=` and `*=`.
     fn assignment(&mut self, tokens: &[Token], items: &[Item], index: usize) {
-        let first = match glued_sign(items, index) {
+        let first = match sign_before(items, index) {
             None => index,
-            Some(b'+' | b'*') if glued_sign(items, index - 1).is_none() => index - 1,
+            Some(b'+' | b'*') if sign_before(items, index - 1).is_none() => index - 1,
             Some(_) => return,
         };
         self.breathe(tokens, items, first, index);
     }
 
-    /// Spaces around `<`, `<=`, `==` and so on.
+    /// Puts spaces around `<`, `<=`, `==` and so on.
     fn comparisons(&mut self, tokens: &[Token], items: &[Item]) {
         let mut index = 0;
         while let Some(item) = items.get(index) {
-            let is_pair = glued_equal(items, index);
+            let is_pair = is_equal_next(items, index);
             match item.datum {
                 Datum::Sign(b'<' | b'>' | b'=' | b'!') if is_pair => {
                     if stands_alone(items, index, index + 1) {
@@ -183,10 +185,10 @@ impl Marks {
     fn breathe(&mut self, tokens: &[Token], items: &[Item], first: usize, last: usize) {
         // Between `=` and `=` a space would part what belongs together, and before `*=` it would
         // make a sign with space around of what is none now.
-        let next_begins_pair = glued_equal(items, last + 1)
+        let next_begins_pair = is_equal_next(items, last + 1)
             && matches!(items[last + 1].datum, Datum::Sign(b'+' | b'*' | b'!'))
-            && glued_sign(items, last + 1).is_some();
-        if glued_equal(items, last) || next_begins_pair {
+            && sign_before(items, last + 1).is_some();
+        if is_equal_next(items, last) || next_begins_pair {
             return;
         }
         self.at(tokens, items[first].start as usize).before = true;
@@ -197,7 +199,7 @@ impl Marks {
 const EQUAL: Datum = Datum::Sign(b'=');
 
 /// The sign right before an item, if no space lies between.
-fn glued_sign(items: &[Item], index: usize) -> Option<u8> {
+fn sign_before(items: &[Item], index: usize) -> Option<u8> {
     let (before, item) = (items.get(index.checked_sub(1)?)?, items.get(index)?);
     match before.datum {
         // After these a space stands anyway, or means nothing.
@@ -207,17 +209,14 @@ fn glued_sign(items: &[Item], index: usize) -> Option<u8> {
     }
 }
 
-/// Whether no sign stands right before a comparison, nor another comparison right after it.
+/// Returns whether no sign stands right before a comparison, nor another comparison right after it.
 fn stands_alone(items: &[Item], first: usize, last: usize) -> bool {
-    let runs_on = || {
-        glued_sign(items, last + 1).is_some()
-            && matches!(items[last + 1].datum, Datum::Sign(b'<' | b'>'))
-    };
-    glued_sign(items, first).is_none() && !runs_on()
+    let next = sign_before(items, last + 1).map(|_| items[last + 1].datum);
+    sign_before(items, first).is_none() && !matches!(next, Some(Datum::Sign(b'<' | b'>')))
 }
 
-/// Whether `=` follows an item without space.
-fn glued_equal(items: &[Item], index: usize) -> bool {
+/// Returns whether `=` follows an item without space.
+fn is_equal_next(items: &[Item], index: usize) -> bool {
     let Some(end) = items.get(index).map(|item| item.end) else {
         return false;
     };
@@ -242,7 +241,7 @@ struct Page {
     fresh_line: bool,
     /// Whether an empty line comes before the next one.
     blank: bool,
-    /// How wide the space before the next token was.
+    /// The width of the space before the next token.
     gap: usize,
     /// The last token written.
     last: Option<usize>,
@@ -324,7 +323,7 @@ impl Page {
         self.out.extend(std::iter::repeat_n(' ', spaces));
     }
 
-    /// How many spaces go before a token that does not begin a line.
+    /// Returns the number of spaces before a token that does not begin a line.
     fn space_before(&self, text: &str, tokens: &[Token], marks: &Marks, index: usize) -> usize {
         let token = tokens[index];
         let here = &text[token.range()];
@@ -361,7 +360,7 @@ impl Page {
     }
 }
 
-/// The number of levels outside of the innermost brace.
+/// Returns the number of levels outside of the innermost brace.
 fn outside(levels: &[Level]) -> usize {
     levels
         .iter()

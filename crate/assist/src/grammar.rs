@@ -7,20 +7,20 @@ use rats::symbol::Symbols;
 use rats::syntax::{Define, Syntax, Takes};
 use std::sync::LazyLock;
 
-/// A parameter, whoever tells of it.
+/// Parameter of a command of the table, the library or the text.
 #[derive(Clone, Copy, Debug)]
 pub struct Param<'p> {
-    /// Its name in the synopsis.
+    /// The name in the synopsis.
     pub name: &'p str,
     /// The kind of value it takes.
     pub kind: Kind,
-    /// Its meaning.
+    /// The meaning.
     pub meaning: &'p str,
-    /// In what it is measured.
+    /// The unit.
     pub unit: Unit,
-    /// Its value if it is left out.
+    /// The value if it is left out.
     pub default: &'p str,
-    /// How often it is given.
+    /// The number of times that it is given.
     pub arity: Arity,
     /// Whether it is the material of a shape, which a chain gives.
     pub in_chain: bool,
@@ -55,12 +55,12 @@ impl Param<'_> {
         }
     }
 
-    /// Its range as a sentence's end; empty if any value will do.
+    /// Returns the range as a sentence's end; empty if any value will do.
     pub fn range(&self) -> String {
         self.parameter().range()
     }
 
-    /// As a synopsis shows it.
+    /// Returns the parameter as a synopsis shows it.
     pub fn synopsis(&self) -> String {
         let name = match self.kind {
             Kind::Switch => String::from("on | off"),
@@ -91,8 +91,8 @@ pub struct Grammar<'p> {
     pub named: bool,
 }
 
-/// The parameters of a command that takes a number or triple, as a define tells of it.
-fn defined<'p>(name: &'p str, takes: Takes, default: &'p str, meaning: &'p str) -> Param<'p> {
+/// Makes a parameter as a define gives it.
+fn formal<'p>(name: &'p str, takes: Takes, default: &'p str, meaning: &'p str) -> Param<'p> {
     let kind = match takes {
         Takes::Number => Kind::Number {
             low: -MAX_MAGNITUDE,
@@ -125,7 +125,7 @@ static LIBRARY: LazyLock<Vec<(&'static str, Vec<library::Parameter>)>> = LazyLoc
 });
 
 impl Grammar<'static> {
-    /// The parameters of a command of the table.
+    /// Returns the parameters of a command of the table.
     pub fn of(spec: &'static CommandSpec) -> Self {
         if !spec.is_library() {
             return Self {
@@ -136,7 +136,7 @@ impl Grammar<'static> {
         }
         let found = LIBRARY.iter().find(|(name, _)| *name == spec.name);
         let parameters = found.map_or(&[][..], |(_, parameters)| parameters);
-        let param = |parameter: &'static library::Parameter| {
+        let parameters = parameters.iter().map(|parameter| {
             let takes = if parameter.is_surface {
                 Takes::Surface
             } else if is_triple(parameter.name) {
@@ -144,10 +144,10 @@ impl Grammar<'static> {
             } else {
                 Takes::Number
             };
-            defined(parameter.name, takes, parameter.default, &parameter.meaning)
-        };
+            formal(parameter.name, takes, parameter.default, &parameter.meaning)
+        });
         Self {
-            parameters: parameters.iter().map(param).collect(),
+            parameters: parameters.collect(),
             options: &[],
             named: true,
         }
@@ -155,26 +155,26 @@ impl Grammar<'static> {
 }
 
 impl<'p> Grammar<'p> {
-    /// The parameters of a command that the text defines.
+    /// Returns the parameters of a command that the text defines.
     pub fn own(define: &Define, syntax: &Syntax, text: &'p str, symbols: &Symbols<'p>) -> Self {
         let manual = comment_before(text, define.head.span.start);
-        let param = |formal: &rats::syntax::Formal| {
-            let name = symbols.word(formal.name);
-            let default = match &syntax.items[formal.default.clone()] {
+        let parameters = define.parameters.iter().map(|parameter| {
+            let name = symbols.word(parameter.name);
+            let default = match &syntax.items[parameter.default.clone()] {
                 [first, .., last] => &text[first.start as usize..last.end as usize],
                 [one] => &text[one.span()],
                 [] => "",
             };
-            defined(name, formal.takes, default, meaning(manual, name))
-        };
+            formal(name, parameter.takes, default, meaning(manual, name))
+        });
         Self {
-            parameters: define.parameters.iter().map(param).collect(),
+            parameters: parameters.collect(),
             options: &[],
             named: true,
         }
     }
 
-    /// Without the material, which shapes of a chain leave out.
+    /// Leaves out the material, as shapes of a chain do.
     #[must_use]
     pub fn in_chain(mut self) -> Self {
         if self.takes_material() {
@@ -183,18 +183,18 @@ impl<'p> Grammar<'p> {
         self
     }
 
-    /// Whether the first operand is the material of what is made.
+    /// Returns whether the first operand is the material of what is made.
     pub fn takes_material(&self) -> bool {
         self.parameters.first().is_some_and(|first| first.in_chain)
     }
 }
 
-/// Whether a parameter of this name takes a triple: it is written in capitals.
+/// Returns whether a parameter of this name takes a triple: it is written in capitals.
 pub fn is_triple(name: &str) -> bool {
     name.chars().any(char::is_alphabetic) && !name.chars().any(char::is_lowercase)
 }
 
-/// The comment lines right above a place.
+/// Returns the comment lines right above a place.
 pub fn comment_before(text: &str, byte: usize) -> &str {
     let line = text[..byte].rfind('\n').map_or(0, |at| at + 1);
     let mut start = line;
@@ -208,13 +208,13 @@ pub fn comment_before(text: &str, byte: usize) -> &str {
     &text[start..line]
 }
 
-/// A parameter's meaning, from a line of the comment that begins with its name; empty if there is
-/// none.
+/// Finds a parameter's meaning in a line of the comment that begins with its name; empty if there
+/// is none.
 fn meaning<'p>(comment: &'p str, name: &str) -> &'p str {
-    let said = |line: &'p str| {
+    let found = comment.lines().find_map(|line| {
         let line = line.trim_start().trim_start_matches('#').trim_start();
         let rest = line.strip_prefix(name)?;
         rest.starts_with("  ").then(|| rest.trim())
-    };
-    comment.lines().find_map(said).unwrap_or("")
+    });
+    found.unwrap_or("")
 }

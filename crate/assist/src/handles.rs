@@ -34,13 +34,13 @@ pub use handle::{Editable, Handle, Kind};
 use fixed::{plain, why_repeated};
 use glam::DMat3;
 use maker::Maker;
-use rats::provenance::{Operand, Provenance};
+use rats::provenance::Provenance;
 use rats::{Asset, Compiled, Project, provenance};
 use scene::{Element, Shape};
 
-/// The handles of an element of `compiled.scene`, which came from `project` with these assets, at
-/// this frame. `view` is [`scene::Projection::world_from_view`]: knobs for radii lie across the
-/// view.
+/// Returns the handles of an element of `compiled.scene`, which came from `project` with these
+/// assets, at this frame. `view` is [`scene::Projection::world_from_view`]: knobs for radii lie
+/// across the view.
 ///
 /// The text is run once more up to the element's command, so the cost is that of compiling. An
 /// index that is none gives no handles.
@@ -82,7 +82,7 @@ pub fn handles(
     };
     if let Some(why) = why {
         let mut handles = plain(&shape.shape, &why);
-        handles.extend(maker.shared_radius());
+        handles.extend(maker.radius_of_all());
         return handles;
     }
     if !placement.repeated && siblings > parts(&seen, shape) {
@@ -95,13 +95,15 @@ pub fn handles(
     handles
 }
 
-/// The number of elements that the command of an element makes: a curve has one for each three
-/// points after the first.
+/// Counts the elements that the command of an element makes: a curve has one for each three points
+/// after the first.
 fn parts(seen: &Provenance, element: &Element) -> usize {
     if !matches!(element.shape, Shape::Curve { .. }) {
         return 1;
     }
-    let is_point = |operand: &&Operand| operand.numbers.len() == 3;
-    let points = seen.operands.iter().filter(is_point).count();
+    let operands = seen.operands.iter();
+    let points = operands
+        .filter(|operand| operand.numbers.len() == 3)
+        .count();
     points.saturating_sub(1) / 3
 }

@@ -69,14 +69,14 @@ pub fn highlight(text: &str) -> Vec<(Range<usize>, TokenKind)> {
     pieces
 }
 
-/// Where in a command the highlighter is.
+/// State of the highlighter within a command.
 #[derive(Debug, Default)]
 struct State {
     /// Whether the command's word has been seen.
     word_seen: bool,
     /// Whether the command begins a block, so that its `{` does.
     is_block: bool,
-    /// For each open brace whether it is a block of commands.
+    /// The braces that are open: whether each is a block of commands.
     braces: Vec<bool>,
     options: &'static [OptionSpec],
 }
@@ -125,14 +125,8 @@ impl State {
             self.word_seen = first.is_none_or(|first| !matches!(first.kind, Kind::Block));
             return TokenKind::Command;
         }
-        let fits = |option: &&OptionSpec| {
-            option
-                .name
-                .get(..word.len())
-                .is_some_and(|start| start.eq_ignore_ascii_case(word))
-        };
         let in_list = |list: &'static [OptionSpec]| {
-            list.iter().filter(fits).count() == 1
+            list.iter().filter(|option| option.begins(word)).count() == 1
                 || list.iter().any(|o| o.name.eq_ignore_ascii_case(word))
         };
         // One or two letters are more often a name.

@@ -1,9 +1,9 @@
 //! Hover: help on the word under the pointer.
 
-use crate::complete::{described, hex};
+use crate::complete::{describe, hex};
 use crate::grammar::{Grammar, comment_before};
 use crate::index::{Here, Index, Place, SymbolKind};
-use crate::mend::mended;
+use crate::mend::mend;
 use crate::place;
 use crate::slots::{Slot, What};
 use crate::swatches;
@@ -13,7 +13,7 @@ use rats::{Project, colours, functions};
 use std::ops::Range;
 
 /// Help on a word.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Card {
     /// The word's bytes.
     pub span: Range<usize>,
@@ -21,9 +21,9 @@ pub struct Card {
     pub title: String,
     /// More, line by line.
     pub lines: Vec<String>,
-    /// Its colour, if it is one.
+    /// The colour, if it is one.
     pub swatch: Option<[f32; 3]>,
-    /// The address of its picture beside the page, if it has one ([`swatches`](crate::swatches)).
+    /// The address of the picture beside the page, if there is one ([`swatches`](crate::swatches)).
     pub picture: Option<&'static str>,
     /// The command whose manual explains more.
     pub command: Option<&'static str>,
@@ -32,7 +32,7 @@ pub struct Card {
 /// Longest line that is quoted from a text, in characters.
 const MAX_QUOTE: usize = 100;
 
-/// Help on the word or number at a byte; `None` where there is nothing to say.
+/// Finds help on the word or number at a byte; `None` where there is nothing to say.
 ///
 /// ```
 /// let text = "sphere Clay 2, 0 0 0";
@@ -49,7 +49,7 @@ pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
     let mut index = Index::at(project, Some((file, byte)));
     let mended = match index.here {
         Some(_) => None,
-        None => mended(project, file, byte),
+        None => mend(project, file, byte),
     };
     if let Some(mended) = &mended {
         index = Index::at(mended, Some((file, byte)));
@@ -59,7 +59,7 @@ pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
         return command(project, here);
     }
     let Some((span, slot)) = here.slot(byte) else {
-        return named(&index, file, byte);
+        return name_card(&index, file, byte);
     };
     let card = match slot.what {
         What::Option => Some(option(span, slot.option?, here)),
@@ -67,13 +67,12 @@ pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
             span: span.clone(),
             title: word.name.to_owned(),
             lines: vec![word.meaning.to_owned()],
-            swatch: None,
-            picture: None,
             command: here.spec.map(|spec| spec.name),
+            ..Card::default()
         }),
         _ => None,
     };
-    card.or_else(|| named(&index, file, byte).map(|card| with_role(card, slot)))
+    card.or_else(|| name_card(&index, file, byte).map(|card| with_role(card, slot)))
         .or_else(|| value(text, span, slot, byte))
         .map(|card| Card {
             command: card.command.or(here.spec.map(|spec| spec.name)),
@@ -88,6 +87,7 @@ pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
         })
 }
 
+/// Makes the card of the command's word.
 fn command(project: &Project, here: &Here<'_>) -> Option<Card> {
     if let Some(place) = &here.own {
         let text = &project.files[place.file].text;
@@ -103,19 +103,13 @@ fn command(project: &Project, here: &Here<'_>) -> Option<Card> {
             span: here.word_span.clone(),
             title: synopsis(here.word, &here.grammar),
             lines,
-            swatch: None,
-            picture: None,
-            command: None,
+            ..Card::default()
         });
     }
     let spec = here.spec?;
     let mut lines = vec![spec.meaning.to_owned()];
     for parameter in &Grammar::of(spec).parameters {
-        lines.push(format!(
-            "{}: {}",
-            parameter.synopsis(),
-            described(parameter)
-        ));
+        lines.push(format!("{}: {}", parameter.synopsis(), describe(parameter)));
     }
     if !spec.options.is_empty() {
         let names: Vec<_> = spec.options.iter().map(|option| option.name).collect();
@@ -135,13 +129,12 @@ fn command(project: &Project, here: &Here<'_>) -> Option<Card> {
         span: here.word_span.clone(),
         title: spec.synopsis(),
         lines,
-        swatch: None,
-        picture: None,
         command: Some(spec.name),
+        ..Card::default()
     })
 }
 
-/// Whose a command is.
+/// Returns the language that a command comes from.
 fn origin(spec: &CommandSpec) -> String {
     String::from(match spec.group() {
         Group::Extensions => "ours: RATS did not have it",
@@ -149,6 +142,7 @@ fn origin(spec: &CommandSpec) -> String {
     })
 }
 
+/// Writes a command with its parameters.
 fn synopsis(word: &str, grammar: &Grammar<'_>) -> String {
     let mut text = word.to_owned();
     for parameter in &grammar.parameters {
@@ -158,13 +152,14 @@ fn synopsis(word: &str, grammar: &Grammar<'_>) -> String {
     text
 }
 
+/// Makes the card of an option.
 fn option(span: &Range<usize>, option: &'static OptionSpec, here: &Here<'_>) -> Card {
     let mut lines = vec![option.meaning.to_owned()];
     for parameter in option.parameters {
         lines.push(format!(
             "{}: {}",
             parameter.synopsis(),
-            described(&parameter.into())
+            describe(&parameter.into())
         ));
     }
     if !option.default.is_empty() {
@@ -175,14 +170,13 @@ fn option(span: &Range<usize>, option: &'static OptionSpec, here: &Here<'_>) -> 
         span: span.clone(),
         title: option.synopsis(),
         lines,
-        swatch: None,
-        picture: None,
         command: here.spec.map(|spec| spec.name),
+        ..Card::default()
     }
 }
 
-/// A name's kind and where it is made.
-fn named(index: &Index<'_>, file: usize, byte: usize) -> Option<Card> {
+/// Makes the card of a name: its kind and where it is made.
+fn name_card(index: &Index<'_>, file: usize, byte: usize) -> Option<Card> {
     let occurrence = index.occurrence(file, byte)?;
     let definition = index.definition(occurrence)?;
     let kind = index.kind(occurrence);
@@ -213,18 +207,18 @@ fn named(index: &Index<'_>, file: usize, byte: usize) -> Option<Card> {
         title: format!("{} `{}`", kind.word(), index.name(occurrence)),
         lines,
         swatch,
-        picture: None,
-        command: None,
+        ..Card::default()
     })
 }
 
+/// Writes the line and file of a place.
 fn where_made(project: &Project, place: &Place) -> String {
     let file = &project.files[place.file];
     let line = file.text[..place.span.start].matches('\n').count() + 1;
     format!("line {line} of {}", file.name)
 }
 
-/// The first line of a command, not too long.
+/// Returns the first line of a command, not too long.
 fn quote(command: &str) -> String {
     let line = command.lines().next().unwrap_or("");
     let short: String = line.chars().take(MAX_QUOTE).collect();
@@ -235,7 +229,7 @@ fn quote(command: &str) -> String {
     }
 }
 
-/// The use of an operand: `the centre, y`.
+/// Returns the use of an operand: `y of the centre`.
 fn role(slot: &Slot<'_>) -> Option<String> {
     let parameter = slot.parameter?;
     let part = match slot.what {
@@ -249,7 +243,7 @@ fn role(slot: &Slot<'_>) -> Option<String> {
         }
         _ => String::new(),
     };
-    Some(format!("{part}{}", described(&parameter)))
+    Some(format!("{part}{}", describe(&parameter)))
 }
 
 fn is_colour(slot: &Slot<'_>) -> bool {
@@ -267,7 +261,7 @@ fn slot_is_triple(slot: &Slot<'_>) -> bool {
     )
 }
 
-/// A card of a name, with what the operand is for.
+/// Adds the use of the operand to the card of a name.
 fn with_role(mut card: Card, slot: &Slot<'_>) -> Card {
     if !matches!(slot.what, What::Name { .. } | What::File | What::Named)
         && let Some(role) = role(slot)
@@ -277,57 +271,32 @@ fn with_role(mut card: Card, slot: &Slot<'_>) -> Card {
     card
 }
 
-/// A number, a colour, a function.
+/// Makes the card of a number, a colour or a function.
 fn value(text: &str, span: &Range<usize>, slot: &Slot<'_>, byte: usize) -> Option<Card> {
     let role = role(slot);
     let token = place::token(text, span.clone(), byte);
     let word = token.filter(|token| token.kind == TokenKind::Word);
-    let card = |span: Range<usize>, title: String, lines: Vec<String>, swatch| {
-        Some(Card {
-            span,
-            title,
-            lines,
-            swatch,
-            picture: None,
-            command: None,
-        })
+    let mut card = Card {
+        span: token.map_or_else(|| span.clone(), |token| token.range()),
+        ..Card::default()
     };
-    let here = || role.iter().map(|role| format!("here: {role}"));
-    if let Some(token) = word {
-        let name = &text[token.range()];
-        if let Some(function) = functions::find(name) {
-            let mut lines = vec![function.meaning.to_owned()];
-            lines.extend(here());
-            return card(
-                token.range(),
-                format!("function `{}`", function.name),
-                lines,
-                None,
-            );
-        }
-        if let Some(constant) = functions::constant(name) {
-            let lines = here().collect();
-            return card(
-                token.range(),
-                format!("{name} = {constant:.6}"),
-                lines,
-                None,
-            );
-        }
-        if let Some(colour) = colours::find(name)
-            && matches!(slot.what, What::Triple | What::Extra)
-        {
-            let [r, g, b] = colour.map(|c| (f64::from(c) * 1000.0).round() / 1000.0);
-            let mut lines = vec![format!("{r} {g} {b}, {}", hex(colour))];
-            lines.extend(here());
-            return card(
-                token.range(),
-                format!("colour `{name}`"),
-                lines,
-                Some(colour),
-            );
-        }
+    let name = word.map_or("", |token| &text[token.range()]);
+    if let Some(function) = functions::find(name) {
+        card.title = format!("function `{}`", function.name);
+        card.lines.push(function.meaning.to_owned());
+    } else if let Some(constant) = functions::constant(name) {
+        card.title = format!("{name} = {constant:.6}");
+    } else if let Some(colour) = colours::find(name)
+        && matches!(slot.what, What::Triple | What::Extra)
+    {
+        let [r, g, b] = colour.map(|c| (f64::from(c) * 1000.0).round() / 1000.0);
+        card.title = format!("colour `{name}`");
+        card.lines.push(format!("{r} {g} {b}, {}", hex(colour)));
+        card.swatch = Some(colour);
+    } else {
+        card.title = role?;
+        return Some(card);
     }
-    let span = token.map_or_else(|| span.clone(), |token| token.range());
-    card(span, role.clone()?, Vec::new(), None)
+    card.lines.extend(role.map(|role| format!("here: {role}")));
+    Some(card)
 }

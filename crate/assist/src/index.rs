@@ -34,7 +34,7 @@ pub enum SymbolKind {
 }
 
 impl SymbolKind {
-    /// In a word.
+    /// Returns the kind in a word.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -50,7 +50,7 @@ impl SymbolKind {
         }
     }
 
-    /// Whether it holds a value.
+    /// Returns whether it holds a value.
     #[must_use]
     pub fn is_variable(self) -> bool {
         matches!(self, Self::Variable | Self::Loop | Self::Parameter)
@@ -69,13 +69,13 @@ pub struct Place {
 /// A place where a name stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Occurrence {
-    /// Where.
+    /// The place.
     pub place: Place,
     /// Whether the name is made, set or set anew here.
     pub is_definition: bool,
     /// The whole command in which it stands.
     pub command: Range<usize>,
-    /// Its turn, roughly as the texts run.
+    /// The turn, roughly as the texts run.
     pub(crate) order: usize,
     pub(crate) entity: usize,
 }
@@ -85,12 +85,12 @@ pub struct Occurrence {
 pub(crate) struct Entity<'p> {
     pub kind: SymbolKind,
     pub name: &'p str,
-    /// Itself, or another one that is the same.
+    /// The thing itself, or another one that is the same.
     pub parent: usize,
     pub is_defined: bool,
     /// The defined command it is local to, by its order.
     pub owner: Option<usize>,
-    /// Of a command, parameter or variable: what is known of its value.
+    /// The type of the value of a parameter or variable, as far as it is known.
     pub value: Type,
     pub first: Option<Occurrence>,
 }
@@ -102,7 +102,7 @@ pub struct Symbol {
     pub name: String,
     /// The kind of thing it stands for.
     pub kind: SymbolKind,
-    /// Where it is first made.
+    /// The place where it is first made.
     pub place: Place,
 }
 
@@ -110,19 +110,19 @@ pub struct Symbol {
 #[derive(Clone, Debug)]
 pub(crate) struct Here<'p> {
     pub file: usize,
-    /// The command's word as written, and where.
+    /// The command's word as written, and its place.
     pub word: &'p str,
     pub word_span: Range<usize>,
-    /// Its row in the table; `None` for a command that the text defines, and for a mistake.
+    /// The row in the table; `None` for a command that the text defines, and for a mistake.
     pub spec: Option<&'static CommandSpec>,
-    /// Where the text defines it, if it does.
+    /// The place where the text defines it, if it does.
     pub own: Option<Place>,
     pub grammar: Rc<Grammar<'p>>,
     /// The operands with their byte ranges.
     pub operands: Vec<(Range<usize>, Slot<'p>)>,
     /// Operands and words that could come where the operands before the place end.
     pub wants: Vec<Want<'p>>,
-    /// The variables that can be seen here, and what they are.
+    /// The variables that can be seen here, with their types and kinds.
     pub variables: Vec<(&'p str, Type, SymbolKind)>,
 }
 
@@ -131,7 +131,8 @@ pub(crate) struct Here<'p> {
 /// ```
 /// use assist::{Index, SymbolKind};
 ///
-/// let project = rats::Project::single("surface Clay, diffuse SandyBrown\nfor i = 1 to 3 { sphere Clay 1, i 0 0 }\n");
+/// let text = "surface Clay, diffuse SandyBrown\nfor i = 1 to 3 { sphere Clay 1, i 0 0 }\n";
+/// let project = rats::Project::single(text);
 /// let index = Index::of(&project);
 /// let names: Vec<_> = index.symbols().into_iter().map(|s| (s.kind, s.name)).collect();
 /// assert!(names.contains(&(SymbolKind::Material, "Clay".into())));
@@ -141,21 +142,21 @@ pub(crate) struct Here<'p> {
 pub struct Index<'p> {
     pub(crate) project: &'p Project,
     pub(crate) entities: Vec<Entity<'p>>,
-    /// All places of names, in the order of files and places.
+    /// The places of names, in the order of files and places.
     pub(crate) occurrences: Vec<Occurrence>,
     pub(crate) here: Option<Here<'p>>,
-    /// The first mistake of form: its file, its byte and what is wrong. What is in a block that is
-    /// not closed is not indexed.
+    /// The first mistake of form: file, byte and message. A block that is not closed is not
+    /// indexed.
     pub(crate) mistake: Option<(usize, usize, String)>,
 }
 
 impl<'p> Index<'p> {
-    /// The thing that stands for all that are the same.
+    /// Returns the thing that stands for all that are the same.
     fn root(&self, entity: usize) -> usize {
         self.entities[entity].parent
     }
 
-    /// The place of a name at a byte: one that the byte is in, else one that ends there.
+    /// Finds the place of a name at a byte: one that the byte is in, else one that ends there.
     pub(crate) fn occurrence(&self, file: usize, byte: usize) -> Option<&Occurrence> {
         let end = self
             .occurrences
@@ -167,7 +168,7 @@ impl<'p> Index<'p> {
         (touches && !found.place.span.is_empty()).then_some(found)
     }
 
-    /// The thing that a name at a byte stands for; `None` if no name is there.
+    /// Finds the thing that a name at a byte stands for; `None` if no name is there.
     #[must_use]
     pub fn symbol_at(&self, file: usize, byte: usize) -> Option<Symbol> {
         let occurrence = self.occurrence(file, byte)?;
@@ -179,25 +180,25 @@ impl<'p> Index<'p> {
         })
     }
 
-    /// All places of the same name as at an occurrence.
+    /// Returns all places of the same name as at an occurrence.
     pub(crate) fn all_of(&self, occurrence: &Occurrence) -> impl Iterator<Item = &Occurrence> {
         let root = self.root(occurrence.entity);
-        let same = move |other: &&Occurrence| self.root(other.entity) == root;
-        self.occurrences.iter().filter(same)
+        let all = self.occurrences.iter();
+        all.filter(move |other| self.root(other.entity) == root)
     }
 
-    /// The kind of an occurrence's name.
+    /// Returns the kind of an occurrence's name.
     pub(crate) fn kind(&self, occurrence: &Occurrence) -> SymbolKind {
         self.entities[occurrence.entity].kind
     }
 
-    /// An occurrence's name.
+    /// Returns an occurrence's name.
     pub(crate) fn name(&self, occurrence: &Occurrence) -> &'p str {
         self.entities[occurrence.entity].name
     }
 
-    /// The definition that is in force at an occurrence: itself, else the last one before it, else
-    /// the first.
+    /// Finds the definition that is in force at an occurrence: itself, else the last one before it,
+    /// else the first.
     pub(crate) fn definition(&self, occurrence: &Occurrence) -> Option<&Occurrence> {
         let definitions = || self.all_of(occurrence).filter(|o| o.is_definition);
         if occurrence.is_definition {
@@ -209,7 +210,7 @@ impl<'p> Index<'p> {
             .or_else(|| definitions().min_by_key(|o| o.order))
     }
 
-    /// Every name of the project, once, in the order in which they are first made.
+    /// Returns every name of the project, once, in the order in which they are first made.
     #[must_use]
     pub fn symbols(&self) -> Vec<Symbol> {
         let mut first: Vec<&Occurrence> = Vec::new();
@@ -236,16 +237,16 @@ impl<'p> Index<'p> {
             .collect()
     }
 
-    /// Every place of a name: what it stands for, the name, where, and whether it is made there. In
-    /// the order of files and places.
+    /// Returns every place of a name, in the order of files and places: the kind of thing, the
+    /// name, the place, and whether it is made there.
     pub fn places(&self) -> impl Iterator<Item = (SymbolKind, &'p str, &Place, bool)> {
         self.occurrences
             .iter()
             .map(|o| (self.kind(o), self.name(o), &o.place, o.is_definition))
     }
 
-    /// The names of a kind, each once, for completions; without those that the command at the place
-    /// that is asked for makes itself.
+    /// Returns the names of a kind, each once, for completions; without those that the command at
+    /// the place that is asked for makes itself.
     pub(crate) fn names(&self, kind: SymbolKind) -> Vec<&'p str> {
         let is_here = |o: &Occurrence| {
             let here = self.here.as_ref();
@@ -262,8 +263,8 @@ impl<'p> Index<'p> {
         names
     }
 
-    /// Another thing of the same kind that already has a name and could be taken for the one at an
-    /// occurrence.
+    /// Finds another thing of the same kind that already has a name and could be taken for the one
+    /// at an occurrence.
     pub(crate) fn clash(&self, occurrence: &Occurrence, name: &str) -> Option<Place> {
         let root = self.root(occurrence.entity);
         let mine = &self.entities[occurrence.entity];
@@ -281,17 +282,17 @@ impl<'p> Index<'p> {
             .find_map(|(_, e)| e.first.as_ref().map(|o| o.place.clone()))
     }
 
-    /// The places that name a file.
+    /// Returns the places that name a file.
     pub(crate) fn uses_of_file(&self, name: &str) -> impl Iterator<Item = &Place> {
-        let is_it = move |o: &&Occurrence| {
+        let uses = self.occurrences.iter().filter(move |o| {
             let entity = &self.entities[o.entity];
             !o.is_definition && entity.kind == SymbolKind::File && entity.name == name
-        };
-        self.occurrences.iter().filter(is_it).map(|o| &o.place)
+        });
+        uses.map(|o| &o.place)
     }
 
-    /// For every occurrence in order: whether it defines, and the number of its thing, counted from
-    /// the first. Two texts that name alike have the same shape.
+    /// Returns for every occurrence, in order, the file, whether it defines, and the number of its
+    /// thing, counted from the first. Two texts that name alike have the same shape.
     pub(crate) fn shape(&self) -> Vec<(usize, bool, usize)> {
         let mut numbers = HashMap::new();
         self.occurrences

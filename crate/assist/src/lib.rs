@@ -12,7 +12,7 @@
 //!
 //! let text = "surface Clay, diffuse SandyBrown\nsphere Clay 2, 0 0 0\n";
 //! let project = Project::single(text);
-//! // The material's name in the second line: where it is made, and what it would take to rename it.
+//! // The material's name in the second line: the place where it is made, and how to rename it.
 //! let used = text.rfind("Clay").unwrap();
 //! let made = assist::definition(&project, 0, used).unwrap();
 //! assert_eq!(&text[made.span], "Clay");

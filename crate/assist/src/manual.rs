@@ -8,7 +8,7 @@ use rats::link::{self, Shared};
 use rats::{File, Project, colours, functions, manual};
 use std::fmt::Write;
 
-/// The manual page of a command as plain text; `None` if there is no such command.
+/// Returns the manual page of a command as plain text; `None` if there is no such command.
 ///
 /// ```
 /// let page = assist::manual::page("sphere").unwrap();
@@ -19,37 +19,42 @@ pub fn page(command: &str) -> Option<String> {
     commands::find(command).map(manual::page)
 }
 
-/// The examples of the reference page that make a picture: the name of the command and the text.
+/// Returns the examples of the reference page that make a picture: the name of the command and the
+/// text.
 ///
 /// ```
-/// let drawn = assist::manual::drawn_examples();
+/// let drawn = assist::manual::examples_with_pictures();
 /// assert!(drawn.iter().any(|(name, _)| *name == "sphere"));
 /// ```
 #[must_use]
-pub fn drawn_examples() -> Vec<(&'static str, String)> {
-    commands::all().filter_map(drawn_example).collect()
+pub fn examples_with_pictures() -> Vec<(&'static str, String)> {
+    commands::all().filter_map(example_with_picture).collect()
 }
 
-/// All texts of which the reference page shows pictures, each with the name of its picture's file
-/// without extension.
+/// Returns the texts of which the reference page shows pictures, each with the name of its
+/// picture's file without extension.
 #[must_use]
-pub fn pictured() -> Vec<(String, String)> {
-    let examples = drawn_examples().into_iter();
+pub fn texts_with_pictures() -> Vec<(String, String)> {
+    let examples = examples_with_pictures().into_iter();
     let examples = examples.map(|(name, text)| (name.to_owned(), text));
     let swatches = swatches::all().into_iter().map(|s| (s.name, s.text));
     examples.chain(swatches).collect()
 }
 
-/// A command's example if it compiles without errors to a scene that holds something.
-fn drawn_example(spec: &'static CommandSpec) -> Option<(&'static str, String)> {
+/// Returns a command's example if it compiles without errors to a scene that is not empty.
+fn example_with_picture(spec: &'static CommandSpec) -> Option<(&'static str, String)> {
     let project = project_of(spec);
     let compiled = rats::compile(&project);
-    let is_error = |diagnostic: &rats::Diagnostic| diagnostic.severity == rats::Severity::Error;
-    let draws = !compiled.scene.elements.is_empty() && !compiled.diagnostics.iter().any(is_error);
+    let mut severities = compiled
+        .diagnostics
+        .iter()
+        .map(|diagnostic| diagnostic.severity);
+    let is_right = severities.all(|severity| severity != rats::Severity::Error);
+    let draws = is_right && !compiled.scene.elements.is_empty();
     draws.then(|| (spec.name, project.files[0].text.clone()))
 }
 
-/// A command's example as a work.
+/// Makes a project of a command's example.
 fn project_of(spec: &CommandSpec) -> Project {
     Project {
         files: vec![File {
@@ -59,7 +64,7 @@ fn project_of(spec: &CommandSpec) -> Project {
     }
 }
 
-/// The reference page: an HTML document that needs nothing but the pictures in the folder
+/// Writes the reference page: an HTML document that needs nothing but the pictures in the folder
 /// `reference` beside it. Each command has its name as its anchor.
 #[must_use]
 pub fn reference() -> String {
@@ -73,7 +78,9 @@ pub fn reference() -> String {
         }
         page += "</p>\n";
     }
-    page += "<p><a href=\"#functions\">Functions</a> <a href=\"#textures\">Textures</a> <a href=\"#waves\">Waves</a> <a href=\"#lights\">Light and air</a> <a href=\"#colours\">Colours</a></p>\n</nav>\n";
+    page += "<p><a href=\"#functions\">Functions</a> <a href=\"#textures\">Textures</a> \
+        <a href=\"#waves\">Waves</a> \
+        <a href=\"#lights\">Light and air</a> <a href=\"#colours\">Colours</a></p>\n</nav>\n";
     page += RULES;
     for (group, list) in GROUPS {
         let _ = writeln!(
@@ -124,14 +131,15 @@ and <code>1 - 2</code> is one.</p>
 <p><span class="ours">ours</span> marks what RATS did not have.</p>
 "#;
 
+/// Describes a group.
 fn about(group: Group) -> &'static str {
     match group {
         Group::Run => "Running texts, variables, help.",
         Group::Camera => "From where the picture is taken.",
         Group::Materials => "What shapes are made of.",
         Group::Primitives => {
-            "Shapes. The name of their material comes first, but not in a chain. Shapes of a material \
-             that has a blobbiness are soft: they are skeletons, and their flesh melts together."
+            "Shapes. The name of their material comes first, but not in a chain. Shapes of a \
+             material that has a blobbiness are soft: they are skeletons, and their flesh melts together."
         }
         Group::Objects => "Groups of shapes, and moving them.",
         Group::Options => "Settings of the whole picture.",
@@ -166,7 +174,7 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
         let _ = writeln!(page, "<p>Changes nothing here: {}.</p>", escape(reason));
     }
     if !spec.details.is_empty() {
-        let _ = writeln!(page, "<p>{}</p>", marked(spec.details));
+        let _ = writeln!(page, "<p>{}</p>", mark(spec.details));
     }
     if !spec.default.is_empty() {
         let _ = writeln!(page, "<p>By default {}.</p>", escape(spec.default));
@@ -198,9 +206,10 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
         let link = link_to(spec);
         page.push_str("<div class=\"example\">\n");
         let _ = writeln!(page, "<pre>{}</pre>", escape(spec.example));
-        if drawn_example(spec).is_some() {
+        if example_with_picture(spec).is_some() {
             let picture = format!(
-                "<img src=\"reference/{}.png\" width=\"240\" height=\"180\" loading=\"lazy\" alt=\"What the example of {} draws\">",
+                "<img src=\"reference/{}.png\" width=\"240\" height=\"180\" \
+                 loading=\"lazy\" alt=\"What the example of {} draws\">",
                 spec.name, spec.name
             );
             let _ = match &link {
@@ -216,20 +225,21 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
     page.push_str("</section>\n");
 }
 
-/// The fragment that opens a command's example in the page.
+/// Returns the fragment that opens a command's example in the page.
 fn link_to(spec: &CommandSpec) -> Option<String> {
-    encoded(project_of(spec))
+    encode(project_of(spec))
 }
 
-/// The fragment that opens a text in the page.
+/// Returns the fragment that opens a text in the page.
 fn fragment(name: &str, text: String) -> Option<String> {
     let name = format!("{name}.rat");
-    encoded(Project {
+    encode(Project {
         files: vec![File { name, text }],
     })
 }
 
-fn encoded(project: Project) -> Option<String> {
+/// Returns the fragment that opens a project in the page.
+fn encode(project: Project) -> Option<String> {
     let shared = Shared {
         project,
         camera: None,
@@ -249,7 +259,7 @@ fn row(page: &mut String, parameter: &Param<'_>) {
         page,
         "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
         escape(&parameter.synopsis()),
-        marked(parameter.meaning),
+        mark(parameter.meaning),
         more.join(", "),
         default(parameter.default)
     );
@@ -266,7 +276,7 @@ fn options(page: &mut String, list: &'static [OptionSpec], title: &str) {
             page,
             "<tr><td>{}</td><td>{}{}</td><td>{}</td></tr>",
             escape(&option.synopsis()),
-            marked(option.meaning),
+            mark(option.meaning),
             units(option),
             default(option.default)
         );
@@ -274,7 +284,7 @@ fn options(page: &mut String, list: &'static [OptionSpec], title: &str) {
     page.push_str("</table>\n");
 }
 
-/// The units and ranges of an option's operands.
+/// Writes the units and ranges of an option's operands.
 fn units(option: &OptionSpec) -> String {
     let mut text = String::new();
     for parameter in option.parameters {
@@ -312,14 +322,17 @@ fn functions(page: &mut String) {
             page,
             "<tr><td>{}</td><td>{}</td></tr>",
             escape(form),
-            marked(meaning)
+            mark(meaning)
         );
     }
     page.push_str("<tr><td>pi</td><td>3.14159…</td></tr>\n</table>\n");
 }
 
 fn colours(page: &mut String) {
-    page.push_str("<h2 id=\"colours\">Colours</h2>\n<p>Also <code>Gray0</code> (black) to <code>Gray100</code> (white).</p>\n<div class=\"colours\">\n");
+    page.push_str(
+        "<h2 id=\"colours\">Colours</h2>\n<p>Also <code>Gray0</code> \
+        (black) to <code>Gray100</code> (white).</p>\n<div class=\"colours\">\n",
+    );
     for name in colours::names() {
         let code = colours::find(name).map(hex).unwrap_or_default();
         let _ = writeln!(
@@ -330,15 +343,15 @@ fn colours(page: &mut String) {
     page.push_str("</div>\n");
 }
 
-/// A meaning with a capital letter first.
+/// Writes a meaning with a capital letter first.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().collect::<String>());
-    marked(&(first.unwrap_or_default() + letters.as_str()))
+    mark(&(first.unwrap_or_default() + letters.as_str()))
 }
 
-/// Text for HTML, with `code` and the mark of what is ours.
-fn marked(text: &str) -> String {
+/// Writes text for HTML, with `code` and the mark of what is ours.
+fn mark(text: &str) -> String {
     let mut out = String::new();
     for (index, part) in text.split('`').enumerate() {
         let part = escape(part);
@@ -351,6 +364,7 @@ fn marked(text: &str) -> String {
     out.replace(" (ours)", " <span class=\"ours\">ours</span>")
 }
 
+/// Escapes text for HTML.
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")

@@ -4,10 +4,10 @@
 use rats::Project;
 use rats::lexer::{TokenKind, lex};
 
-/// The project with the blocks of a file closed: a loop or choice whose line ends at the caret
+/// Closes the blocks of a file of a project: a loop or choice whose line ends at the caret
 /// without `{` gets an empty block, and blocks that are open at the end of the text end there.
 /// Bytes up to the caret stay where they are. `None` if there is nothing to mend.
-pub fn mended(project: &Project, file: usize, byte: usize) -> Option<Project> {
+pub fn mend(project: &Project, file: usize, byte: usize) -> Option<Project> {
     let text = &project.files.get(file)?.text;
     let mut mended = text.clone();
     let line = text[..byte].rfind(['\n', '{', '}']).map_or(0, |at| at + 1);
@@ -28,7 +28,7 @@ pub fn mended(project: &Project, file: usize, byte: usize) -> Option<Project> {
     Some(project)
 }
 
-/// Whether a line's command has a block.
+/// Returns whether a line's command has a block.
 fn is_structure(line: &str) -> bool {
     let line = line.trim_start_matches(|c: char| c.is_whitespace() || "@}".contains(c));
     let word = line.split(|c: char| !c.is_alphanumeric()).next();
@@ -39,7 +39,7 @@ fn is_structure(line: &str) -> bool {
     })
 }
 
-/// The number of `{` of blocks that have no `}`.
+/// Counts the `{` of blocks that have no `}`.
 fn open_blocks(text: &str) -> usize {
     let mut open = Vec::new();
     for token in lex(text) {
@@ -52,7 +52,9 @@ fn open_blocks(text: &str) -> usize {
             _ => {}
         }
     }
-    let line = |at: usize| text[..at].rfind(['\n', '{']).map_or(0, |start| start + 1);
-    open.retain(|at| is_structure(&text[line(*at)..*at]));
+    open.retain(|&at| {
+        let line = text[..at].rfind(['\n', '{']).map_or(0, |start| start + 1);
+        is_structure(&text[line..at])
+    });
     open.len()
 }

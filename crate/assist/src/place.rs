@@ -6,18 +6,18 @@ use rats::commands::OptionSpec;
 use rats::lexer::{Token, TokenKind, lex};
 use std::ops::Range;
 
-/// Whether a byte is a place in a text, between two characters.
+/// Returns whether a byte is a place in a text, between two characters.
 pub fn is_in(text: &str, byte: usize) -> bool {
     text.is_char_boundary(byte)
 }
 
-/// Whether a byte is in a comment.
+/// Returns whether a byte is in a comment.
 pub fn in_comment(text: &str, byte: usize) -> bool {
     let line = text[..byte].rfind('\n').map_or(0, |at| at + 1);
     text[line..byte].contains('#')
 }
 
-/// The word that a byte is in or at the end of; empty if there is none.
+/// Finds the word that a byte is in or at the end of; empty if there is none.
 pub fn word(text: &str, byte: usize) -> Range<usize> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
     let before = text[..byte].trim_end_matches(is_word).len();
@@ -26,23 +26,22 @@ pub fn word(text: &str, byte: usize) -> Range<usize> {
     before..byte + length
 }
 
-/// Whether a command begins at a byte, as far as what stands before it tells.
+/// Returns whether a command begins at a byte, as far as the text before it shows.
 pub fn begins_command(text: &str, byte: usize) -> bool {
-    let skipped = |c: char| c == '@' || (c.is_whitespace() && c != '\n') || c == '\u{feff}';
-    let before = text[..byte].trim_end_matches(skipped);
+    let before = text[..byte]
+        .trim_end_matches(|c: char| c == '@' || c == '\u{feff}' || c.is_whitespace() && c != '\n');
     before.is_empty() || before.ends_with(['\n', '{', '}'])
 }
 
 impl<'p> Here<'p> {
-    /// The operand that a byte is in or at the end of.
+    /// Finds the operand that a byte is in or at the end of.
     pub fn slot(&self, byte: usize) -> Option<&(Range<usize>, Slot<'p>)> {
-        let touching =
-            |(span, _): &&(Range<usize>, Slot<'p>)| span.start <= byte && byte <= span.end;
-        self.operands.iter().rev().find(touching)
+        let mut operands = self.operands.iter().rev();
+        operands.find(|(span, _)| span.start <= byte && byte <= span.end)
     }
 
-    /// The parameter that a byte belongs to, with its index and option: that of the operand there,
-    /// else the one that could come next.
+    /// Finds the parameter that a byte belongs to, with its index and option: that of the operand
+    /// there, else the one that could come next.
     pub fn active(&self, byte: usize) -> Option<Active> {
         if let Some((_, slot)) = self.slot(byte)
             && slot.parameter.is_some()
@@ -74,13 +73,13 @@ impl<'p> Here<'p> {
 /// The parameter of the command whose turn it is at the caret.
 #[derive(Clone, Copy, Debug)]
 pub struct Active {
-    /// Its index.
+    /// The index of the parameter.
     pub index: usize,
     /// The option it belongs to.
     pub option: Option<&'static OptionSpec>,
 }
 
-/// The word or number of a piece of text that a byte is in or at the end of.
+/// Finds the word or number of a piece of text that a byte is in or at the end of.
 pub fn token(text: &str, span: Range<usize>, byte: usize) -> Option<Token> {
     let inside = lex(&text[span.clone()]).into_iter().map(|token| Token {
         kind: token.kind,

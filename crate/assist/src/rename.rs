@@ -5,8 +5,8 @@ use crate::index::{Index, Occurrence, SymbolKind};
 use rats::lexer::{TokenKind, lex};
 use rats::{Project, TextEdit, colours, commands, functions};
 
-/// The changes that rename what the name at a byte stands for, through all files, in the order of
-/// files and places. Files are renamed with [`rename_file`].
+/// Computes the changes that rename the thing that a name at a byte stands for, through all files,
+/// in the order of files and places. Files are renamed with [`rename_file`].
 ///
 /// # Errors
 /// A sentence that says why not: if there is no name at the byte, or the new one is not allowed, is
@@ -14,7 +14,8 @@ use rats::{Project, TextEdit, colours, commands, functions};
 /// a block that is not closed, since names could be overlooked in it.
 ///
 /// ```
-/// let project = rats::Project::single("var r = 1\nvar s = 2\nsurface Clay, diffuse SandyBrown\nsphere Clay r, s 0 0\n");
+/// let text = "var r = 1\nvar s = 2\nsurface Clay, diffuse SandyBrown\nsphere Clay r, s 0 0\n";
+/// let project = rats::Project::single(text);
 /// let edits = assist::rename(&project, 0, 4, "radius").unwrap();
 /// assert_eq!(edits.len(), 2);
 /// let renamed = project.apply(&edits);
@@ -70,8 +71,8 @@ pub fn rename(
     Ok(edits)
 }
 
-/// The changes of all `read`s (and images) that go with a file's new name; the file itself is
-/// renamed by whoever keeps it.
+/// Computes the changes of all `read`s (and images) that go with a file's new name; the file itself
+/// is renamed by whoever keeps it.
 ///
 /// # Errors
 /// A sentence, if there is no such file, or the new name is not allowed or taken.
@@ -93,12 +94,13 @@ pub fn rename_file(
     if new_name.is_empty() || new_name.starts_with("./") {
         return Err(String::from("a file needs a name of letters"));
     }
-    let separates = |c: char| c.is_whitespace() || ",<>{}#@%!()=".contains(c);
-    let known = |kind| matches!(kind, TokenKind::Word | TokenKind::Number | TokenKind::Sign);
-    if let Some(odd) = new_name.chars().find(|c| separates(*c)) {
+    let mut letters = new_name.chars();
+    if let Some(odd) = letters.find(|c| c.is_whitespace() || ",<>{}#@%!()=".contains(*c)) {
         return Err(format!("a file's name cannot hold `{odd}`"));
     }
-    if !lex(new_name).iter().all(|token| known(token.kind)) {
+    let tokens = lex(new_name);
+    let mut kinds = tokens.iter().map(|token| token.kind);
+    if !kinds.all(|kind| matches!(kind, TokenKind::Word | TokenKind::Number | TokenKind::Sign)) {
         return Err(String::from(
             "a file's name can hold letters, digits, and . _ - / only",
         ));
@@ -118,7 +120,10 @@ pub fn rename_file(
         .collect())
 }
 
-/// Whether a name can be given to a thing.
+/// Checks whether a name can be given to a thing.
+///
+/// # Errors
+/// A sentence that says why not.
 fn check_name(kind: SymbolKind, name: &str, new_name: &str) -> Result<(), String> {
     let tokens = lex(new_name);
     let is_word = match tokens.as_slice() {
@@ -169,6 +174,7 @@ fn check_name(kind: SymbolKind, name: &str, new_name: &str) -> Result<(), String
     Ok(())
 }
 
+/// Returns the changes of all places of a name.
 fn edits(index: &Index<'_>, occurrence: &Occurrence, new_name: &str) -> Vec<TextEdit> {
     index
         .all_of(occurrence)

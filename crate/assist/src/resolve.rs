@@ -92,7 +92,7 @@ impl<'p, 's> Resolver<'p, 's> {
         }
     }
 
-    /// One step; gives the files that it reads, the last one first.
+    /// Takes one step; returns the files that it reads, the last one first.
     fn event(&mut self, file: usize, event: Event<'s>) -> Vec<usize> {
         match event {
             Event::Command(command) => return self.command(file, command),
@@ -121,6 +121,7 @@ impl<'p, 's> Resolver<'p, 's> {
         Vec::new()
     }
 
+    /// Ends the structure or branch that began last.
     fn end(&mut self) {
         let Some(open) = self.open.pop() else { return };
         if open == Open::Define {
@@ -146,17 +147,18 @@ impl<'p, 's> Resolver<'p, 's> {
         }
     }
 
+    /// Unites what counts as one, and makes the index.
     fn finish(mut self) -> Index<'p> {
         let mut shared = HashSet::new();
         for (name, entity) in std::mem::take(&mut self.leaky) {
             if self.free_in_defines.contains(name) {
-                let global = self.named(SymbolKind::Variable, name);
+                let global = self.entity_of(SymbolKind::Variable, name);
                 self.unite(entity, global);
                 shared.insert(name);
             }
         }
         for (entity, name) in std::mem::take(&mut self.same_as_global) {
-            let global = self.named(SymbolKind::Variable, name);
+            let global = self.entity_of(SymbolKind::Variable, name);
             if shared.contains(name) || self.entities[global].is_defined {
                 self.unite(entity, global);
             }
@@ -196,7 +198,7 @@ impl<'p, 's> Resolver<'p, 's> {
     }
 }
 
-/// Whether a block calls commands that the text defines, or reads files.
+/// Returns whether a block calls commands that the text defines, or reads files.
 fn calls_others(block: &Block) -> bool {
     block.iter().any(|node| match node {
         Node::Command(command) => command

@@ -1,19 +1,19 @@
 //! The command that the caret is in, with the parameter whose turn it is.
 
-use crate::complete::described;
+use crate::complete::describe;
 use crate::grammar::Param;
 use crate::index::Index;
-use crate::mend::mended;
+use crate::mend::mend;
 use crate::place;
 use rats::Project;
 
-/// How a command is written.
+/// Form of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
     /// The command; with an option of it, if the caret is among the option's operands:
     /// `surface … radius`.
     pub command: String,
-    /// Its parameters.
+    /// The parameters.
     pub parameters: Vec<Part>,
     /// The index of the parameter that the caret is at.
     pub active: Option<usize>,
@@ -22,14 +22,14 @@ pub struct Signature {
 /// A parameter of a signature.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// As it is written in a synopsis.
+    /// The text in a synopsis.
     pub text: String,
-    /// Its meaning, with its unit, range and default.
+    /// The meaning, with unit, range and default.
     pub meaning: String,
 }
 
-/// The signature of the command that a byte is in; `None` outside of commands, and in those that
-/// are not known.
+/// Finds the signature of the command that a byte is in; `None` outside of commands, and in those
+/// that are not known.
 ///
 /// ```
 /// let text = "sphere Clay 2, ";
@@ -48,7 +48,7 @@ pub fn signature(project: &Project, file: usize, byte: usize) -> Option<Signatur
     let mut index = Index::at(project, Some((file, byte)));
     let mended = match index.here {
         Some(_) => None,
-        None => mended(project, file, byte),
+        None => mend(project, file, byte),
     };
     if let Some(mended) = &mended {
         index = Index::at(mended, Some((file, byte)));
@@ -59,7 +59,7 @@ pub fn signature(project: &Project, file: usize, byte: usize) -> Option<Signatur
     }
     let part = |parameter: &Param<'_>| Part {
         text: parameter.synopsis(),
-        meaning: described(parameter),
+        meaning: describe(parameter),
     };
     let word = here.spec.map_or(here.word, |spec| spec.name);
     let active = (byte > here.word_span.end)

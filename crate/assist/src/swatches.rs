@@ -6,7 +6,7 @@ use rats::commands::OptionSpec;
 use rats::commands::options;
 use std::fmt::Write;
 
-/// The folder of the pictures of textures, waves and lights, beside the page.
+/// Makes a table of words and the addresses of their pictures, beside the page.
 macro_rules! table {
     ($($word:literal $file:literal)*) => {
         &[$(($word, concat!("reference/", $file, ".png"))),*]
@@ -15,20 +15,22 @@ macro_rules! table {
 
 /// Words of `texture` and their pictures.
 static TEXTURES: &[(&str, &str)] = table! {
-    "marble" "texture-marble" "agate" "texture-agate" "granite" "texture-granite" "moon" "texture-moon"
-    "onion" "texture-onion" "wood" "texture-wood" "ripples" "texture-ripples" "sandal" "texture-sandal"
-    "checker" "texture-checker" "paint" "texture-paint"
-    "one" "wave-one" "x" "wave-x" "saw" "wave-saw" "hat" "wave-hat" "step" "wave-step" "sin" "wave-sin"
-    "cos" "wave-cos" "sin^2" "wave-sin2" "cos^2" "wave-cos2"
+    "marble" "texture-marble" "agate" "texture-agate" "granite" "texture-granite"
+    "moon" "texture-moon" "onion" "texture-onion" "wood" "texture-wood"
+    "ripples" "texture-ripples" "sandal" "texture-sandal" "checker" "texture-checker"
+    "paint" "texture-paint"
+    "one" "wave-one" "x" "wave-x" "saw" "wave-saw" "hat" "wave-hat" "step" "wave-step"
+    "sin" "wave-sin" "cos" "wave-cos" "sin^2" "wave-sin2" "cos^2" "wave-cos2"
 };
 
 /// Words of `light` and their pictures.
 static LIGHTS: &[(&str, &str)] = table! {
-    "point" "light-point" "distant" "light-distant" "spot" "light-spot" "noshadow" "light-noshadow" "size" "light-size"
+    "point" "light-point" "distant" "light-distant" "spot" "light-spot"
+    "noshadow" "light-noshadow" "size" "light-size"
 };
 
-/// The address, relative to the page, of the picture of a word behind a command: of a method of
-/// `texture`, or of an option of `light`. `None` if it has none.
+/// Finds the address, relative to the page, of the picture of a word behind a command: of a method
+/// of `texture`, or of an option of `light`. `None` if it has none.
 ///
 /// ```
 /// use assist::swatches::picture;
@@ -49,9 +51,9 @@ pub fn picture(command: &str, word: &str) -> Option<&'static str> {
 
 /// A picture of the reference page that belongs to no command's example.
 pub struct Swatch {
-    /// Its file's name without extension.
+    /// The file's name without extension.
     pub name: String,
-    /// Its line on the page.
+    /// The line on the page.
     pub title: String,
     /// The text that is drawn.
     pub text: String,
@@ -74,9 +76,11 @@ const SOLIDS: [(&str, &str); 10] = [
     ("paint", ""),
 ];
 
-const STUDIO: &str = "eyep 0 1.2 5\nfov 34\ntone filmic\nlight White, position -4 6 7, intensity 0.9\nlight SlateBlue, position 6 0 4, intensity 0.4, noshadow\nbackground 0.30 0.33 0.38 to 0.12 0.13 0.16\n";
+const STUDIO: &str = "eyep 0 1.2 5\nfov 34\ntone filmic\n\
+    light White, position -4 6 7, intensity 0.9\nlight SlateBlue, position 6 0 4, intensity 0.4, noshadow\n\
+    background 0.30 0.33 0.38 to 0.12 0.13 0.16\n";
 
-/// All of them: solids as colours and as bumps, waves, lights.
+/// Returns all swatches: solids as colours and as bumps, waves, lights.
 #[must_use]
 pub fn all() -> Vec<Swatch> {
     let mut list = Vec::new();
@@ -84,14 +88,22 @@ pub fn all() -> Vec<Swatch> {
         list.push(Swatch {
             name: format!("texture-{solid}"),
             title: format!("pigment {solid}"),
-            text: format!("{STUDIO}texture T, pigment {solid}, {look}replace\nsurface S, diffuse White, specular 40%, shine 50, texture T\nsphere S 1.15, 0 0 0\n"),
+            text: format!(
+                "{STUDIO}texture T, pigment {solid}, {look}replace\n\
+                surface S, diffuse White, specular 40%, shine 50, texture T\n\
+                sphere S 1.15, 0 0 0\n"
+            ),
         });
     }
     for (solid, _) in SOLIDS {
         list.push(Swatch {
             name: format!("bump-{solid}"),
             title: format!("normal {solid}"),
-            text: format!("{STUDIO}texture T, normal {solid}\nsurface S, diffuse 0.78 0.72 0.66, specular 40%, shine 40, texture T\nsphere S 1.15, 0 0 0\n"),
+            text: format!(
+                "{STUDIO}texture T, normal {solid}\n\
+                surface S, diffuse 0.78 0.72 0.66, specular 40%, shine 40, texture T\n\
+                sphere S 1.15, 0 0 0\n"
+            ),
         });
     }
     for wave in options::WAVES {
@@ -106,7 +118,13 @@ pub fn all() -> Vec<Swatch> {
         list.push(Swatch {
             name: format!("wave-{}", wave.name.replace('^', "")),
             title: format!("pigment {} one", wave.name),
-            text: format!("{STUDIO}texture T, pigment {} one, scale {scale} 1 1, bounds DarkSlateBlue Wheat, replace\nsurface S, diffuse White, specular 40%, shine 50, texture T\nsphere S 1.15, 0 0 0\n", wave.name),
+            text: format!(
+                "{STUDIO}texture T, pigment {} one, \
+                scale {scale} 1 1, bounds DarkSlateBlue Wheat, replace\n\
+                surface S, diffuse White, specular 40%, shine 50, texture T\n\
+                sphere S 1.15, 0 0 0\n",
+                wave.name
+            ),
         });
     }
     let lights = [
@@ -134,21 +152,27 @@ pub fn all() -> Vec<Swatch> {
         ),
         (
             "cloud",
-            "light 1 0.95 0.85 point, position -3 4 4, intensity 0.5\ncloud Gold, position 0 0.2 0, radius 1.8",
+            "light 1 0.95 0.85 point, position -3 4 4, intensity 0.5\n\
+             cloud Gold, position 0 0.2 0, radius 1.8",
         ),
     ];
     for (name, light) in lights {
         list.push(Swatch {
             name: format!("light-{name}"),
             title: light.rsplit('\n').next().unwrap_or(light).to_owned(),
-            text: format!("eyep 0 2.2 6\nvrp 0 -0.1 0\nfov 34\nbackground 0.10 0.11 0.14\n{light}\nsurface Floor, diffuse 0.72 0.68 0.62\nplane Floor <0 -0.8 0> <0 1 0>\nsurface Clay, diffuse 0.80 0.45 0.28, specular 30%, shine 40\nsphere Clay 0.8, 0 0 0\nsphere Clay 0.35, 1.3 -0.45 0.6\n"),
+            text: format!(
+                "eyep 0 2.2 6\nvrp 0 -0.1 0\nfov 34\nbackground 0.10 0.11 0.14\n{light}\n\
+                surface Floor, diffuse 0.72 0.68 0.62\nplane Floor <0 -0.8 0> <0 1 0>\n\
+                surface Clay, diffuse 0.80 0.45 0.28, specular 30%, shine 40\n\
+                sphere Clay 0.8, 0 0 0\nsphere Clay 0.35, 1.3 -0.45 0.6\n"
+            ),
         });
     }
     list
 }
 
-/// The section of the reference page with all of them. `link` gives the fragment that opens a text
-/// in the page.
+/// Writes the section of the reference page with all swatches. `link` returns the fragment that
+/// opens a text in the page.
 pub(crate) fn section(page: &mut String, link: impl Fn(&Swatch) -> Option<String>) {
     let parts = [
         (
@@ -160,7 +184,8 @@ pub(crate) fn section(page: &mut String, link: impl Fn(&Swatch) -> Option<String
         (
             "waves",
             "Waves",
-            "Along u, which runs around a ball. The second wave, here <code>one</code>, runs along v.",
+            "Along u, which runs around a ball. The second wave, here <code>one</code>, \
+             runs along v.",
             &["wave-"],
         ),
         (
@@ -181,7 +206,8 @@ pub(crate) fn section(page: &mut String, link: impl Fn(&Swatch) -> Option<String
             .filter(|s| prefixes.iter().any(|p| s.name.starts_with(p)))
         {
             let picture = format!(
-                "<img src=\"reference/{0}.png\" width=\"240\" height=\"180\" loading=\"lazy\" alt=\"{0}\">",
+                "<img src=\"reference/{0}.png\" width=\"240\" height=\"180\" \
+                 loading=\"lazy\" alt=\"{0}\">",
                 swatch.name
             );
             let picture = match link(swatch) {
@@ -198,7 +224,7 @@ pub(crate) fn section(page: &mut String, link: impl Fn(&Swatch) -> Option<String
     }
 }
 
-/// Whether a word of a list has a picture.
+/// Returns whether all words of a list have a picture.
 #[cfg(test)]
 fn are_pictured(command: &str, list: &[OptionSpec]) -> bool {
     list.iter()

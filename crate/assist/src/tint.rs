@@ -1,5 +1,4 @@
-//! Colours that are written in a command: where, and which. An editor shows them and lets them be
-//! chosen.
+//! Finds colours that are written in a command. An editor shows them and lets them be chosen.
 
 use crate::index::Index;
 use crate::place;
@@ -11,15 +10,15 @@ use std::ops::Range;
 /// A colour in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tint {
-    /// Its bytes: a name, three numbers or `rgb(…)` with three numbers. Another colour can be
+    /// The bytes: a name, three numbers or `rgb(…)` with three numbers. Another colour can be
     /// written there.
     pub span: Range<usize>,
     /// Red, green and blue.
     pub colour: [f32; 3],
 }
 
-/// The colours that the command at a byte names outright, in their order; those that are computed
-/// are left out.
+/// Finds the colours that the command at a byte names outright, in their order; those that are
+/// computed are left out.
 ///
 /// ```
 /// let text = "surface Clay, diffuse SandyBrown, specular <0.5 0.5 0.5>, shine 40";
@@ -77,7 +76,7 @@ pub fn tints(project: &Project, file: usize, byte: usize) -> Vec<Tint> {
             }
             What::Triple if takes_colours => {
                 begun = None;
-                if let Some(colour) = colours::find(written).or_else(|| computed(written)) {
+                if let Some(colour) = colours::find(written).or_else(|| rgb(written)) {
                     found.push(Tint {
                         span: span.clone(),
                         colour,
@@ -90,8 +89,8 @@ pub fn tints(project: &Project, file: usize, byte: usize) -> Vec<Tint> {
     found
 }
 
-/// The colour of `rgb(r, g, b)` with three numbers.
-fn computed(text: &str) -> Option<[f32; 3]> {
+/// Reads the colour of `rgb(r, g, b)` with three numbers.
+fn rgb(text: &str) -> Option<[f32; 3]> {
     let inner = text.strip_prefix("rgb(")?.strip_suffix(')')?;
     let mut parts = inner.split(',').map(|part| part.trim().parse());
     let colour = [
@@ -106,7 +105,7 @@ fn computed(text: &str) -> Option<[f32; 3]> {
 mod tests {
     use super::*;
 
-    fn found(text: &str) -> Vec<(&str, [f32; 3])> {
+    fn colours_of(text: &str) -> Vec<(&str, [f32; 3])> {
         let tints = tints(&Project::single(text), 0, 2);
         let spans = tints.into_iter();
         spans.map(|t| (&text[t.span], t.colour)).collect()
@@ -114,30 +113,33 @@ mod tests {
 
     #[test]
     fn names_numbers_and_rgb_are_found() {
-        assert_eq!(found("light White, position 1 2 3"), [("White", [1.0; 3])]);
         assert_eq!(
-            found("light 0.5 0.25 1 point, position 1 2 3"),
+            colours_of("light White, position 1 2 3"),
+            [("White", [1.0; 3])]
+        );
+        assert_eq!(
+            colours_of("light 0.5 0.25 1 point, position 1 2 3"),
             [("0.5 0.25 1", [0.5, 0.25, 1.0])]
         );
         assert_eq!(
-            found("background rgb(0.1, 0.2, 0.3) to Black"),
+            colours_of("background rgb(0.1, 0.2, 0.3) to Black"),
             [("rgb(0.1, 0.2, 0.3)", [0.1, 0.2, 0.3]), ("Black", [0.0; 3])]
         );
         assert_eq!(
-            found("texture T, pigment wood, bounds <0.1 0.2 0.3> Wheat, replace").len(),
+            colours_of("texture T, pigment wood, bounds <0.1 0.2 0.3> Wheat, replace").len(),
             2
         );
     }
 
     #[test]
     fn what_is_no_colour_is_left_out() {
-        assert_eq!(found("sphere Clay 1, 0 0 0"), []);
-        assert_eq!(found("eyep 1 2 3"), []);
-        assert_eq!(found("surface S, specular 50%, shine 40"), []);
-        assert_eq!(found("light Lamp*0.5, position 1 2 3"), []);
-        assert_eq!(found("# light White"), []);
+        assert_eq!(colours_of("sphere Clay 1, 0 0 0"), []);
+        assert_eq!(colours_of("eyep 1 2 3"), []);
+        assert_eq!(colours_of("surface S, specular 50%, shine 40"), []);
+        assert_eq!(colours_of("light Lamp*0.5, position 1 2 3"), []);
+        assert_eq!(colours_of("# light White"), []);
         // Not finished yet.
-        assert_eq!(found("light 0.5 0.5"), []);
+        assert_eq!(colours_of("light 0.5 0.5"), []);
     }
 
     #[test]

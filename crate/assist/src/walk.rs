@@ -20,7 +20,7 @@ pub enum Event<'s> {
 }
 
 impl<'s> Event<'s> {
-    /// The command, or the head of the structure.
+    /// Returns the command, or the head of the structure.
     pub fn command(self) -> Option<&'s Command> {
         match self {
             Self::Command(command) => Some(command),
@@ -32,7 +32,7 @@ impl<'s> Event<'s> {
     }
 }
 
-/// All that is met in a block.
+/// Returns the events of a walk through a block.
 pub fn events(block: &Block) -> Vec<Event<'_>> {
     let mut events = Vec::new();
     collect(block, &mut events);

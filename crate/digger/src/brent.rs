@@ -2,7 +2,7 @@
 //! of two) where it falls well within the bracket and shrinks fast enough, halving otherwise.
 use crate::march::{Bracket, MOST_REFINING, TOLERANCE};
 
-/// The root in a bracket.
+/// Returns the root in a bracket.
 pub(crate) fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
     // The best place so far, the one before it, and the far end of the bracket.
     let [mut before, mut best] = bracket.ends;

@@ -3,7 +3,7 @@
 use wasm_bindgen::prelude::*;
 use worker::Engine;
 
-/// Takes over the worker's messages. Called once by `www/digger_worker.js`.
+/// Takes over the worker's messages; `www/digger_worker.js` calls it once.
 ///
 /// # Errors
 /// Outside a dedicated worker.

@@ -1,6 +1,6 @@
-//! Errors of the scene's digger: for each pixel, along the ray through its middle, the
-//! distance between the first hit that the digger finds and the first crossing of the field itself,
-//! found in double precision.
+//! Errors of the scene's digger: for each pixel, along the ray through its middle, the distance
+//! between the first hit that the digger finds and the first crossing of the field itself, found in
+//! double precision.
 //!
 //! Four bytes stand for a pixel, as in a picture, so that such tiles travel as others do: a
 //! single-precision number, the smallest byte first.
@@ -8,21 +8,22 @@
 use scene::{Projection, Scene};
 use tracer::{Picture, Tile};
 
-/// Pixels of a row whose rays are followed together.
+/// Number of pixels of a row whose rays are followed together.
 const TOGETHER: u32 = 8;
 
 /// Result of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pixel {
-    /// Neither hits.
+    /// Misses of both.
     Empty,
-    /// The digger and the field hit, at this distance along the ray from each other.
+    /// Hits of both, at this distance along the ray from each other.
     Off(f32),
-    /// Either the digger or the field hits.
+    /// A hit of the digger or the field alone.
     Alone,
 }
 
 impl Pixel {
+    /// Encodes the pixel: −1 for no hit, the distance, or infinity for a single hit.
     fn pack(self) -> [u8; 4] {
         let number = match self {
             Self::Empty => -1.0,
@@ -32,6 +33,7 @@ impl Pixel {
         number.to_le_bytes()
     }
 
+    /// Decodes a pixel.
     fn unpack(bytes: [u8; 4]) -> Self {
         match f32::from_le_bytes(bytes) {
             f32::INFINITY => Self::Alone,
@@ -41,14 +43,14 @@ impl Pixel {
     }
 }
 
-/// The pixels of a tile, or of a whole picture.
+/// Decodes the pixels of a tile, or of a whole picture.
 #[must_use]
 pub fn unpack(bytes: &[u8]) -> Vec<Pixel> {
     let (pixels, _) = bytes.as_chunks();
     pixels.iter().copied().map(Pixel::unpack).collect()
 }
 
-/// Scene made ready for comparing.
+/// Scene prepared for the comparison.
 pub struct Errors {
     /// Picture by the digger.
     found: Picture,
@@ -70,26 +72,22 @@ impl Errors {
         }
     }
 
-    /// Compares one tile, rows from the top. `stop` is asked now and then; when it says true the
-    /// tile is given up.
+    /// Compares one tile; returns the encoded pixels, rows from the top. `None` soon after `stop`,
+    /// which is called now and then, has returned true.
     #[must_use]
     pub fn trace(&self, tile: Tile, stop: &dyn Fn() -> bool) -> Option<Vec<u8>> {
-        let middle = |at: u32, of: u32| (f64::from(at) + 0.5) / f64::from(of);
-        let ray = |x: u32, y: u32| {
-            let way = self
-                .projection
-                .direction(middle(x, self.size[0]), middle(y, self.size[1]));
-            (self.projection.eye, way)
-        };
         let mut bytes = Vec::new();
         for y in tile.y..tile.y + tile.height {
             let end = tile.x + tile.width;
-            // Which rays are followed together does not depend on the tiles, whose sides are
-            // multiples of that.
+            // The sides of tiles are multiples of the rays that are followed together, so that a
+            // pixel does not depend on its tile.
             for left in (tile.x..end).step_by(TOGETHER as usize) {
-                let rays: Vec<_> = (left..end.min(left + TOGETHER))
-                    .map(|x| ray(x, y))
-                    .collect();
+                let mut rays = Vec::new();
+                for x in left..end.min(left + TOGETHER) {
+                    let [x, y] = [[x, self.size[0]], [y, self.size[1]]]
+                        .map(|[at, of]| (f64::from(at) + 0.5) / f64::from(of));
+                    rays.push((self.projection.eye, self.projection.direction(x, y)));
+                }
                 for (hit, &(eye, way)) in self.found.cast(&rays).iter().zip(&rays) {
                     let pixel = match (hit, self.exact.hits(eye, way).first()) {
                         (None, None) => Pixel::Empty,

@@ -10,7 +10,8 @@ use field::THRESHOLD;
 use scene::Settings;
 use tracer::{Quest, roots};
 
-/// Most spans added up on a ray, or 64 times its primitives; crossings beyond are not found.
+/// Most spans added up on a ray, unless 64 times its primitives are more; crossings beyond are not
+/// found.
 const MOST_SPANS: usize = 1 << 18;
 
 /// Cubic on a part of the ray.
@@ -41,7 +42,7 @@ impl CubicPart {
         }
     }
 
-    /// The powers of t − `start` of the same cubic.
+    /// Returns the coefficients by powers of t − `start`.
     fn shift(&self, start: f64) -> [f64; 4] {
         let s = start - self.from;
         let [a, b, c, d] = self.powers;
@@ -54,7 +55,7 @@ impl CubicPart {
     }
 }
 
-/// Finds the first crossing that the quest asks for, by so many spans of each primitive.
+/// Finds the first crossing that the quest asks for, by `spans` spans of each primitive.
 pub(crate) fn first(spans: u32, sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
     let spans = spans.clamp(1, Settings::MAX_SPANS);
     let mut pieces = Vec::new();
@@ -98,13 +99,14 @@ pub(crate) fn first(spans: u32, sight: &mut Sight<'_>, quest: Quest) -> Option<f
             }
         }
         let length = to - from;
-        let value = |x: f64| sum.iter().rev().fold(0.0, |value, c| value * x + c);
         let found = roots(&sum, 0.0, length);
         let found = found.as_slice();
         let places = [0.0].into_iter().chain(found.iter().copied());
         for (i, root) in places.enumerate() {
             let beyond = found.get(i).copied().unwrap_or(length);
-            if side.arrive(value(0.5 * (root + beyond)) > 0.0) {
+            let x = 0.5 * (root + beyond);
+            let value = sum.iter().rev().fold(0.0, |value, c| value * x + c);
+            if side.arrive(value > 0.0) {
                 return Some(from + root);
             }
         }

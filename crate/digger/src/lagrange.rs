@@ -18,13 +18,14 @@ pub(crate) fn first(sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
             *sample = sight.excess(start + i as f64 * step).0;
         }
         first = samples[4];
-        let polynomial = through(samples);
-        let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
+        let polynomial = interpolate(samples);
         let found = roots(&polynomial, 0.0, 4.0);
         let found = found.as_slice();
         for (i, &root) in found.iter().enumerate() {
             let next = found.get(i + 1).copied().unwrap_or(4.0);
-            if side.arrive(value(0.5 * (root + next)) > 0.0) {
+            let x = 0.5 * (root + next);
+            let value = polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
+            if side.arrive(value > 0.0) {
                 return Some(start + root * step);
             }
         }
@@ -37,9 +38,9 @@ pub(crate) fn first(sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
     None
 }
 
-/// The coefficients, by powers of x, of the polynomial through samples at x = 0 … 4 (by Newton's
-/// forward differences).
-fn through(samples: [f64; 5]) -> [f64; 5] {
+/// Returns the coefficients, by powers of x, of the polynomial through samples at x = 0 … 4 (by
+/// Newton's forward differences).
+fn interpolate(samples: [f64; 5]) -> [f64; 5] {
     let mut d = samples;
     for order in 1..5 {
         for i in (order..5).rev() {

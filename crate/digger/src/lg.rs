@@ -1,20 +1,20 @@
-//! LG surfaces (Kalra and Barr): halving the ray until two Lipschitz constants isolate the root of
-//! each interval.
+//! Kalra and Barr's LG surfaces: the ray is halved until two Lipschitz constants isolate the root
+//! of each interval.
 //!
 //! Let d be half an interval's length and m its middle. If |F(m)−T| > L·d, where L bounds the rate
 //! of change of F, there is no root. If |F′(m)| > G·d, where G bounds that of F′, F is monotone, so
-//! there is one root or none, as the signs at the ends tell; the regula falsi refines it. Otherwise
+//! there is one root or none, as the signs at the ends show; the regula falsi refines it. Otherwise
 //! both halves are searched. L and G are computed for each interval, from bounds per primitive.
 use crate::march::Bracket;
 use crate::{Side, Sight, regula_falsi};
 use core::ops::Range;
 use tracer::Quest;
 
-/// Intervals shorter than this are not halved.
+/// Length below which intervals are not halved.
 const SHORTEST_INTERVAL: f64 = 1e-7;
-/// Most looks at a primitive on a ray, or 64 times its primitives: along a ray that lies in the
-/// surface every interval would have to be halved to the last. The signs at the ends decide the
-/// rest.
+/// Most looks at a primitive on a ray, unless 64 times its primitives are more: along a ray that
+/// lies in the surface every interval would have to be halved to the last. The signs at the ends
+/// decide the rest.
 const MOST_LG_LOOKS: u64 = 1 << 16;
 
 /// Finds the first crossing that the quest asks for.
@@ -32,6 +32,7 @@ pub(crate) fn first(sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
     search.visit(ends, all)
 }
 
+/// A search on one ray.
 struct Search<'s, 'a> {
     sight: &'s mut Sight<'a>,
     side: Side,
@@ -42,6 +43,7 @@ struct Search<'s, 'a> {
 }
 
 impl Search<'_, '_> {
+    /// Returns F − T and its slope, of some primitives.
     fn value(&mut self, list: &Range<usize>, t: f64) -> (f64, f64) {
         self.sight.excess_of(&self.lists[list.clone()], t)
     }
@@ -63,6 +65,7 @@ impl Search<'_, '_> {
         found
     }
 
+    /// Searches an interval, given the primitives that count in it.
     fn isolate(&mut self, ends: [f64; 2], list: Range<usize>) -> Option<f64> {
         let [from, to] = ends;
         let middle = 0.5 * (from + to);
@@ -87,7 +90,7 @@ impl Search<'_, '_> {
         }
         let bracket = Bracket { ends, values };
         let (sight, terms) = (&mut *self.sight, &self.lists[list]);
-        let mut f = |t: f64| sight.excess_of(terms, t).0;
-        Some(regula_falsi::refine(&mut f, bracket))
+        let root = regula_falsi::refine(&mut |t| sight.excess_of(terms, t).0, bracket);
+        Some(root)
     }
 }

@@ -21,18 +21,18 @@
 //!
 //! | digger | finds | can miss |
 //! |---|---|---|
-//! | `hermite` (the tracer's) | roots of spans with a bounded error | little: see the limits of `tracer` |
+//! | `hermite` (the tracer's) | roots of spans with a bounded error | see the limits of `tracer` |
 //! | `hermite2` | roots of n Hermite spans a primitive | crossings that its spans miss |
-//! | `lagrange` | roots of polynomials through five samples | parts thinner than the samples' step |
+//! | `lagrange` | roots of polynomials through five samples | parts thinner than a step |
 //! | `brent`, `ridder`, `rf` | changes of sign between steps, refined | parts thinner than a step |
 //! | `lg` | monotone intervals, by Lipschitz constants | nothing longer than 10⁻⁷ |
 //! | `sphere` | the surface, by safe steps towards it | nothing longer than 10⁻⁶ |
 //!
-//! Lengths are in units of the scene's size. What one ray may cost is limited for each of them, so
+//! Lengths are in units of the scene's size. Each method has a limit on the cost of one ray, so
 //! that no scene takes unlimited time; the limits are far above the needs of pictures.
 //!
-//! The page fetches this build of the tracing worker when a text says `digger`; it does all that
-//! the other one does, with the same bits.
+//! The page fetches this build of the tracing worker when a text has the command `digger`; it does
+//! all that the other one does, with the same bits.
 
 mod brent;
 #[cfg(all(target_arch = "wasm32", feature = "entry"))]
@@ -82,10 +82,11 @@ pub fn prepare(scene: &Scene, size: [u32; 2], kind: Kind) -> Result<Prepared, St
     })
 }
 
-/// Finds the first crossing that the quest asks for (`First` or `Entry`) within the sight's range.
+/// A function that finds the first crossing that the quest asks for (`First` or `Entry`) within the
+/// sight's range.
 type Method = Box<dyn Fn(&mut Sight<'_>, Quest) -> Option<f64> + Send + Sync>;
 
-/// Returns the method of a name; `None` of the tracer's own.
+/// Returns the method of a name; `None` for the tracer's own.
 fn method(name: Digger) -> Option<Method> {
     Some(match name {
         Digger::Hermite => return None,
@@ -118,7 +119,7 @@ impl RootFinder for Finder {
     }
 }
 
-/// Tracks on which side of the surface a ray is, and detects crossings.
+/// The side of the surface on which a ray is; its changes are crossings.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     inside: Option<bool>,
@@ -134,7 +135,7 @@ impl Side {
         }
     }
 
-    /// Records the side; returns whether the ray has crossed since the last call in the direction
+    /// Records the side. Returns whether the ray has crossed since the last call, in the direction
     /// that the quest asks for.
     fn arrive(&mut self, inside: bool) -> bool {
         let crossed = self.inside.is_some_and(|before| before != inside);

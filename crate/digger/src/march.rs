@@ -4,20 +4,19 @@
 use crate::{Side, Sight};
 use tracer::Quest;
 
-/// Steps in the length on which the sharpest kernel changes. A surface may be missed where the ray
-/// is inside it for less than a step.
+/// Number of steps in the length on which the sharpest kernel changes. A surface may be missed
+/// where the ray is inside it for less than a step.
 const STEPS: f64 = 8.0;
-/// Most steps on a ray; fewer where it meets very many primitives, for at most about
-/// [`MOST_MARCH_LOOKS`] evaluations, or 64 of each.
+/// Most steps on a ray.
 const MOST_MARCH_STEPS: usize = 4096;
-/// See [`MOST_MARCH_STEPS`].
+/// Most evaluations on a ray, about, except that each primitive may be evaluated 64 times.
 const MOST_MARCH_LOOKS: usize = 1 << 18;
 /// Accuracy of refined roots.
 pub(crate) const TOLERANCE: f64 = 1e-9;
 /// Most evaluations while refining a root.
 pub(crate) const MOST_REFINING: usize = 100;
 
-/// The length of a step.
+/// Returns the length of a step.
 pub(crate) fn step(sight: &Sight<'_>) -> f64 {
     let [from, to] = sight.range;
     let most = (MOST_MARCH_LOOKS / sight.terms.len().max(1)).clamp(64, MOST_MARCH_STEPS);
@@ -31,7 +30,7 @@ pub(crate) struct Bracket {
     pub values: [f64; 2],
 }
 
-/// Marches to the first change of sign that the quest asks for, and has it refined.
+/// Marches to the first change of sign that the quest asks for, and refines the root there.
 pub(crate) fn march(
     sight: &mut Sight<'_>,
     quest: Quest,

@@ -3,7 +3,7 @@
 //! which one end of a curved function's bracket never moves.
 use crate::march::{Bracket, MOST_REFINING, TOLERANCE};
 
-/// The root in a bracket.
+/// Returns the root in a bracket.
 pub(crate) fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
     let [mut a, mut b] = bracket.ends;
     let [mut fa, mut fb] = bracket.values;

@@ -1,9 +1,9 @@
-//! Marching, then Ridders' method: of the values at both ends and in the middle an exponential
-//! factor is divided out that makes them lie on a straight line, whose root is taken. It always
-//! lies in the bracket, which at least halves in each round.
+//! Marching, then Ridders' method: the values at both ends and in the middle are divided by an
+//! exponential factor that makes them lie on a straight line, whose root is taken. It always lies
+//! in the bracket, which at least halves in each round.
 use crate::march::{Bracket, MOST_REFINING, TOLERANCE};
 
-/// The root in a bracket.
+/// Returns the root in a bracket.
 pub(crate) fn refine(f: &mut dyn FnMut(f64) -> f64, bracket: Bracket) -> f64 {
     let [mut a, mut b] = bracket.ends;
     let [mut fa, mut fb] = bracket.values;

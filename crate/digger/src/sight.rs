@@ -9,14 +9,14 @@ const FAR: f64 = 1e4;
 pub(crate) struct Term<'a> {
     pub primitive: &'a Primitive,
     pub bound: &'a Bound,
-    /// The ray is within the primitive's depth of influence between these parameters; the field
-    /// of the primitive is taken to be 0 elsewhere.
+    /// Parameters between which the ray is within the primitive's depth of influence; elsewhere the
+    /// primitive's field is taken to be 0.
     pub interval: [f64; 2],
     along: AlongRay<'a, f64>,
 }
 
 impl Term<'_> {
-    /// Whether the ray is within its depth of influence somewhere between two parameters.
+    /// Whether the ray is within the depth of influence somewhere between two parameters.
     pub fn meets(&self, from: f64, to: f64) -> bool {
         self.interval[0] <= to && from <= self.interval[1]
     }
@@ -26,7 +26,7 @@ impl Term<'_> {
 pub(crate) struct Sight<'a> {
     ray: Ray,
     pub terms: Vec<Term<'a>>,
-    /// The part of the ray, between 0 and its limit, where any of them counts.
+    /// The part of the ray, between 0 and its limit, in which some primitive counts.
     pub range: [f64; 2],
     /// Evaluations of one primitive's field at one point, so far.
     pub evaluations: u64,
@@ -63,7 +63,7 @@ impl<'a> Sight<'a> {
         })
     }
 
-    /// F − T and its slope along the ray.
+    /// Returns F − T and its slope along the ray.
     pub fn excess(&mut self, t: f64) -> (f64, f64) {
         let mut sum = (-THRESHOLD, 0.0);
         for term in &self.terms {
@@ -82,7 +82,7 @@ impl<'a> Sight<'a> {
         self.terms[term].along.at(t)
     }
 
-    /// F − T and its slope, of some primitives, wherever they are.
+    /// Returns F − T and its slope along the ray, of some primitives, wherever they are.
     pub fn excess_of(&mut self, terms: &[u32], t: f64) -> (f64, f64) {
         let mut sum = (-THRESHOLD, 0.0);
         for &term in terms {
@@ -92,8 +92,8 @@ impl<'a> Sight<'a> {
         sum
     }
 
-    /// Kalra and Barr's L, and with `turns` their G, of some primitives between two parameters: how
-    /// fast the field and its slope along the ray can change there.
+    /// Returns Kalra and Barr's L of some primitives between two parameters, and if `turns`, their
+    /// G: bounds on the rates of change of the field and of its slope along the ray.
     pub fn lipschitz(&self, terms: &[u32], [from, to]: [f64; 2], turns: bool) -> (f64, f64) {
         let center = self.ray.at(0.5 * (from + to));
         let radius = 0.5 * (to - from) * (1.0 + 1e-9);
@@ -109,8 +109,8 @@ impl<'a> Sight<'a> {
         sum
     }
 
-    /// The shortest length on which any of the kernels changes: 1/s, the inverse of its width
-    /// parameter.
+    /// Returns the shortest length on which any of the kernels changes: 1/s, the inverse of its
+    /// width parameter.
     pub fn finest(&self) -> f64 {
         let widths = self.terms.iter().map(|term| term.primitive.width);
         1.0 / widths.fold(f64::MIN_POSITIVE, f64::max)

@@ -1,15 +1,15 @@
-//! Sphere tracing (Hart): from each place a step of |F−T|/L, with L a Lipschitz constant of F,
-//! cannot reach the surface, and such steps close in on it from one side.
+//! Hart's sphere tracing: from each place a step of |F−T|/L, with L a Lipschitz constant of F,
+//! cannot pass the surface, and such steps close in on it from one side.
 //!
 //! L holds for the stretch ahead that the step stays within, from bounds per primitive; the stretch
 //! grows where steps would be longer and shrinks with them.
 use crate::{Side, Sight};
 use tracer::Quest;
 
-/// The shortest step: a hit is this near to the surface, and nothing longer is missed.
+/// The shortest step: a hit is this near to the surface, and no longer part of the ray is missed.
 const SHORTEST_STEP: f64 = 1e-6;
-/// Evaluations of a primitive (or 64 times the ray's primitives) after which a ray that creeps
-/// along the surface counts as a hit.
+/// Evaluations of a primitive (or 64 times the ray's primitives, if those are more) after which a
+/// ray that creeps along the surface counts as a hit.
 const MOST_SPHERE_LOOKS: usize = 1 << 16;
 
 /// Finds the first crossing that the quest asks for.
@@ -42,7 +42,7 @@ pub(crate) fn first(sight: &mut Sight<'_>, quest: Quest) -> Option<f64> {
             at = end;
             ahead *= 2.0;
         } else {
-            // Not a number where both are infinite, near a pole.
+            // NaN if both are infinite, near a pole.
             let step = safe.max(SHORTEST_STEP);
             at += step;
             ahead = 2.0 * step;

@@ -16,7 +16,7 @@ pub enum Command {
     SetTheme(theme::Choice),
     /// Open a text in the editor as an example is opened.
     OpenText {
-        /// Its name.
+        /// The name.
         name: String,
         /// The dataset.
         text: String,

@@ -16,8 +16,8 @@ impl Grid {
         self.values[y * self.width + x]
     }
 
-    /// The pieces of the line on which the value is `level`, in units of samples. A saddle is cut
-    /// by the mean of its corners.
+    /// Finds the pieces of the line on which the value is `level`, in units of samples. A saddle is
+    /// cut by the mean of its corners.
     #[must_use]
     pub fn line(&self, level: f32) -> Vec<[[f32; 2]; 2]> {
         let mut pieces = Vec::new();
@@ -38,9 +38,9 @@ impl Grid {
         pieces
     }
 
-    /// The pieces of the sheets on which two bodies in contact touch: where the leading body
-    /// changes, and both their fields are `level`. `leading` says which body leads at each sample
-    /// and by how much.
+    /// Finds the pieces of the sheets on which two bodies in contact touch: where the leading body
+    /// changes, and both their fields are `level`. `leading` has the leading body at each sample
+    /// and its lead.
     #[must_use]
     pub fn border(&self, leading: &[(u32, f32)], level: f32) -> Vec<[[f32; 2]; 2]> {
         let mut pieces = Vec::new();
@@ -85,8 +85,9 @@ impl Grid {
         pieces
     }
 
-    /// Polygons that cover where the value is above `level`, in units of samples: one for each run
-    /// of cells that lie inside as a whole, one for each cell that the line crosses.
+    /// Returns polygons that cover the area where the value is above `level`, in units of samples:
+    /// one for each run of cells that lie inside as a whole, one for each cell that the line
+    /// crosses.
     #[must_use]
     pub fn inside(&self, level: f32) -> Vec<Vec<[f32; 2]>> {
         let mut polygons = Vec::new();
@@ -126,7 +127,7 @@ impl Grid {
     }
 }
 
-/// The part of a cell that is above the level.
+/// Returns the part of a cell that is above the level.
 fn cut(corners: [([usize; 2], f32); 4], level: f32) -> Vec<[f32; 2]> {
     let mut polygon = Vec::with_capacity(6);
     for side in 0..4 {
@@ -144,7 +145,7 @@ fn cut(corners: [([usize; 2], f32); 4], level: f32) -> Vec<[f32; 2]> {
     polygon
 }
 
-/// Corners go around the cell from its origin.
+/// Adds the pieces of the line in a cell, whose corners go around it from its origin.
 fn cell(corners: [f32; 4], level: f32, [x, y]: [f32; 2], pieces: &mut Vec<[[f32; 2]; 2]>) {
     const PLACES: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let above = corners.map(|value| value > level);

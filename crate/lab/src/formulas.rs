@@ -1,5 +1,5 @@
-//! The chart in words: which formula gives the field of a kernel on a primitive, and how it is
-//! computed (see `field`, `kernel.rs`).
+//! The chart in words: the formula of the field of a kernel on a primitive, and the method by which
+//! it is computed (see `field`, `kernel.rs`).
 
 use field::Kernel;
 use field::kernel::Cell;
@@ -23,7 +23,7 @@ pub enum Bone {
     Curve,
 }
 
-/// All of them, in the order of the chart.
+/// The primitives, in the order of the chart.
 pub const BONES: [Bone; 7] = [
     Bone::Point,
     Bone::Line,
@@ -35,7 +35,7 @@ pub const BONES: [Bone; 7] = [
 ];
 
 impl Bone {
-    /// Its name.
+    /// Returns the name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -48,10 +48,8 @@ impl Bone {
             Self::Curve => "curve",
         }
     }
-}
 
-impl Bone {
-    /// Its name in a sentence.
+    /// Returns the name in a sentence.
     #[must_use]
     pub fn with_article(self) -> String {
         let article = if self == Self::Arc { "an" } else { "a" };
@@ -59,7 +57,7 @@ impl Bone {
     }
 }
 
-/// Returns how a kernel's field of a primitive is computed.
+/// Returns the formula of a cell of the chart, and the method by which it is computed.
 #[must_use]
 pub fn cell(kernel: Kernel, bone: Bone) -> Cell {
     let cells = kernel.cells();

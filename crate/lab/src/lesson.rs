@@ -38,7 +38,7 @@ pub struct Entry {
     figure: fn() -> Box<dyn Figure>,
 }
 
-/// The line of a lesson whose figure begins with its default numbers.
+/// Makes the line of a lesson whose figure begins with its default numbers.
 pub const fn entry<F: Figure + Default + 'static>(words: &'static Words) -> Entry {
     Entry {
         words,
@@ -60,7 +60,7 @@ impl fmt::Debug for Lesson {
 const PREFIX: &str = "#lab";
 
 impl Lesson {
-    /// All lessons, in the order of the list.
+    /// Returns all lessons, in the order of the list.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..lessons::ALL.len()).map(Self)
     }
@@ -81,14 +81,14 @@ impl Lesson {
         (lessons::ALL[self.0].figure)()
     }
 
-    /// The fragment that leads here.
+    /// Returns the fragment that leads here.
     #[must_use]
     pub fn hash(self) -> String {
         format!("{PREFIX}={}", self.words().link)
     }
 
-    /// The lesson a fragment leads to; the first one if it names an unknown lesson, `None` if it
-    /// does not lead to the lab.
+    /// Finds the lesson a fragment leads to; the first one if it names an unknown lesson, `None` if
+    /// it does not lead to the lab.
     #[must_use]
     pub fn of_hash(hash: &str) -> Option<Self> {
         let rest = hash.strip_prefix(PREFIX)?;

@@ -6,8 +6,8 @@ use crate::dataset::Dataset;
 use crate::lesson::Lesson;
 use crate::state::Lab;
 use egui::{
-    Align, Align2, Button, CentralPanel, Color32, FontId, Layout, Margin, Panel, Pos2, Rect,
-    RichText, ScrollArea, Sense, Stroke, Ui, vec2,
+    Align, Align2, Button, CentralPanel, Color32, FontId, Layout, Margin, Panel, Rect, RichText,
+    ScrollArea, Sense, Stroke, Ui, vec2,
 };
 use widgets::icon::{self, Icon};
 use widgets::{places, screen, theme};
@@ -76,6 +76,7 @@ pub fn show(lab: &mut Lab, frame: &Frame<'_>, ui: &mut Ui, commands: &mut Vec<Co
     });
 }
 
+/// Draws the bar of the lab.
 fn lab_bar(
     lab: &mut Lab,
     frame: &Frame<'_>,
@@ -111,19 +112,19 @@ fn lab_bar(
                 commands.push(Command::SetTheme(next));
             }
             let now = frame.now;
-            if let Some((said, until)) = lab.said {
+            if let Some((message, until)) = lab.message {
                 if now < until {
-                    ui.label(RichText::new(said).color(palette.weak).size(13.0));
+                    ui.label(RichText::new(message).color(palette.weak).size(13.0));
                     ui.ctx().request_repaint_after_secs((until - now) as f32);
                 } else {
-                    lab.said = None;
+                    lab.message = None;
                 }
             }
         });
     });
 }
 
-/// The lessons side by side, for a narrow page.
+/// Draws the lessons side by side, for a narrow page.
 fn strip(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     ScrollArea::horizontal()
@@ -156,6 +157,7 @@ fn strip(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
         });
 }
 
+/// Notes the place of a lesson's button for tests.
 fn note(ui: &Ui, lesson: Lesson, rect: Rect) {
     places::note(
         ui.ctx(),
@@ -164,7 +166,7 @@ fn note(ui: &Ui, lesson: Lesson, rect: Rect) {
     );
 }
 
-/// The lessons below each other, for a wide page.
+/// Draws the lessons below each other, for a wide page.
 fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     ui.spacing_mut().item_spacing.y = 4.0;
@@ -191,23 +193,22 @@ fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
                 let mark = Rect::from_min_size(rect.min + vec2(0.0, 12.0), vec2(3.0, 28.0));
                 painter.rect_filled(mark, 1.5, palette.accent);
             }
-            let at = |x: f32, y: f32| Pos2::new(rect.left() + x, rect.top() + y);
             painter.text(
-                at(22.0, 18.0),
+                rect.min + vec2(22.0, 18.0),
                 Align2::CENTER_CENTER,
                 index + 1,
                 FontId::proportional(13.0),
                 if chosen { palette.accent } else { palette.weak },
             );
             painter.text(
-                at(38.0, 18.0),
+                rect.min + vec2(38.0, 18.0),
                 Align2::LEFT_CENTER,
                 words.name,
                 FontId::proportional(14.5),
                 if chosen { palette.strong } else { palette.text },
             );
             painter.text(
-                at(38.0, 36.0),
+                rect.min + vec2(38.0, 36.0),
                 Align2::LEFT_CENTER,
                 words.about,
                 FontId::proportional(11.5),
@@ -223,7 +224,7 @@ fn list(open: Lesson, ui: &mut Ui, commands: &mut Vec<Command>) {
     });
 }
 
-/// Title, sentences, button, and the figure.
+/// Draws title, sentences, button, and the figure.
 fn lesson(
     lab: &mut Lab,
     dataset: Dataset<'_>,
@@ -282,6 +283,7 @@ fn lesson(
     }
 }
 
+/// Draws the button that opens the lesson as a dataset; returns whether it was clicked.
 fn dataset_button(ui: &mut Ui) -> bool {
     let palette = theme::palette(ui.visuals());
     let button = Button::new(RichText::new("Open as dataset").color(palette.accent))

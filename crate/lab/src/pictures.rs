@@ -21,7 +21,7 @@ use std::sync::Arc;
 use widgets::theme;
 use worker::Kind;
 
-/// Pictures have numbers from here on, the main picture those below.
+/// First number of small pictures; the main picture has those below.
 pub const FIRST: u64 = 1 << 40;
 /// Most pictures kept.
 const MOST: usize = 260;
@@ -30,11 +30,11 @@ const LARGEST: f32 = 420.0;
 
 /// Outcome of compiling a text.
 enum Kept {
-    /// It was traced.
+    /// A picture that was traced.
     Drawn(TextureHandle),
-    /// It was measured how far off its digger is.
+    /// The measured errors of its digger.
     Measured(Rc<[Pixel]>),
-    /// It has something that is not drawn, or could not be traced; the reason.
+    /// The reason why it was not drawn or could not be traced.
     Refused(String),
 }
 
@@ -65,7 +65,7 @@ struct Running {
 pub enum Shown {
     /// The picture of this text.
     Picture,
-    /// The picture of a text before, while this one's is on its way.
+    /// The picture of an earlier text, while this one's is on its way.
     Older,
     /// Nothing yet.
     #[default]
@@ -84,18 +84,18 @@ pub struct Pictures {
     running: Option<Running>,
     number: u64,
     frame: u64,
-    /// How far the main picture is, while it has the workers.
+    /// The fraction done of the main picture, while it has the workers.
     pub blocked: Option<f64>,
 }
 
-fn hashed(value: impl Hash) -> u64 {
+fn hash(value: impl Hash) -> u64 {
     let mut hasher = DefaultHasher::new();
     value.hash(&mut hasher);
     hasher.finish()
 }
 
 impl Pictures {
-    /// No pictures yet.
+    /// Makes it without pictures.
     #[must_use]
     pub fn new(pool: Rc<RefCell<Pool>>) -> Self {
         Self {
@@ -116,27 +116,31 @@ impl Pictures {
         self.wishes.clear();
     }
 
-    /// Pictures asked for that are not there yet.
+    /// Returns the number of pictures that are asked for and not there yet.
     #[must_use]
     pub fn waiting(&self) -> usize {
         self.wishes.len()
     }
 
-    /// Pictures that the last frame showed.
+    /// Returns the number of pictures that the last frame showed.
     #[must_use]
-    pub fn drawn(&self) -> usize {
+    pub fn count_drawn(&self) -> usize {
         self.count(|kept| matches!(kept, Kept::Drawn(_)))
     }
 
-    /// Texts of the last frame that have no picture.
+    /// Returns the number of texts of the last frame that have no picture.
     #[must_use]
-    pub fn refused(&self) -> usize {
+    pub fn count_refused(&self) -> usize {
         self.count(|kept| matches!(kept, Kept::Refused(_)))
     }
 
+    /// Counts the texts of the last frame of a kind.
     fn count(&self, which: impl Fn(&Kept) -> bool) -> usize {
-        let shown = |entry: &&Entry| entry.used == self.frame && which(&entry.kept);
-        self.entries.values().filter(shown).count()
+        let shown = self
+            .entries
+            .values()
+            .filter(|entry| entry.used == self.frame);
+        shown.filter(|entry| which(&entry.kept)).count()
     }
 
     /// Gives the workers back.
@@ -146,7 +150,7 @@ impl Pictures {
         }
     }
 
-    /// Takes in what was traced and begins the next picture.
+    /// Takes the tiles that were traced and begins the next picture.
     pub fn tick(&mut self, ctx: &Context) {
         loop {
             if let Some(running) = &mut self.running {
@@ -234,16 +238,17 @@ impl Pictures {
         }
     }
 
-    /// The wish of the slot that has waited longest.
+    /// Returns the wish of the slot that has waited longest.
     fn next(&mut self) -> Option<Wish> {
-        let age = |wish: &Wish| self.slots.get(&wish.slot).map_or(0, |(_, given)| *given);
         let open = self
             .wishes
             .iter()
             .filter(|wish| !self.entries.contains_key(&wish.key));
-        open.min_by_key(|wish| age(wish)).cloned()
+        open.min_by_key(|wish| self.slots.get(&wish.slot).map_or(0, |(_, given)| *given))
+            .cloned()
     }
 
+    /// Keeps the outcome of a wish; the oldest pictures give way.
     fn keep(&mut self, wish: &Wish, kept: Kept) {
         if self.entries.len() >= MOST {
             let oldest = self.entries.values().map(|entry| entry.used).min();
@@ -264,13 +269,13 @@ impl Pictures {
     /// Shows the picture of a text in an area; requests it if it is missing.
     pub fn show(&mut self, ui: &Ui, slot: impl Hash, text: &str, place: Rect) -> Shown {
         let palette = theme::palette(ui.visuals());
-        let slot = hashed(slot);
+        let slot = hash(slot);
         let scale = ui.ctx().pixels_per_point();
         let most = (LARGEST / (place.width().max(place.height()) * scale).max(1.0)).min(1.0);
         let size = [place.width(), place.height()]
             .map(|side| (side * scale * most).round().max(8.0) as u32);
         let [r, g, b, _] = palette.paper.to_array();
-        let key = hashed((text, size, [r, g, b]));
+        let key = hash((text, size, [r, g, b]));
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         let round = 6.0;
         let painter = ui.painter();
@@ -301,7 +306,6 @@ impl Pictures {
             kind: Kind::Colours,
             background: [r, g, b].map(|c| f32::from(c) / 255.0),
         });
-        // Off the screen it can wait, but a wish it is.
         let last = self.slots.get(&slot).map(|(key, _)| *key);
         if let Some(entry) = last.and_then(|key| self.entries.get_mut(&key)) {
             entry.used = frame;
@@ -323,16 +327,16 @@ impl Pictures {
         Shown::Nothing
     }
 
-    /// How far off a text's digger is, in a square of so many pixels. What is not there yet is
-    /// asked for, and meanwhile that of the text before it stands in.
+    /// Returns the errors of a text's digger, in a square of `side` pixels; requests them if they
+    /// are missing, and returns those of the text before it meanwhile.
     pub fn errors(
         &mut self,
         slot: impl Hash,
         text: &str,
         side: u32,
     ) -> (Option<Rc<[Pixel]>>, Shown) {
-        let slot = hashed(slot);
-        let key = hashed((text, side));
+        let slot = hash(slot);
+        let key = hash((text, side));
         let last = self.slots.get(&slot).copied();
         let mut kept = |key: u64| {
             let entry = self.entries.get_mut(&key)?;

@@ -15,7 +15,7 @@ const HUES_LIGHT: [u32; 9] = [
     0xC97A00, 0x2288C4, 0x007F5C, 0x8F8200, 0x3B47B8, 0xC2410C, 0xA33E7A, 0x3A424C, 0x6B4423,
 ];
 
-/// One of nine colours.
+/// Returns one of nine colours.
 #[must_use]
 pub fn hue(ui: &Ui, index: usize) -> Color32 {
     let hues = if ui.visuals().dark_mode {
@@ -27,7 +27,7 @@ pub fn hue(ui: &Ui, index: usize) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
-/// A place with axes.
+/// Place with axes.
 pub struct Plot {
     /// Place of the curves.
     pub rect: Rect,
@@ -44,14 +44,14 @@ pub struct Plot {
 pub struct Axis<'a> {
     /// The first and the last value.
     pub range: [f64; 2],
-    /// Its quantity.
+    /// The quantity.
     pub label: &'a str,
     /// Whether there are numbers.
     pub numbers: bool,
 }
 
 impl<'a> Axis<'a> {
-    /// An axis with numbers.
+    /// Makes an axis with numbers.
     #[must_use]
     pub fn new(range: [f64; 2], label: &'a str) -> Self {
         Self {
@@ -61,7 +61,7 @@ impl<'a> Axis<'a> {
         }
     }
 
-    /// The same without numbers.
+    /// Leaves the numbers out.
     #[must_use]
     pub fn bare(self) -> Self {
         Self {
@@ -71,7 +71,7 @@ impl<'a> Axis<'a> {
     }
 }
 
-/// The panel of a figure.
+/// Draws the panel of a figure.
 pub fn panel(ui: &Ui, place: Rect) {
     let palette = theme::palette(ui.visuals());
     ui.painter().rect(
@@ -84,7 +84,7 @@ pub fn panel(ui: &Ui, place: Rect) {
 }
 
 impl Plot {
-    /// Draws axes into a place and gives what is between them.
+    /// Draws axes into a place and returns the plot between them.
     #[must_use]
     pub fn new(ui: &Ui, place: Rect, x: Axis<'_>, y: Axis<'_>) -> Self {
         let palette = theme::palette(ui.visuals());
@@ -139,19 +139,20 @@ impl Plot {
         plot
     }
 
-    /// Position of a value on the screen. Values far outside are clamped, for the painter's sake.
+    /// Returns the position of a value on the screen. Values far outside are clamped, for the
+    /// painter's sake.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> Pos2 {
-        let share = |value: f64, [low, high]: [f64; 2]| {
-            (((value - low) / (high - low)).clamp(-4.0, 5.0)) as f32
-        };
+        let [x, y] = [(x, self.x), (y, self.y)]
+            .map(|(value, [low, high])| ((value - low) / (high - low)).clamp(-4.0, 5.0) as f32);
+        let (width, height) = (self.rect.width(), self.rect.height());
         pos2(
-            self.rect.left() + self.rect.width() * share(x, self.x),
-            self.rect.bottom() - self.rect.height() * share(y, self.y),
+            self.rect.left() + width * x,
+            self.rect.bottom() - height * y,
         )
     }
 
-    /// The value at a place.
+    /// Returns the value at a place.
     #[must_use]
     pub fn value(&self, at: Pos2) -> [f64; 2] {
         let x = f64::from((at.x - self.rect.left()) / self.rect.width().max(1.0));
@@ -168,13 +169,13 @@ impl Plot {
         (0..=count).map(move |i| low + (high - low) * i as f64 / count as f64)
     }
 
-    /// How many points a smooth curve needs.
+    /// Returns the number of points that a smooth curve needs.
     #[must_use]
     pub fn enough(&self) -> usize {
         (self.rect.width() / 1.5).clamp(60.0, 700.0) as usize
     }
 
-    /// The points of a function.
+    /// Returns the points of a function.
     pub fn points(&self, f: impl Fn(f64) -> f64) -> Vec<Pos2> {
         self.samples(self.enough())
             .map(|x| self.at(x, f(x)))
@@ -187,7 +188,7 @@ impl Plot {
     }
 
     /// Draws a function in dashes.
-    pub fn dashed(&self, stroke: Stroke, f: impl Fn(f64) -> f64) {
+    pub fn dashes(&self, stroke: Stroke, f: impl Fn(f64) -> f64) {
         self.painter
             .extend(Shape::dashed_line(&self.points(f), stroke, 7.0, 4.0));
     }
@@ -214,7 +215,7 @@ impl Plot {
         self.painter.add(Shape::mesh(mesh));
     }
 
-    /// A vertical line with a word at its top.
+    /// Draws a vertical line with a word at its top.
     pub fn upright(&self, x: f64, stroke: Stroke, word: &str) {
         let at = self.at(x, self.y[0]).x;
         self.painter.extend(Shape::dashed_line(
@@ -233,7 +234,7 @@ impl Plot {
     }
 }
 
-/// Something to drag. `touch` makes it as large as a thumb needs.
+/// Draws a grip to drag, as large as a thumb needs.
 pub fn grip(ui: &Ui, name: &str, at: Pos2, colour: Color32, cursor: CursorIcon) -> Response {
     let size = ui.spacing().interact_size.y.max(30.0);
     let rect = Rect::from_center_size(at, Vec2::splat(size));
@@ -248,7 +249,7 @@ pub fn grip(ui: &Ui, name: &str, at: Pos2, colour: Color32, cursor: CursorIcon) 
     response.on_hover_and_drag_cursor(cursor)
 }
 
-/// Round values in a range, about as many as asked for.
+/// Returns round values in a range, about as many as asked for.
 #[must_use]
 pub fn ticks([low, high]: [f64; 2], about: f64) -> Vec<f64> {
     let span = high - low;
@@ -267,7 +268,7 @@ pub fn ticks([low, high]: [f64; 2], about: f64) -> Vec<f64> {
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-/// A number in few letters.
+/// Writes a number in few letters.
 #[must_use]
 pub fn number(value: f64) -> String {
     let size = value.abs();
@@ -286,7 +287,7 @@ pub fn number(value: f64) -> String {
     text.replace('-', "−")
 }
 
-/// A number as 2.4·10^−7: the fonts have no raised minus.
+/// Writes a number as 2.4·10^−7: the fonts have no raised minus.
 #[must_use]
 pub fn scientific(value: f64) -> String {
     if value == 0.0 {

@@ -5,7 +5,8 @@ use field::{BlobScale, Implicit, Kernel, Shaping, Sum};
 use glam::DVec3;
 use wide::f32x8;
 
-/// Flesh of a primitive in the lessons: kernel, radius, magnitude of the blobbiness.
+/// Returns the shaping of a primitive in the lessons from kernel, radius and magnitude of the
+/// blobbiness.
 #[must_use]
 pub fn shaping(kernel: Kernel, radius: f64, blobbiness: f64) -> Shaping {
     Shaping {
@@ -22,45 +23,43 @@ pub fn shaping(kernel: Kernel, radius: f64, blobbiness: f64) -> Shaping {
 /// A rectangle in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Its lower left corner.
+    /// The lower left corner.
     pub corner: DVec3,
-    /// Along its lower side, whole.
+    /// The vector along the lower side.
     pub across: DVec3,
-    /// Along its left side, whole.
+    /// The vector along the left side.
     pub up: DVec3,
 }
 
 impl Window {
-    /// The point at shares of both sides.
+    /// Returns the point at shares of both sides.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> DVec3 {
         self.corner + self.across * x + self.up * y
     }
 }
 
-/// The largest of the fields of some bodies at eight points: inside any of them it is above T.
-/// Without bodies it is 0.
+/// Computes the largest of the fields of some bodies at eight points, which is above T inside any
+/// of them; 0 without bodies.
 #[must_use]
 pub fn eight(bodies: &[&dyn Implicit], points: [DVec3; 8]) -> [f32; 8] {
-    let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
-    let point = [axis(|p| p.x), axis(|p| p.y), axis(|p| p.z)];
+    let point = [0, 1, 2].map(|axis: usize| f32x8::from(points.map(|p| p[axis] as f32)));
     let values = bodies.iter().map(|body| body.jet8(point).value);
     let largest = values.reduce(|a, b| a.fast_max(b));
     largest.unwrap_or(f32x8::splat(0.0)).to_array()
 }
 
-/// The same at one point.
+/// Computes the largest of the fields of some bodies at a point, as [`eight`] does.
 #[must_use]
 pub fn one(bodies: &[&dyn Implicit], point: DVec3) -> f64 {
     f64::from(eight(bodies, [point; 8])[0])
 }
 
-/// For each of eight points the body whose field is the largest there, and by how much it is larger
-/// than the next one's.
+/// Finds for each of eight points the body whose field is the largest there, and the lead of that
+/// field over the next one's.
 #[must_use]
 pub fn leading(bodies: &[&dyn Implicit], points: [DVec3; 8]) -> [(u32, f32); 8] {
-    let axis = |pick: fn(&DVec3) -> f64| f32x8::from(points.map(|p| pick(&p) as f32));
-    let point = [axis(|p| p.x), axis(|p| p.y), axis(|p| p.z)];
+    let point = [0, 1, 2].map(|axis: usize| f32x8::from(points.map(|p| p[axis] as f32)));
     let mut leading = [(0, f32::INFINITY); 8];
     let mut most = [f32::NEG_INFINITY; 8];
     for (number, body) in (0..).zip(bodies) {
@@ -82,12 +81,12 @@ pub fn leading(bodies: &[&dyn Implicit], points: [DVec3; 8]) -> [(u32, f32); 8] 
 pub struct Filling {
     /// The samples so far.
     pub grid: Grid,
-    /// For each of them the leading body, see [`leading`], if there are several.
+    /// The leading body of each, see [`leading`], if there are several bodies.
     pub leading: Vec<(u32, f32)>,
 }
 
 impl Filling {
-    /// An empty grid of a size.
+    /// Makes an empty grid of a size.
     #[must_use]
     pub fn new(width: usize, height: usize) -> Self {
         Self {
@@ -100,14 +99,14 @@ impl Filling {
         }
     }
 
-    /// Whether every sample is there.
+    /// Returns whether every sample is there.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.grid.values.len() >= self.grid.width * self.grid.height
     }
 
-    /// Goes on until the grid is full or `enough` says so, which it is asked now and then: the more
-    /// often, the more elements the bodies have. Gives whether the grid is full.
+    /// Goes on until the grid is full or `enough` returns true, which is called the more often, the
+    /// more elements the bodies have. Returns whether the grid is full.
     pub fn go_on(
         &mut self,
         bodies: &[&dyn Implicit],
@@ -144,7 +143,7 @@ impl Filling {
     }
 }
 
-/// The field on a whole grid at once.
+/// Samples the field on a whole grid at once.
 #[must_use]
 pub fn whole(field: &Sum, window: &Window, width: usize, height: usize) -> Grid {
     let mut filling = Filling::new(width, height);
@@ -156,6 +155,7 @@ pub fn whole(field: &Sum, window: &Window, width: usize, height: usize) -> Grid 
 mod tests {
     use super::*;
     use field::{Primitive, Skeleton, THRESHOLD};
+    use std::sync::Arc;
 
     #[test]
     fn samples_are_the_field() {
@@ -190,22 +190,20 @@ mod tests {
     #[test]
     fn bodies_in_contact_have_one_border() {
         let shaping = shaping(Kernel::Cauchy, 0.8, 2.0);
-        let ball = |x: f64| -> std::sync::Arc<dyn Implicit> {
+        let [left, right] = [-0.5, 0.5].map(|x| -> Arc<dyn Implicit> {
             let center = DVec3::X * x;
             let own = Primitive::new(Skeleton::Point { center }, &shaping, None);
-            std::sync::Arc::new(own.into_iter().collect::<Sum>())
-        };
-        let (left, right) = (ball(-0.5), ball(0.5));
-        let press = |own: &std::sync::Arc<dyn Implicit>, other: &std::sync::Arc<dyn Implicit>| {
-            let bulge = contact::Bulge::default();
-            contact::Squashed::new(own.clone(), vec![(other.clone(), bulge)])
-        };
+            Arc::new(own.into_iter().collect::<Sum>())
+        });
         let window = Window {
             corner: DVec3::new(-2.0, -1.0, 0.0),
             across: DVec3::X * 4.0,
             up: DVec3::Y * 2.0,
         };
-        let (a, b) = (press(&left, &right), press(&right, &left));
+        let [a, b] = [(&left, &right), (&right, &left)].map(|(own, other)| {
+            let pressed_by = vec![(other.clone(), contact::Bulge::default())];
+            contact::Squashed::new(own.clone(), pressed_by)
+        });
         for (bodies, touch) in [
             ([&a as &dyn Implicit, &b], true),
             ([&*left, &*right], false),

@@ -35,7 +35,7 @@ pub struct Lab {
     /// The fragment of the address before the lab was entered.
     came_from: String,
     /// A message about the last action, and until when it is shown.
-    pub(crate) said: Option<(&'static str, f64)>,
+    pub(crate) message: Option<(&'static str, f64)>,
     /// Small traced pictures.
     pub pictures: Pictures,
     pub(crate) readings: BTreeMap<&'static str, f64>,
@@ -44,33 +44,33 @@ pub struct Lab {
 }
 
 impl Lab {
-    /// The lab, open at a lesson or closed.
+    /// Makes the lab, open at a lesson or closed.
     #[must_use]
     pub fn new(pool: Rc<RefCell<Pool>>, lesson: Option<Lesson>) -> Self {
         Self {
             open: lesson.is_some(),
             lesson: lesson.unwrap_or_default(),
             came_from: String::new(),
-            said: None,
+            message: None,
             pictures: Pictures::new(pool),
             readings: BTreeMap::new(),
             figures: Lesson::all().map(Lesson::figure).collect(),
         }
     }
 
-    /// Whether the lab stands in place of the editor.
+    /// Returns whether the lab stands in place of the editor.
     #[must_use]
     pub fn is_open(&self) -> bool {
         self.open
     }
 
-    /// The lesson that is open, or was last.
+    /// Returns the lesson that is open, or was last.
     #[must_use]
     pub fn lesson(&self) -> Lesson {
         self.lesson
     }
 
-    /// The title for the browser's tab, while the lab is open.
+    /// Returns the title for the browser's tab, while the lab is open.
     #[must_use]
     pub fn title(&self) -> Option<&'static str> {
         self.open.then(|| self.lesson.words().title)
@@ -84,10 +84,10 @@ impl Lab {
         self.open = true;
         self.lesson = lesson;
         self.readings.clear();
-        self.said = None;
+        self.message = None;
     }
 
-    /// The fragment that leads back.
+    /// Returns the fragment that leads back.
     #[must_use]
     pub fn came_from(&self) -> &str {
         &self.came_from
@@ -101,10 +101,10 @@ impl Lab {
 
     /// Shows a message about an action for a while.
     pub fn say(&mut self, text: &'static str, now: f64) {
-        self.said = Some((text, now + 4.0));
+        self.message = Some((text, now + 4.0));
     }
 
-    /// The state for scripts, while the lab is open.
+    /// Returns the state for scripts, while the lab is open.
     #[must_use]
     pub fn report(&self) -> Option<Report> {
         let Words { link, title, .. } = self.lesson.words();
@@ -113,8 +113,8 @@ impl Lab {
             title,
             lessons: Lesson::all().map(|lesson| lesson.words().link).collect(),
             waiting: self.pictures.waiting(),
-            drawn: self.pictures.drawn(),
-            refused: self.pictures.refused(),
+            drawn: self.pictures.count_drawn(),
+            refused: self.pictures.count_refused(),
             readings: self.readings.clone(),
         })
     }

@@ -47,7 +47,7 @@ impl Stage {
     }
 }
 
-/// A slider under its name and value.
+/// Draws a slider under its name and value.
 pub fn slider(
     ui: &mut Ui,
     name: &str,
@@ -79,7 +79,7 @@ pub fn slider(
     .inner
 }
 
-/// Choices side by side; gives whether another one was taken.
+/// Draws choices side by side; returns whether another one was taken.
 pub fn choice<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T, &str)]) -> bool {
     let palette = theme::palette(ui.visuals());
     let before = *value;
@@ -105,20 +105,20 @@ pub fn choice<T: PartialEq + Copy>(ui: &mut Ui, value: &mut T, choices: &[(T, &s
     *value != before
 }
 
-/// A name above some controls.
+/// Draws a name above some controls.
 pub fn heading(ui: &mut Ui, text: &str) {
     let palette = theme::palette(ui.visuals());
     ui.add_space(4.0);
     ui.label(RichText::new(text).size(12.5).color(palette.weak));
 }
 
-/// A remark.
+/// Draws a remark.
 pub fn remark(ui: &mut Ui, text: impl Into<String>) {
     let palette = theme::palette(ui.visuals());
     ui.label(RichText::new(text).size(13.0).color(palette.weak));
 }
 
-/// A number that matters, with what it is.
+/// Draws a number with its name.
 pub fn reading(ui: &mut Ui, name: &str, value: &str, colour: Color32) {
     let palette = theme::palette(ui.visuals());
     ui.horizontal(|ui| {
@@ -130,7 +130,7 @@ pub fn reading(ui: &mut Ui, name: &str, value: &str, colour: Color32) {
     });
 }
 
-/// Chips for the kernels, each with a sample of its line. Gives the one that was clicked.
+/// Draws chips for the kernels, each with a sample of its line; returns the one that was clicked.
 pub fn kernels(ui: &mut Ui, is_chosen: impl Fn(Kernel) -> bool) -> Option<Kernel> {
     let palette = theme::palette(ui.visuals());
     let mut clicked = None;
@@ -181,7 +181,7 @@ pub fn kernels(ui: &mut Ui, is_chosen: impl Fn(Kernel) -> bool) -> Option<Kernel
     clicked
 }
 
-/// The kernel's line: whole if it is infinite, dashed if it ends.
+/// Draws a sample of a kernel's line: dashed if the kernel ends.
 fn sample_line(ui: &Ui, kernel: Kernel, [from, to]: [f32; 2], y: f32) {
     let stroke = Stroke::new(2.5, hue(ui, kernel));
     let ends = [egui::pos2(from, y), egui::pos2(to, y)];
@@ -193,7 +193,7 @@ fn sample_line(ui: &Ui, kernel: Kernel, [from, to]: [f32; 2], y: f32) {
     }
 }
 
-/// The colour of a kernel.
+/// Returns the colour of a kernel.
 #[must_use]
 pub fn hue(ui: &Ui, kernel: Kernel) -> Color32 {
     let index = Kernel::ALL.iter().position(|k| *k == kernel);

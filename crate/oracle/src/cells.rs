@@ -8,7 +8,7 @@ use crate::quadrature;
 use core::f64::consts::TAU;
 use field::{Kernel, Shaping, Skeleton};
 use glam::{DQuat, DVec3};
-use trials::skeletons::{Kind, shaping};
+use trials::skeletons::{Kind, halves, move_by, shaping};
 use trials::{Random, count};
 
 const EPSILON32: f64 = f32::EPSILON as f64 / 2.0;
@@ -32,6 +32,7 @@ const SINGLE: Accuracy = Accuracy {
     floor: 2e-6,
 };
 
+/// Returns a random shaping of radius 1 with a kernel.
 fn shape(random: &mut Random, kernel: Kernel) -> Shaping {
     Shaping {
         kernel,
@@ -213,18 +214,18 @@ pub fn rigid_motion_and_scale(kernel: Kernel, kind: Kind, evaluate: Evaluation<'
         let scale = random.decades(-1.0, 1.0);
         let point = random.near(&skeleton, -2.0, 0.5);
         let here = primitive(skeleton.clone(), &shaping, None);
-        let to = |p: DVec3| turn * p * scale + shift;
+        let place = turn * point * scale + shift;
         let there = Shaping {
             radius: shaping.radius * scale,
             ..shaping
         };
-        let there = primitive(move_skeleton(&skeleton, turn, scale, shift), &there, None);
+        let there = primitive(move_by(&skeleton, turn, scale, shift), &there, None);
         let (value, gradient) = evaluate(&here, point);
-        let (after, slopes) = evaluate(&there, to(point));
+        let (after, slopes) = evaluate(&there, place);
         let Accuracy { relative, floor } = DOUBLE;
         let tolerance = 2.0 * relative * value.abs()
             + 4.0 * floor * peak(&here)
-            + 64.0 * f64::EPSILON * (sensitivity(&here, point) + sensitivity(&there, to(point)));
+            + 64.0 * f64::EPSILON * (sensitivity(&here, point) + sensitivity(&there, place));
         assert!(
             (after - value).abs() <= tolerance,
             "{after:e} instead of {value:e}: {here:?} at {point:?}"
@@ -354,6 +355,7 @@ pub fn degenerate_geometry(kernel: Kernel, kind: Kind, [evaluate, eight]: [Evalu
     }
 }
 
+/// Returns skeletons of a kind that are degenerate, or nearly.
 fn degenerate(kind: Kind) -> Vec<Skeleton> {
     let arc = |radius: f64, angle: f64| Skeleton::Arc {
         center: DVec3::ZERO,
@@ -452,129 +454,6 @@ fn degenerate(kind: Kind) -> Vec<Skeleton> {
             .map(|control| Skeleton::Curve { control })
             .to_vec()
         }
-    }
-}
-
-/// Cuts a skeleton in two.
-fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
-    Some(match *skeleton {
-        Skeleton::Segment { base, apex } => {
-            let middle = base + (apex - base) * at;
-            [
-                Skeleton::Segment { base, apex: middle },
-                Skeleton::Segment { base: middle, apex },
-            ]
-        }
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let turn = angle * at;
-            let (sine, cosine) = libm::sincos(turn);
-            let part = |u, v, angle| Skeleton::Arc {
-                center,
-                u,
-                v,
-                radius,
-                angle,
-            };
-            [
-                part(u, v, turn),
-                part(u * cosine + v * sine, v * cosine - u * sine, angle - turn),
-            ]
-        }
-        Skeleton::Triangle { corners: [a, b, c] } => {
-            let middle = a + (b - a) * at;
-            [
-                Skeleton::Triangle {
-                    corners: [a, middle, c],
-                },
-                Skeleton::Triangle {
-                    corners: [middle, b, c],
-                },
-            ]
-        }
-        Skeleton::Polygon { ref rings } => {
-            // From the centre of the star to two corners.
-            let ring = &rings[0];
-            if rings.len() > 1 || ring.len() < 4 {
-                return None;
-            }
-            let center = (ring[0] + ring[2]) * 0.5;
-            let half = ring.len() / 2;
-            let mut first: Vec<DVec3> = ring[..=half].to_vec();
-            first.push(center);
-            let mut second: Vec<DVec3> = ring[half..].to_vec();
-            second.extend([ring[0], center]);
-            // Only if both are simple, with areas that add up.
-            let whole = skeleton.measure();
-            let parts = [first, second].map(|ring| Skeleton::Polygon { rings: vec![ring] });
-            let sum = parts[0].measure() + parts[1].measure();
-            if (sum - whole).abs() > 1e-9 * whole {
-                return None;
-            }
-            parts
-        }
-        Skeleton::Curve {
-            control: [a, b, c, d],
-        } => {
-            let mix = |p: DVec3, q: DVec3| p + (q - p) * at;
-            let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
-            let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
-            let m = mix(abc, bcd);
-            [
-                Skeleton::Curve {
-                    control: [a, ab, abc, m],
-                },
-                Skeleton::Curve {
-                    control: [m, bcd, cd, d],
-                },
-            ]
-        }
-        Skeleton::Point { .. } | Skeleton::Plane { .. } => return None,
-    })
-}
-
-fn move_skeleton(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
-    let to = |p: DVec3| turn * p * scale + shift;
-    match *skeleton {
-        Skeleton::Point { center } => Skeleton::Point { center: to(center) },
-        Skeleton::Segment { base, apex } => Skeleton::Segment {
-            base: to(base),
-            apex: to(apex),
-        },
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => Skeleton::Arc {
-            center: to(center),
-            u: turn * u,
-            v: turn * v,
-            radius: radius * scale,
-            angle,
-        },
-        Skeleton::Triangle { corners } => Skeleton::Triangle {
-            corners: corners.map(to),
-        },
-        Skeleton::Plane { point, normal } => Skeleton::Plane {
-            point: to(point),
-            normal: turn * normal,
-        },
-        Skeleton::Polygon { ref rings } => Skeleton::Polygon {
-            rings: rings
-                .iter()
-                .map(|ring| ring.iter().map(|p| to(*p)).collect())
-                .collect(),
-        },
-        Skeleton::Curve { control } => Skeleton::Curve {
-            control: control.map(to),
-        },
     }
 }
 

@@ -1,4 +1,4 @@
-//! Slow truths that fast code is held to, and the checks that hold it: for tests.
+//! Slow but true results that fast code is held to, and the checks that hold it: for tests.
 //!
 //! - [`quadrature`] integrates a kernel over a skeleton: the truth of every formula of `field`.
 //! - [`Reference`] finds where the whole field equals T, by bisection: the truth of every way of
@@ -6,8 +6,8 @@
 //! - [`cells`] and [`tapers`] are the conformance suite of fields: generic over how a field is
 //!   evaluated ([`evaluation`]), each for a kernel; `crate/field/tests/it/chart.rs` calls them for
 //!   all that there are.
-//! - `surfaces` (with the feature `rays`) is that of ways of finding a surface: random rays through
-//!   random scenes, judged by the reference, generic over how crossings are found;
+//! - `surfaces` (with the feature `rays`) is the suite of ways of finding a surface: random rays
+//!   through random scenes, judged by the reference, generic over how crossings are found;
 //!   `crate/tracer/tests/it/certified.rs` calls it.
 
 pub mod cells;

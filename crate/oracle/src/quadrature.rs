@@ -7,7 +7,7 @@ use field::skeleton::{area_vector, cubic};
 use field::{Kernel, Primitive, Profile, Shaping, Skeleton, Sum, Wave};
 use glam::DVec3;
 
-/// Kernel as defined (fields.md, section 1), of a squared distance.
+/// Computes a kernel by its definition (fields.md, section 1), of a squared distance.
 fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
     let q = width * width * square;
     let u = q.sqrt();
@@ -28,7 +28,8 @@ fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
     }
 }
 
-/// Length scale on which an integrand varies: the kernel's width, or its pole's.
+/// Returns the length scale, in kernel widths, on which an integrand varies: the kernel's width, or
+/// its pole's.
 fn finest(kernel: Kernel) -> f64 {
     if kernel.has_pole() { 1e-5 } else { 1.0 }
 }
@@ -45,13 +46,13 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
         .map_or(1.0, |profile| factor(profile, &primitive.skeleton, point));
     factor
         * match &primitive.tapered {
-            Some(shaping) => over_tapered(primitive, shaping, point),
-            None => primitive.height * over(primitive, &primitive.skeleton, point),
+            Some(shaping) => integrate_tapered(primitive, shaping, point),
+            None => primitive.height * integrate(primitive, &primitive.skeleton, point),
         }
 }
 
-/// The kernel's integral over a skeleton.
-fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
+/// Integrates the kernel over a skeleton.
+fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
     let s = primitive.width;
     let k = primitive.kernel;
     let h = |q: DVec3| kernel(k, s, q.distance_squared(point));
@@ -78,10 +79,6 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             radius,
             angle,
         } => {
-            let on = |t: f64| {
-                let (sine, cosine) = libm::sincos(angle * t);
-                center + radius * (u * cosine + v * sine)
-            };
             let d = point - center;
             let azimuth = libm::atan2(d.dot(v), d.dot(u)).rem_euclid(core::f64::consts::TAU);
             // |p − q|² = a − b·cos of the angle between them.
@@ -98,7 +95,17 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
                 ]
                 .map(|t| t / angle)
             });
-            radius * angle * split(|t| h(on(t)), azimuth / angle, grain(radius * angle), kinks)
+            let length = radius * angle;
+            length
+                * split(
+                    |t| {
+                        let (sine, cosine) = libm::sincos(angle * t);
+                        h(center + radius * (u * cosine + v * sine))
+                    },
+                    azimuth / angle,
+                    grain(length),
+                    kinks,
+                )
         }
         Skeleton::Triangle { corners: [a, b, c] } => {
             // Strips parallel to the longest side, so that they do not become needles.
@@ -113,10 +120,6 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             let side = b - a;
             let foot = a + side * ((c - a).dot(side) / side.length_squared().max(1e-300));
             let altitude = c - foot;
-            let strip = |t: f64| {
-                let (p, q) = (a + (c - a) * t, b + (c - b) * t);
-                along(p, q - p)
-            };
             // Strips that touch the edge of the kernel's pieces, or leave the triangle there.
             let mut kinks = Vec::new();
             let normal = side.cross(altitude).normalize_or_zero();
@@ -133,11 +136,14 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
                     kinks.extend([near - reach, near + reach]);
                 }
             }
-            // And those through the feet on the sides, where the pole comes near.
+            // Strips through the feet on the sides, where the pole comes near.
             kinks.extend([near(a, c - a, point), near(b, c - b, point)]);
             altitude.length()
                 * split(
-                    strip,
+                    |t| {
+                        let (p, q) = (a + (c - a) * t, b + (c - b) * t);
+                        along(p, q - p)
+                    },
                     near(foot, altitude, point),
                     grain(altitude.length()),
                     kinks.into_iter(),
@@ -149,17 +155,17 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             let apex = rings[0][0];
             let mut sum = 0.0;
             for (number, ring) in rings.iter().enumerate() {
-                let turned = ring
+                let turns = ring
                     .windows(2)
                     .map(|w| (w[0] - ring[0]).cross(w[1] - ring[0]));
-                let runs = turned.sum::<DVec3>().dot(normal).signum();
+                let runs = turns.sum::<DVec3>().dot(normal).signum();
                 let wanted = if number == 0 { 1.0 } else { -1.0 };
                 for i in 0..ring.len() {
                     let (p, q) = (ring[i], ring[(i + 1) % ring.len()]);
                     let area = (p - apex).cross(q - apex).dot(normal) * runs * wanted;
                     if area != 0.0 {
                         let corners = [apex, p, q];
-                        let part = over(primitive, &Skeleton::Triangle { corners }, point);
+                        let part = integrate(primitive, &Skeleton::Triangle { corners }, point);
                         sum += part * area.signum();
                     }
                 }
@@ -169,23 +175,20 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
         Skeleton::Curve { control } => {
             let c = cubic(control);
             let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-            let speed = |t: f64| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
             let breaks = breaks_along(k, &|t| s * at(t).distance(point));
-            integral(&mut |t| h(at(t)) * speed(t), &breaks, 1e-13)
+            integral(
+                &mut |t| {
+                    let speed = (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
+                    h(at(t)) * speed
+                },
+                &breaks,
+                1e-13,
+            )
         }
         Skeleton::Plane { point: p, normal } => {
             let d = (point - p).dot(normal.normalize());
             // Rings; where the integral diverges, up to ten radii, else of radius t/(1−t)/s.
             let windowed = !k.is_finite_over(2);
-            let ring = |t: f64| {
-                let (r, stretch) = if windowed {
-                    (10.0 * t / s, 10.0 / s)
-                } else {
-                    let rest = 1.0 - t;
-                    (t / rest / s, 1.0 / (rest * rest * s))
-                };
-                core::f64::consts::TAU * r * stretch * kernel(k, s, d * d + r * r)
-            };
             let kinks = k.kinks().iter().map(|kink| {
                 let r = (kink * kink - d * d * s * s).max(0.0).sqrt();
                 r / (1.0 + r)
@@ -195,13 +198,26 @@ fn over(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             } else {
                 (0.5, 1.0)
             };
-            split(ring, peak, grain, kinks)
+            split(
+                |t| {
+                    let (r, stretch) = if windowed {
+                        (10.0 * t / s, 10.0 / s)
+                    } else {
+                        let rest = 1.0 - t;
+                        (t / rest / s, 1.0 / (rest * rest * s))
+                    };
+                    core::f64::consts::TAU * r * stretch * kernel(k, s, d * d + r * r)
+                },
+                peak,
+                grain,
+                kinks,
+            )
         }
     }
 }
 
-/// Field of a tapered bone, integrated with each point's own radius and blobbiness.
-fn over_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
+/// Computes the field of a tapered bone, integrated with each point's own radius and blobbiness.
+fn integrate_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
     let k = primitive.kernel;
     let skeleton = &primitive.skeleton;
     // Place, and length per unit of t.
@@ -242,33 +258,36 @@ fn over_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
     let here = |t: f64| {
         let i = ((t * STEPS as f64) as usize).min(STEPS - 1);
         let rest = match skeleton {
-            // One panel tells nearly always, and most of the time goes here.
+            // One panel is nearly always enough, and most of the time goes here.
             Skeleton::Curve { .. } => {
                 let (low, high) = (place(i), t.max(place(i)));
-                let mut speed = |t: f64| at(t).1;
-                of_one_panel(&mut speed, low, high, 1e-11)
+                of_one_panel(&mut |t| at(t).1, low, high, 1e-11)
             }
             _ => (t - place(i)) * total,
         };
         shaping.at((lengths[i] + rest) / total)
     };
-    let width = |t: f64| here(t).width().unwrap_or(0.0);
-    let breaks = breaks_along(k, &|t| width(t) * at(t).0.distance(point));
-    let mut integrand = |t: f64| {
-        let (q, speed) = at(t);
-        let shaping = here(t);
-        let (s, h) = (shaping.width(), shaping.height(skeleton));
-        let square = q.distance_squared(point);
-        h.unwrap_or(0.0) * kernel(k, s.unwrap_or(0.0), square) * speed
-    };
+    let breaks = breaks_along(k, &|t| {
+        here(t).width().unwrap_or(0.0) * at(t).0.distance(point)
+    });
     // Next to a pole, as narrow as 10⁻⁵, the rounding of places alone changes the integrand by more
     // than 10⁻¹² of itself.
     let tolerance = if k.has_pole() { 1e-11 } else { 1e-13 };
-    integral(&mut integrand, &breaks, tolerance)
+    integral(
+        &mut |t| {
+            let (q, speed) = at(t);
+            let shaping = here(t);
+            let (s, h) = (shaping.width(), shaping.height(skeleton));
+            let square = q.distance_squared(point);
+            h.unwrap_or(0.0) * kernel(k, s.unwrap_or(0.0), square) * speed
+        },
+        &breaks,
+        tolerance,
+    )
 }
 
-/// Breaks in [0, 1] for an integrand that depends on a distance, in kernel widths: around every
-/// place where the distance has a minimum, and where it passes a kink.
+/// Returns breaks in [0, 1] for an integrand that depends on a distance, in kernel widths: around
+/// every place where the distance has a minimum, and where it passes a kink.
 fn breaks_along(k: Kernel, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
     const SAMPLES: usize = 400;
     let place = |i: usize| i as f64 / SAMPLES as f64;
@@ -307,7 +326,8 @@ fn breaks_along(k: Kernel, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
     breaks
 }
 
-/// Returns where a function passes a level between two places, if it does.
+/// Returns the place between two others where a function passes a level; `None` if it is on one
+/// side at both.
 fn passes(f: &dyn Fn(f64) -> f64, level: f64, mut a: f64, mut b: f64) -> Option<f64> {
     let below = f(a) < level;
     if below == (f(b) < level) {
@@ -324,14 +344,14 @@ fn passes(f: &dyn Fn(f64) -> f64, level: f64, mut a: f64, mut b: f64) -> Option<
     Some(a)
 }
 
-/// The whole field at a point, by integration.
+/// Computes the whole field at a point, by integration.
 #[must_use]
 pub fn sum(field: &Sum, point: DVec3) -> f64 {
     field.primitives.iter().map(|p| value(p, point)).sum()
 }
 
-/// `∫₀¹` of a function with a peak at `peak`, of about the width `grain`, and with kinks: panels
-/// grow fourfold away from the peak, and end at kinks.
+/// Integrates a function from 0 to 1 that has a peak at `peak`, of about the width `grain`, and
+/// kinks: panels grow fourfold away from the peak, and end at kinks.
 fn split(
     mut f: impl FnMut(f64) -> f64,
     peak: f64,
@@ -357,7 +377,7 @@ fn split(
     integral(&mut f, &breaks, 1e-13)
 }
 
-/// Returns where on `base + t·d` the point's perpendicular falls.
+/// Returns the t of the point's foot on `base + t·d`.
 fn near(base: DVec3, d: DVec3, point: DVec3) -> f64 {
     (point - base).dot(d) / d.length_squared()
 }
@@ -432,7 +452,7 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
     profile.times * (low + (high - low) * product) * restricted
 }
 
-/// The waves' mean over u, where v is 0; between two multiples of ½ every wave is smooth.
+/// Computes the waves' mean over u, where v is 0; between two multiples of ½ every wave is smooth.
 fn mean(profile: &Profile) -> f64 {
     let scale = profile.scale[0];
     if scale == 0.0 {
@@ -446,6 +466,7 @@ fn mean(profile: &Profile) -> f64 {
     along * wave(profile.waves[1], 0.0)
 }
 
+/// Computes a wave at x.
 fn wave(wave: Wave, x: f64) -> f64 {
     let fraction = x - x.floor();
     let (sine, cosine) = libm::sincos(x);

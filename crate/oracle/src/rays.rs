@@ -14,13 +14,13 @@ const PACKET: usize = 8;
 
 /// Scene with its reference and its rays.
 pub struct Trial {
-    /// Kernel, kind and seed.
+    /// Name of kernel, kind and seed.
     pub name: String,
     /// The scene.
     pub scene: Scene,
     /// Width and height of its picture, pixels.
     pub size: u32,
-    /// Origins and directions.
+    /// Rays, by origin and direction.
     pub rays: Vec<(DVec3, DVec3)>,
     /// The surface as the reference knows it.
     pub reference: Reference,
@@ -29,7 +29,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Returns the trial of a number.
+    /// Returns the trial of a kernel, a kind and a seed.
     pub fn new(kernel: Kernel, kind: Kind, seed: u64, packets: usize) -> Self {
         let random = Random::new(number(kernel, kind, seed));
         Self::of(kernel, kind, seed, packets, random)
@@ -41,6 +41,7 @@ impl Trial {
         Self::of(kernel, kind, seed, packets, random)
     }
 
+    /// Makes a trial by numbers of a generator.
     fn of(kernel: Kernel, kind: Kind, seed: u64, packets: usize, mut n: Random) -> Self {
         let (scene, world) = scene(kernel, kind, &mut n);
         let mut reference = Reference::new(scene.soft_surfaces().swap_remove(0).sum.primitives);
@@ -66,6 +67,7 @@ impl Trial {
     }
 }
 
+/// Returns the generator's seed for a trial.
 fn number(kernel: Kernel, kind: Kind, seed: u64) -> u64 {
     (seed * 1009 + kernel as u64 * 31 + kind as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)
 }
@@ -84,8 +86,8 @@ fn packet(
     let aim = bone + n.vector(1.0) * (0.3 * scale);
     let eye = world.at(n.vector(1.0).normalize() * n.range(2.0, 6.0));
     let mut made: Vec<(DVec3, DVec3)> = Vec::new();
-    // Where a ray towards the bone meets the surface, and the normal there.
-    let met = |reference: &mut Reference| {
+    // The point where a ray towards the bone meets the surface, and the normal there.
+    let foot = |reference: &mut Reference| {
         let direction = (aim - eye).try_normalize()?;
         let first = reference.crossings(eye, direction, 20.0 * scale, tolerance);
         let point = eye + direction * first.roots.first()?.t;
@@ -102,7 +104,7 @@ fn packet(
         }
         // Tangents, a little inside or outside.
         2..=4 => {
-            if let Some((point, normal)) = met(reference) {
+            if let Some((point, normal)) = foot(reference) {
                 let along = normal.cross(n.vector(1.0)).normalize_or_zero();
                 let back = n.range(0.5, 5.0) * scale;
                 for i in 0..PACKET {
@@ -115,7 +117,7 @@ fn packet(
         }
         // From inside, in all directions; or from just outside.
         5 => {
-            if let Some((point, normal)) = met(reference) {
+            if let Some((point, normal)) = foot(reference) {
                 let depth = n.range(-0.1, 0.3) * scale;
                 for _ in 0..PACKET {
                     made.push((point - normal * depth, n.vector(1.0)));
@@ -181,7 +183,7 @@ fn bone_point(scene: &Scene, n: &mut Random) -> DVec3 {
 /// Counts of rays and verdicts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Row {
-    /// All rays.
+    /// Rays judged.
     pub rays: u64,
     /// Rays with a hit.
     pub hits: u64,
@@ -189,7 +191,7 @@ pub struct Row {
     pub missed: u64,
     /// Missed crossings of rays that graze.
     pub grazed: u64,
-    /// Hits where there is nothing.
+    /// Hits away from any surface.
     pub invented: u64,
     /// Largest distance of hits, in tolerances.
     pub worst: f64,
@@ -198,7 +200,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Returns how many rays were wrong.
+    /// Returns the number of faults.
     pub fn faults(&self) -> u64 {
         self.missed + self.grazed + self.invented
     }
@@ -214,18 +216,18 @@ impl Row {
         self.uncertain += other.uncertain;
     }
 
-    /// Judges what is said of rays up to a limit, and returns a line for each fault and each ray
-    /// that stays undecided.
+    /// Judges the first hits that were found for rays up to a limit. Returns a line for each fault
+    /// and each ray that stays undecided.
     pub fn judge(
         &mut self,
         (picture, reference): (&Picture, &mut Reference),
         rays: &[(DVec3, DVec3)],
-        said: &[Option<f64>],
+        found: &[Option<f64>],
         limit: f64,
     ) -> String {
-        assert_eq!(said.len(), rays.len());
-        let mut told = String::new();
-        for (number, (&(origin, direction), t)) in rays.iter().zip(said).enumerate() {
+        assert_eq!(found.len(), rays.len());
+        let mut lines = String::new();
+        for (number, (&(origin, direction), t)) in rays.iter().zip(found).enumerate() {
             // Hits beyond the search's end are not judged.
             let t = t.filter(|t| *t < limit);
             self.rays += 1;
@@ -246,16 +248,16 @@ impl Row {
             }
             let (fault, ray) = (verdict.fault, (origin, direction));
             let _ = writeln!(
-                told,
+                lines,
                 "  ray {number} {ray:?}: hit {t:?}, {fault:?}, tolerance {at:e}"
             );
         }
-        told
+        lines
     }
 }
 
-/// Way of finding where a trial's rays first meet its surface: their parameters. The picture is
-/// that of the trial's scene.
+/// Way of finding the first crossings of a trial's rays with its surface: returns their parameters.
+/// The picture is that of the trial's scene.
 pub type Method<'m> = &'m dyn Fn(&Trial, &Picture) -> Vec<Option<f64>>;
 
 /// Returns the parameters of hits.
@@ -263,15 +265,16 @@ pub fn parameters(hits: &[Option<Hit>]) -> Vec<Option<f64>> {
     hits.iter().map(|hit| hit.map(|hit| hit.t)).collect()
 }
 
-/// Judges what a method finds for a trial's rays; faults are written, one a line.
-pub fn check(mut trial: Trial, method: Method<'_>, told: &mut String) -> Row {
+/// Judges the crossings that a method finds for a trial's rays; appends a line for each fault to
+/// `faults`.
+pub fn check(mut trial: Trial, method: Method<'_>, faults: &mut String) -> Row {
     let picture = Picture::new(&trial.scene, [trial.size; 2]);
-    let said = method(&trial, &picture);
+    let found = method(&trial, &picture);
     let mut row = Row::default();
     let judges = (&picture, &mut trial.reference);
-    let lines = row.judge(judges, &trial.rays, &said, trial.limit);
+    let lines = row.judge(judges, &trial.rays, &found, trial.limit);
     if !lines.is_empty() {
-        let _ = write!(told, "{}:\n{lines}", trial.name);
+        let _ = write!(faults, "{}:\n{lines}", trial.name);
     }
     row
 }

@@ -4,9 +4,9 @@
 //! double precision and by bisection. On an interval of a ray with the middle m and the half-width
 //! w Taylor's theorem says `|F(m+x) − F(m) − F′(m)x| ≤ Mx²/2`, where M bounds the second
 //! derivative. So an interval has no crossing if `|F(m)−T| > |F′(m)|w + Mw²/2`, and at most one if
-//! `|F′(m)| > Mw`, which the signs at its ends then tell; any other is halved. M comes from the
+//! `|F′(m)| > Mw`, which the signs at its ends then show; any other is halved. M comes from the
 //! bones cut into `pieces`, each as far from the interval as its ball. The reference shares the
-//! formulas of the field with what is judged by it, and nothing else: no bounds, spans, slabs or
+//! formulas of the field with the code that it judges, and nothing else: no bounds, spans, slabs or
 //! depths of influence.
 //!
 //! Intervals with |F−T| within the rounding of F, or with two crossings closer together than the
@@ -70,9 +70,9 @@ pub struct Root {
 /// Crossings of a ray.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Crossings {
-    /// Whether it starts inside.
+    /// Whether the ray starts inside.
     pub starts_inside: bool,
-    /// All crossings, in order.
+    /// The crossings, in order.
     pub roots: Vec<Root>,
     /// Intervals no longer than the resolution (or some that touch) in which the ray comes so near
     /// to the surface that two more crossings cannot be excluded.
@@ -87,7 +87,7 @@ pub struct Crossings {
 pub enum Near {
     /// Surface within this distance.
     Within(f64),
-    /// No surface within reach.
+    /// Surface beyond the reach only, or none.
     Beyond,
     /// Undecided.
     Unknown,
@@ -105,7 +105,7 @@ pub enum Fault {
         /// Whether all of the interval is within the tolerance of the surface: the ray grazes.
         grazing: bool,
     },
-    /// There is no surface within the tolerance of the reported crossing. `|F−T|/|∇F|` there.
+    /// Crossing without a surface within the tolerance, with `|F−T|/|∇F|` there.
     Invented(f64),
 }
 
@@ -120,7 +120,7 @@ pub struct Verdict {
     pub certain: bool,
 }
 
-/// Default of [`Reference::patience`]. A ray along a flat part needs very many.
+/// Default of [`Reference::patience`]. A ray along a flat part needs very many intervals.
 const PATIENCE: u32 = 40_000;
 /// Most cells in a search around one point.
 const MOST_CELLS: u32 = 4_000;
@@ -146,7 +146,7 @@ impl Reference {
     /// functions.
     ///
     /// # Errors
-    /// If a skeleton is of no use.
+    /// If a skeleton cannot be convolved locally.
     pub fn touching(bodies: Vec<TouchingBody>) -> Result<Self, LocalError> {
         Ok(Self::of(Function::Touching(Touching::new(bodies)?)))
     }
@@ -160,7 +160,7 @@ impl Reference {
         }
     }
 
-    /// F − T and the gradient of F.
+    /// Returns F − T and the gradient of F.
     pub fn excess(&mut self, point: DVec3) -> (f64, DVec3) {
         let sample = self.sample(point);
         (sample.excess, sample.gradient)
@@ -193,7 +193,7 @@ impl Reference {
             let aside = 1e-13 * (origin.abs().max_element() + kink) + 1e-3 * resolution;
             let [before, after] = [kink - aside, kink + aside];
             if before > from {
-                self.between(&ray, [from, before], resolution, &mut steps, &mut found);
+                self.search_interval(&ray, [from, before], resolution, &mut steps, &mut found);
                 from = before;
             }
             let [a, b] = [from, after].map(|t| self.sample(ray.at(t)).excess >= 0.0);
@@ -207,26 +207,25 @@ impl Reference {
             from = after;
         }
         if from < to {
-            self.between(&ray, [from, to], resolution, &mut steps, &mut found);
+            self.search_interval(&ray, [from, to], resolution, &mut steps, &mut found);
         }
         found
     }
 
-    /// Parameters at which a ray crosses kinks of the field, in order.
+    /// Returns the parameters at which a ray crosses kinks of the field, in order.
     fn kinks_along(&self, ray: &Ray, to: f64) -> Vec<f64> {
-        let crossing = |k: &Kink| k.along(ray.origin, ray.direction);
         let mut found: Vec<f64> = self
             .kinks
             .iter()
-            .map(crossing)
+            .map(|kink| kink.along(ray.origin, ray.direction))
             .filter(|t| *t > 0.0 && *t < to)
             .collect();
         found.sort_unstable_by(f64::total_cmp);
         found
     }
 
-    /// The crossings on an interval on which the field is smooth.
-    fn between(
+    /// Finds the crossings on an interval on which the field is smooth.
+    fn search_interval(
         &mut self,
         ray: &Ray,
         whole: [f64; 2],
@@ -353,7 +352,8 @@ impl Reference {
         self.search_ball(point, start, reach)
     }
 
-    /// [`Reference::surface_near`] by subdivision of the ball around the point into cubes.
+    /// Does the search of [`Reference::surface_near`] by subdivision of the ball around the point
+    /// into cubes.
     fn search_ball(&mut self, point: DVec3, start: Evaluation, reach: f64) -> Near {
         let mut stack = vec![(point, reach)];
         let mut unknown = false;
@@ -398,15 +398,15 @@ impl Reference {
             }
             let h = 0.5 * half;
             for i in 0..8u32 {
-                let side = |bit: u32| if i >> bit & 1 == 0 { -h } else { h };
-                stack.push((center + DVec3::new(side(0), side(1), side(2)), h));
+                let corner = [0, 1, 2].map(|bit| if i >> bit & 1 == 0 { -h } else { h });
+                stack.push((center + DVec3::from_array(corner), h));
             }
         }
         Near::Unknown
     }
 
-    /// Judges the first crossing that was reported for a ray (none: that it meets nothing before
-    /// `limit`) by the tolerance, a length that may depend on how far away it is.
+    /// Judges the first crossing that was reported for a ray, or the report that it has none before
+    /// `limit`. `tolerance` returns the tolerance, a length, at a distance.
     pub fn judge(
         &mut self,
         origin: DVec3,
@@ -458,6 +458,7 @@ impl Reference {
         verdict
     }
 
+    /// Judges whether an interval on the other side of the surface was missed.
     fn judge_stretch(
         &mut self,
         ray: &Ray,

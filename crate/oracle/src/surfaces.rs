@@ -9,7 +9,8 @@ use field::Kernel;
 use trials::count;
 use trials::scenes::Kind;
 
-/// Judges some scenes of each kind, with the kernels in turn; faults are told, one a line.
+/// Judges some scenes of each kind, with the kernels in turn. Returns the counts and a line for
+/// each fault.
 pub fn judge(
     kernels: &[Kernel],
     kinds: &[Kind],
@@ -17,7 +18,7 @@ pub fn judge(
     packets: usize,
     method: Method<'_>,
 ) -> (Row, String) {
-    let mut told = String::new();
+    let mut faults = String::new();
     let mut total = Row::default();
     for &kind in kinds {
         let many = matches!(kind, Kind::Cluster | Kind::Cloud);
@@ -25,10 +26,10 @@ pub fn judge(
         for (seed, &kernel) in (7_000_000..).zip(kernels.iter().cycle().take(count(scenes))) {
             // Other seeds than those of the large run.
             let trial = Trial::new(kernel, kind, seed, packets);
-            total.add(&check(trial, method, &mut told));
+            total.add(&check(trial, method, &mut faults));
         }
     }
-    (total, told)
+    (total, faults)
 }
 
 /// Compact kernels, whose fields are not cut off.
@@ -48,15 +49,14 @@ const ENDLESS: [Kernel; 5] = [
     Kernel::Cubed,
 ];
 
-/// Checks that no hit is inaccurate and no surface is missed, but with kernels that never end
-/// surfaces that rays graze, as next to the poles of squared polygons: no more often than this
-/// share.
+/// Checks that no hit is inaccurate and no surface is missed, except surfaces of kernels that never
+/// end that rays graze, as next to the poles of squared polygons: at most this share of rays.
 fn certify(kinds: &[Kind], most_grazed: f64, method: Method<'_>) {
     let (mut all, mut faults) = judge(&COMPACT, kinds, 4, 4, method);
     assert!(all.faults() == 0, "{all:?}\n{faults}");
-    let (endless, told) = judge(&ENDLESS, kinds, 5, 4, method);
+    let (endless, more) = judge(&ENDLESS, kinds, 5, 4, method);
     all.add(&endless);
-    faults += &told;
+    faults += &more;
     let scenes = ((count(4) + count(5)) * kinds.len()) as u64;
     assert!(all.rays > 14 * scenes && all.hits > 8 * scenes, "{all:?}");
     assert!(all.uncertain * 100 < all.rays, "{all:?}");
@@ -68,8 +68,8 @@ fn certify(kinds: &[Kind], most_grazed: f64, method: Method<'_>) {
 /// Checks that points whose largest field on a ray has a closed form have no fault at all.
 pub fn blobs(method: Method<'_>) {
     let kernels = [&[Kernel::Gauss][..], &COMPACT].concat();
-    let (row, told) = judge(&kernels, &[Kind::Point], 30, 6, method);
-    assert!(row.faults() == 0, "{row:?}\n{told}");
+    let (row, faults) = judge(&kernels, &[Kind::Point], 30, 6, method);
+    assert!(row.faults() == 0, "{row:?}\n{faults}");
     assert!(row.hits > count(500) as u64, "{row:?}");
 }
 
@@ -105,18 +105,18 @@ pub fn clouds(method: Method<'_>) {
         Kernel::Squared,
         Kernel::Cubed,
     ];
-    let (row, told) = judge(&endless, &[Kind::Cloud], 48, 4, method);
-    assert!(row.faults() == 0, "{row:?}\n{told}");
+    let (row, faults) = judge(&endless, &[Kind::Cloud], 48, 4, method);
+    assert!(row.faults() == 0, "{row:?}\n{faults}");
     assert!(row.hits > count(300) as u64, "{row:?}");
 }
 
 /// Checks that a ray that starts close to a cloud's surface is as exact as its own distance asks,
 /// not that of the middle of a cell of its hierarchy.
 pub fn starts_beside_a_cloud(method: Method<'_>) {
-    let mut told = String::new();
+    let mut faults = String::new();
     let trial = Trial::earlier(Kernel::Cubed, Kind::Cloud, 911, 3);
-    let row = check(trial, method, &mut told);
-    assert!(row.faults() == 0, "{row:?}\n{told}");
+    let row = check(trial, method, &mut faults);
+    assert!(row.faults() == 0, "{row:?}\n{faults}");
     assert!(row.hits >= 12, "{row:?}");
 }
 
@@ -152,7 +152,7 @@ pub fn earlier_faults(method: Method<'_>) {
     recheck(Kernel::Quartic, Kind::Taper, 5031, u64::MAX, method);
 }
 
-/// Checks three more, whose reference takes seconds.
+/// Checks three more regressions, whose reference takes seconds.
 pub fn earlier_faults_that_are_hard_to_judge(method: Method<'_>) {
     let once = [
         (Kernel::Gauss, Kind::Polygon, 138),
@@ -164,11 +164,11 @@ pub fn earlier_faults_that_are_hard_to_judge(method: Method<'_>) {
     }
 }
 
-/// Checks that a scene of an earlier fault has none; one of so many rays meets something.
+/// Checks that a scene of an earlier fault has none, and that more than one ray in `least` hits.
 fn recheck(kernel: Kernel, kind: Kind, seed: u64, least: u64, method: Method<'_>) {
-    let mut told = String::new();
-    let row = check(Trial::earlier(kernel, kind, seed, 8), method, &mut told);
+    let mut faults = String::new();
+    let row = check(Trial::earlier(kernel, kind, seed, 8), method, &mut faults);
     let name = format!("{kernel:?} {kind:?} {seed}");
-    assert!(row.faults() == 0, "{name} {row:?}\n{told}");
+    assert!(row.faults() == 0, "{name} {row:?}\n{faults}");
     assert!(row.hits > row.rays / least, "{name} {row:?}");
 }

@@ -9,7 +9,7 @@ use field::bound::Bound;
 use field::shaping::SLIMMEST;
 use field::{Kernel, Primitive, Shaping, Skeleton, THRESHOLD, Taper};
 use glam::DVec3;
-use trials::skeletons::{Kind, shaping};
+use trials::skeletons::{Kind, halves, shaping};
 use trials::{Random, count};
 use wide::f32x8;
 
@@ -30,6 +30,7 @@ fn taper(random: &mut Random, kernel: Kernel) -> Shaping {
     }
 }
 
+/// Returns a random tapered bone, of at least these decades of its radius.
 fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, low: f64) -> Primitive {
     let size = random.decades(low, 1.0);
     let skeleton = random.skeleton(kind, size);
@@ -169,59 +170,22 @@ pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
 
 /// Returns the parts of a bone before and after a fraction of its length.
 fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
-    match *skeleton {
-        Skeleton::Segment { base, apex } => {
-            let middle = base + (apex - base) * fraction;
-            [
-                Skeleton::Segment { base, apex: middle },
-                Skeleton::Segment { base: middle, apex },
-            ]
-        }
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let turn = angle * fraction;
-            let (sine, cosine) = libm::sincos(turn);
-            let part = |u, v, angle| Skeleton::Arc {
-                center,
-                u,
-                v,
-                radius,
-                angle,
-            };
-            [
-                part(u, v, turn),
-                part(u * cosine + v * sine, v * cosine - u * sine, angle - turn),
-            ]
-        }
-        Skeleton::Curve {
-            control: [a, b, c, d],
-        } => {
-            let cut = |at: f64| {
-                let mix = |p: DVec3, q: DVec3| p + (q - p) * at;
-                let (ab, bc, cd) = (mix(a, b), mix(b, c), mix(c, d));
-                let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
-                let m = mix(abc, bcd);
-                [[a, ab, abc, m], [m, bcd, cd, d]].map(|control| Skeleton::Curve { control })
-            };
-            let whole = skeleton.measure();
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..50 {
-                let middle = 0.5 * (low + high);
-                if cut(middle)[0].measure() < fraction * whole {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
+    let mut at = fraction;
+    if let Skeleton::Curve { .. } = skeleton {
+        let whole = skeleton.measure();
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let first = halves(skeleton, middle).map(|[first, _]| first.measure());
+            if first.is_some_and(|length| length < fraction * whole) {
+                low = middle;
+            } else {
+                high = middle;
             }
-            cut(low)
         }
-        _ => unreachable!("no bone"),
+        at = low;
     }
+    halves(skeleton, at).expect("a bone")
 }
 
 /// Checks that a bone cut in two, with the radius and blobbiness that it has there, is the same
@@ -280,7 +244,7 @@ pub fn superposition(kernel: Kernel, evaluate: Evaluation<'_>) {
     }
 }
 
-/// Magnified with its radii, a bone has the same field at magnified places.
+/// Checks that a bone magnified with its radii has the same field at magnified places.
 pub fn scale_invariance(kernel: Kernel, evaluate: Evaluation<'_>) {
     for kind in KINDS {
         let mut random = Random::new(405);
@@ -336,7 +300,7 @@ pub fn scale_invariance(kernel: Kernel, evaluate: Evaluation<'_>) {
     }
 }
 
-/// The distance from the axis x at which the field is T.
+/// Returns the distance from the axis x at which the field is T.
 fn surface(primitive: &Primitive, x: f64) -> f64 {
     let (mut low, mut high) = (1e-3, 10.0);
     for _ in 0..60 {
@@ -441,8 +405,8 @@ pub fn bounds_hold(kernel: Kernel) {
     }
 }
 
-/// Tips of radius 0 are finite, cut at [`SLIMMEST`]; a bone whose ends are equal is no tapered one;
-/// nothing comes of negative radii or of bones of no length.
+/// Checks that tips of radius 0 are finite, cut at [`SLIMMEST`]; that a bone whose ends are equal
+/// is no tapered one; and that there is no primitive of negative radii.
 pub fn degenerate_tapers(kernel: Kernel) {
     let with = |start: f64, end: f64, blobbiness: f64| Shaping {
         kernel,
@@ -524,7 +488,7 @@ pub fn degenerate_tapers(kernel: Kernel) {
         let (value, gradient) = jet::<f32x8>(&short, DVec3::Y * 0.1);
         assert!(value.is_finite() && gradient.is_finite());
     }
-    // A taper says nothing to other skeletons.
+    // Other skeletons have no taper.
     let point = Skeleton::Point {
         center: DVec3::ZERO,
     };

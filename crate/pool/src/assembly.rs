@@ -15,13 +15,13 @@ pub struct Image {
     pub rgba: Vec<u8>,
 }
 
-/// Change on the screen when a tile came.
+/// A change on the screen because of a new tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// Nothing: the tile is for an older picture, is already there, or the new picture is not
     /// complete yet.
     Nothing,
-    /// All pixels.
+    /// The whole picture.
     Whole,
     /// The pixels of one tile.
     Tile(Tile),
@@ -53,7 +53,7 @@ fn rank(pass: Pass) -> u8 {
 }
 
 impl Assembly {
-    /// A new picture begins; tiles of older generations are ignored from now on.
+    /// Begins a new picture; tiles of older generations are ignored from now on.
     pub fn begin(&mut self, generation: u64, size: [u32; 2]) {
         self.settle();
         self.generation = generation;
@@ -107,7 +107,7 @@ impl Assembly {
         }
     }
 
-    /// The picture to show and the generation it belongs to.
+    /// Returns the picture to show and the generation it belongs to.
     #[must_use]
     pub fn shown(&self) -> Option<(u64, &Image)> {
         match &self.coming {
@@ -119,7 +119,7 @@ impl Assembly {
         }
     }
 
-    /// The share of the new picture that has come at least coarsely, 0 … 1.
+    /// Returns the share of the new picture that has come at least coarsely, 0 … 1.
     #[must_use]
     pub fn coverage(&self) -> f32 {
         self.coming.as_ref().map_or(0.0, |coming| {

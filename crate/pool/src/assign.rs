@@ -12,7 +12,7 @@ use tracer::{Pass, Tile};
 
 /// Seconds of work that a worker is given ahead.
 pub const AHEAD: f64 = 0.25;
-/// The same for the full pass until the partition is known.
+/// Seconds of work that a worker is given ahead in the full pass until the partition is known.
 const EARLY: f64 = 0.05;
 /// Most tiles a worker is given ahead.
 pub const MOST_AHEAD: usize = 64;
@@ -22,12 +22,12 @@ const CANDIDATES: usize = 256;
 /// Time of an additional ray at an edge pixel relative to a typical ray of its tile. Measured over
 /// all of seahorse, cowrie and sphereflake: 2.2, 1.9 and 1.0.
 const EDGE_RAY: f64 = 1.5;
-/// Seconds by which the picture must be finished earlier for each second that help costs.
+/// Seconds by which helping must bring the end of the picture forward, for each second it takes.
 const HELP_GAIN: f64 = 0.25;
 
 impl Run {
-    /// Returns the next task of a worker, from those never assigned or, with
-    /// `again`, from those to be repeated. `None` if there is none for it.
+    /// Returns the next task of a worker, from those never assigned or, with `again`, from those to
+    /// be repeated. `None` if there is none for it.
     pub fn take(&mut self, worker: usize, idle: bool, again: bool) -> Option<usize> {
         loop {
             let task = if again {
@@ -52,9 +52,8 @@ impl Run {
     pub(super) fn repartition(&mut self) {
         let known = self.effort.iter().copied().filter(|effort| *effort > 0);
         let least = known.min().unwrap_or(1);
-        let cost = |effort: &u64| (*effort).max(least) as f64;
-        let costs: Vec<f64> = self.effort.iter().map(cost).collect();
-        self.home = partition(&self.tiles, &costs, self.awake.len());
+        let costs = self.effort.iter().map(|effort| (*effort).max(least) as f64);
+        self.home = partition(&self.tiles, &costs.collect::<Vec<_>>(), self.awake.len());
     }
 
     /// Returns a task never assigned, of the first pass that has one for this worker. Each worker
@@ -66,43 +65,38 @@ impl Run {
             if self.passes[pass] == Pass::Full && left == self.tiles.len() {
                 self.repartition();
             }
-            let place = self.own(pass, worker);
-            let place = place.or_else(|| idle.then(|| self.tile_to_help_with(pass, worker))?);
-            if let Some(tile) = place.and_then(|place| self.left[pass].remove(place)) {
+            let index = self.next_own(pass, worker);
+            let index = index.or_else(|| idle.then(|| self.tile_to_help_with(pass, worker))?);
+            if let Some(tile) = index.and_then(|index| self.left[pass].remove(index)) {
                 return Some(pass * self.tiles.len() + tile);
             }
         }
         None
     }
 
-    /// Index, among the unassigned tiles of a pass, of the tile that a worker should do next: one
-    /// of its own, or one without a keeper.
-    fn own(&self, pass: usize, worker: usize) -> Option<usize> {
-        let places = self.left[pass].iter().enumerate();
-        if self.passes[pass] != Pass::Smooth {
-            let mut places = places;
-            let mine = |tile| {
-                self.keeper(pass, tile)
-                    .is_none_or(|keeper| keeper == worker)
-            };
-            return places.position(|(_, tile)| mine(*tile));
+    /// Returns the index, among the unassigned tiles of a pass, of the tile that a worker should do
+    /// next: one of its own, or one without a keeper.
+    fn next_own(&self, pass: usize, worker: usize) -> Option<usize> {
+        let is_smooth = self.passes[pass] == Pass::Smooth;
+        // In the smooth pass, tiles without a keeper wait until all are sampled.
+        let is_free = !is_smooth || self.left[..pass].iter().all(VecDeque::is_empty);
+        let mut tiles = self.left[pass].iter().enumerate().filter(|(_, tile)| {
+            self.keeper(pass, **tile)
+                .map_or(is_free, |keeper| keeper == worker)
+        });
+        if !is_smooth {
+            return tiles.next().map(|(index, _)| index);
         }
         // Expensive tiles come first, so that all workers finish at about the same time.
-        let sampled = self.left[..pass].iter().all(VecDeque::is_empty);
-        let mine = |tile| match self.keeper(pass, tile) {
-            Some(keeper) => keeper == worker,
-            None => sampled,
-        };
-        places
-            .filter(|(_, tile)| mine(**tile))
+        tiles
             .take(CANDIDATES)
-            .map(|(place, tile)| (place, self.cost(pass, *tile).0))
+            .map(|(index, tile)| (index, self.cost(pass, *tile).0))
             // The first of equals.
             .min_by(|a, b| b.1.total_cmp(&a.1))
-            .map(|(place, _)| place)
+            .map(|(index, _)| index)
     }
 
-    /// The worker that should do a tile in a pass; `None` if any will do.
+    /// Returns the worker that should do a tile in a pass; `None` if any will do.
     fn keeper(&self, pass: usize, tile: usize) -> Option<usize> {
         let keeper = match self.passes[pass] {
             Pass::Coarse => None,
@@ -112,9 +106,10 @@ impl Run {
         keeper.filter(|worker| self.awake[*worker])
     }
 
-    /// Expected seconds of a tile in a pass: for the worker that should do it, and for any other.
+    /// Returns the expected seconds of a tile in a pass: for the worker that should do it, and for
+    /// any other.
     fn cost(&self, pass: usize, tile: usize) -> (f64, f64) {
-        let usual = self.costs.expected(pass);
+        let usual = self.costs.estimate(pass);
         match self.passes[pass] {
             Pass::Coarse => (usual, usual),
             Pass::Full => {
@@ -138,9 +133,9 @@ impl Run {
         }
     }
 
-    /// Index, among the unassigned tiles of a pass, of another worker's tile that an idle worker
-    /// should do: of the worker with the most left to do, the tile with which both finish earliest.
-    /// `None` if helping does not finish earlier.
+    /// Returns the index, among the unassigned tiles of a pass, of another worker's tile that an
+    /// idle worker should do: of the worker with the most left to do, the tile with which both
+    /// finish earliest. `None` if helping does not pay.
     fn tile_to_help_with(&self, pass: usize, worker: usize) -> Option<usize> {
         let first = pass * self.tiles.len();
         let mut load = vec![0.0; self.awake.len()];
@@ -151,26 +146,26 @@ impl Run {
         }
         let others = self.left[pass].iter().enumerate();
         let others =
-            others.filter_map(|(place, tile)| Some((place, *tile, self.keeper(pass, *tile)?)));
+            others.filter_map(|(index, tile)| Some((index, *tile, self.keeper(pass, *tile)?)));
         let others = others.filter(|(.., keeper)| *keeper != worker);
         let (.., most) = others
             .clone()
             .max_by(|a, b| load[a.2].total_cmp(&load[b.2]))?;
-        let gain = |tile: usize| {
-            let (own, other) = self.cost(pass, tile);
-            let done = (load[worker] + other).max(load[most] - own);
-            (load[most] - done, other)
-        };
         others
             .filter(|(.., keeper)| *keeper == most)
-            .map(|(place, tile, _)| (place, gain(tile)))
-            .filter(|(_, (gained, cost))| *gained > HELP_GAIN * cost)
-            .max_by(|a, b| a.1.0.total_cmp(&b.1.0))
-            .map(|(place, _)| place)
+            .filter_map(|(index, tile, _)| {
+                let (own, other) = self.cost(pass, tile);
+                let end = (load[worker] + other).max(load[most] - own);
+                let gain = load[most] - end;
+                (gain > HELP_GAIN * other).then_some((index, gain))
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(index, _)| index)
     }
 
     /// Whether a worker that holds these tasks should be given one more: enough not to wait for the
-    /// page, but not so much that it ends with much more than the other `workers`.
+    /// page, but not so much that it has much more left than the others when the picture ends.
+    /// `workers`: the number of those awake.
     pub fn needs_more(&self, holds: &VecDeque<usize>, workers: usize) -> bool {
         let untaken: usize = self.left.iter().map(VecDeque::len).sum();
         if untaken == 0 || holds.len() >= MOST_AHEAD {
@@ -181,8 +176,10 @@ impl Run {
             return true;
         }
         let tiles = self.tiles.len();
-        let seconds = |task: &usize| self.cost(task / tiles, task % tiles).0;
-        let held: f64 = holds.iter().map(seconds).sum();
+        let costs = holds
+            .iter()
+            .map(|task| self.cost(task / tiles, task % tiles).0);
+        let held: f64 = costs.sum();
         let coarse = self.completed[0] < tiles && self.left[0].is_empty();
         if held >= if coarse { EARLY } else { AHEAD } {
             return false;
@@ -213,7 +210,7 @@ mod tests {
     use crate::run::Plan;
     use tracer::Stats;
 
-    /// A picture of a number of pixels for a number of workers, all started.
+    /// Returns a picture for a number of workers, all awake.
     fn run(size: [u32; 2], workers: usize) -> Run {
         let plan = Plan {
             generation: 1,
@@ -230,25 +227,27 @@ mod tests {
     #[test]
     fn parts_take_equally_long_by_the_costs_of_the_coarse_pass() {
         // The tiles on the left are expensive.
-        let effort = |tile: &Tile| if tile.x < 128 { 100 } else { 1 };
+        fn effort(tile: &Tile) -> u64 {
+            if tile.x < 128 { 100 } else { 1 }
+        }
         for workers in [2, 3, 5] {
             for early in [0, 7] {
                 let mut run = run([640, 512], workers);
                 let tiles = run.tiles.clone();
-                let coarse = |run: &mut Run, some: std::ops::Range<usize>| {
-                    for task in some {
+                let finish_coarse = |run: &mut Run, tasks: std::ops::Range<usize>| {
+                    for task in tasks {
                         let stats = Stats {
                             field_evaluations: effort(&tiles[task]),
                             ..Stats::default()
                         };
-                        run.done(task, &stats, 1e-3, 0.0);
+                        run.finish(task, &stats, 1e-3, 0.0);
                     }
                 };
                 for task in 0..tiles.len() {
                     assert_eq!(run.take(0, false, false), Some(task));
                 }
                 // Some tiles of the full pass are assigned while only these costs are known.
-                coarse(&mut run, 0..10);
+                finish_coarse(&mut run, 0..10);
                 let mut full = vec![0; workers];
                 let mut take = |run: &mut Run, worker: usize| {
                     let task = run.take(worker, false, false)?;
@@ -261,7 +260,7 @@ mod tests {
                 for _ in 0..early {
                     take(&mut run, 0);
                 }
-                coarse(&mut run, 10..tiles.len());
+                finish_coarse(&mut run, 10..tiles.len());
                 for worker in 0..workers {
                     while take(&mut run, worker).is_some() {}
                 }
@@ -288,7 +287,7 @@ mod tests {
         let (tiles, mut done) = (4, 0.0);
         let mut finish = |run: &mut Run, task| {
             done += 1e-3;
-            run.done(task, &stats, 1e-3, done);
+            run.finish(task, &stats, 1e-3, done);
         };
         while run.is_coarse() {
             let task = run.take(0, false, false).unwrap();
@@ -325,7 +324,7 @@ mod tests {
             run.awake[1] = false;
             for _ in 0..4 {
                 let task = run.take(0, false, false).unwrap();
-                run.done(task, &stats, 1e-3, 0.0);
+                run.finish(task, &stats, 1e-3, 0.0);
             }
             run.awake[1] = true;
             let (own, other) = run.cost(2, 0);
@@ -360,12 +359,12 @@ mod tests {
         }
         let last = coarse.split_off(coarse.len() - 1);
         for task in coarse {
-            run.done(task, &stats, 1e-4, 0.0);
+            run.finish(task, &stats, 1e-4, 0.0);
         }
         // Predicted to take 3 ms each.
         let early = fill(&mut run).len();
         assert!((10..=18).contains(&early), "{early}");
-        run.done(last[0], &stats, 1e-4, 0.0);
+        run.finish(last[0], &stats, 1e-4, 0.0);
         assert!(fill(&mut run).len() > 3 * early);
     }
 }

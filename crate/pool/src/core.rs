@@ -74,8 +74,8 @@ impl<W: Workers> Core<W> {
         self.carry_out(now);
     }
 
-    /// Takes a worker's answers. Returns whether a pass was completed or a worker failed, so that
-    /// the app should draw.
+    /// Takes a worker's answers. Returns whether the app should draw: a pass was completed or a
+    /// worker failed.
     pub fn answers(&mut self, index: usize, answers: Vec<Answer>, now: f64) -> bool {
         let mut news = false;
         for answer in answers {
@@ -87,9 +87,11 @@ impl<W: Workers> Core<W> {
 
     fn answer(&mut self, index: usize, answer: Answer, now: f64) -> bool {
         match answer {
-            Answer::Started => self.scheduler.started(index, now),
-            Answer::Noted { generation } => self.scheduler.noted(index, generation, now),
-            Answer::Prepared { generation } => self.scheduler.prepared(index, generation, now),
+            Answer::Started => self.scheduler.note_start(index, now),
+            Answer::Noted { generation } => self.scheduler.note_picture(index, generation, now),
+            Answer::Prepared { generation } => {
+                self.scheduler.note_preparation(index, generation, now)
+            }
             Answer::Traced {
                 order,
                 pixels,
@@ -98,9 +100,9 @@ impl<W: Workers> Core<W> {
                 known,
             } => {
                 let complete = self.scheduler.complete_passes();
-                let wanted = self.scheduler.traced(index, order, &stats, seconds, now);
+                let wanted = self.scheduler.take_tile(index, order, &stats, seconds, now);
                 if order.pass == Pass::Smooth {
-                    self.shared_samples.completed(index, order.tile);
+                    self.shared_samples.finish(index, order.tile);
                 }
                 if let (true, Some(known)) = (wanted, known) {
                     for (other, known) in self.shared_samples.receive(index, &order, known) {
@@ -118,7 +120,7 @@ impl<W: Workers> Core<W> {
                 return self.scheduler.complete_passes() > complete;
             }
             Answer::Failed(reason) => {
-                self.scheduler.died(index, &reason, now);
+                self.scheduler.note_death(index, &reason, now);
                 return true;
             }
         }
@@ -147,7 +149,7 @@ impl<W: Workers> Core<W> {
                     Command::Restart(index) => {
                         self.shared_samples.forget_worker(index);
                         if let Err(reason) = self.workers.restart(index) {
-                            self.scheduler.died(index, &reason, now);
+                            self.scheduler.note_death(index, &reason, now);
                         }
                     }
                     Command::End(index) => {
@@ -175,7 +177,7 @@ impl<W: Workers> Core<W> {
         }
     }
 
-    /// Sends a worker first samples that it has not taken itself.
+    /// Sends a worker first samples that others have taken.
     fn send_samples(&mut self, index: usize, known: Vec<Known>) {
         if !known.is_empty() {
             let generation = self.scheduler.number();

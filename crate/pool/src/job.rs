@@ -9,7 +9,8 @@ use worker::Kind;
 /// primitives once for all pixels. Small enough that a tile takes milliseconds, large enough that
 /// sending it takes a small share of that.
 pub const TILE: u32 = 64;
-/// The same for small pictures, of which there are many: fewer messages matter more.
+/// Longest side of a tile of a small picture in pixels. There are many such pictures, so fewer
+/// messages matter more.
 pub const SMALL_TILE: u32 = 56;
 /// Most workers, whatever the machine has: each holds its own copy of the scene.
 pub const MAX_WORKERS: usize = 16;
@@ -34,7 +35,7 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Tells whether it needs the root finders for comparison.
+    /// Whether it needs the root finders for comparison.
     #[must_use]
     pub fn compares(&self) -> bool {
         self.kind == Kind::Errors || self.scene.settings.digger != Digger::Hermite
@@ -46,15 +47,15 @@ impl Job<'_> {
 pub struct TileDone {
     /// The number of the [`Job`].
     pub generation: u64,
-    /// How finely it was traced.
+    /// The pass in which it was traced.
     pub pass: Pass,
-    /// Its place in the picture. Each pass has the same tiles.
+    /// The place in the picture. Each pass has the same tiles.
     pub tile: Tile,
-    /// Four bytes each, as the job's [`Kind`] says; rows from the top.
+    /// The pixels, four bytes each, whose meaning is the job's [`Kind`]; rows from the top.
     pub pixels: Vec<u8>,
 }
 
-/// Number of workers to start on a machine with `cores` cores.
+/// Returns the number of workers to start on a machine with `cores` cores.
 pub(crate) fn worker_count(cores: usize) -> usize {
     cores.clamp(1, MAX_WORKERS)
 }

@@ -14,17 +14,17 @@ pub const DEATHS: u32 = 10;
 /// Seconds a worker may take to start.
 pub const START_LIMIT: f64 = 30.0;
 
-/// Where a worker is in its life.
+/// A stage in the life of a worker.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// Not running, and not wanted at the moment.
+    /// The worker does not run, as there is no work for it.
     #[default]
     Asleep,
-    /// On its way.
+    /// The worker is being started.
     Starting,
-    /// Takes requests.
+    /// The worker takes requests.
     Awake,
-    /// Not running, as it failed too often.
+    /// The worker does not run, as it failed too often.
     GivenUp,
 }
 
@@ -35,7 +35,7 @@ pub type Deadline = (f64, &'static str);
 #[derive(Clone, Debug, Default)]
 pub struct Life {
     stage: Stage,
-    /// Last sign of life, or when its present work began.
+    /// Time of the last sign of life, or of the start of its present work.
     since: f64,
     /// Whether it was late at the last look.
     suspected: bool,
@@ -45,7 +45,7 @@ pub struct Life {
 }
 
 impl Life {
-    /// Returns where it is in its life.
+    /// Returns the stage.
     #[must_use]
     pub fn stage(&self) -> Stage {
         self.stage
@@ -63,7 +63,7 @@ impl Life {
         matches!(self.stage, Stage::Starting | Stage::Awake)
     }
 
-    /// Returns when it gave its last sign of life, or began its present work.
+    /// Returns the time of its last sign of life, or of the start of its present work.
     #[must_use]
     pub fn since(&self) -> f64 {
         self.since
@@ -122,8 +122,8 @@ impl Life {
         Some(was_awake)
     }
 
-    /// Looks whether it hangs, which is found at the second look at the earliest. `work`: the
-    /// deadline of its present work. Returns the trouble if it hangs.
+    /// Returns the trouble if it hangs, which is found at the second look at the earliest. `work`:
+    /// the deadline of its present work.
     pub fn overdue(&mut self, now: f64, work: Option<Deadline>) -> Option<&'static str> {
         let deadline = match self.stage {
             Stage::Starting => Some((self.since + START_LIMIT, "a worker took too long to start")),

@@ -32,11 +32,13 @@ fn halve(
         }
         return;
     }
-    let extent = |place: fn(&Tile) -> u32| {
-        let places = || some.iter().map(|tile| place(&tiles[*tile]));
-        places().max().unwrap_or(0) - places().min().unwrap_or(0)
-    };
-    let is_wide = extent(|tile| tile.x) >= extent(|tile| tile.y);
+    let (mut low, mut high) = ([u32::MAX; 2], [0; 2]);
+    for tile in &*some {
+        let Tile { x, y, .. } = tiles[*tile];
+        low = [low[0].min(x), low[1].min(y)];
+        high = [high[0].max(x), high[1].max(y)];
+    }
+    let is_wide = high[0].saturating_sub(low[0]) >= high[1].saturating_sub(low[1]);
     let place = |tile: &usize| {
         let Tile { x, y, .. } = tiles[*tile];
         if is_wide { (x, y) } else { (y, x) }
@@ -45,14 +47,14 @@ fn halve(
     let before = workers / 2;
     let whole: f64 = some.iter().map(|tile| costs[*tile]).sum();
     let wanted = whole * before as f64 / workers as f64;
-    let mut sum = 0.0;
+    let (mut sum, mut cut) = (0.0, 0);
     // A tile on the cut goes to the side that has more of it.
-    let in_the_first = |tile: &&usize| {
-        let middle = sum + 0.5 * costs[**tile];
-        sum += costs[**tile];
-        middle < wanted
-    };
-    let cut = some.iter().take_while(in_the_first).count();
+    while let Some(tile) = some.get(cut)
+        && sum + 0.5 * costs[*tile] < wanted
+    {
+        sum += costs[*tile];
+        cut += 1;
+    }
     let (left, right) = some.split_at_mut(cut);
     halve(tiles, costs, left, first, before, owner);
     halve(tiles, costs, right, first + before, workers - before, owner);
@@ -62,8 +64,8 @@ fn halve(
 mod tests {
     use super::*;
 
-    /// Number of tiles with a neighbour of the same worker on one of the four sides, and number of
-    /// those without.
+    /// Returns the number of tiles with a neighbour of the same worker on one of the four sides,
+    /// and the number of those without.
     fn neighbours(tiles: &[Tile], owner: &[usize]) -> (usize, usize) {
         let mut count = (0, 0);
         for (tile, worker) in tiles.iter().zip(owner) {
@@ -83,27 +85,24 @@ mod tests {
     fn parts_have_equal_cost_and_are_connected() {
         let tiles = tracer::tile::tiles(512, 384, 64);
         // Expensive tiles lie on a diagonal and get more expensive along it.
-        let cost = |tile: &Tile| {
-            let near = tile.x.abs_diff(tile.y) < 100;
-            1.0 + if near {
-                20.0 + f64::from(tile.x) * 0.05
+        let costs = tiles.iter().map(|tile| {
+            if tile.x.abs_diff(tile.y) < 100 {
+                21.0 + f64::from(tile.x) * 0.05
             } else {
-                0.0
+                1.0
             }
-        };
-        let costs: Vec<f64> = tiles.iter().map(cost).collect();
+        });
+        let costs: Vec<f64> = costs.collect();
         let dearest = costs.iter().copied().fold(0.0, f64::max);
         for workers in [1, 2, 3, 4, 7, 16] {
             let owner = partition(&tiles, &costs, workers);
-            let of = |worker| -> f64 {
-                let mine = owner.iter().zip(&costs).filter(|(by, _)| **by == worker);
-                mine.map(|(_, cost)| cost).sum()
-            };
             let mean = costs.iter().sum::<f64>() / workers as f64;
             for worker in 0..workers {
+                let own = owner.iter().zip(&costs).filter(|(by, _)| **by == worker);
+                let own: f64 = own.map(|(_, cost)| cost).sum();
                 // Half a tile at each of the cuts that make a part.
                 let cuts = f64::from(workers.next_power_of_two().ilog2());
-                let apart = (of(worker) - mean).abs();
+                let apart = (own - mean).abs();
                 assert!(
                     apart <= 0.5 * dearest * cuts,
                     "{workers}: {apart} of {mean}"

@@ -30,8 +30,8 @@ impl Pool {
         }
     }
 
-    /// Begins a picture and forgets the one before. The first that needs the root finders for
-    /// comparison has the program loaded that has them; once it is there, that does all.
+    /// Begins a picture and forgets the one before. The first one that needs the root finders for
+    /// comparison loads the program that has them; once loaded, that traces all pictures.
     pub fn start(&mut self, job: Job<'_>) {
         let compares = job.compares() || self.compares && self.crew.is_loaded();
         if self.compares != compares {
@@ -53,14 +53,14 @@ impl Pool {
         self.crew.ask(|core, _| core.take())
     }
 
-    /// Returns how far the present picture has come.
+    /// Returns the progress of the present picture.
     #[must_use]
     pub fn progress(&self) -> Progress {
         self.crew.ask(|core, now| core.progress(now))
     }
 
-    /// Ends a worker without telling the scheduler, which must find out by itself. For tests.
-    /// Returns whether there was such a worker.
+    /// Ends a worker without the scheduler's knowledge. For tests. Returns whether there was such a
+    /// worker.
     pub fn kill_worker(&mut self, index: usize) -> bool {
         self.crew.ask(|core, _| core.workers.kill(index))
     }

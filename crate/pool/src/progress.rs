@@ -2,7 +2,7 @@
 
 use tracer::{Pass, Stats};
 
-/// How far the picture has come, for the progress bar and for scripts.
+/// Progress of a picture, for the progress bar and for scripts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
     /// The number of the picture, if one was ever started.
@@ -13,11 +13,11 @@ pub struct Progress {
     pub pass: Option<Pass>,
     /// Whether all tiles of all passes are done, or given up.
     pub finished: bool,
-    /// About how long it will still take; `None` until enough was measured.
+    /// Estimated time left; `None` until enough tiles were measured.
     pub remaining_seconds: Option<f64>,
     /// Seconds from the start to now, or to the end of the picture.
     pub seconds: f64,
-    /// When each pass was complete, seconds after the start: coarse, full, smooth.
+    /// Seconds from the start to the end of each pass: coarse, full, smooth.
     pub pass_seconds: [Option<f64>; 3],
     /// Workers that run or are being started.
     pub workers: usize,
@@ -51,7 +51,7 @@ pub(crate) struct Costs {
 }
 
 impl Costs {
-    /// Notes that a tile took so long.
+    /// Adds the measured time of a tile.
     pub fn add(&mut self, pass: usize, seconds: f64) {
         let measured = &mut self.passes[pass];
         measured.tiles += 1;
@@ -59,20 +59,18 @@ impl Costs {
         measured.slowest = measured.slowest.max(seconds);
     }
 
-    /// Expected seconds of one tile of a pass; a bare guess if nothing was measured.
-    pub fn expected(&self, pass: usize) -> f64 {
-        let known = |i: &usize| self.passes[*i].tiles > 0;
+    /// Estimates the seconds of one tile of a pass; a bare guess if nothing was measured.
+    pub fn estimate(&self, pass: usize) -> f64 {
         // The pass itself, else the finest one measured.
-        let base = Some(pass)
-            .filter(known)
-            .or_else(|| (0..3).rev().find(known));
+        let mut bases = [pass, 2, 1, 0].into_iter();
+        let base = bases.find(|i| self.passes[*i].tiles > 0);
         base.map_or(TYPICAL[pass] * 1e-3, |i| {
             let mean = self.passes[i].seconds / f64::from(self.passes[i].tiles);
             mean.max(1e-6) * TYPICAL[pass] / TYPICAL[i]
         })
     }
 
-    /// Most seconds any tile of a pass took; 0 if none was measured.
+    /// Returns the seconds of the slowest tile of a pass; 0 if none was measured.
     pub fn slowest(&self, pass: usize) -> f64 {
         self.passes[pass].slowest
     }
@@ -93,10 +91,10 @@ mod tests {
         assert!(!costs.enough());
         costs.add(0, 0.002);
         costs.add(0, 0.004);
-        assert!((costs.expected(0) - 0.003).abs() < 1e-12);
-        assert!((costs.expected(1) - 0.003 * TYPICAL[1]).abs() < 1e-12);
+        assert!((costs.estimate(0) - 0.003).abs() < 1e-12);
+        assert!((costs.estimate(1) - 0.003 * TYPICAL[1]).abs() < 1e-12);
         costs.add(1, 0.05);
-        assert!((costs.expected(2) - 0.05 * TYPICAL[2] / TYPICAL[1]).abs() < 1e-12);
+        assert!((costs.estimate(2) - 0.05 * TYPICAL[2] / TYPICAL[1]).abs() < 1e-12);
         assert!((costs.slowest(0) - 0.004).abs() < 1e-12);
         costs.add(1, 0.05);
         assert!(costs.enough());

@@ -64,7 +64,7 @@ impl Queue {
         self.next(now);
     }
 
-    /// Fails all jobs, because workers cannot be started at all for this reason.
+    /// Lets all jobs fail, as workers cannot be started at all for this reason.
     pub fn unavailable(&mut self, reason: &str) {
         self.end();
         for job in self
@@ -93,7 +93,7 @@ impl Queue {
     }
 
     /// Notes that the worker takes requests.
-    pub fn started(&mut self, now: f64) {
+    pub fn note_start(&mut self, now: f64) {
         if self.life.awake(now) {
             self.next(now);
         }
@@ -106,7 +106,7 @@ impl Queue {
     }
 
     /// Notes the end of a job. Returns whether it is the running one, so that its result is wanted.
-    pub fn done(&mut self, id: u64, now: f64) -> bool {
+    pub fn note_end(&mut self, id: u64, now: f64) -> bool {
         self.life.hear(now);
         let is_wanted = self.running.take_if(|job| job.id == id).is_some();
         if is_wanted {
@@ -117,7 +117,7 @@ impl Queue {
     }
 
     /// Notes that the worker died, or said that it cannot continue.
-    pub fn died(&mut self, reason: &str, now: f64) {
+    pub fn note_death(&mut self, reason: &str, now: f64) {
         if self.life.die().is_none() {
             return;
         }
@@ -142,7 +142,7 @@ impl Queue {
         let work = self.running.is_some();
         let work = work.then_some((since + SILENCE_LIMIT, "it took too long"));
         if let Some(reason) = self.life.overdue(now, work) {
-            self.died(reason, now);
+            self.note_death(reason, now);
         } else if self.life.is_awake() && work.is_none() && now - since > IDLE_LIMIT {
             self.end();
         }
@@ -187,14 +187,14 @@ mod tests {
     use super::*;
     use Command::{End, Fail, Restart, Run};
 
-    /// A queue with a worker that runs job 1, submitted at time 0.
+    /// Returns a queue with a worker that runs job 1, submitted at time 0.
     fn running() -> Queue {
         let mut queue = Queue::default();
         queue.launch(0.0);
         assert_eq!(queue.commands(), [], "no worker before the first job");
         queue.submit(1, 0.0);
         assert_eq!(queue.commands(), [Restart]);
-        queue.started(0.0);
+        queue.note_start(0.0);
         assert_eq!(queue.commands(), [Run(1)]);
         queue
     }
@@ -216,10 +216,10 @@ mod tests {
         queue.submit(3, 1.0);
         assert_eq!(queue.commands(), []);
         assert!(queue.progress(1, 1.5) && !queue.progress(2, 1.5));
-        assert!(!queue.done(2, 2.0), "it is not running");
-        assert!(queue.done(1, 2.0));
+        assert!(!queue.note_end(2, 2.0), "it is not running");
+        assert!(queue.note_end(1, 2.0));
         assert_eq!(queue.commands(), [Run(2)]);
-        assert!(queue.done(2, 3.0));
+        assert!(queue.note_end(2, 3.0));
         assert_eq!(queue.commands(), [Run(3)]);
     }
 
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn idle_worker_is_ended() {
         let mut queue = running();
-        queue.done(1, 1.0);
+        queue.note_end(1, 1.0);
         assert_eq!(wait(&mut queue, 1.0, IDLE_LIMIT), []);
         assert_eq!(wait(&mut queue, IDLE_LIMIT, IDLE_LIMIT + 2.0), [End]);
         assert!(!queue.is_busy());
@@ -253,8 +253,8 @@ mod tests {
         assert_eq!(queue.commands(), [], "it had not begun");
         queue.cancel(1, 1.0);
         assert_eq!(queue.commands(), [End, Restart]);
-        assert!(!queue.done(1, 1.1), "an answer that was on its way");
-        queue.started(1.2);
+        assert!(!queue.note_end(1, 1.1), "an answer that was on its way");
+        queue.note_start(1.2);
         assert_eq!(queue.commands(), [Run(3)]);
         queue.cancel(3, 2.0);
         assert_eq!(queue.commands(), [End]);
@@ -265,16 +265,16 @@ mod tests {
     fn job_of_a_dead_worker_is_repeated_once() {
         let mut queue = running();
         queue.submit(2, 0.0);
-        queue.died("memory", 1.0);
+        queue.note_death("memory", 1.0);
         assert_eq!(queue.commands(), [End, Restart]);
-        queue.started(1.1);
+        queue.note_start(1.1);
         assert_eq!(queue.commands(), [Run(1)]);
-        queue.died("memory", 2.0);
+        queue.note_death("memory", 2.0);
         assert_eq!(
             queue.commands(),
             [Fail(1, String::from("memory")), End, Restart]
         );
-        queue.started(2.1);
+        queue.note_start(2.1);
         assert_eq!(queue.commands(), [Run(2)]);
     }
 
@@ -305,10 +305,10 @@ mod tests {
     #[test]
     fn idle_worker_may_die_without_harm() {
         let mut queue = running();
-        queue.done(1, 1.0);
-        queue.died("gone", 2.0);
+        queue.note_end(1, 1.0);
+        queue.note_death("gone", 2.0);
         assert_eq!(queue.commands(), [End]);
-        queue.died("gone again", 2.0);
+        queue.note_death("gone again", 2.0);
         assert_eq!(queue.commands(), []);
     }
 }

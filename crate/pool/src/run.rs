@@ -24,7 +24,7 @@ pub struct Plan {
     pub generation: u64,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// At most n×n rays a pixel; with 1 there is no [`Pass::Smooth`].
+    /// Square root of the most rays a pixel; with 1 there is no [`Pass::Smooth`].
     pub samples: u32,
     /// Whether only the last pass is wanted, in one go.
     pub small: bool,
@@ -38,8 +38,8 @@ pub struct Run {
     pub plan: Plan,
     pub(super) tiles: Vec<Tile>,
     pub(super) passes: &'static [Pass],
-    /// For each pass the tiles never assigned, in the order of the tiles. A task is a tile in a
-    /// pass, numbered pass · number of tiles + tile.
+    /// Tiles never assigned, for each pass, in the order of the tiles. A task is a tile in a pass,
+    /// numbered pass · number of tiles + tile.
     pub(super) left: Vec<VecDeque<usize>>,
     /// Work of the coarse pass at each tile (rays and field evaluations), 0 while unknown.
     pub(super) effort: Vec<u64>,
@@ -47,7 +47,7 @@ pub struct Run {
     pub(super) known_effort: (u64, u64),
     /// Seconds and [`Stats::edges`] of the full pass at each tile, where known.
     pub(super) full: Vec<Option<(f64, u64)>>,
-    /// Which workers take requests at present.
+    /// Whether each worker takes requests at present.
     pub awake: Vec<bool>,
     /// Worker that should trace each tile in the full pass.
     pub(super) home: Vec<usize>,
@@ -59,9 +59,9 @@ pub struct Run {
     failures: HashMap<usize, u32>,
     pub(super) failed_tiles: HashSet<usize>,
     pub failed_preparations: u32,
-    /// For each task whether it is done or given up.
+    /// Whether each task is done or given up.
     pub(super) over: Vec<bool>,
-    /// Number of those tasks in each pass.
+    /// Number of tasks done or given up in each pass.
     pub(super) completed: [usize; 3],
     pass_seconds: [Option<f64>; 3],
     pub(super) costs: Costs,
@@ -129,46 +129,55 @@ impl Run {
         self.completed[task / self.tiles.len()] += 1;
     }
 
-    /// Number of complete passes.
+    /// Returns the number of complete passes.
     pub fn complete_passes(&self) -> usize {
         self.pass_seconds.iter().flatten().count()
     }
 
-    /// Time limit of a task, seconds. It grows with each failure, as a tile may be slow for good
-    /// reasons.
+    /// Returns the time limit of a task, seconds. It grows with each failure, as a tile may be slow
+    /// for good reasons.
     pub fn limit(&self, task: usize) -> f64 {
         let pass = task / self.tiles.len();
         let failures = self.failures.get(&task).copied().unwrap_or(0);
-        let long = SLACK * self.costs.expected(pass).max(self.costs.slowest(pass));
+        let long = SLACK * self.costs.estimate(pass).max(self.costs.slowest(pass));
         (long.max(TILE_LIMIT) * RETRY.powi(failures as i32)).min(LONGEST_LIMIT)
     }
 
-    /// Expected seconds of all tasks, and of those left.
-    fn expected(&self) -> (f64, f64) {
+    /// Estimates the seconds of all tasks, and of those left.
+    fn estimate(&self) -> (f64, f64) {
         let (mut all, mut left) = (0.0, 0.0);
         for pass in 0..self.passes.len() {
-            let cost = self.costs.expected(pass);
+            let cost = self.costs.estimate(pass);
             all += cost * self.tiles.len() as f64;
             left += cost * (self.tiles.len() - self.completed[pass]) as f64;
         }
         (all, left)
     }
 
+    /// Whether all tiles of a pass are done or given up.
+    fn is_complete(&self, pass: usize) -> bool {
+        self.completed[pass] == self.tiles.len()
+    }
+
+    /// Whether all passes are complete.
+    fn is_finished(&self) -> bool {
+        (0..self.passes.len()).all(|pass| self.is_complete(pass))
+    }
+
     /// Notes complete passes and the end of the picture.
     pub fn update(&mut self, now: f64) {
-        let complete = |pass: usize| self.completed[pass] == self.tiles.len();
         let mut coarse_is_complete = false;
         for pass in 0..self.passes.len() {
-            if complete(pass) && self.pass_seconds[pass].is_none() {
+            if self.is_complete(pass) && self.pass_seconds[pass].is_none() {
                 self.pass_seconds[pass] = Some(now - self.begun);
                 coarse_is_complete |= self.passes[pass] == Pass::Coarse;
             }
         }
-        let (all, left) = self.expected();
+        let (all, left) = self.estimate();
         if all > 0.0 {
             self.fraction = self.fraction.max(1.0 - left / all);
         }
-        if (0..self.passes.len()).all(complete) {
+        if self.is_finished() {
             self.ended.get_or_insert(now);
             self.fraction = 1.0;
         }
@@ -178,7 +187,7 @@ impl Run {
     }
 
     /// Notes that a task is done.
-    pub fn done(&mut self, task: usize, stats: &Stats, seconds: f64, now: f64) {
+    pub fn finish(&mut self, task: usize, stats: &Stats, seconds: f64, now: f64) {
         let pass = task / self.tiles.len();
         let tile = task % self.tiles.len();
         self.close(task);
@@ -198,7 +207,7 @@ impl Run {
     }
 
     /// Notes that a worker died or hung while it held a task. Returns whether the task is given up.
-    pub fn failed(&mut self, task: usize) -> bool {
+    pub fn fail(&mut self, task: usize) -> bool {
         let failures = self.failures.entry(task).or_insert(0);
         *failures += 1;
         let give_up = *failures >= ATTEMPTS;
@@ -217,20 +226,19 @@ impl Run {
 
     /// Writes the picture's state into `progress`, whose number of workers must be set.
     pub fn report(&self, progress: &mut Progress, now: f64) {
-        let complete = |pass: usize| self.completed[pass] == self.tiles.len();
         progress.generation = Some(self.plan.generation);
         progress.fraction = self.fraction;
-        progress.finished = (0..self.passes.len()).all(complete);
+        progress.finished = self.is_finished();
         progress.seconds = self.ended.unwrap_or(now) - self.begun;
         progress.pass_seconds = self.pass_seconds;
         progress.failed_tiles = self.failed_tiles.len() as u32;
         progress.stats = self.stats;
         if self.ended.is_none() {
             progress.pass = (0..self.passes.len())
-                .find(|pass| !complete(*pass))
+                .find(|pass| !self.is_complete(*pass))
                 .map(|pass| self.passes[pass]);
             progress.remaining_seconds = (self.costs.enough() && progress.workers > 0)
-                .then(|| self.expected().1 / progress.workers as f64);
+                .then(|| self.estimate().1 / progress.workers as f64);
         }
     }
 }

@@ -101,20 +101,20 @@ impl Scheduler {
         std::mem::take(&mut self.commands)
     }
 
-    /// Number of the present picture in the messages of the workers.
+    /// Returns the number of the present picture in the messages of the workers.
     #[must_use]
     pub fn number(&self) -> u64 {
         self.number
     }
 
-    /// The caller's number of the present picture.
+    /// Returns the caller's number of the present picture.
     #[must_use]
     pub fn generation(&self) -> Option<u64> {
         self.run.as_ref().map(|run| run.plan.generation)
     }
 
-    /// Number of complete passes of the present picture. The app is woken when it rises; single
-    /// tiles are shown when the app draws anyway.
+    /// Returns the number of complete passes of the present picture. The app is woken when it
+    /// rises; single tiles are shown when the app draws anyway.
     #[must_use]
     pub fn complete_passes(&self) -> usize {
         self.run.as_ref().map_or(0, Run::complete_passes)
@@ -126,13 +126,13 @@ impl Scheduler {
         self.run.as_ref().is_none_or(|run| run.ended.is_some())
     }
 
-    /// Workers can be started from now on.
+    /// Notes that workers can be started from now on.
     pub fn launch(&mut self, now: f64) {
         self.launched = true;
         self.wake(now);
     }
 
-    /// Workers cannot be started at all, for this reason.
+    /// Notes that workers cannot be started at all, for this reason.
     pub fn unavailable(&mut self, reason: &str, now: f64) {
         self.fail(reason.to_owned(), now);
     }
@@ -160,7 +160,7 @@ impl Scheduler {
         let mut enough = 1;
         while self.run.as_ref().is_some_and(Run::is_coarse) {
             enough += 1;
-            let before = self.held();
+            let before = self.count_held();
             for index in 0..self.slots.len() {
                 // The partition for the next pass is not known yet.
                 if self.run.as_ref().is_some_and(Run::is_coarse) {
@@ -168,13 +168,14 @@ impl Scheduler {
                 }
             }
             // Nobody is awake.
-            if self.held() == before {
+            if self.count_held() == before {
                 return;
             }
         }
     }
 
-    fn held(&self) -> usize {
+    /// Returns the number of tasks that workers hold.
+    fn count_held(&self) -> usize {
         self.slots.iter().map(|slot| slot.holds.len()).sum()
     }
 
@@ -192,23 +193,23 @@ impl Scheduler {
         }
     }
 
-    /// A worker takes requests.
-    pub fn started(&mut self, index: usize, now: f64) {
+    /// Notes that a worker takes requests.
+    pub fn note_start(&mut self, index: usize, now: f64) {
         if self.slots[index].life.awake(now) {
             self.begin(index, now);
         }
     }
 
-    /// A worker has taken note of the picture of this number.
-    pub fn noted(&mut self, index: usize, number: u64, now: f64) {
+    /// Notes that a worker knows of the picture of this number.
+    pub fn note_picture(&mut self, index: usize, number: u64, now: f64) {
         self.slots[index].life.hear(now);
         if number == self.number {
             self.slots[index].stale = None;
         }
     }
 
-    /// A worker has prepared the picture of this number.
-    pub fn prepared(&mut self, index: usize, number: u64, now: f64) {
+    /// Notes that a worker has prepared the picture of this number.
+    pub fn note_preparation(&mut self, index: usize, number: u64, now: f64) {
         self.slots[index].life.hear(now);
         if number == self.number && self.slots[index].begun {
             self.slots[index].prepared = true;
@@ -216,8 +217,8 @@ impl Scheduler {
         }
     }
 
-    /// A worker has traced a tile. Returns whether the tile is wanted.
-    pub fn traced(
+    /// Notes that a worker has traced a tile. Returns whether the tile is wanted.
+    pub fn take_tile(
         &mut self,
         index: usize,
         order: Order,
@@ -239,7 +240,7 @@ impl Scheduler {
         slot.holds.pop_front();
         slot.life.succeed();
         let complete = run.complete_passes();
-        run.done(task, stats, seconds, now);
+        run.finish(task, stats, seconds, now);
         let news = run.complete_passes() > complete;
         self.fill(index, now);
         for other in 0..self.slots.len() {
@@ -251,8 +252,8 @@ impl Scheduler {
         true
     }
 
-    /// Handles a worker that died, or reported that it cannot continue.
-    pub fn died(&mut self, index: usize, reason: &str, now: f64) {
+    /// Notes that a worker died, or reported that it cannot continue.
+    pub fn note_death(&mut self, index: usize, reason: &str, now: f64) {
         match self.slots[index].life.die() {
             None => return,
             Some(true) => self.blame(index, reason, now),
@@ -268,8 +269,8 @@ impl Scheduler {
             // picture.
             self.end(index);
         }
-        let is_given_up = |slot: &Slot| slot.life.stage() == Stage::GivenUp;
-        if given_up && self.slots.iter().all(is_given_up) {
+        let mut stages = self.slots.iter().map(|slot| slot.life.stage());
+        if given_up && stages.all(|stage| stage == Stage::GivenUp) {
             self.fail(format!("No worker could be kept running: {reason}"), now);
         }
         self.fill_all(now);
@@ -290,7 +291,7 @@ impl Scheduler {
                 }
             } else {
                 held.retain(|task| {
-                    let give_up = run.failed(*task);
+                    let give_up = run.fail(*task);
                     if give_up {
                         self.error = Some(format!("A part of the picture is missing: {reason}"));
                     }
@@ -302,7 +303,7 @@ impl Scheduler {
         run.update(now);
     }
 
-    /// Time has passed: replaces workers that hang or are too long at an older picture.
+    /// Notes that time has passed: replaces workers that hang or are too long at an older picture.
     pub fn tick(&mut self, now: f64) {
         for index in 0..self.slots.len() {
             let work = self.deadline(index);
@@ -311,7 +312,7 @@ impl Scheduler {
                 continue;
             };
             if slot.stale.is_none() {
-                self.died(index, trouble, now);
+                self.note_death(index, trouble, now);
                 continue;
             }
             let held = std::mem::take(&mut slot.holds);
@@ -323,7 +324,7 @@ impl Scheduler {
         }
     }
 
-    /// Returns when the work of a worker that is awake should be done.
+    /// Returns the deadline of the work of a worker that is awake.
     fn deadline(&self, index: usize) -> Option<Deadline> {
         let slot = &self.slots[index];
         let since = slot.life.since();
@@ -346,7 +347,7 @@ impl Scheduler {
         })
     }
 
-    /// How far the picture has come.
+    /// Returns the progress of the picture.
     #[must_use]
     pub fn progress(&self, now: f64) -> Progress {
         let workers = self

@@ -107,14 +107,14 @@ impl SharedSamples {
         self.reported.is_empty() && self.orders.is_empty()
     }
 
-    /// Number of tiles whose smooth pass is being traced.
+    /// Returns the number of tiles whose smooth pass is being traced.
     #[cfg(test)]
     pub fn waiting(&self) -> usize {
         self.orders.len()
     }
 
     /// Notes that a worker has finished the smooth pass of a tile.
-    pub fn completed(&mut self, worker: usize, tile: Tile) {
+    pub fn finish(&mut self, worker: usize, tile: Tile) {
         self.orders.retain(|order| *order != (worker, tile));
     }
 }
@@ -127,20 +127,20 @@ mod tests {
 
     const SIZE: [u32; 2] = [192, 100];
 
-    /// The tiles of a picture from left to right, with their samples.
-    fn known() -> Vec<(Tile, Known)> {
+    /// Returns the tiles of a picture from left to right, with their samples.
+    fn samples() -> Vec<(Tile, Known)> {
         let mut scene = Scene::default();
         scene.settings.samples = 2;
         let picture = Picture::new(&scene, SIZE);
         let mut cache = picture.cache(100);
         let mut tiles = tracer::tiles(SIZE[0], SIZE[1], 64);
         tiles.sort_by_key(|tile| (tile.x, tile.y));
-        let known = |tile| {
+        let samples = tiles.into_iter().map(|tile| {
             let mut stats = Stats::default();
             let _ = picture.trace_with(tile, Pass::Full, &mut cache, &|| false, &mut stats);
             (tile, cache.tell(tile).expect("it was sampled"))
-        };
-        tiles.into_iter().map(known).collect()
+        });
+        samples.collect()
     }
 
     fn full(tile: Tile) -> Order {
@@ -152,15 +152,16 @@ mod tests {
     }
 
     fn places(known: &[Known]) -> Vec<[u32; 4]> {
-        let place = |tile: Tile| [tile.x, tile.y, tile.width, tile.height];
-        let mut places: Vec<_> = known.iter().map(|known| place(known.tile())).collect();
+        let tiles = known.iter().map(Known::tile);
+        let places = tiles.map(|tile| [tile.x, tile.y, tile.width, tile.height]);
+        let mut places: Vec<_> = places.collect();
         places.sort_unstable();
         places
     }
 
     #[test]
     fn worker_receives_missing_samples_of_its_tile_and_adjacent_edges() {
-        let known = known();
+        let known = samples();
         let mut shared_samples = SharedSamples::default();
         shared_samples.begin(SIZE, true);
         // Worker 0 has the left column, worker 1 the others.
@@ -201,7 +202,7 @@ mod tests {
 
     #[test]
     fn invalid_reports_are_ignored() {
-        let known = known();
+        let known = samples();
         let (tile, told) = &known[0];
         let accepts = |shared: bool, size, order: Order| {
             let mut shared_samples = SharedSamples::default();
@@ -227,13 +228,12 @@ mod tests {
 
     #[test]
     fn samples_reported_after_an_order_are_forwarded() {
-        let known = known();
+        let known = samples();
         let [upper, lower, middle] = [0, 1, 2].map(|i| known[i].0);
         let tell = |shared_samples: &mut SharedSamples, worker, tile: usize| {
             let (tile, known) = &known[tile];
             let news = shared_samples.receive(worker, &full(*tile), known.clone());
-            let news = news.into_iter();
-            let (to, news): (Vec<_>, Vec<_>) = news.unzip();
+            let (to, news): (Vec<_>, Vec<_>) = news.into_iter().unzip();
             (to, places(&news))
         };
         let mut shared_samples = SharedSamples::default();
@@ -261,13 +261,13 @@ mod tests {
             )
         );
         assert!(!places(&shared_samples.assign(2, middle)).contains(&[64, 0, 64, 64]));
-        shared_samples.completed(0, upper);
+        shared_samples.finish(0, upper);
         shared_samples.forget_worker(2);
         assert_eq!(
             tell(&mut shared_samples, 1, 2),
             (vec![0], vec![[64, 62, 4, 2]])
         );
-        shared_samples.completed(0, lower);
+        shared_samples.finish(0, lower);
         assert_eq!(tell(&mut shared_samples, 1, 2), (vec![], vec![]));
     }
 }

@@ -135,6 +135,12 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     assert!(means[0] < 1e-4 && means[1] > 1e-3, "{means:?}");
 }
 
+/// Lets an engine do one step, by a clock that gains a millisecond whenever it is read.
+fn step(engine: &mut Engine) -> Step {
+    let time = std::cell::Cell::new(0.0);
+    engine.step(&|| false, &|| time.replace(time.get() + 1e-3))
+}
+
 /// Workers that run single steps on request.
 struct Desks(Vec<Engine>);
 
@@ -168,10 +174,10 @@ impl Workers for Asked {
     }
 }
 
-/// Traces a picture with so many workers that take turns, each of which may tell others what it
-/// sampled. The first one fails in the middle if that is wanted. Gives the picture's last pixels,
-/// tile by tile, and the rays.
-fn taking_turns(
+/// Traces a picture with a number of workers that take turns, which share their samples if `tells`.
+/// With `fails` the first one fails in the middle. Returns the picture's last pixels, tile by tile,
+/// and the number of rays.
+fn take_turns(
     scene: &Arc<Scene>,
     workers: usize,
     tells: bool,
@@ -196,9 +202,7 @@ fn taking_turns(
     while !core.progress(now).finished {
         for index in 0..workers {
             now += 1e-4;
-            let time = std::cell::Cell::new(0.0);
-            let clock = || time.replace(time.get() + 1e-3);
-            let Step::Answer(mut answer) = core.workers.0[index].step(&|| false, &clock) else {
+            let Step::Answer(mut answer) = step(&mut core.workers.0[index]) else {
                 continue;
             };
             if let Answer::Traced {
@@ -230,24 +234,23 @@ fn taking_turns(
 fn several_workers_share_samples() {
     // Most of the edges are on one side.
     let scene = balls(["<-0.9 0.3 0>", "<-0.8 -0.6 0>"]);
-    let (pixels, rays) = taking_turns(&scene, 1, true, false);
+    let (pixels, rays) = take_turns(&scene, 1, true, false);
     for workers in [2, 3, 7] {
-        let more = |tells| {
-            let (same, its) = taking_turns(&scene, workers, tells, false);
+        // A worker that starts a tile before its neighbour's samples arrive takes them again.
+        let [told, untold] = [true, false].map(|tells| {
+            let (same, its) = take_turns(&scene, workers, tells, false);
             assert!(same == pixels, "{workers}");
             its - rays
-        };
-        // A worker that starts a tile before its neighbour's samples arrive takes them again.
-        let (told, untold) = (more(true), more(false));
+        });
         assert!(2 * told < untold, "{workers}: {told} {untold}");
-        let (same, its) = taking_turns(&scene, workers, true, true);
+        let (same, its) = take_turns(&scene, workers, true, true);
         assert!(same == pixels, "{workers}, one of which fails");
         // The worker in its place is sent the samples that the failed one had.
         assert!(its - rays <= told + 4096, "{workers}: {its} {rays} {told}");
     }
 }
 
-/// A scene of two balls.
+/// Returns a scene of two balls.
 fn balls(at: [&str; 2]) -> Arc<Scene> {
     let [a, b] = at;
     let text = format!(
@@ -264,8 +267,8 @@ fn balls(at: [&str; 2]) -> Arc<Scene> {
     scene
 }
 
-/// Pictures of two scenes follow each other while answers of the one before are on their way: each
-/// shows its own, and of none anything is known when it is over, however it ends.
+/// Pictures of two scenes follow each other while answers to the one before are on their way: each
+/// must show its own scene, and no samples may be left when it is over, however it ends.
 #[test]
 fn picture_shows_nothing_of_an_older_one() {
     let size = [260, 200];
@@ -287,10 +290,12 @@ fn picture_shows_nothing_of_an_older_one() {
     let truth = scenes.each_ref().map(|scene| {
         let picture = tracer::Picture::new(scene, size);
         let mut stats = tracer::Stats::default();
-        let mut smooth = |tile| picture.trace(tile, Pass::Smooth, &|| false, &mut stats);
         let tiles = tracer::tiles(size[0], size[1], TILE).into_iter();
-        let all: HashMap<_, _> = tiles.map(|tile| (tile, smooth(tile).unwrap())).collect();
-        all
+        let tiles = tiles.map(|tile| {
+            let pixels = picture.trace(tile, Pass::Smooth, &|| false, &mut stats);
+            (tile, pixels.unwrap())
+        });
+        tiles.collect::<HashMap<_, _>>()
     });
     // Answers that were lost, pictures of which something was known when they were broken off,
     // tiles that were waited for.
@@ -339,9 +344,7 @@ fn picture_shows_nothing_of_an_older_one() {
                             assert!(core.shared_samples.is_empty(), "a stale answer was taken");
                         }
                     }
-                    let time = std::cell::Cell::new(0.0);
-                    let clock = || time.replace(time.get() + 1e-3);
-                    if let Step::Answer(answer) = core.workers.0[index].step(&|| false, &clock) {
+                    if let Step::Answer(answer) = step(&mut core.workers.0[index]) {
                         late.push(answer);
                     }
                 }
@@ -349,9 +352,9 @@ fn picture_shows_nothing_of_an_older_one() {
                 assert!(now < 100.0, "endless");
             }
             told += usize::from(!core.shared_samples.is_empty());
-            let done = core.take().into_iter();
-            let mine = |done: &TileDone| done.generation == picture as u64;
-            let smooth = done.filter(|done| mine(done) && done.pass == Pass::Smooth);
+            let own = core.take().into_iter();
+            let own = own.filter(|done| done.generation == picture as u64);
+            let smooth = own.filter(|done| done.pass == Pass::Smooth);
             let seen: HashMap<_, _> = smooth.map(|done| (done.tile, done.pixels)).collect();
             if breaks.is_none() {
                 assert!(seen == truth[which], "{workers} workers, picture {picture}");
@@ -364,7 +367,7 @@ fn picture_shows_nothing_of_an_older_one() {
     assert!((2..18).contains(&waiting), "{waiting}");
 }
 
-/// Workers that are started by and by, none of which ever makes a certain tile smooth.
+/// Workers that are started one by one, none of which ever makes a certain tile smooth.
 struct Stuck(Desks, Vec<usize>, Tile);
 
 impl Workers for Stuck {
@@ -386,7 +389,7 @@ impl Workers for Stuck {
     }
 }
 
-/// Samples are dropped too if a picture ends because no worker answers.
+/// Samples must be dropped too if a picture ends because no worker answers.
 #[test]
 fn samples_of_a_failed_picture_are_dropped() {
     let scene = balls(["<-0.9 0.3 0>", "<-0.8 -0.6 0>"]);
@@ -410,10 +413,7 @@ fn samples_of_a_failed_picture_are_dropped() {
             core.answers(index, vec![Answer::Started], now);
         }
         for index in 0..2 {
-            let time = std::cell::Cell::new(0.0);
-            let clock = || time.replace(time.get() + 1e-3);
-            let engine = &mut core.workers.0.0[index];
-            if let Step::Answer(answer) = engine.step(&|| false, &clock) {
+            if let Step::Answer(answer) = step(&mut core.workers.0.0[index]) {
                 core.answers(index, vec![answer], now);
             }
         }

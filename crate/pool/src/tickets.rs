@@ -46,7 +46,7 @@ impl Tools {
         }
     }
 
-    /// Hands in a job. It is carried out after those of its [`Pace`] that were handed in before.
+    /// Submits a job. It is carried out after those of its [`Pace`] that were submitted before.
     #[must_use = "a job whose ticket is dropped is cancelled"]
     pub fn submit<J: Job>(&self, job: J) -> Ticket<J::Output> {
         let (id, news) = self.crew.order(|jobs, now| jobs.submit(job, now));
@@ -66,7 +66,7 @@ struct News<T> {
     result: Option<Result<T, String>>,
 }
 
-/// A job that was handed in. When it is dropped the job is cancelled.
+/// A job that was submitted. Dropping it cancels the job.
 pub struct Ticket<T> {
     crew: Crew<Jobs<PlatformWorkers>>,
     id: u64,
@@ -100,8 +100,8 @@ impl<T> Drop for Ticket<T> {
     }
 }
 
-/// News of a job as they come, packed.
-enum Told<'a> {
+/// News of a job, packed.
+enum Event<'a> {
     Fraction(f32),
     Part(&'a [u8]),
     Over(Result<&'a [u8], String>),
@@ -113,12 +113,12 @@ struct Sent {
     worker: usize,
     request: Vec<u8>,
     /// Unpacks news for the ticket.
-    tell: Box<dyn FnMut(Told<'_>)>,
+    tell: Box<dyn FnMut(Event<'_>)>,
 }
 
 /// The manager of the tools workers.
 struct Jobs<W> {
-    /// One for each worker.
+    /// The queue of each worker.
     queues: [Queue; Pace::ALL.len()],
     workers: W,
     last: u64,
@@ -138,7 +138,7 @@ impl<W: Workers> Jobs<W> {
         }
     }
 
-    /// Queues a job. Returns its number, and where its news come.
+    /// Queues a job. Returns its number, and the place where its news arrive.
     fn submit<J: Job>(&mut self, job: J, now: f64) -> (u64, Rc<RefCell<News<J::Output>>>) {
         self.last += 1;
         let id = self.last;
@@ -155,11 +155,10 @@ impl<W: Workers> Jobs<W> {
             Ok(request) => {
                 let worker = J::PACE as usize;
                 let place = news.clone();
-                let tell = move |told: Told<'_>| note::<J>(&mut place.borrow_mut(), told);
                 let sent = Sent {
                     worker,
                     request,
-                    tell: Box::new(tell),
+                    tell: Box::new(move |event| note::<J>(&mut place.borrow_mut(), event)),
                 };
                 self.sent.insert(id, sent);
                 self.queues[worker].submit(id, now);
@@ -178,15 +177,15 @@ impl<W: Workers> Jobs<W> {
         }
     }
 
-    fn tell(&mut self, id: u64, told: Told<'_>) {
+    fn tell(&mut self, id: u64, event: Event<'_>) {
         if let Some(sent) = self.sent.get_mut(&id) {
-            (sent.tell)(told);
+            (sent.tell)(event);
             self.has_news = true;
         }
     }
 
     fn finish(&mut self, id: u64, result: Result<&[u8], String>) {
-        self.tell(id, Told::Over(result));
+        self.tell(id, Event::Over(result));
         self.sent.remove(&id);
     }
 
@@ -202,7 +201,7 @@ impl<W: Workers> Jobs<W> {
                 match command {
                     Command::Restart => {
                         if let Err(reason) = self.workers.restart(index) {
-                            self.queues[index].died(&reason, now);
+                            self.queues[index].note_death(&reason, now);
                         }
                     }
                     Command::End => self.workers.end(index),
@@ -219,7 +218,8 @@ impl<W: Workers> Jobs<W> {
         }
     }
 
-    fn all(&mut self, now: f64, note: impl Fn(&mut Queue)) {
+    /// Does something with each queue and carries out its commands.
+    fn for_all(&mut self, now: f64, note: impl Fn(&mut Queue)) {
         for index in 0..self.queues.len() {
             note(&mut self.queues[index]);
             self.carry_out(index, now);
@@ -227,14 +227,15 @@ impl<W: Workers> Jobs<W> {
     }
 }
 
-/// Unpacks news.
-fn note<J: Job>(news: &mut News<J::Output>, told: Told<'_>) {
-    match told {
-        Told::Fraction(fraction) => news.fraction = Some(fraction),
-        Told::Part(bytes) => news.parts.extend(unpack(bytes)),
-        Told::Over(result) => {
-            let unpacked = |bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned());
-            news.result = Some(result.and_then(unpacked));
+/// Unpacks news of a job.
+fn note<J: Job>(news: &mut News<J::Output>, event: Event<'_>) {
+    match event {
+        Event::Fraction(fraction) => news.fraction = Some(fraction),
+        Event::Part(bytes) => news.parts.extend(unpack(bytes)),
+        Event::Over(result) => {
+            let result =
+                result.and_then(|bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned()));
+            news.result = Some(result);
         }
     }
 }
@@ -248,10 +249,10 @@ impl<W: Workers + 'static> Manager for Jobs<W> {
 
     fn note_program(&mut self, outcome: Result<(), String>, now: f64) {
         match outcome {
-            Ok(()) => self.all(now, |queue| queue.launch(now)),
+            Ok(()) => self.for_all(now, |queue| queue.launch(now)),
             Err(reason) => {
                 let reason = format!("{reason}. Check the connection and try again.");
-                self.all(now, |queue| queue.unavailable(&reason));
+                self.for_all(now, |queue| queue.unavailable(&reason));
             }
         }
     }
@@ -264,35 +265,35 @@ impl<W: Workers + 'static> Manager for Jobs<W> {
         };
         let queue = &mut self.queues[index];
         match answer {
-            Answer::Started => queue.started(now),
+            Answer::Started => queue.note_start(now),
             Answer::Progress { id, fraction } => {
                 if queue.progress(id, now) {
-                    self.tell(id, Told::Fraction(fraction));
+                    self.tell(id, Event::Fraction(fraction));
                 }
             }
             Answer::Part { id } => {
                 if queue.progress(id, now) {
-                    self.tell(id, Told::Part(output));
+                    self.tell(id, Event::Part(output));
                 }
             }
             Answer::Done { id } => {
-                if queue.done(id, now) {
+                if queue.note_end(id, now) {
                     self.finish(id, Ok(output));
                 }
             }
             Answer::Refused { id, trouble } => {
-                if queue.done(id, now) {
+                if queue.note_end(id, now) {
                     self.finish(id, Err(trouble));
                 }
             }
-            Answer::Failed(reason) => queue.died(&reason, now),
+            Answer::Failed(reason) => queue.note_death(&reason, now),
         }
         self.carry_out(index, now);
         std::mem::take(&mut self.has_news)
     }
 
     fn tick(&mut self, now: f64) -> bool {
-        self.all(now, |queue| queue.tick(now));
+        self.for_all(now, |queue| queue.tick(now));
         std::mem::take(&mut self.has_news)
     }
 

@@ -20,7 +20,7 @@ pub trait Workers {
 pub enum Message {
     /// The bytes it sent.
     Bytes(Vec<u8>),
-    /// It cannot continue, for this reason.
+    /// The reason for which it cannot continue.
     Failed(String),
 }
 

@@ -1,4 +1,4 @@
-//! How long texts take: the examples of the page, and texts made to take long.
+//! Times of compiling: the examples of the page, and texts made to take long.
 //!
 //! `cargo run --release -p rats --example compile_speed`
 
@@ -28,7 +28,8 @@ fn main() {
         "for i = 1 to 1e12 { var x = 1 hot }",
         "surface s diff Red\nfor i = 0 to 1e12 { sphere s 1 i 0 0 }",
         "surface s diff Red\nfor i = 0 to 1e12 { sphere s 0 i 0 0 }",
-        "surface s diff Red\nobject A\nfor i = 1 to 1e4 { sphere s 1 0 0 0 }\nclose\nfor i = 1 to 1e9 { rotate 0 0 1 1 A }",
+        "surface s diff Red\nobject A\nfor i = 1 to 1e4 { sphere s 1 0 0 0 }\nclose\n\
+         for i = 1 to 1e9 { rotate 0 0 1 1 A }",
         "define f(x) { f x - 1\nif x > 0 { f x } }\nf 100",
     ];
     texts.extend(hostile.map(|text| (text.replace('\n', "; "), text.to_owned())));

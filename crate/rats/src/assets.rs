@@ -13,11 +13,11 @@ use std::rc::Rc;
 use std::sync::{Arc, Weak};
 use texture::Rgb8;
 
-/// How many of each kind are kept: more than a work has files.
+/// Number of results of each kind that are kept: more than a work has files.
 const KEPT: usize = 24;
 
 type Made<T> = Result<T, Error>;
-/// The file's name, and the size of a height field.
+/// Name of a file, and the size of a height field made of it.
 type How = (String, Option<DVec3>);
 
 /// A mesh or image made of some bytes.
@@ -34,11 +34,11 @@ impl<T> Kept<T> {
     }
 }
 
-/// The last [`KEPT`] results, the one used last at the end.
+/// The last [`KEPT`] results, in the order of their use.
 struct Cache<T>(Vec<Kept<T>>);
 
 impl<T: Clone> Cache<T> {
-    /// What was made of a file before. It becomes the last one to be dropped.
+    /// Returns what was made of a file before, which becomes the last one to be dropped.
     fn find(&mut self, asset: &Asset, how: &How) -> Option<Made<T>> {
         let index = self.0.iter().position(|kept| kept.is_of(asset, how))?;
         self.0[index..].rotate_left(1);
@@ -72,10 +72,10 @@ thread_local! {
     static IMAGES: RefCell<Cache<Arc<Rgb8>>> = const { RefCell::new(Cache(Vec::new())) };
 }
 
-/// The triangles of an OBJ, PLY, STL or GLB file.
+/// Reads the triangles of an OBJ, PLY, STL or GLB file.
 ///
 /// # Errors
-/// Says what is wrong with the file.
+/// A sentence on what is wrong with the file.
 pub fn mesh(asset: &Asset) -> Made<Rc<TriangleMesh>> {
     MESHES.with_borrow_mut(|cache| {
         cache.get(asset, (asset.name.clone(), None), |bytes| {
@@ -84,7 +84,7 @@ pub fn mesh(asset: &Asset) -> Made<Rc<TriangleMesh>> {
     })
 }
 
-/// The topology of a mesh that [`mesh`] gives.
+/// Finds the topology of a mesh that [`mesh`] gives.
 ///
 /// # Errors
 /// If there is none, or it cannot be told.
@@ -97,10 +97,10 @@ pub fn topology(asset: &Asset) -> Made<Rc<Topology>> {
     })
 }
 
-/// A PNG image as a height field that fills a box of this size from the origin.
+/// Makes a height field of a PNG image, which fills a box of this size from the origin.
 ///
 /// # Errors
-/// Says what is wrong with the file.
+/// A sentence on what is wrong with the file.
 pub fn terra(asset: &Asset, size: DVec3) -> Made<Rc<TriangleMesh>> {
     MESHES.with_borrow_mut(|cache| {
         cache.get(asset, (asset.name.clone(), Some(size)), |bytes| {
@@ -109,27 +109,25 @@ pub fn terra(asset: &Asset, size: DVec3) -> Made<Rc<TriangleMesh>> {
     })
 }
 
-/// The pixels of a picture; opacity does not count.
+/// Reads the pixels of a picture; opacity does not count.
 ///
 /// # Errors
-/// Says what is wrong with the file.
+/// A sentence on what is wrong with the file.
 pub fn image(asset: &Asset) -> Made<Arc<Rgb8>> {
-    let read = |bytes: &[u8]| {
-        let format = Format::of(Path::new(&asset.name))?;
-        let picture = picture::file::decode_at_most(bytes, format, MAX_IMAGE_PIXELS)?;
-        Ok(Arc::new(Rgb8 {
-            size: picture.size(),
-            bytes: picture.rgb(),
-        }))
-    };
     IMAGES.with_borrow_mut(|cache| {
         cache.get(asset, (asset.name.clone(), None), |bytes| {
-            read(bytes).map_err(|problem: picture::Problem| Error(problem.to_string()))
+            let picture = Format::of(Path::new(&asset.name))
+                .and_then(|format| picture::file::decode_at_most(bytes, format, MAX_IMAGE_PIXELS))
+                .map_err(|problem| Error(problem.to_string()))?;
+            Ok(Arc::new(Rgb8 {
+                size: picture.size(),
+                bytes: picture.rgb(),
+            }))
         })
     })
 }
 
-/// The triangles as shapes: patches where the mesh has normals, else flat ones.
+/// Returns the triangles as shapes: patches where the mesh has normals, else flat ones.
 pub fn shapes(mesh: &TriangleMesh) -> impl Iterator<Item = Shape> {
     mesh.triangles.iter().map(|triangle| {
         let corners = triangle.map(|i| mesh.positions[i as usize]);
@@ -146,20 +144,17 @@ pub fn shapes(mesh: &TriangleMesh) -> impl Iterator<Item = Shape> {
     })
 }
 
-/// What making something of a file costs in steps. It may have been made before, but what a text
-/// means must not depend on that.
+/// Returns what it costs in steps to make something of a file. It may have been made before, but
+/// what a text means must not depend on that.
 #[must_use]
 pub fn cost(asset: &Asset) -> u64 {
     let bytes = &asset.bytes;
     let pixels = match bytes.get(..24) {
         // A PNG file tells its width and height first, and a short one can hold many pixels.
-        Some(head) if head.starts_with(b"\x89PNG") => {
-            let side = |at: usize| {
-                head[at..at + 4]
-                    .iter()
-                    .fold(0, |n, &b| n << 8 | u64::from(b))
-            };
-            (side(16) * side(20)).min(mesh::limits::MAX_PIXELS as u64)
+        Some(&[0x89, b'P', b'N', b'G', .., a, b, c, d, e, f, g, h]) => {
+            let width = u64::from(u32::from_be_bytes([a, b, c, d]));
+            let height = u64::from(u32::from_be_bytes([e, f, g, h]));
+            (width * height).min(mesh::limits::MAX_PIXELS as u64)
         }
         _ => 0,
     };
@@ -197,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn kept_mesh_is_used_in_place_of_the_file() {
+    fn mesh_that_is_kept_is_used_in_place_of_the_file() {
         let file = asset("a.obj", "broken");
         assert!(!is_mesh_read(&file));
         keep_mesh(&file, Err(String::from("on purpose")));

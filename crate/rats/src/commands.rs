@@ -1,4 +1,4 @@
-//! The one table of commands: what each is called, what it takes, what it means and what runs it.
+//! Table of commands: the name of each, its operands, its meaning and the function that runs it.
 //!
 //! The parser, the evaluator, the highlighter, suggestions and `help` all read this table, so a
 //! command that is in it is known everywhere. Its rows stand beside the functions that run them, in
@@ -16,14 +16,14 @@ pub use spec::{Bracket, CommandSpec, Group};
 
 use crate::suggest;
 
-/// Words that editors ask for by name.
+/// Lists of words that editors ask for by name.
 pub mod options {
     pub use crate::evaluator::textures::{MAPPINGS, SOLIDS, TARGETS, TEXTURE_OPTIONS, WAVES};
     pub use crate::evaluator::variables::VAR_OPTIONS;
 }
 
 impl CommandSpec {
-    /// Its group.
+    /// Returns the group of the table that it is in.
     #[must_use]
     pub fn group(&self) -> Group {
         GROUPS
@@ -33,7 +33,7 @@ impl CommandSpec {
     }
 }
 
-/// All commands, in the order of the table.
+/// Returns all commands, in the order of the table.
 pub fn all() -> impl Iterator<Item = &'static CommandSpec> {
     GROUPS.iter().flat_map(|(_, list)| list.iter().copied())
 }
@@ -44,7 +44,8 @@ pub fn find(word: &str) -> Option<&'static CommandSpec> {
     all().find(|spec| spec.name.eq_ignore_ascii_case(word))
 }
 
-/// The command that was probably meant by a mistyped opcode; `own` are those that the text defines.
+/// Returns a hint that names the command probably meant by a mistyped opcode; `own` are the
+/// commands that the text defines.
 #[must_use]
 pub fn suggestion<'a>(word: &str, own: impl Iterator<Item = &'a str>) -> Option<String> {
     suggest::hint(word, all().map(|spec| spec.name).chain(own))
@@ -72,15 +73,15 @@ mod tests {
         let names = "read pause return info help man test log var stopwatch quit \
             aperture focus shutter vrp vup cp vpn window eyep fov \
             surface texture \
-            arc arch box brick cone cylinder pipe dot gauss line sphere triangle triad plane polygon \
-            patch torus quadric terra \
+            arc arch box brick cone cylinder pipe dot gauss line sphere triangle triad plane \
+            polygon patch torus quadric terra \
             chain object close instance translate rotate scale explode transform \
             echo warning verbose bounds soft timer double dither compress stat map penumbra noview \
             nosave gamma framesize filename format epsilon vanish maxdepth maxmol digger contrast \
             pack indicator fragile sample mesh \
             light fog background cloud remove report reset preview shoot \
-            animate play split collage fli convert resize diff and xor show kill refresh tile colors \
-            rats table shell horn \
+            animate play split collage fli convert resize diff and xor show kill refresh tile \
+            colors rats table shell horn \
             material blobscale sky ground tone body curve deform seed for if else define influence \
             skeleton contact motion tree spikes sphereflake spiral";
         for name in names.split_whitespace() {

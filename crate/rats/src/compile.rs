@@ -1,4 +1,4 @@
-//! Text to scene.
+//! Compiles a text to a scene.
 
 use crate::compiled::Compiled;
 use crate::evaluator;
@@ -10,14 +10,14 @@ use crate::symbol::Symbols;
 use crate::{Asset, Diagnostic, Project, Severity};
 use scene::Origin;
 
-/// Runs the first file of a project. Never fails, never panics, always ends: the limits are in
-/// [`crate::limits`].
+/// Runs the first file of a project. It never fails, never panics and always ends: the limits are
+/// in [`crate::limits`].
 ///
 /// ```
 /// use rats::{HotValue, Project, compile};
 ///
-/// let project = Project::single("var r = 0.5 hot 0 2 0.1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, 0 0 0\n");
-/// let compiled = compile(&project);
+/// let text = "var r = 0.5 hot 0 2 0.1\nsurface Clay, diffuse SandyBrown\nsphere Clay r, 0 0 0\n";
+/// let compiled = compile(&Project::single(text));
 /// assert!(compiled.diagnostics.is_empty());
 /// assert_eq!(compiled.scene.radius(&compiled.scene.elements[0]), 0.5);
 /// // A slider of the page.
@@ -30,8 +30,8 @@ pub fn compile(project: &Project) -> Compiled {
     compile_at(project, &[], 0.0)
 }
 
-/// As [`compile`], with images and meshes that the texts may use, at a moment of the animation in
-/// frames: between two frames for an exposure that lasts. A variable `+=
+/// Compiles as [`compile`] does, with images and meshes that the texts may use, at a moment of the
+/// animation in frames, which lies between two frames for an exposure that lasts. A variable `+=
 /// step` has changed by `step·moment`, one `*= factor` by `factor^moment`. A moment that is
 /// negative or not finite is taken for 0.
 ///
@@ -39,11 +39,12 @@ pub fn compile(project: &Project) -> Compiled {
 /// let text = "var x = 0 += 2\nsurface Clay, diffuse SandyBrown\nsphere Clay 1, x 0 0\n";
 /// let compiled = rats::compile_at(&rats::Project::single(text), &[], 3.0);
 /// assert!(compiled.animated);
-/// assert_eq!(compiled.scene.elements[0].shape, scene::Shape::Sphere { center: [6.0, 0.0, 0.0].into(), radius: 1.0 });
+/// let ball = scene::Shape::Sphere { center: [6.0, 0.0, 0.0].into(), radius: 1.0 };
+/// assert_eq!(compiled.scene.elements[0].shape, ball);
 /// ```
 #[must_use]
 pub fn compile_at(project: &Project, assets: &[Asset], moment: f64) -> Compiled {
-    if let Some(diagnostic) = too_large(project) {
+    if let Some(diagnostic) = refuse_large(project) {
         return Compiled {
             diagnostics: vec![diagnostic],
             ..Compiled::default()
@@ -51,11 +52,7 @@ pub fn compile_at(project: &Project, assets: &[Asset], moment: f64) -> Compiled 
     }
     let mut symbols = Symbols::default();
     let sources = Sources::of(project, &mut symbols);
-    let moment = if moment.is_finite() {
-        moment.max(0.0)
-    } else {
-        0.0
-    };
+    let moment = if moment.is_finite() { moment } else { 0.0 }.max(0.0);
     evaluator::run(project, &sources, assets, moment, Scope::new(symbols))
 }
 
@@ -88,7 +85,8 @@ pub fn provenance(
     evaluator::trace(&sources, assets, moment, Scope::new(symbols), origin)
 }
 
-fn too_large(project: &Project) -> Option<Diagnostic> {
+/// Returns an error if a project has too many files or too much text.
+fn refuse_large(project: &Project) -> Option<Diagnostic> {
     let length: usize = project.files.iter().map(|file| file.text.len()).sum();
     let message = if project.files.len() > MAX_FILES {
         format!(

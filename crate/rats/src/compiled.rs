@@ -6,22 +6,22 @@ use scene::{Origin, Scene};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The scene of a text, and all else that a run gives.
+/// Scene of a text, and all else that a run gives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compiled {
     /// The scene, as far as the text could be understood. Shared by all who draw or mesh it.
     pub scene: Arc<Scene>,
-    /// How each element of the scene came from its command, for those who move it by hand.
+    /// The way of each element of the scene from its command, for those who move it by hand.
     pub placements: Vec<Placement>,
-    /// All that is to be said about the text, in the order of the text.
+    /// The messages about the text, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
     /// The variables that are marked `hot`.
     pub hot: Vec<HotVariable>,
     /// The work on files that the text asks for, in order.
     pub tools: Vec<Tool>,
-    /// Where each of [`Self::tools`] stands in the texts.
+    /// The places of [`Self::tools`] in the texts.
     pub tool_origins: Vec<Origin>,
-    /// Under what name the picture is to be saved.
+    /// The name under which the picture is to be saved.
     pub output: Output,
     /// Whether a variable changes with every frame, or something moves.
     pub animated: bool,
@@ -34,7 +34,7 @@ pub struct Compiled {
 /// A `deform` command that was carried out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deform {
-    /// Where the command stands.
+    /// The place of the command.
     pub origin: Origin,
     /// Whether it was run in a loop, a defined command or the library, so that its numbers are not
     /// only its own.
@@ -43,7 +43,7 @@ pub struct Deform {
     pub of: Vec<Origin>,
     /// The control points, in order.
     pub controls: Vec<Control>,
-    /// The vertices before, each once, in the coordinates of the command.
+    /// The vertices before the deformation, each once, in the coordinates of the command.
     pub positions: Arc<[DVec3]>,
     /// The triangles between them.
     pub triangles: Arc<[[u32; 3]]>,
@@ -52,9 +52,9 @@ pub struct Deform {
 /// A control point of a [`Deform`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {
-    /// Where it was.
+    /// The place before the move.
     pub place: DVec3,
-    /// Its move.
+    /// The move.
     pub way: DVec3,
     /// The bytes of its three numbers, with the signs around them.
     pub span: Range<usize>,
@@ -64,12 +64,12 @@ pub struct Control {
     pub is_literal: bool,
 }
 
-/// How an element came from its command.
+/// Way of an element from its command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// From the coordinates that the command names to those of the world.
+    /// The map from the coordinates that the command names to those of the world.
     pub to_world: DAffine3,
-    /// By how much lengths grew on the way.
+    /// The factor by which lengths grew on the way.
     pub growth: f64,
     /// Whether its command was run in a loop, a defined command or by `instance`, so that it may
     /// have made more elements than this one.
@@ -88,7 +88,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// The whole name of the picture's file: a PNG file where the text does not say.
+    /// Returns the whole name of the picture's file: a PNG file where the text does not say.
     #[must_use]
     pub fn file(&self) -> String {
         format!("{}.{}", self.name, self.format.unwrap_or("png"))
@@ -108,9 +108,9 @@ impl Default for Output {
 /// A variable that the page shows as a slider.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HotVariable {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its present value.
+    /// The present value.
     pub value: HotValue,
     /// Index of the file in [`Project::files`].
     pub file: usize,
@@ -129,7 +129,7 @@ pub struct HotVariable {
 pub enum HotValue {
     /// A number.
     Scalar(f64),
-    /// Three numbers.
+    /// A vector: three numbers.
     Vector([f64; 3]),
     /// A colour.
     Colour([f32; 3]),

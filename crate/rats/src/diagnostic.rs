@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How bad it is.
+/// Severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// Said for information.
+    /// Information.
     Note,
     /// Understood, but probably not what was meant, or not carried out yet.
     Warning,
@@ -14,7 +14,7 @@ pub enum Severity {
     Error,
 }
 
-/// One message about one place of the text.
+/// Message about one place of the text.
 ///
 /// ```
 /// use rats::{Project, Severity, compile};
@@ -28,7 +28,7 @@ pub enum Severity {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// The severity.
     pub severity: Severity,
     /// The mistake in one sentence.
     pub message: String,
@@ -42,7 +42,7 @@ pub struct Diagnostic {
     pub column: usize,
     /// Advice, e.g. "did you mean `sphere`?".
     pub hint: Option<String>,
-    /// Other places that explain it, such as "it begins here".
+    /// Places that explain it, such as "it begins here".
     #[serde(default)]
     pub related: Vec<Related>,
     /// The command it is about, whose manual explains more.

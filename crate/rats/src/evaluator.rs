@@ -1,9 +1,9 @@
 //! Runs the commands of the parsed files, top to bottom, and builds the scene.
 //!
-//! From the bottom up: [`state`] holds the state of a run; `messages` adds what is said of the
-//! text, `lookup` and `call` read operands and arguments; the commands stand in modules by subject,
-//! each a row of the table in [`crate::commands`] and the function that runs it, and `table` lists
-//! the rows; `interpreter` runs files, blocks, loops and calls; this file begins and ends a run.
+//! From the bottom up: [`state`] holds the state of a run; `messages` adds messages about the text,
+//! `lookup` and `call` read operands and arguments; the commands stand in modules by subject, each
+//! a row of the table in [`crate::commands`] and the function that runs it, and `table` lists the
+//! rows; `interpreter` runs files, blocks, loops and calls; this file begins and ends a run.
 
 mod air;
 mod call;

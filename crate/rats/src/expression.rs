@@ -19,18 +19,18 @@ use crate::value::Value;
 use glam::DVec3;
 
 impl<'a> Reader<'_, 'a> {
-    /// An expression's value.
+    /// Reads an expression and returns its value.
     ///
     /// # Errors
     /// If there is none or it cannot be computed.
     pub fn value(&mut self, what: &str) -> Outcome<Value> {
         if !self.more() {
-            return Err(self.expected(what));
+            return Err(self.missing(what));
         }
         self.binary(0, what)
     }
 
-    /// The truth of a condition: anything but 0 is true.
+    /// Reads a condition and returns its truth: anything but 0 is true.
     ///
     /// # Errors
     /// If there is none or it cannot be computed.
@@ -38,11 +38,11 @@ impl<'a> Reader<'_, 'a> {
         self.comparing = true;
         let start = self.here().start;
         if self.at >= self.items.len() {
-            return Err(self.expected("a condition"));
+            return Err(self.missing("a condition"));
         }
         let value = self.binary(0, "a condition")?;
         if self.at < self.items.len() {
-            let problem = self.expected("`{` after the condition");
+            let problem = self.missing("`{` after the condition");
             return Err(match self.datum() {
                 Some(Datum::Sign(b'=' | b'<' | b'>' | b'!')) => {
                     problem.hint("comparisons are ==, !=, <, <=, > and >=")
@@ -53,7 +53,7 @@ impl<'a> Reader<'_, 'a> {
         match value {
             Value::Scalar(number) => Ok(number != 0.0),
             _ => Err(Problem::new(
-                self.since(start),
+                &self.since(start),
                 format!("a condition must be a number, this is {}", value.kind()),
             )),
         }
@@ -63,7 +63,7 @@ impl<'a> Reader<'_, 'a> {
         self.depth += 1;
         if self.depth > limits::MAX_NESTED_EXPRESSIONS {
             return Err(Problem::new(
-                self.here(),
+                &self.here(),
                 format!(
                     "this expression is nested more than {} deep",
                     limits::MAX_NESTED_EXPRESSIONS
@@ -88,7 +88,6 @@ impl<'a> Reader<'_, 'a> {
     }
 
     fn join(&self, left: Value, operator: Operator, right: Value, start: usize) -> Outcome<Value> {
-        let truth = |b: bool| f64::from(u8::from(b));
         let scalars = match (left, right) {
             (Value::Scalar(a), Value::Scalar(b)) => Some((a, b)),
             _ => None,
@@ -105,23 +104,24 @@ impl<'a> Reader<'_, 'a> {
                 Value::Scalar(s) => Some(left.map(|x| x / s)),
                 _ => None,
             },
+            Operator::Power => scalars.map(|(a, b)| Value::Scalar(libm::pow(a, b))),
             _ => scalars.map(|(a, b)| {
-                Value::Scalar(match operator {
-                    Operator::Power => libm::pow(a, b),
-                    Operator::Or => truth(a != 0.0 || b != 0.0),
-                    Operator::And => truth(a != 0.0 && b != 0.0),
-                    Operator::Less => truth(a < b),
-                    Operator::LessEqual => truth(a <= b),
-                    Operator::Greater => truth(a > b),
-                    Operator::GreaterEqual => truth(a >= b),
-                    Operator::Equal => truth(a == b),
-                    _ => truth(a != b),
-                })
+                let truth = match operator {
+                    Operator::Or => a != 0.0 || b != 0.0,
+                    Operator::And => a != 0.0 && b != 0.0,
+                    Operator::Less => a < b,
+                    Operator::LessEqual => a <= b,
+                    Operator::Greater => a > b,
+                    Operator::GreaterEqual => a >= b,
+                    Operator::Equal => a == b,
+                    _ => a != b,
+                };
+                Value::Scalar(f64::from(u8::from(truth)))
             }),
         };
         value.ok_or_else(|| {
             Problem::new(
-                self.since(start),
+                &self.since(start),
                 format!("{} and {} cannot be joined so", left.kind(), right.kind()),
             )
         })
@@ -165,7 +165,7 @@ impl<'a> Reader<'_, 'a> {
                 let value = self.binary(0, "a number")?;
                 self.listed = listed;
                 if self.datum() != Some(Datum::Sign(b')')) {
-                    let problem = self.expected("`)`");
+                    let problem = self.missing("`)`");
                     return Err(match self.datum() {
                         Some(Datum::Sign(b'<' | b'>' | b'=' | b'!')) => {
                             problem.hint("comparisons stand only in `if`")
@@ -191,21 +191,21 @@ impl<'a> Reader<'_, 'a> {
                 Ok(value)
             }
             Some(Datum::Sign(b'<')) if !self.listed || what.contains("operator") => {
-                let problem = self.expected(what);
+                let problem = self.missing(what);
                 Err(problem.hint("in an expression a vector is written `vec(x, y, z)`"))
             }
-            _ => Err(self.expected(what)),
+            _ => Err(self.missing(what)),
         }
     }
 
-    /// Whether `(` follows the word here without space.
+    /// Returns whether `(` follows the word here without space.
     fn is_called(&self) -> bool {
         self.items
             .get(self.at + 1)
             .is_some_and(|next| next.datum == Datum::Sign(b'(') && !next.spaced)
     }
 
-    /// A function with its arguments in parentheses, separated by commas.
+    /// Reads a function with its arguments in parentheses, separated by commas, and applies it.
     fn call(&mut self, function: &'static functions::Function, start: usize) -> Outcome<Value> {
         self.at += 1;
         if self.datum() != Some(Datum::Sign(b'(')) {
@@ -213,7 +213,7 @@ impl<'a> Reader<'_, 'a> {
                 return Ok(Value::Scalar(self.scope.random.draw()));
             }
             return Err(Problem::new(
-                start..self.since(start).end,
+                &(start..self.since(start).end),
                 format!(
                     "the function `{}` needs its arguments in ( )",
                     function.name
@@ -235,7 +235,7 @@ impl<'a> Reader<'_, 'a> {
         }
         self.listed = listed;
         if self.datum() != Some(Datum::Sign(b')')) {
-            return Err(self.expected("`,` or `)`"));
+            return Err(self.missing("`,` or `)`"));
         }
         self.at += 1;
         if arguments.is_empty() && matches!(function.run, Run::Random) {
@@ -246,10 +246,10 @@ impl<'a> Reader<'_, 'a> {
             self.scope.step(12, &self.here())?;
         }
         functions::apply(function, &arguments)
-            .map_err(|message| Problem::new(self.since(start), message).hint(function.meaning))
+            .map_err(|message| Problem::new(&self.since(start), message).hint(function.meaning))
     }
 
-    /// The value of a word that stands in an expression and is no function.
+    /// Returns the value of a word that stands in an expression and is no function.
     fn word_value(&mut self, symbol: Symbol) -> Outcome<Value> {
         if let Some(value) = self.scope.get(symbol) {
             return Ok(value);
@@ -272,7 +272,7 @@ impl<'a> Reader<'_, 'a> {
         }
         let span = self.here();
         if self.scope.is_broken(symbol) {
-            return Err(Problem::follow_up(span));
+            return Err(Problem::follow_up(&span));
         }
         // More than the hint will look at need not be gathered.
         let mut known: Vec<&'a str> = self.scope.names().take(2001).collect();
@@ -280,10 +280,10 @@ impl<'a> Reader<'_, 'a> {
         known.extend(colours::names().map(|name| -> &'a str { name }));
         let suggestion = suggest::hint(word, known);
         if word.starts_with(|c: char| c.is_ascii_digit()) {
-            return Err(Problem::new(span, format!("`{word}` is no number")));
+            return Err(Problem::new(&span, format!("`{word}` is no number")));
         }
         let hint =
             suggestion.unwrap_or_else(|| format!("set it before it is used: `var {word} = …`"));
-        Err(Problem::new(span, format!("there is no variable or colour `{word}`")).hint(hint))
+        Err(Problem::new(&span, format!("there is no variable or colour `{word}`")).hint(hint))
     }
 }

@@ -7,9 +7,9 @@ use glam::DVec3;
 /// A function of expressions.
 #[derive(Clone, Copy, Debug)]
 pub struct Function {
-    /// Its name.
+    /// Name, in lower case.
     pub name: &'static str,
-    /// How it is written and what it gives.
+    /// Form and result: `sin(x): sine`.
     pub meaning: &'static str,
     /// The computation.
     pub run: Run,
@@ -18,27 +18,27 @@ pub struct Function {
 /// The computation of a function on its arguments.
 #[derive(Clone, Copy, Debug)]
 pub enum Run {
-    /// One number; of a triple, each of its numbers.
+    /// Number to number; each number of a triple.
     One(fn(f64) -> f64),
-    /// Two numbers (or triples, number by number).
+    /// Pair of numbers (or of triples, number by number) to one.
     Two(fn(f64, f64) -> f64),
-    /// One number or more, folded from the left.
+    /// List of numbers, folded from the left.
     Fold(fn(f64, f64) -> f64),
-    /// Three numbers to a vector.
+    /// Triple of numbers to a vector.
     Vector,
-    /// Three numbers to a colour.
+    /// Triple of numbers to a colour.
     Colour,
-    /// Two vectors to a number.
+    /// Pair of vectors to a number.
     Dot,
-    /// Two vectors to a vector.
+    /// Pair of vectors to a vector.
     Cross,
-    /// A vector to its length.
+    /// Vector to its length.
     Length,
-    /// A vector to the unit vector.
+    /// Vector to the unit vector.
     Unit,
-    /// Any numbers to a random number.
+    /// List of numbers, possibly empty, to a random number.
     Random,
-    /// One to three numbers, or a vector, to smooth noise.
+    /// List of one to three numbers, or a vector, to smooth noise.
     Noise,
 }
 
@@ -46,7 +46,7 @@ const fn function(name: &'static str, meaning: &'static str, run: Run) -> Functi
     Function { name, meaning, run }
 }
 
-/// All functions.
+/// The functions.
 pub static FUNCTIONS: &[Function] = &[
     function("sin", "sin(x): sine", Run::One(libm::sin)),
     function("cos", "cos(x): cosine", Run::One(libm::cos)),
@@ -96,12 +96,14 @@ pub static FUNCTIONS: &[Function] = &[
     function("unit", "unit(V): the vector at length 1", Run::Unit),
     function(
         "rand",
-        "rand: next random number in [0, 1) of the stream started by `seed`; rand(a, …): a random number that depends on a, … alone",
+        "rand: next random number in [0, 1) of the stream started by `seed`; rand(a, …): a random \
+         number that depends on a, … alone",
         Run::Random,
     ),
     function(
         "noise",
-        "noise(x, y, z) or noise(P): smooth noise from −1 to 1, 0 at whole numbers; y and z may be left out",
+        "noise(x, y, z) or noise(P): smooth noise from −1 to 1, 0 at whole numbers; y and z may be \
+         left out",
         Run::Noise,
     ),
 ];
@@ -127,43 +129,36 @@ fn modulo(x: f64, y: f64) -> f64 {
     x - y * (x / y).floor()
 }
 
-/// Applies a function.
+/// Applies a function to its arguments.
 ///
 /// # Errors
 /// A sentence if the number or kind of the arguments is wrong.
 pub fn apply(function: &Function, arguments: &[Value]) -> Result<Value, String> {
     let name = function.name;
-    let count = |wanted: usize| {
-        if arguments.len() == wanted {
-            Ok(())
-        } else {
-            let s = if wanted == 1 { "" } else { "s" };
-            Err(format!(
-                "`{name}` takes {wanted} argument{s}, not {}",
-                arguments.len()
-            ))
-        }
+    let count = arguments.len();
+    let wanted = match function.run {
+        Run::One(_) | Run::Length | Run::Unit => Some(1),
+        Run::Two(_) | Run::Dot | Run::Cross => Some(2),
+        Run::Vector | Run::Colour => Some(3),
+        Run::Fold(_) | Run::Random | Run::Noise => None,
     };
-    let kinds = || format!("the arguments of `{name}` do not fit together");
+    if let Some(wanted) = wanted.filter(|wanted| *wanted != count) {
+        let s = if wanted == 1 { "" } else { "s" };
+        return Err(format!("`{name}` takes {wanted} argument{s}, not {count}"));
+    }
+    let misfit = || format!("the arguments of `{name}` do not fit together");
     match function.run {
-        Run::One(f) => {
-            count(1)?;
-            Ok(arguments[0].map(f))
-        }
-        Run::Two(f) => {
-            count(2)?;
-            arguments[0].zip(arguments[1], f).ok_or_else(kinds)
-        }
+        Run::One(f) => Ok(arguments[0].map(f)),
+        Run::Two(f) => arguments[0].zip(arguments[1], f).ok_or_else(misfit),
         Run::Fold(f) => {
             let (first, rest) = arguments
                 .split_first()
                 .ok_or_else(|| format!("`{name}` takes at least one argument"))?;
             rest.iter()
                 .try_fold(*first, |value, next| value.zip(*next, f))
-                .ok_or_else(kinds)
+                .ok_or_else(misfit)
         }
         Run::Vector | Run::Colour => {
-            count(3)?;
             let [x, y, z] = [0, 1, 2].map(|i| scalar(name, &arguments[i]));
             let triple = DVec3::new(x?, y?, z?);
             Ok(match function.run {
@@ -172,26 +167,18 @@ pub fn apply(function: &Function, arguments: &[Value]) -> Result<Value, String> 
             })
         }
         Run::Dot => {
-            count(2)?;
             let (u, v) = (vector(name, &arguments[0])?, vector(name, &arguments[1])?);
             Ok(Value::Scalar(u.dot(v)))
         }
         Run::Cross => {
-            count(2)?;
             let (u, v) = (vector(name, &arguments[0])?, vector(name, &arguments[1])?);
             Ok(Value::Vector(u.cross(v)))
         }
-        Run::Length => {
-            count(1)?;
-            Ok(Value::Scalar(vector(name, &arguments[0])?.length()))
-        }
-        Run::Unit => {
-            count(1)?;
-            vector(name, &arguments[0])?
-                .try_normalize()
-                .map(Value::Vector)
-                .ok_or_else(|| String::from("a vector of length 0 has no direction"))
-        }
+        Run::Length => Ok(Value::Scalar(vector(name, &arguments[0])?.length())),
+        Run::Unit => vector(name, &arguments[0])?
+            .try_normalize()
+            .map(Value::Vector)
+            .ok_or_else(|| String::from("a vector of length 0 has no direction")),
         Run::Noise => {
             let mut point = [0.0; 3];
             match arguments {
@@ -202,10 +189,8 @@ pub fn apply(function: &Function, arguments: &[Value]) -> Result<Value, String> 
                     }
                 }
                 _ => {
-                    return Err(format!(
-                        "`{name}` takes 1 to 3 numbers or a vector, not {} arguments",
-                        arguments.len()
-                    ));
+                    let takes = "takes 1 to 3 numbers or a vector";
+                    return Err(format!("`{name}` {takes}, not {count} arguments"));
                 }
             }
             // Beyond this, neighbouring numbers are whole.

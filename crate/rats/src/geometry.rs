@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use scene::{Quadric, Shape};
 
-/// The local axes u, v of an arc with unit normal `n`: u is the world's x axis made perpendicular
-/// to n (the y axis if n is parallel to x), v = n × u. Angles run from u towards v.
+/// Returns the local axes u, v of an arc with unit normal `n`: u is the world's x axis made
+/// perpendicular to n (the y axis if n is parallel to x), v = n × u. Angles run from u towards v.
 #[must_use]
 pub fn arc_axes(n: DVec3) -> (DVec3, DVec3) {
     // Nearer than this the x axis has no direction left that is more than rounding.
@@ -14,8 +14,8 @@ pub fn arc_axes(n: DVec3) -> (DVec3, DVec3) {
     (u, n.cross(u))
 }
 
-/// The arc's shape from the operands of `arc`: angles in degrees, a negative width turns the other
-/// way, more than a full turn is a full turn.
+/// Returns the arc's shape from the operands of `arc`: angles in degrees; a negative width turns
+/// the other way; more than a full turn is a full turn.
 #[must_use]
 pub fn arc(center: DVec3, normal: DVec3, sweep: f64, radius: f64, start: f64, width: f64) -> Shape {
     let (x, y) = arc_axes(normal);
@@ -32,7 +32,7 @@ pub fn arc(center: DVec3, normal: DVec3, sweep: f64, radius: f64, start: f64, wi
     }
 }
 
-/// Sine and cosine of an angle in degrees, exact at multiples of 90°.
+/// Computes sine and cosine of an angle in degrees, exact at multiples of 90°.
 fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     let turn = degrees - 360.0 * (degrees / 360.0).floor();
     if turn == 0.0 {
@@ -54,13 +54,13 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
 pub enum ThreePoints {
     /// A piece of a circle from the first over the second to the third.
     Arc(Shape),
-    /// They lie on a line; the segment that holds all three.
+    /// A segment that holds all three, which lie on a line.
     Line(DVec3, DVec3),
-    /// Two of them or all are the same.
+    /// Nothing, as two of them or all are the same.
     Same,
 }
 
-/// The arc from `a` over `b` to `c` with a tube of the given radius.
+/// Finds the arc from `a` over `b` to `c` with a tube of the given radius.
 #[must_use]
 pub fn through(a: DVec3, b: DVec3, c: DVec3, radius: f64) -> ThreePoints {
     let (ab, ac) = (b - a, c - a);
@@ -98,6 +98,7 @@ pub fn through(a: DVec3, b: DVec3, c: DVec3, radius: f64) -> ThreePoints {
     })
 }
 
+/// Returns the longest segment between three points on a line.
 fn straight(a: DVec3, b: DVec3, c: DVec3) -> ThreePoints {
     let longest = [(a, c), (a, b), (b, c)]
         .into_iter()
@@ -107,8 +108,9 @@ fn straight(a: DVec3, b: DVec3, c: DVec3) -> ThreePoints {
     })
 }
 
-/// Moves a polygon's corners onto one plane: through the middle of its outer ring, with the ring's
-/// area for a normal. Gives how far the furthest was from it, as a share of the polygon's size.
+/// Moves a polygon's corners onto one plane: through the middle of its outer ring, with the normal
+/// of the ring's area. Returns the largest distance of a corner from it, as a share of the
+/// polygon's size.
 pub fn flatten(rings: &mut [Vec<DVec3>]) -> f64 {
     let Some(outer) = rings.first().filter(|ring| !ring.is_empty()) else {
         return 0.0;
@@ -134,7 +136,8 @@ pub fn flatten(rings: &mut [Vec<DVec3>]) -> f64 {
     off / size.max(f64::MIN_POSITIVE)
 }
 
-/// Whether two edges of a flat polygon cross, or a hole is not inside it, or inside another hole.
+/// Returns whether two edges of a flat polygon cross, or a hole is not inside it, or inside another
+/// hole.
 #[must_use]
 pub fn crosses_itself(rings: &[Vec<DVec3>]) -> bool {
     let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
@@ -152,8 +155,10 @@ pub fn crosses_itself(rings: &[Vec<DVec3>]) -> bool {
     let flat: Vec<Vec<DVec2>> = rings
         .iter()
         .map(|ring| {
-            let on = |p: &DVec3| DVec2::new((*p - outer[0]).dot(x), (*p - outer[0]).dot(y));
-            ring.iter().map(on).collect()
+            let from_corner = ring.iter().map(|p| *p - outer[0]);
+            from_corner
+                .map(|p| DVec2::new(p.dot(x), p.dot(y)))
+                .collect()
         })
         .collect();
     let edges: Vec<(DVec2, DVec2)> = flat
@@ -162,29 +167,30 @@ pub fn crosses_itself(rings: &[Vec<DVec3>]) -> bool {
         .collect();
     // On which side of a line: points on it, where corners touch edges, are on neither.
     let side = |(a, b): (DVec2, DVec2), p: DVec2| (b - a).perp_dot(p - a);
-    let apart = |e, (p, q)| side(e, p) * side(e, q) >= 0.0;
-    let crossing = edges.iter().enumerate().any(|(i, e)| {
-        let others = edges[i + 1..].iter();
-        others.clone().any(|f| !apart(*e, *f) && !apart(*f, *e))
-    });
-    let inside = |ring: &[DVec2], p: DVec2| {
-        let mut inside = false;
-        for i in 0..ring.len() {
-            let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
-            if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) {
-                inside = !inside;
-            }
+    let splits = |e, (p, q)| side(e, p) * side(e, q) < 0.0;
+    for (i, &e) in edges.iter().enumerate() {
+        if edges[i + 1..].iter().any(|&f| splits(e, f) && splits(f, e)) {
+            return true;
         }
-        inside
-    };
+    }
     // Rings that do not cross are inside each other or apart as one of their points is.
-    let middle = |ring: &[DVec2]| (ring[0] + ring[1]) * 0.5;
-    crossing
-        || flat.iter().skip(1).enumerate().any(|(i, hole)| {
-            let p = middle(hole);
-            let mut others = flat.iter().enumerate().skip(1);
-            !inside(&flat[0], p) || others.any(|(j, other)| j != i + 1 && inside(other, p))
-        })
+    flat.iter().enumerate().skip(1).any(|(i, hole)| {
+        let p = (hole[0] + hole[1]) * 0.5;
+        let mut others = flat.iter().enumerate().skip(1);
+        !is_inside(&flat[0], p) || others.any(|(j, other)| j != i && is_inside(other, p))
+    })
+}
+
+/// Returns whether a point is inside a ring: a ray from it along x crosses an odd number of edges.
+fn is_inside(ring: &[DVec2], p: DVec2) -> bool {
+    let mut inside = false;
+    for i in 0..ring.len() {
+        let (a, b) = (ring[i], ring[(i + 1) % ring.len()]);
+        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) {
+            inside = !inside;
+        }
+    }
+    inside
 }
 
 /// An affine map: `x ↦ linear·x + shift`.
@@ -194,14 +200,14 @@ pub struct Transform {
     pub linear: DMat3,
     /// The shift.
     pub shift: DVec3,
-    /// By how much radii grow: the mean of the scale factors' magnitudes.
+    /// The factor by which radii grow: the mean of the scale factors' magnitudes.
     pub growth: f64,
     /// Whether all lengths grow alike.
     pub uniform: bool,
 }
 
 impl Transform {
-    /// Moves by `shift`.
+    /// Makes a shift.
     #[must_use]
     pub fn translation(shift: DVec3) -> Self {
         Self {
@@ -212,7 +218,7 @@ impl Transform {
         }
     }
 
-    /// Turns about a unit axis through the origin, right-handed (Rodrigues' formula).
+    /// Makes a right-handed turn about a unit axis through the origin (Rodrigues' formula).
     #[must_use]
     pub fn rotation(axis: DVec3, degrees: f64) -> Self {
         let (sin, cos) = sin_cos_degrees(degrees);
@@ -225,23 +231,21 @@ impl Transform {
         }
     }
 
-    /// Scales along the axes by factors that are not 0; negative ones mirror.
+    /// Makes a scale along the axes by factors that are not 0; negative ones mirror.
     #[must_use]
     pub fn scaling(factors: DVec3) -> Self {
         let size = factors.abs();
+        let uniform = size.x == size.y && size.y == size.z;
+        let mean = (size.x + size.y + size.z) / 3.0;
         Self {
             linear: DMat3::from_diagonal(factors),
             shift: DVec3::ZERO,
-            growth: if size.x == size.y && size.y == size.z {
-                size.x
-            } else {
-                (size.x + size.y + size.z) / 3.0
-            },
-            uniform: size.x == size.y && size.y == size.z,
+            growth: if uniform { size.x } else { mean },
+            uniform,
         }
     }
 
-    /// The map without what it does to radii.
+    /// Returns the map of points.
     #[must_use]
     pub fn affine(&self) -> DAffine3 {
         DAffine3::from_mat3_translation(self.linear, self.shift)
@@ -251,13 +255,13 @@ impl Transform {
         self.linear * point + self.shift
     }
 
-    /// The direction across the image of what a normal is across.
+    /// Maps the normal of a surface to that of its image.
     fn normal(&self, normal: DVec3) -> DVec3 {
         (self.linear.inverse().transpose() * normal).normalize_or(normal)
     }
 
-    /// The image of a shape. If the map is not uniform, round shapes stay round, with radii grown
-    /// by the mean factor.
+    /// Maps a shape. If the map is not uniform, round shapes stay round, with radii that grow by
+    /// the mean factor.
     #[must_use]
     pub fn apply(&self, shape: &Shape) -> Shape {
         match *shape {

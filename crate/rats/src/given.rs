@@ -1,9 +1,9 @@
 //! Reads a command's operands as the table says, and keeps where each one stands.
 //!
-//! [`Reader::given`] goes through the parameters of a command, then through its options; so the
-//! table is the one place that knows what a command takes. From the operands it takes the values of
-//! the types in its [`Slot`]s. The few commands with a form of their own
-//! (`var`, the method of a `texture`) read their own part with the functions of [`crate::reader`].
+//! [`Reader::read_given`] goes through the parameters of a command, then through its options; so
+//! the table is the one place that knows what a command takes. From the operands it takes the
+//! values of the types in its [`Slot`]s. The few commands with a form of their own (`var`, the
+//! method of a `texture`) read their own part with the functions of [`crate::reader`].
 
 use crate::commands::slot::{Backdrop, Choice, Named, Placed, Slot, Text, Word};
 use crate::commands::{Arity, Kind, Names, OptionSpec, Parameter};
@@ -16,12 +16,12 @@ use glam::DVec3;
 use scene::Rgb;
 use std::ops::Range;
 
-/// One operand as it was read.
+/// Operand as it was read.
 #[derive(Clone, Debug)]
 pub enum Operand<'a> {
     /// A number.
     Number(f64),
-    /// Three numbers.
+    /// A vector: three numbers.
     Triple(DVec3),
     /// A colour.
     Colour(Rgb),
@@ -44,9 +44,9 @@ pub struct Filled<'a> {
     pub parameter: &'static Parameter,
     /// The parameter's index among those of the command or option.
     pub index: usize,
-    /// Its value.
+    /// The value.
     pub operand: Operand<'a>,
-    /// Where.
+    /// The place.
     pub span: Range<usize>,
 }
 
@@ -55,14 +55,14 @@ pub struct Filled<'a> {
 pub struct Chosen<'a> {
     /// The option.
     pub option: &'static OptionSpec,
-    /// Where its word stands.
+    /// The place of its word.
     pub span: Range<usize>,
     /// The operands in the order of the text.
     pub operands: Vec<Filled<'a>>,
 }
 
 impl<'a> Chosen<'a> {
-    /// The values of its operands.
+    /// Returns the values of its operands.
     pub fn values(&self) -> Operands<'_, 'a> {
         Operands::new(&self.operands)
     }
@@ -73,27 +73,27 @@ impl<'a> Chosen<'a> {
 pub struct Options<'a>(pub Vec<Chosen<'a>>);
 
 impl<'a> Options<'a> {
-    /// The options in the order of the text.
+    /// Returns the options in the order of the text.
     pub fn iter(&self) -> std::slice::Iter<'_, Chosen<'a>> {
         self.0.iter()
     }
 
-    /// The last option of this kind.
+    /// Finds the last option of this kind.
     pub fn find<K: Values>(&self, choice: &Choice<K>) -> Option<&Chosen<'a>> {
         self.0.iter().rev().find(|chosen| choice.is(chosen))
     }
 
-    /// Whether an option of this kind was given.
+    /// Returns whether an option of this kind was given.
     pub fn has<K: Values>(&self, choice: &Choice<K>) -> bool {
         self.find(choice).is_some()
     }
 
-    /// The operands of the last option of this kind.
+    /// Returns the operands of the last option of this kind.
     pub fn last<K: Values>(&self, choice: &Choice<K>) -> Option<K::Of<'a>> {
         choice.of(self.find(choice)?)
     }
 
-    /// The operands of all options of this kind.
+    /// Returns the operands of all options of this kind.
     pub fn all<K: Values>(&self, choice: &Choice<K>) -> impl Iterator<Item = K::Of<'a>> {
         self.0.iter().filter_map(|chosen| choice.of(chosen))
     }
@@ -111,12 +111,12 @@ pub struct Given<'a> {
 }
 
 impl<'a> Given<'a> {
-    /// The values of the operands.
+    /// Returns the values of the operands.
     pub fn operands(&self) -> Operands<'_, 'a> {
         Operands::new(&self.filled)
     }
 
-    /// The values of the operands for a row of the table.
+    /// Returns the values of the operands for a row of the table.
     pub fn values(&self) -> Taken<'_, 'a> {
         Taken {
             operands: self.operands(),
@@ -132,13 +132,13 @@ pub struct Taken<'g, 'a> {
 }
 
 impl<'a> Taken<'_, 'a> {
-    /// The value of the next slot.
+    /// Takes the value of the next slot.
     ///
     /// # Errors
     /// If it was not read: a slot that is not in the row.
     pub fn take<K: Values>(&mut self, _slot: fn() -> Slot<K>) -> Outcome<K::Of<'a>> {
-        let missing = || Problem::new(self.span.clone(), "expected another operand");
-        self.operands.next::<K>().ok_or_else(missing)
+        let value = self.operands.next::<K>();
+        value.ok_or_else(|| Problem::new(self.span, "expected another operand"))
     }
 }
 
@@ -158,12 +158,13 @@ impl<'g, 'a> Operands<'g, 'a> {
         }
     }
 
-    /// The value of the next parameter, or of the next ones; `None` if it is none of this type.
+    /// Takes the value of the next parameter, or of the next ones; `None` if it is none of this
+    /// type.
     pub fn next<K: Values>(&mut self) -> Option<K::Of<'a>> {
         K::take(self)
     }
 
-    /// The next operand if it belongs to the present parameter.
+    /// Takes the next operand if it belongs to the present parameter.
     fn operand(&mut self) -> Option<&'g Filled<'a>> {
         let (first, rest) = self.rest.split_first()?;
         (first.index == self.index).then(|| {
@@ -177,7 +178,7 @@ impl<'g, 'a> Operands<'g, 'a> {
 pub trait One {
     /// The values.
     type Of<'a>;
-    /// The value of an operand; `None` if it has another type.
+    /// Returns the value of an operand; `None` if it has another type.
     fn of<'a>(filled: &Filled<'a>) -> Option<Self::Of<'a>>;
 }
 
@@ -302,13 +303,15 @@ impl<A: Values, B: Values, C: Values> Values for (A, B, C) {
 
 /// Refuses a node's name that is a word of the block: in a `curve` it would begin another option.
 fn refuse_option(name: &Name<'_>, options: &'static [OptionSpec]) -> Outcome<()> {
-    let is_same = |option: &&OptionSpec| option.name.eq_ignore_ascii_case(name.text);
-    let Some(option) = options.iter().find(is_same) else {
+    let same = options
+        .iter()
+        .find(|option| option.name.eq_ignore_ascii_case(name.text));
+    let Some(option) = same else {
         return Ok(());
     };
     let message = format!("a node cannot be called `{}`", name.text);
     let hint = format!("`{}` is a word of this command: add a digit", option.name);
-    Err(Problem::new(name.span.clone(), message).hint(hint))
+    Err(Problem::new(&name.span, message).hint(hint))
 }
 
 impl<'a> Reader<'_, 'a> {
@@ -317,7 +320,7 @@ impl<'a> Reader<'_, 'a> {
     ///
     /// # Errors
     /// If one is missing, of the wrong kind or out of its range, or if something is left.
-    pub fn given(
+    pub fn read_given(
         &mut self,
         parameters: &'static [Parameter],
         options: &'static [OptionSpec],
@@ -352,7 +355,7 @@ impl<'a> Reader<'_, 'a> {
             }
             _ => self.operands(parameters, options)?,
         };
-        first.extend(self.chosen(options)?);
+        first.extend(self.read_options(options)?);
         self.end()?;
         Ok(Given {
             filled,
@@ -361,7 +364,7 @@ impl<'a> Reader<'_, 'a> {
         })
     }
 
-    /// The operands of these parameters; `options` are the words that may follow.
+    /// Reads the operands of these parameters; `options` are the words that may follow.
     ///
     /// # Errors
     /// If one is missing, of the wrong kind or out of its range.
@@ -415,11 +418,11 @@ impl<'a> Reader<'_, 'a> {
         Ok(())
     }
 
-    /// The options to the end of the command. Without any in the table nothing is read.
+    /// Reads the options to the end of the command. Without any in the table nothing is read.
     ///
     /// # Errors
     /// If there is something that is no option, or an option's operand is wrong.
-    pub fn chosen(&mut self, options: &'static [OptionSpec]) -> Outcome<Vec<Chosen<'a>>> {
+    pub fn read_options(&mut self, options: &'static [OptionSpec]) -> Outcome<Vec<Chosen<'a>>> {
         let mut chosen = Vec::new();
         if options.is_empty() {
             return Ok(chosen);
@@ -434,7 +437,7 @@ impl<'a> Reader<'_, 'a> {
         Ok(chosen)
     }
 
-    /// Whether another operand of this parameter follows.
+    /// Returns whether another operand of this parameter follows.
     fn goes_on(&mut self, parameter: &Parameter, options: &'static [OptionSpec]) -> bool {
         if !self.more() {
             return false;
@@ -457,9 +460,9 @@ impl<'a> Reader<'_, 'a> {
         }
     }
 
-    /// The problem that none of these words stands here.
+    /// Makes the problem that none of these words stands here.
     fn no_such_word(&mut self, words: &'static [OptionSpec], what: &str) -> Box<Problem> {
-        let problem = self.expected(what);
+        let problem = self.missing(what);
         let names = words.iter().map(|word| word.name);
         let Some((_, found)) = self.peek_word() else {
             return problem;
@@ -471,6 +474,7 @@ impl<'a> Reader<'_, 'a> {
         problem.hint(hint)
     }
 
+    /// Reads an operand of a parameter.
     fn operand_of(&mut self, parameter: &Parameter) -> Outcome<Operand<'a>> {
         let what = parameter.meaning;
         Ok(match parameter.kind {
@@ -488,22 +492,22 @@ impl<'a> Reader<'_, 'a> {
                     return Err(self.no_such_word(words, what));
                 }
                 let Some((word, _)) = self.option(words)? else {
-                    return Err(self.expected(what));
+                    return Err(self.missing(what));
                 };
                 self.operands(word.parameters, &[])?;
                 Operand::Word(word)
             }
             Kind::Copy(_) => {
                 if !self.sign(b'=') {
-                    return Err(self.expected("`=`"));
+                    return Err(self.missing("`=`"));
                 }
-                Operand::Name(self.known_name(what)?)
+                Operand::Name(self.old_name(what)?)
             }
             Kind::Known(Names::Texture) => {
                 self.sign(b'+');
-                Operand::Name(self.known_name(what)?)
+                Operand::Name(self.old_name(what)?)
             }
-            Kind::Known(_) => Operand::Name(self.known_name(what)?),
+            Kind::Known(_) => Operand::Name(self.old_name(what)?),
             Kind::New(_) => Operand::Name(self.new_name(what)?),
             Kind::File | Kind::NewFile => Operand::Name(self.file_name(what)?),
             Kind::Backdrop => match self.image_name() {
@@ -516,7 +520,7 @@ impl<'a> Reader<'_, 'a> {
             }
             // The commands that take these read them themselves.
             Kind::Value | Kind::Condition | Kind::Method | Kind::Block => {
-                return Err(Problem::new(self.here(), format!("expected {what}")));
+                return Err(Problem::new(&self.here(), format!("expected {what}")));
             }
         })
     }

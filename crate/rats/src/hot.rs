@@ -4,10 +4,10 @@ use crate::HotValue;
 use crate::colours;
 use std::ops::Range;
 
-/// The text with the literal of a hot variable replaced by a new value. Numbers are written with at
-/// most six significant digits; a colour by its name if it has one, else as `rgb(…)`, so that it
-/// stays a colour. A range that does not fit the text, or a value that is not finite, changes
-/// nothing.
+/// Returns the text with the literal of a hot variable replaced by a new value. Numbers are written
+/// with at most six significant digits; a colour by its name if it has one, else as `rgb(…)`, so
+/// that it stays a colour. A range that does not fit the text, or a value that is not finite,
+/// changes nothing.
 #[must_use]
 pub fn set(text: &str, literal: Range<usize>, value: &HotValue) -> String {
     let (Some(before), Some(after)) = (text.get(..literal.start), text.get(literal.end..)) else {
@@ -19,7 +19,7 @@ pub fn set(text: &str, literal: Range<usize>, value: &HotValue) -> String {
     format!("{before}{}{after}", write(value))
 }
 
-/// A value as the language writes it.
+/// Returns a value as the language writes it.
 #[must_use]
 pub fn write(value: &HotValue) -> String {
     match value {
@@ -43,7 +43,7 @@ fn is_finite(value: &HotValue) -> bool {
     }
 }
 
-/// The shortest text of the number that is nearest among those of six significant digits.
+/// Returns the shortest text of the nearest number of six significant digits.
 fn number(x: f64) -> String {
     // Through text, because rounding by powers of ten is not exact.
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);

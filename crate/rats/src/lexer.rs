@@ -1,4 +1,4 @@
-//! Cuts a text into tokens, losing nothing: the tokens' ranges cover the text from end to end.
+//! Cuts a text into tokens, whose ranges cover the text from end to end.
 //!
 //! The lexer cannot fail; what it does not know becomes [`TokenKind::Unknown`]. It knows nothing of
 //! commands either: the parser and the highlighter give the tokens their meaning.
@@ -20,25 +20,25 @@ pub enum TokenKind {
     Word,
     /// A decimal number without sign: `1`, `.5`, `2.`, `1e-3`.
     Number,
-    /// One of `, < > = + - * / ^ ( ) { } @ % !`.
+    /// Sign: `, < > = + - * / ^ ( ) { } @ % !`.
     Sign,
-    /// Any other characters.
+    /// Characters of no other kind.
     Unknown,
 }
 
 /// A piece of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// Its kind.
+    /// The kind.
     pub kind: TokenKind,
-    /// First byte.
+    /// The first byte.
     pub start: usize,
-    /// One past the last byte.
+    /// The end: one past the last byte.
     pub end: usize,
 }
 
 impl Token {
-    /// Its byte range.
+    /// Returns the byte range.
     #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.start..self.end
@@ -62,7 +62,7 @@ pub fn lex(text: &str) -> Vec<Token> {
     tokens
 }
 
-/// The kind and length of the token that `rest` begins with.
+/// Returns the kind and length of the token that `rest` begins with.
 fn one_token(rest: &str, first: char) -> (TokenKind, usize) {
     let run = |keep: fn(char) -> bool| rest.find(|c| !keep(c)).unwrap_or(rest.len());
     match first {
@@ -79,7 +79,8 @@ fn one_token(rest: &str, first: char) -> (TokenKind, usize) {
     }
 }
 
-/// `rest` begins with a digit or a dot and a digit. `2nd` is a word, `2` and `2e5` are numbers.
+/// Returns the kind and length of the token at a digit, or at a dot and a digit: `2nd` is a word,
+/// `2` and `2e5` are numbers.
 fn number_or_word(rest: &str) -> (TokenKind, usize) {
     let mut length = rest.find(|c| !is_word(c)).unwrap_or(rest.len());
     // `1e-3`: the sign belongs to the number if all before it is a number's mantissa and an `e`.
@@ -116,7 +117,7 @@ fn is_word(c: char) -> bool {
 }
 
 fn is_unknown(c: char) -> bool {
-    !is_space(c) && !is_word(c) && !matches!(c, '\n' | '#' | '−') && !",<>=+-*/^(){}@%!".contains(c)
+    !is_space(c) && !is_word(c) && !"\n#−,<>=+-*/^(){}@%!".contains(c)
 }
 
 #[cfg(test)]

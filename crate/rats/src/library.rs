@@ -9,7 +9,7 @@ use crate::project::Asset;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
-/// All files: their names and texts.
+/// The files: names and texts.
 pub const FILES: &[(&str, &str)] = &[
     ("shell.rat", include_str!("../library/shell.rat")),
     ("horn.rat", include_str!("../library/horn.rat")),
@@ -34,7 +34,7 @@ static ASSETS: LazyLock<[Asset; 2]> = LazyLock::new(|| {
     ]
 });
 
-/// The images and meshes of the library.
+/// Returns the images and meshes of the library.
 #[must_use]
 pub fn assets() -> &'static [Asset] {
     &*ASSETS
@@ -43,17 +43,17 @@ pub fn assets() -> &'static [Asset] {
 /// A parameter of a library's command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
     /// Whether it takes a material's name.
     pub is_surface: bool,
-    /// The expression it has if it is left out; empty if it must be given.
+    /// The expression that stands for it if it is left out; empty if it must be given.
     pub default: &'static str,
-    /// Its meaning.
+    /// The meaning.
     pub meaning: String,
 }
 
-/// The text of a file of the library.
+/// Finds the text of a file of the library.
 #[must_use]
 pub fn find(file: &str) -> Option<&'static str> {
     FILES
@@ -62,7 +62,7 @@ pub fn find(file: &str) -> Option<&'static str> {
         .map(|(_, text)| *text)
 }
 
-/// The text that defines a command.
+/// Finds the text that defines a command.
 #[must_use]
 pub fn text_of(command: &str) -> Option<&'static str> {
     FILES
@@ -71,7 +71,7 @@ pub fn text_of(command: &str) -> Option<&'static str> {
         .map(|(_, text)| *text)
 }
 
-/// The parameters of a command, from its `define` and the comment at the head of its file.
+/// Returns the parameters of a command, from its `define` and the comment at the head of its file.
 #[must_use]
 pub fn parameters(command: &str) -> Vec<Parameter> {
     let Some(text) = text_of(command) else {
@@ -122,7 +122,7 @@ fn split(list: &'static str) -> Vec<&'static str> {
     parts
 }
 
-/// A parameter's meaning, from the comment at the head of the text; empty if it is not there.
+/// Finds a parameter's meaning in the comment at the head of the text; empty if it is not there.
 fn meaning(text: &str, name: &str) -> String {
     let mut meaning = String::new();
     let mut found = false;
@@ -146,7 +146,7 @@ fn meaning(text: &str, name: &str) -> String {
     meaning
 }
 
-/// A command with its parameters, as the manual shows it.
+/// Returns a command with its parameters, as the manual shows it.
 #[must_use]
 pub fn synopsis(command: &str) -> String {
     let mut text = command.to_owned();

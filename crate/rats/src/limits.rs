@@ -4,13 +4,12 @@
 //! before stays. The original program stopped at 128 nested files, 512 operands a command, 12
 //! layers a texture and 16 levels of objects (thesis, appendix C, "Bugs and restrictions").
 
-/// All texts of a project together, bytes.
+/// Bytes of all texts of a project together.
 pub const MAX_TEXT: usize = 1024 * 1024;
 /// Files in a project.
 pub const MAX_FILES: usize = 64;
-/// Commands run plus operands evaluated, with heavier work charged more. Long before this a person
-/// would have given up waiting: a step takes 50 nanoseconds or so, so all take a
-/// fifteenth of a second.
+/// Commands run plus operands evaluated, with heavier work charged more. A step takes 50
+/// nanoseconds or so, so that all take a fifteenth of a second.
 pub const MAX_STEPS: u64 = 1_320_000;
 /// Steps that one turn of a loop costs, besides its commands.
 pub const STEPS_PER_TURN: u64 = 2;
@@ -20,8 +19,8 @@ pub const STEPS_PER_LOOKUP: u64 = 8;
 pub const STEPS_PER_CALL: u64 = 12;
 /// Steps that one error costs, so that a loop of errors ends soon too.
 pub const STEPS_PER_ERROR: u64 = 4200;
-/// Some hints look through the text: an error costs one step more for so many operands in its file.
-/// (Not for so many bytes: how a text is laid out must not matter.)
+/// Operands in its file for which an error costs one step more, as some hints look through the
+/// text. (Operands, not bytes: how a text is laid out must not matter.)
 pub const OPERANDS_PER_STEP: usize = 20;
 /// Steps that reading a command's operands costs, besides one for each: lists are made of them.
 pub const STEPS_PER_OPERANDS: u64 = 5;
@@ -52,7 +51,8 @@ pub const MAX_STROKES_FACES: usize = 200_000;
 pub const MAX_STROKES_WORK: u64 = 20_000_000;
 /// Corners of a polygon with its holes. (The original stopped at 128.)
 pub const MAX_CORNERS: usize = 800;
-/// As how many shapes a curve counts, or a limb that tapers: it is integrated piece by piece.
+/// Number of shapes as which a curve counts, or a limb that tapers: it is integrated piece by
+/// piece.
 pub const CURVE_WEIGHT: usize = 64;
 /// Objects and chains in a scene.
 pub const MAX_OBJECTS: usize = 100_000;

@@ -1,4 +1,4 @@
-//! A project and a camera as a short text for the fragment of an address.
+//! Packs a project and a camera into a short text for the fragment of an address.
 //!
 //! The form is: one byte for the version, then the deflated JSON of a [`Shared`], all in base64url
 //! without padding. Version 1 is frozen: every link that was ever made must open. Links come from
@@ -43,20 +43,20 @@ pub const MAX_NAME: usize = 255;
 /// The version that [`encode`] writes.
 const VERSION: u8 = 1;
 
-/// Why a link could not be made or opened.
+/// Reason why a link could not be made or opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkError {
     /// The fragment is longer than [`MAX_FRAGMENT`].
     TooLong,
-    /// Its content is larger than [`MAX_INFLATED`].
+    /// The content is larger than [`MAX_INFLATED`].
     TooLarge,
-    /// It is not the form of our links.
+    /// The fragment has not the form of our links.
     NotALink,
-    /// It has a version that this build does not know.
+    /// The link has a version that this build does not know.
     NewerVersion(u8),
-    /// It is of the right form but its content is broken.
+    /// The link has the right form, but its content is broken.
     Damaged,
-    /// Its content is not a project; the sentence says why.
+    /// The content is not a project; the sentence says why.
     NotAProject(String),
 }
 
@@ -65,20 +65,24 @@ impl fmt::Display for LinkError {
         match self {
             Self::TooLong => write!(
                 f,
-                "The link is too long: {MAX_FRAGMENT} characters is the limit. Save the project to a file instead."
+                "The link is too long: {MAX_FRAGMENT} characters is the limit. Save the project \
+                 to a file instead."
             ),
             Self::TooLarge => write!(
                 f,
-                "The project is too large for a link: {MAX_INFLATED} bytes is the limit. Save it to a file instead."
+                "The project is too large for a link: {MAX_INFLATED} bytes is the limit. Save it \
+                 to a file instead."
             ),
             Self::NotALink => write!(f, "This is not a link to a Sinew project."),
             Self::NewerVersion(version) => write!(
                 f,
-                "This link was made by a newer Sinew (form {version}). Reload the page to get the newest one."
+                "This link was made by a newer Sinew (form {version}). Reload the page to get the \
+                 newest one."
             ),
             Self::Damaged => write!(
                 f,
-                "The link is damaged: a part of it is missing or changed. Ask for it to be sent again."
+                "The link is damaged: a part of it is missing or changed. Ask for it to be sent \
+                 again."
             ),
             Self::NotAProject(why) => write!(f, "The link does not hold a project: {why}."),
         }
@@ -87,7 +91,7 @@ impl fmt::Display for LinkError {
 
 impl std::error::Error for LinkError {}
 
-/// The fragment (without `#`).
+/// Returns the fragment, without `#`.
 ///
 /// # Errors
 /// If the project is larger than the limits, or one that [`decode`] would refuse.

@@ -1,33 +1,32 @@
-//! The manual: what `help` and `man` say, made from the table of commands.
+//! The manual: the texts of `help` and `man`, made from the table of commands.
 
 use crate::commands::{CommandSpec, GROUPS, Parameter};
 use crate::library;
 use std::fmt::Write;
 
-/// All opcodes, group by group.
+/// Lists all opcodes, group by group.
 #[must_use]
 pub fn list() -> String {
-    let line = |(group, list): &(crate::commands::Group, &[&CommandSpec])| {
+    let mut lines = Vec::new();
+    for (group, list) in GROUPS {
         let names: Vec<_> = list.iter().map(|spec| spec.name).collect();
-        format!("{group:?}: {}", names.join(" "))
-    };
-    GROUPS.iter().map(line).collect::<Vec<_>>().join("\n")
+        lines.push(format!("{group:?}: {}", names.join(" ")));
+    }
+    lines.join("\n")
 }
 
-/// A command in one line.
+/// Describes a command in one line.
 #[must_use]
 pub fn summary(spec: &CommandSpec) -> String {
     let mut text = format!("{}: {}", spec.synopsis(), spec.meaning);
-    if !spec.default.is_empty() {
-        let _ = write!(text, " (by default {})", spec.default);
-    }
+    add_default(&mut text, spec.default);
     if let Some(reason) = spec.idle() {
         let _ = write!(text, "; changes nothing here: {reason}");
     }
     text
 }
 
-/// All that the table says of a command.
+/// Describes a command with all that the table has on it.
 #[must_use]
 pub fn page(spec: &CommandSpec) -> String {
     let mut page = summary(spec);
@@ -44,15 +43,11 @@ pub fn page(spec: &CommandSpec) -> String {
     }
     for parameter in library::parameters(spec.name) {
         let _ = write!(page, "\n  {}: {}", parameter.name, parameter.meaning);
-        if !parameter.default.is_empty() {
-            let _ = write!(page, " (by default {})", parameter.default);
-        }
+        add_default(&mut page, parameter.default);
     }
     for option in spec.options {
         let _ = write!(page, "\n  {}: {}", option.synopsis(), option.meaning);
-        if !option.default.is_empty() {
-            let _ = write!(page, " (by default {})", option.default);
-        }
+        add_default(&mut page, option.default);
     }
     if !spec.example.is_empty() {
         let _ = write!(page, "\nexample:\n{}", spec.example);
@@ -60,7 +55,7 @@ pub fn page(spec: &CommandSpec) -> String {
     page
 }
 
-/// A parameter's meaning, unit, range and default.
+/// Returns a parameter's meaning, unit, range and default in one line.
 #[must_use]
 pub fn parameter_line(parameter: &Parameter) -> String {
     let mut line = parameter.meaning.to_owned();
@@ -69,8 +64,13 @@ pub fn parameter_line(parameter: &Parameter) -> String {
             let _ = write!(line, ", {more}");
         }
     }
-    if !parameter.default.is_empty() {
-        let _ = write!(line, " (by default {})", parameter.default);
-    }
+    add_default(&mut line, parameter.default);
     line
+}
+
+/// Adds a default, if there is one.
+fn add_default(line: &mut String, default: &str) {
+    if !default.is_empty() {
+        let _ = write!(line, " (by default {default})");
+    }
 }

@@ -21,7 +21,7 @@ pub enum Share {
 const MAX_COLOUR: f64 = 1e4;
 
 impl Reader<'_, '_> {
-    /// A number.
+    /// Reads a number.
     ///
     /// # Errors
     /// If there is none, or it is too large or not a number.
@@ -30,15 +30,15 @@ impl Reader<'_, '_> {
         match self.value(what)? {
             Value::Scalar(number) => self.check(number, start, what),
             other => Err(Problem::new(
-                self.since(start),
+                &self.since(start),
                 format!("{what} must be a number, this is {}", other.kind()),
             )
             .maybe_hint(self.usage())),
         }
     }
 
-    /// Whether the next operand can only be a number: not an option word or the end. A scalar
-    /// variable counts, unless an option is called so.
+    /// Returns whether the next operand can only be a number: not an option word or the end. A
+    /// scalar variable counts, unless an option is called so.
     pub fn is_number_next(&mut self, options: &[OptionSpec]) -> bool {
         if !self.more() {
             return false;
@@ -53,7 +53,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A number within bounds, measured in `unit`.
+    /// Reads a number within bounds, measured in `unit`.
     ///
     /// # Errors
     /// As [`Self::number`], and if it is out of bounds.
@@ -66,7 +66,7 @@ impl Reader<'_, '_> {
             let is_share = unit.is_empty() && (low..=high).contains(&share);
             let plain = if is_share { share } else { number };
             return Err(
-                Problem::new(self.since(start), format!("{what} is a number, no share"))
+                Problem::new(&self.since(start), format!("{what} is a number, no share"))
                     .hint(format!("write {plain}")),
             );
         }
@@ -84,12 +84,12 @@ impl Reader<'_, '_> {
         };
         let bounds = bounds.trim_end();
         Err(Problem::new(
-            self.since(start),
+            &self.since(start),
             format!("{what} must be {bounds}, not {number}"),
         ))
     }
 
-    /// A whole number within bounds.
+    /// Reads a whole number within bounds.
     ///
     /// # Errors
     /// As [`Self::number`], and if it is not whole or out of bounds.
@@ -100,7 +100,7 @@ impl Reader<'_, '_> {
             return Ok(number as u32);
         }
         Err(Problem::new(
-            self.since(start),
+            &self.since(start),
             format!("{what} must be a whole number, not {number}"),
         ))
     }
@@ -111,6 +111,10 @@ impl Reader<'_, '_> {
         next.is_some_and(|item| item.datum == Datum::Sign(b'%') && !item.spaced)
     }
 
+    /// Returns a number that was read, or 0 for a tiny one.
+    ///
+    /// # Errors
+    /// If it is too large or not a number.
     fn check(&self, number: f64, start: usize, what: &str) -> Outcome<f64> {
         if number.abs() < MIN_MAGNITUDE {
             return Ok(0.0);
@@ -118,29 +122,28 @@ impl Reader<'_, '_> {
         if number.abs() <= MAX_MAGNITUDE {
             return Ok(number);
         }
-        let problem = |message| Problem::new(self.since(start), message);
-        Err(if number.is_finite() {
-            problem(format!(
-                "{what} is too large: the limit is {MAX_MAGNITUDE:e}"
-            ))
-        } else {
-            problem(format!("{what} comes out as no finite number"))
-                .hint("look for a division by 0 or a root of a negative number")
-        })
+        let span = self.since(start);
+        if number.is_finite() {
+            let message = format!("{what} is too large: the limit is {MAX_MAGNITUDE:e}");
+            return Err(Problem::new(&span, message));
+        }
+        let message = format!("{what} comes out as no finite number");
+        Err(Problem::new(&span, message)
+            .hint("look for a division by 0 or a root of a negative number"))
     }
 
-    /// Three numbers, or a vector or colour.
+    /// Reads three numbers, or a vector or colour.
     ///
     /// # Errors
     /// If there is none, or a number is too large or not a number.
     pub fn vector(&mut self, what: &str) -> Outcome<DVec3> {
         match self.triple(what)? {
             Value::Vector(vector) | Value::Colour(vector) => Ok(vector),
-            Value::Scalar(_) | Value::Name(_) => Err(self.expected(what)),
+            Value::Scalar(_) | Value::Name(_) => Err(self.missing(what)),
         }
     }
 
-    /// A triple as it is, vector or colour; three numbers give a vector.
+    /// Reads a triple as it is, vector or colour; three numbers give a vector.
     ///
     /// # Errors
     /// As [`Self::vector`].
@@ -153,7 +156,7 @@ impl Reader<'_, '_> {
             }
             Value::Name(_) => {
                 return Err(Problem::new(
-                    self.since(start),
+                    &self.since(start),
                     format!("{what} takes three numbers, this is a name"),
                 )
                 .maybe_hint(self.usage()));
@@ -168,7 +171,7 @@ impl Reader<'_, '_> {
         Ok(value)
     }
 
-    /// The second or third number of a triple.
+    /// Reads the second or third number of a triple.
     fn number_after(&mut self, what: &str) -> Outcome<f64> {
         let start = self.start();
         let at = self.at;
@@ -180,14 +183,14 @@ impl Reader<'_, '_> {
             Ok(_) => None,
         };
         self.at = at;
-        let message = match self.found() {
+        let message = match self.next_text() {
             Some(found) => format!("{what} takes three numbers, found `{found}`"),
             None => format!("{what} takes three numbers, but the command ends here"),
         };
-        Err(Problem::new(self.here(), message).maybe_hint(inner.or_else(|| self.usage())))
+        Err(Problem::new(&self.here(), message).maybe_hint(inner.or_else(|| self.usage())))
     }
 
-    /// A direction: a vector that is not 0.
+    /// Reads a direction, a vector that is not 0, and returns the unit vector.
     ///
     /// # Errors
     /// As [`Self::vector`], and if it is 0.
@@ -196,13 +199,13 @@ impl Reader<'_, '_> {
         let vector = self.vector(what)?;
         vector.try_normalize().ok_or_else(|| {
             Problem::new(
-                self.since(start),
+                &self.since(start),
                 format!("{what} must not be 0 0 0: it is a direction"),
             )
         })
     }
 
-    /// A colour: a name, a variable or three numbers.
+    /// Reads a colour: a name, a variable or three numbers.
     ///
     /// # Errors
     /// If there is none, or a number is negative.
@@ -212,13 +215,17 @@ impl Reader<'_, '_> {
         self.to_colour(vector, start, what)
     }
 
+    /// Returns a vector that was read as a colour.
+    ///
+    /// # Errors
+    /// If a number is negative or too large.
     fn to_colour(&self, vector: DVec3, start: usize, what: &str) -> Outcome<[f32; 3]> {
         for number in vector.to_array() {
             self.check(number, start, what)?;
         }
         if vector.min_element() < 0.0 || vector.max_element() > MAX_COLOUR {
             return Err(Problem::new(
-                self.since(start),
+                &self.since(start),
                 format!("{what} needs numbers from 0 (none) to 1 (full)"),
             )
             .hint(format!("more than 1 glares; {MAX_COLOUR} is the limit")));
@@ -226,7 +233,7 @@ impl Reader<'_, '_> {
         Ok(vector.to_array().map(|c| c as f32))
     }
 
-    /// A colour or `N%`.
+    /// Reads a colour or `N%`.
     ///
     /// # Errors
     /// If there is neither.
@@ -239,7 +246,7 @@ impl Reader<'_, '_> {
                 let number = self.check(number, start, what)?;
                 if !(0.0..=1e6).contains(&number) {
                     return Err(Problem::new(
-                        self.since(start),
+                        &self.since(start),
                         format!("{what} must be at least 0%"),
                     ));
                 }
@@ -254,7 +261,7 @@ impl Reader<'_, '_> {
                 Ok(Share::Colour(self.to_colour(v, start, what)?))
             }
             Value::Name(_) => Err(Problem::new(
-                self.since(start),
+                &self.since(start),
                 format!("{what} is a colour or a share, this is a name"),
             )),
         }

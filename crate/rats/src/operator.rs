@@ -1,4 +1,4 @@
-//! The operators of expressions: where one stands, and how strongly it binds.
+//! The operators of expressions: their places, and how strongly they bind.
 //!
 //! The reader that computes values and the one that only tells operands apart both ask here.
 
@@ -41,9 +41,9 @@ pub const NOT: u8 = 3;
 pub const SIGN: u8 = 7;
 
 impl Operator {
-    /// The operator at an item and how many items it has; `None` if none stands there. `listed`
-    /// tells whether operands follow each other with nothing but space between, so that `a -b` is
-    /// two of them; `comparing` whether it is a condition, where `<` and `>` compare.
+    /// Returns the operator at an item and the number of its items; `None` if none stands there.
+    /// `listed` says whether operands follow each other with nothing but space between, so that `a
+    /// -b` is two of them; `comparing` whether it is a condition, where `<` and `>` compare.
     #[must_use]
     pub fn at(
         items: &[Item],
@@ -94,7 +94,7 @@ impl Operator {
         })
     }
 
-    /// How strongly it binds: larger binds stronger.
+    /// Returns how strongly it binds: a larger number binds stronger.
     #[must_use]
     pub fn strength(self) -> u8 {
         match self {
@@ -112,14 +112,14 @@ impl Operator {
         }
     }
 
-    /// The least strength of an operator that belongs to its right side: `^` groups from the right,
-    /// the others from the left.
+    /// Returns the least strength of an operator that belongs to its right side: `^` groups from
+    /// the right, the others from the left.
     #[must_use]
     pub fn right_strength(self) -> u8 {
         self.strength() + u8::from(self != Self::Power)
     }
 
-    /// Whether it gives a truth, 0 or 1.
+    /// Returns whether it gives a truth, 0 or 1.
     #[must_use]
     pub fn is_logical(self) -> bool {
         self.strength() <= Self::Equal.strength()

@@ -1,5 +1,5 @@
-//! Tokens to a tree of commands. Whatever is wrong, the rest of the text is still read: a mistake
-//! costs one command or one block, with a message.
+//! Makes a tree of commands from tokens. Whatever is wrong, the rest of the text is still read: a
+//! mistake costs one command or one block, with a message.
 
 use crate::commands;
 use crate::lexer::{Token, TokenKind, lex};
@@ -30,8 +30,8 @@ pub fn parse<'a>(text: &'a str, symbols: &mut Symbols<'a>) -> Syntax {
     }
 }
 
-/// For every `{` token the index of its `}`, if it has one; 0 for all other tokens (a `}` is never
-/// first).
+/// Finds for every `{` token the index of its `}`; 0 if it has none and for all other tokens, as a
+/// `}` is never first.
 fn match_braces(text: &str, tokens: &[Token]) -> Vec<usize> {
     let mut partner = vec![0; tokens.len()];
     let mut open = Vec::new();
@@ -62,12 +62,12 @@ struct Parser<'a, 't, 's> {
     symbols: &'s mut Symbols<'a>,
 }
 
-/// Where a command's operands end.
+/// End of a command's operands.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Ends {
-    /// At the end of the line.
+    /// The end of the line.
     Line,
-    /// At the `{` of a block.
+    /// The `{` of a block.
     Brace,
 }
 
@@ -77,10 +77,10 @@ impl<'a> Parser<'a, '_, '_> {
     }
 
     fn problem(&mut self, span: Range<usize>, message: impl Into<String>, hint: &str) {
-        self.problems.push(*Problem::new(span, message).hint(hint));
+        self.problems.push(*Problem::new(&span, message).hint(hint));
     }
 
-    /// Skips space, comments and, if asked, line ends; gives the token that follows.
+    /// Skips space, comments and, if asked, line ends; returns the token that follows.
     fn peek(&mut self, over_lines: bool) -> Option<Token> {
         while let Some(&token) = self.tokens.get(self.at) {
             match token.kind {
@@ -96,7 +96,7 @@ impl<'a> Parser<'a, '_, '_> {
         token.kind == TokenKind::Sign && self.word(token) == sign
     }
 
-    /// To the end of the line, or of the block if that comes first.
+    /// Skips to the end of the line, or of the block if that comes first.
     fn skip_line(&mut self) {
         while let Some(&token) = self.tokens.get(self.at) {
             if token.kind == TokenKind::Newline || self.is_sign(token, "}") {
@@ -106,7 +106,8 @@ impl<'a> Parser<'a, '_, '_> {
         }
     }
 
-    /// Commands up to the closing brace (`depth` > 0), which is left to the caller, or to the end.
+    /// Reads commands up to the closing brace (`depth` > 0), which is left to the caller, or to the
+    /// end.
     fn block(&mut self, depth: usize) -> Block {
         let mut block = Block::new();
         while let Some(token) = self.peek(true) {
@@ -121,10 +122,10 @@ impl<'a> Parser<'a, '_, '_> {
                             "remove it, or open the block or list that it should close",
                         );
                     }
-                    "@" => self.silenced(token),
+                    "@" => self.skip_echo_sign(token),
                     // Stray separators mean nothing.
                     "," | "<" | ">" => self.at += 1,
-                    _ => self.not_a_command(token),
+                    _ => self.refuse_token(token),
                 },
                 TokenKind::Word => {
                     let node = self.node(token, depth);
@@ -133,15 +134,15 @@ impl<'a> Parser<'a, '_, '_> {
                         Err(problem) => self.problems.push(*problem),
                     }
                 }
-                _ => self.not_a_command(token),
+                _ => self.refuse_token(token),
             }
         }
         block
     }
 
-    /// `@` before a command, whose echo it silences, and stray separators. Without a command in the
-    /// same line it is a mistake.
-    fn silenced(&mut self, at: Token) {
+    /// Skips `@` before a command, whose echo it silences, and stray separators. Without a command
+    /// in the same line it is a mistake.
+    fn skip_echo_sign(&mut self, at: Token) {
         self.at += 1;
         while let Some(next) = self.peek(false)
             && ["@", ",", "<", ">"]
@@ -155,19 +156,23 @@ impl<'a> Parser<'a, '_, '_> {
             self.problem(
                 at.range(),
                 "a command was expected after this `@`",
-                "`@` silences the echo of the command behind it: remove it, or write the command in this line",
+                "`@` silences the echo of the command behind it: \
+                 remove it, or write the command in \
+                 this line",
             );
         }
     }
 
-    fn not_a_command(&mut self, token: Token) {
+    /// Reports that a command was expected, and skips the line, or a block that begins here.
+    fn refuse_token(&mut self, token: Token) {
         if self.is_sign(token, "{") && self.braces[self.at] > 0 {
             self.at = self.braces[self.at] + 1;
         }
         self.problem(
             token.range(),
             "a command was expected here",
-            "every line begins with a command; operands go on in the next line only inside `{ … }`",
+            "every line begins with a command; operands go on in the next line only inside \
+             `{ … }`",
         );
         self.skip_line();
     }
@@ -175,8 +180,8 @@ impl<'a> Parser<'a, '_, '_> {
     fn node(&mut self, token: Token, depth: usize) -> Outcome<Option<Node>> {
         let word = self.word(token);
         if word.eq_ignore_ascii_case("for") {
-            let head = self.head(token)?;
-            let body = self.braced(&head, depth)?;
+            let head = self.command(token, Ends::Brace)?;
+            let body = self.block_of(&head, depth)?;
             Ok(body.map(|body| Node::For(Box::new(For { head, body }))))
         } else if word.eq_ignore_ascii_case("if") {
             self.choice(token, depth)
@@ -184,10 +189,10 @@ impl<'a> Parser<'a, '_, '_> {
             self.define(token, depth)
         } else if word.eq_ignore_ascii_case("else") {
             self.at += 1;
-            let problem = Problem::new(token.range(), "this `else` has no `if`")
+            let problem = Problem::new(&token.range(), "this `else` has no `if`")
                 .hint("write `if … { … } else { … }`");
-            let head = self.head_from(token)?;
-            self.braced(&head, depth)?;
+            let head = self.empty_head(token);
+            self.block_of(&head, depth)?;
             Err(problem)
         } else {
             let command = self.command(token, Ends::Line)?;
@@ -196,8 +201,8 @@ impl<'a> Parser<'a, '_, '_> {
     }
 
     fn choice(&mut self, token: Token, depth: usize) -> Outcome<Option<Node>> {
-        let head = self.head(token)?;
-        let then = self.braced(&head, depth)?;
+        let head = self.command(token, Ends::Brace)?;
+        let then = self.block_of(&head, depth)?;
         let back = self.at;
         let mut otherwise = Some(Block::new());
         match self.peek(true) {
@@ -210,12 +215,12 @@ impl<'a> Parser<'a, '_, '_> {
                         if nested.kind == TokenKind::Word
                             && self.word(nested).eq_ignore_ascii_case("if") =>
                     {
-                        self.too_deep(nested, depth)?;
+                        self.refuse_depth(nested, depth)?;
                         otherwise = self.choice(nested, depth + 1)?.map(|node| vec![node]);
                     }
                     _ => {
-                        let head = self.head_from(next)?;
-                        otherwise = self.braced(&head, depth)?;
+                        let head = self.empty_head(next);
+                        otherwise = self.block_of(&head, depth)?;
                     }
                 }
             }
@@ -231,9 +236,9 @@ impl<'a> Parser<'a, '_, '_> {
     }
 
     fn define(&mut self, token: Token, depth: usize) -> Outcome<Option<Node>> {
-        let head = self.head(token)?;
+        let head = self.command(token, Ends::Brace)?;
         let signature = self.signature(&head);
-        let body = self.braced(&head, depth)?;
+        let body = self.block_of(&head, depth)?;
         let (name, parameters) = signature?;
         Ok(body.map(|body| {
             Node::Define(Box::new(Define {
@@ -245,23 +250,25 @@ impl<'a> Parser<'a, '_, '_> {
         }))
     }
 
-    /// `name(a, B, surface s, c = 1, …)`.
+    /// Reads `name(a, B, surface s, c = 1, …)`.
     fn signature(&self, head: &Command) -> Outcome<(Symbol, Vec<Formal>)> {
-        const HINT: &str = "write `define name(a, b) { … }`; a parameter in CAPITALS takes a triple, `surface s` a material, `c = 1` may be left out";
+        const HINT: &str = "write `define name(a, b) { … }`; \
+            a parameter in CAPITALS takes a triple, \
+            `surface s` a material, `c = 1` may be left out";
         let items = &self.items[head.items.clone()];
         let Some(Item {
             datum: Datum::Word(name),
             ..
         }) = items.first()
         else {
-            return Err(Problem::new(head.span.clone(), "`define` needs a name").hint(HINT));
+            return Err(Problem::new(&head.span, "`define` needs a name").hint(HINT));
         };
         let word = self.symbols.word(*name);
         // A text's own command hides one of the library and a newer one, so that texts from before
         // them still run.
         if commands::find(word).is_some_and(|spec| !spec.yields()) {
             return Err(Problem::new(
-                items[0].span(),
+                &items[0].span(),
                 format!("`{word}` is already a command of the language"),
             )
             .hint("choose another name"));
@@ -272,7 +279,7 @@ impl<'a> Parser<'a, '_, '_> {
             && !last.spaced
         {
             return Err(Problem::new(
-                items[0].span().start..last.span().end,
+                &(items[0].span().start..last.span().end),
                 "a command's name cannot hold a hyphen: it is a minus",
             )
             .hint(format!("begin it with `{word}_`")));
@@ -287,18 +294,22 @@ impl<'a> Parser<'a, '_, '_> {
                     if let Some(first) = parameters.iter().find(|p| p.name == formal.name) {
                         let word = self.symbols.word(formal.name);
                         return Err(Problem::new(
-                            formal.span,
+                            &formal.span,
                             format!("there are two parameters `{word}`"),
                         )
                         .hint("give one of them another name")
-                        .related(None, first.span.clone(), "the first one"));
+                        .with_place(
+                            None,
+                            first.span.clone(),
+                            "the first one",
+                        ));
                     }
                     if formal.default.is_empty()
                         && parameters.last().is_some_and(|p| !p.default.is_empty())
                     {
                         let word = self.symbols.word(formal.name);
                         return Err(Problem::new(
-                            formal.span,
+                            &formal.span,
                             format!("`{word}` needs a default, as the parameter before it has one"),
                         )
                         .hint(format!("write `{word} = …`, or put it first")));
@@ -308,7 +319,7 @@ impl<'a> Parser<'a, '_, '_> {
                 Datum::Sign(b'(' | b')' | b',') => {}
                 _ => {
                     return Err(Problem::new(
-                        item.span(),
+                        &item.span(),
                         "only names of parameters can stand here",
                     )
                     .hint(HINT));
@@ -318,8 +329,8 @@ impl<'a> Parser<'a, '_, '_> {
         Ok((*name, parameters))
     }
 
-    /// A parameter whose first word was read; `at` is the index of what follows among the head's
-    /// items.
+    /// Reads the rest of a parameter whose first word was read; `at` is the index of what follows
+    /// among the head's items.
     fn formal(&self, head: &Command, at: &mut usize, word: Symbol, span: Range<usize>) -> Formal {
         let items = &self.items[head.items.clone()];
         let text = self.symbols.word(word);
@@ -330,14 +341,11 @@ impl<'a> Parser<'a, '_, '_> {
             default: 0..0,
             span,
         };
-        let is_triple = |text: &str| {
-            text.chars().any(char::is_alphabetic) && !text.chars().any(char::is_lowercase)
-        };
-        if is_triple(text) {
+        if text.chars().any(char::is_alphabetic) && !text.chars().any(char::is_lowercase) {
             formal.takes = Takes::Triple;
         }
-        let is_kind = |kind: &&str| kind.eq_ignore_ascii_case(text);
-        if ["surface", "material"].iter().any(is_kind)
+        let words = ["surface", "material"];
+        if words.iter().any(|word| word.eq_ignore_ascii_case(text))
             && let Some(Item {
                 datum: Datum::Word(name),
                 start,
@@ -375,30 +383,28 @@ impl<'a> Parser<'a, '_, '_> {
         formal
     }
 
-    /// The head of a block structure, up to its `{`.
-    fn head(&mut self, token: Token) -> Outcome<Command> {
-        let head = self.command(token, Ends::Brace)?;
-        Ok(head)
-    }
-
-    /// An empty head (of `else`).
-    fn head_from(&mut self, token: Token) -> Outcome<Command> {
-        Ok(Command {
+    /// Makes an empty head, for `else`.
+    fn empty_head(&mut self, token: Token) -> Command {
+        Command {
             word: self.symbols.intern(self.word(token)),
             word_span: token.range(),
             spec: commands::find(self.word(token)),
             items: 0..0,
             span: token.range(),
-        })
+        }
     }
 
-    fn too_deep(&mut self, token: Token, depth: usize) -> Outcome<()> {
+    /// Skips the line if blocks are too deep here.
+    ///
+    /// # Errors
+    /// If they are.
+    fn refuse_depth(&mut self, token: Token, depth: usize) -> Outcome<()> {
         if depth < limits::MAX_NESTED_BLOCKS {
             return Ok(());
         }
         self.skip_line();
         Err(Problem::new(
-            token.range(),
+            &token.range(),
             format!(
                 "blocks can stand inside each other {} deep at most",
                 limits::MAX_NESTED_BLOCKS
@@ -407,26 +413,23 @@ impl<'a> Parser<'a, '_, '_> {
         .hint("move the inner commands into a `define`"))
     }
 
-    /// `{ … }` after a head; `None` if it is never closed, which has been said.
-    fn braced(&mut self, head: &Command, depth: usize) -> Outcome<Option<Block>> {
+    /// Reads `{ … }` after a head; `None` if it is never closed, which has been said.
+    fn block_of(&mut self, head: &Command, depth: usize) -> Outcome<Option<Block>> {
         let back = self.at;
         let word = self.symbols.word(head.word);
         let Some(open) = self.peek(true).filter(|t| self.is_sign(*t, "{")) else {
             self.at = back;
-            return Err(
-                Problem::new(head.span.clone(), format!("`{word}` needs a block"))
-                    .hint("put the commands in `{ … }`"),
-            );
+            return Err(Problem::new(&head.span, format!("`{word}` needs a block"))
+                .hint("put the commands in `{ … }`"));
         };
         let close = self.braces[self.at];
         if depth >= limits::MAX_NESTED_BLOCKS {
             // Over the whole block, so that what is inside is not read as if it stood outside.
-            self.at = if close == 0 {
-                self.tokens.len()
-            } else {
-                close + 1
+            self.at = match close {
+                0 => self.tokens.len(),
+                _ => close + 1,
             };
-            return self.too_deep(open, depth).map(|()| None);
+            return self.refuse_depth(open, depth).map(|()| None);
         }
         self.at += 1;
         let block = self.block(depth + 1);
@@ -444,7 +447,7 @@ impl<'a> Parser<'a, '_, '_> {
         Ok(Some(block))
     }
 
-    /// A command's word and operands.
+    /// Reads a command's word and operands.
     fn command(&mut self, token: Token, ends: Ends) -> Outcome<Command> {
         self.at += 1;
         let word = self.word(token);
@@ -456,7 +459,7 @@ impl<'a> Parser<'a, '_, '_> {
         if items.len() > most {
             self.items.truncate(first);
             return Err(Problem::new(
-                token.range(),
+                &token.range(),
                 format!("`{word}` has {} operands; {most} is the limit", items.len()),
             )
             .hint("split it into several commands"));

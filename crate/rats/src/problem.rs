@@ -11,7 +11,7 @@ pub struct Problem {
     pub message: String,
     /// Advice.
     pub hint: Option<String>,
-    /// Other places that explain it: the file (`None` for the same), the place, what it is.
+    /// Places that explain it: the file (`None` for the same), the place, what it is.
     pub related: Vec<(Option<usize>, Range<usize>, String)>,
     /// The command it is about.
     pub command: Option<&'static str>,
@@ -25,10 +25,10 @@ pub struct Problem {
 pub type Outcome<T> = Result<T, Box<Problem>>;
 
 impl Problem {
-    /// A problem without a hint.
-    pub fn new(span: Range<usize>, message: impl Into<String>) -> Box<Self> {
+    /// Makes a problem without a hint.
+    pub fn new(span: &Range<usize>, message: impl Into<String>) -> Box<Self> {
         Box::new(Self {
-            span,
+            span: span.clone(),
             message: message.into(),
             hint: None,
             related: Vec::new(),
@@ -38,30 +38,30 @@ impl Problem {
         })
     }
 
-    /// The follow-up of an error that was already reported.
-    pub fn follow_up(span: Range<usize>) -> Box<Self> {
+    /// Makes the follow-up of an error that was reported already, which is not reported.
+    pub fn follow_up(span: &Range<usize>) -> Box<Self> {
         let mut problem = Self::new(span, String::new());
         problem.quiet = true;
         problem
     }
 
-    /// With a hint.
+    /// Adds a hint.
     #[must_use]
     pub fn hint(mut self: Box<Self>, hint: impl Into<String>) -> Box<Self> {
         self.hint = Some(hint.into());
         self
     }
 
-    /// With a hint, if there is one.
+    /// Adds a hint, if there is one.
     #[must_use]
     pub fn maybe_hint(mut self: Box<Self>, hint: Option<String>) -> Box<Self> {
         self.hint = hint;
         self
     }
 
-    /// With another place that explains it.
+    /// Adds another place that explains it.
     #[must_use]
-    pub fn related(
+    pub fn with_place(
         mut self: Box<Self>,
         file: Option<usize>,
         span: Range<usize>,
@@ -71,7 +71,7 @@ impl Problem {
         self
     }
 
-    /// The run ends here.
+    /// Makes it end the run.
     #[must_use]
     pub fn fatal(mut self: Box<Self>) -> Box<Self> {
         self.fatal = true;

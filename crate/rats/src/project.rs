@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// One named text.
+/// A named text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct File {
-    /// Its name, by which `read` finds it.
+    /// The name, by which `read` finds it.
     pub name: String,
-    /// Its text.
+    /// The text.
     pub text: String,
 }
 
@@ -33,7 +33,7 @@ pub struct Project {
 }
 
 impl Project {
-    /// A project of one text, `main.rat`.
+    /// Makes a project of one text, `main.rat`.
     #[must_use]
     pub fn single(text: impl Into<String>) -> Self {
         let name = String::from("main.rat");
@@ -47,8 +47,8 @@ impl Project {
 /// A file that is no text: an image or a mesh. Links do not carry it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Asset {
-    /// Its name, by which commands find it.
+    /// The name, by which commands find it.
     pub name: String,
-    /// Its content.
+    /// The content.
     pub bytes: Arc<[u8]>,
 }

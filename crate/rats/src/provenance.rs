@@ -1,32 +1,32 @@
-//! Types that tell from where in the texts the numbers of a shape's command come.
+//! Origins of the numbers of a shape's command in the texts.
 
 use crate::commands::{CommandSpec, Parameter};
 use std::ops::Range;
 
-/// From where a number comes.
+/// Origin of a number in the texts.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// It is written out.
+    /// A number that is written out.
     Literal {
         /// The file, an index of the project's.
         file: usize,
-        /// Its bytes, with the sign.
+        /// The number's bytes, with the sign.
         span: Range<usize>,
         /// Whether a `-` stands before the variable, so that the number has the other sign.
         negated: bool,
         /// The variable that stands for it.
         variable: Option<String>,
     },
-    /// It cannot be rewritten; the text goes on after "the number".
+    /// The reason why the number cannot be rewritten; it goes on after "the number".
     Computed(String),
 }
 
 /// A number of the command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
-    /// Its value.
+    /// The value.
     pub value: f64,
-    /// From where it comes.
+    /// The origin.
     pub source: Source,
 }
 
@@ -35,7 +35,7 @@ pub struct Number {
 pub struct Operand {
     /// The parameter of the table that it fills.
     pub parameter: &'static Parameter,
-    /// Its numbers.
+    /// The numbers.
     pub numbers: Vec<Number>,
 }
 
@@ -44,10 +44,10 @@ pub struct Operand {
 pub struct Provenance {
     /// The command's row in the table.
     pub spec: &'static CommandSpec,
-    /// Its operands that are numbers.
+    /// The operands that are numbers.
     pub operands: Vec<Operand>,
     /// The material's name.
     pub material: String,
-    /// From where the material's radius comes.
+    /// The material's radius.
     pub radius: Number,
 }

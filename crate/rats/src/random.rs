@@ -7,14 +7,14 @@
 /// 2⁶⁴ divided by the golden ratio, made odd.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The stream behind `rand`, started by `seed N`.
+/// Stream behind `rand`, started by `seed N`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Random {
     state: u64,
 }
 
 impl Random {
-    /// The stream of a seed.
+    /// Begins the stream of a seed.
     #[must_use]
     pub fn new(seed: f64) -> Self {
         Self {
@@ -22,14 +22,14 @@ impl Random {
         }
     }
 
-    /// The next number, evenly spread in [0, 1).
+    /// Returns the next number, evenly spread in [0, 1).
     pub fn draw(&mut self) -> f64 {
         self.state = self.state.wrapping_add(STEP);
         unit(stir(self.state))
     }
 }
 
-/// `rand(a, b, …)`: a number in [0, 1) that depends on its arguments alone.
+/// Computes `rand(a, b, …)`: a number in [0, 1) that depends on its arguments alone.
 #[must_use]
 pub fn hash(arguments: &[f64]) -> f64 {
     let state = arguments.iter().fold(STEP, |state, &argument| {
@@ -38,11 +38,12 @@ pub fn hash(arguments: &[f64]) -> f64 {
     unit(state)
 }
 
-/// `noise(x, y, z)`: smooth noise in [−1, 1], 0 at whole numbers, the same on every machine.
+/// Computes `noise(x, y, z)`: smooth noise in [−1, 1], 0 at whole numbers, the same on every
+/// machine.
 ///
 /// Gradient noise (Perlin, "Improving noise", 2002): at each corner of the unit cube around the
-/// point stands a slope by chance, of three numbers in [−1, 1]; what they foretell is blended with
-/// the curve 6t⁵ − 15t⁴ + 10t³.
+/// point stands a random gradient of three numbers in [−1, 1]; the linear functions that they give
+/// are blended with the curve 6t⁵ − 15t⁴ + 10t³.
 #[must_use]
 pub fn noise(point: [f64; 3]) -> f64 {
     let cell = point.map(f64::floor);
@@ -74,12 +75,12 @@ fn stir(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The bits of a number; 0 and −0 count as equal.
+/// Returns the bits of a number; 0 and −0 count as equal.
 fn bits(value: f64) -> u64 {
     (value + 0.0).to_bits()
 }
 
-/// The upper 53 bits as a number in [0, 1).
+/// Returns the upper 53 bits as a number in [0, 1).
 fn unit(z: u64) -> f64 {
     (z >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }

@@ -13,10 +13,10 @@ use crate::syntax::{Command, Datum, Item};
 use crate::value::Value;
 use std::ops::Range;
 
-/// Bytes of a text that a message quotes.
+/// Most bytes of a text that a message quotes.
 const LONGEST_QUOTE: usize = 60;
 
-/// As much of a text as a message quotes: a word can be as long as the text.
+/// Cuts a text to what a message quotes: a word can be as long as the text.
 fn quote(text: &str) -> &str {
     &text[..text.floor_char_boundary(LONGEST_QUOTE)]
 }
@@ -26,7 +26,7 @@ fn quote(text: &str) -> &str {
 pub struct Name<'a> {
     /// The name.
     pub text: &'a str,
-    /// Where it stands.
+    /// The place.
     pub span: Range<usize>,
 }
 
@@ -45,10 +45,10 @@ pub struct Reader<'e, 'a> {
     pub(crate) listed: bool,
     /// Whether `<` and `>` compare (in a condition).
     pub(crate) comparing: bool,
-    /// How deep the expression that is being read is nested.
+    /// The depth of the expression that is being read.
     pub(crate) depth: usize,
     spec: Option<&'static CommandSpec>,
-    /// Where something is missing if the operands end too soon.
+    /// The place of the command, where something is missing if the operands end too soon.
     end: Range<usize>,
 }
 
@@ -76,12 +76,12 @@ impl<'e, 'a> Reader<'e, 'a> {
 
     /// Lets `a -b` be a difference, as suits the head of a loop or choice.
     #[must_use]
-    pub fn unlisted(mut self) -> Self {
+    pub fn joining(mut self) -> Self {
         self.listed = false;
         self
     }
 
-    /// Skips separators; whether operands are left.
+    /// Skips separators; returns whether operands are left.
     pub fn more(&mut self) -> bool {
         while let Some(Datum::Sign(b',' | b'<' | b'>')) = self.datum() {
             self.at += 1;
@@ -89,12 +89,12 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.at < self.items.len()
     }
 
-    /// The next item as it is.
+    /// Returns the next item as it is.
     pub(crate) fn datum(&self) -> Option<Datum> {
         self.items.get(self.at).map(|item| item.datum)
     }
 
-    /// Where the next operand is, or the whole command if there is none.
+    /// Returns the place of the next operand, or of the whole command if there is none.
     #[must_use]
     pub fn here(&self) -> Range<usize> {
         self.items
@@ -102,7 +102,7 @@ impl<'e, 'a> Reader<'e, 'a> {
             .map_or_else(|| self.end.clone(), Item::span)
     }
 
-    /// The range from an earlier place to the last operand read.
+    /// Returns the range from an earlier place to the last operand read.
     #[must_use]
     pub fn since(&self, start: usize) -> Range<usize> {
         let end = self
@@ -113,7 +113,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         start..end.max(start)
     }
 
-    /// Where the next operand begins.
+    /// Returns the first byte of the next operand.
     pub fn start(&mut self) -> usize {
         self.more();
         self.here().start
@@ -124,27 +124,27 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.end.clone()
     }
 
-    /// How the command is written.
+    /// Returns a hint on how the command is written.
     pub(crate) fn usage(&self) -> Option<String> {
         self.spec.map(CommandSpec::usage)
     }
 
-    /// The text of the next item.
-    pub(crate) fn found(&self) -> Option<&'a str> {
+    /// Returns the text of the next item.
+    pub(crate) fn next_text(&self) -> Option<&'a str> {
         let text = &self.text[self.items.get(self.at)?.span()];
         Some(quote(text))
     }
 
-    /// The problem that `what` is missing or something else stands there.
-    pub(crate) fn expected(&self, what: &str) -> Box<Problem> {
-        let message = match self.found() {
+    /// Makes the problem that `what` is missing or something else stands there.
+    pub(crate) fn missing(&self, what: &str) -> Box<Problem> {
+        let message = match self.next_text() {
             Some(found) => format!("expected {what}, found `{found}`"),
             None => format!("expected {what}, but the command ends here"),
         };
-        Problem::new(self.here(), message).maybe_hint(self.usage())
+        Problem::new(&self.here(), message).maybe_hint(self.usage())
     }
 
-    /// The next word, not taken.
+    /// Returns the next word without taking it.
     pub fn peek_word(&mut self) -> Option<(Symbol, &'a str)> {
         if !self.more() {
             return None;
@@ -155,8 +155,8 @@ impl<'e, 'a> Reader<'e, 'a> {
         }
     }
 
-    /// The name of a parameter if `name =` comes next (and not `==`); nothing is taken.
-    pub fn named_argument(&mut self) -> Option<(Symbol, &'a str)> {
+    /// Returns the name of a parameter if `name =` comes next (and not `==`); takes nothing.
+    pub fn peek_parameter(&mut self) -> Option<(Symbol, &'a str)> {
         let found = self.peek_word()?;
         let sign = |at: usize| self.items.get(at).map(|item| item.datum) == Some(Datum::Sign(b'='));
         (sign(self.at + 1) && !sign(self.at + 2)).then_some(found)
@@ -178,51 +178,42 @@ impl<'e, 'a> Reader<'e, 'a> {
         found
     }
 
-    /// A user's name. Signs that are not separated from it belong to it (`sin^2`, `../shell.rat`).
+    /// Reads a user's name. A sign `^` that is not separated from it belongs to it (`sin^2`).
     ///
     /// # Errors
     /// If there is none.
     pub fn name(&mut self, what: &str) -> Outcome<Name<'a>> {
-        self.glued(what, |datum| matches!(datum, Datum::Sign(b'^')))
+        self.glue(what, |datum| datum == Datum::Sign(b'^'))
     }
 
-    /// A name that is made here.
+    /// Reads a name that is made here.
     ///
     /// # Errors
     /// If there is none, or one with a hyphen, which would be a minus where the name is used.
     pub fn new_name(&mut self, what: &str) -> Outcome<Name<'a>> {
         let name = self.name(what)?;
-        let is_glued = |item: &Item| !item.spaced;
-        if self.datum() != Some(Datum::Sign(b'-')) || !self.items.get(self.at).is_some_and(is_glued)
-        {
+        if !matches!(self.next_glued(), Some(Datum::Sign(b'-'))) {
             return Ok(name);
         }
-        self.at += 1;
-        while self.items.get(self.at).is_some_and(|item| {
-            is_glued(item)
-                && matches!(
-                    item.datum,
-                    Datum::Word(_) | Datum::Number(_) | Datum::Sign(b'-')
-                )
-        }) {
+        while let Some(Datum::Word(_) | Datum::Number(_) | Datum::Sign(b'-')) = self.next_glued() {
             self.at += 1;
         }
         let span = self.since(name.span.start);
         let whole = &self.text[span.clone()];
         let better = whole.replace(['-', '−'], "_");
         Err(Problem::new(
-            span,
+            &span,
             format!("`{}` cannot hold a hyphen: it is a minus", quote(whole)),
         )
         .hint(format!("write `{}`", quote(&better))))
     }
 
-    /// A name that was made before. A parameter of the running call that stands for a name gives
-    /// that name.
+    /// Reads a name that was made before. A parameter of the running call that stands for a name
+    /// gives that name.
     ///
     /// # Errors
     /// If there is none.
-    pub fn known_name(&mut self, what: &str) -> Outcome<Name<'a>> {
+    pub fn old_name(&mut self, what: &str) -> Outcome<Name<'a>> {
         let symbol = self.peek_word().map(|(symbol, _)| symbol);
         let mut name = self.name(what)?;
         if let Some(symbol) = symbol
@@ -234,17 +225,17 @@ impl<'e, 'a> Reader<'e, 'a> {
         Ok(name)
     }
 
-    /// A file's name: all up to the next separator.
+    /// Reads a file's name: all up to the next separator.
     ///
     /// # Errors
     /// If there is none.
     pub fn file_name(&mut self, what: &str) -> Outcome<Name<'a>> {
-        self.glued(what, |datum| {
+        self.glue(what, |datum| {
             !matches!(datum, Datum::Sign(b',' | b'<' | b'>'))
         })
     }
 
-    /// The name of an image, if its ending says so; else nothing is taken.
+    /// Reads the name of an image, if its ending says so; else takes nothing.
     pub fn image_name(&mut self) -> Option<Name<'a>> {
         let back = self.at;
         let name = self.peek_word().and_then(|_| self.file_name("").ok());
@@ -255,18 +246,21 @@ impl<'e, 'a> Reader<'e, 'a> {
         name
     }
 
-    fn glued(&mut self, what: &str, sign: fn(Datum) -> bool) -> Outcome<Name<'a>> {
+    /// Returns the next item if no space comes before it.
+    fn next_glued(&self) -> Option<Datum> {
+        let item = self.items.get(self.at)?;
+        (!item.spaced).then_some(item.datum)
+    }
+
+    /// Reads words, numbers and some signs that nothing separates as one name.
+    fn glue(&mut self, what: &str, sign: fn(Datum) -> bool) -> Outcome<Name<'a>> {
         let part = |datum| matches!(datum, Datum::Word(_) | Datum::Number(_)) || sign(datum);
         if !self.more() || !self.datum().is_some_and(part) {
-            return Err(self.expected(what));
+            return Err(self.missing(what));
         }
         let start = self.here().start;
         self.at += 1;
-        while self
-            .items
-            .get(self.at)
-            .is_some_and(|item| !item.spaced && part(item.datum))
-        {
+        while self.next_glued().is_some_and(part) {
             self.at += 1;
         }
         let span = self.since(start);
@@ -276,7 +270,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         })
     }
 
-    /// `on` or `off`.
+    /// Reads `on` or `off`.
     ///
     /// # Errors
     /// If there is neither.
@@ -286,12 +280,12 @@ impl<'e, 'a> Reader<'e, 'a> {
         } else if self.keyword("off") {
             Ok(false)
         } else {
-            Err(self.expected("`on` or `off`"))
+            Err(self.missing("`on` or `off`"))
         }
     }
 
-    /// The next option, one of `options`, which may be shortened to any beginning that fits one
-    /// only. `None` at the end of the command.
+    /// Reads the next option, one of `options`, which may be shortened to any beginning that fits
+    /// one only. `None` at the end of the command.
     ///
     /// # Errors
     /// If there is something else, or a beginning of several options.
@@ -305,7 +299,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         self.scope.step(2, &self.here())?;
         let back = self.at;
         let Ok(name) = self.name("an option") else {
-            return Err(self.expected("an option"));
+            return Err(self.missing("an option"));
         };
         let mut fitting = options.iter().filter(|option| option.begins(name.text));
         let exact = options
@@ -319,24 +313,22 @@ impl<'e, 'a> Reader<'e, 'a> {
                     names += &format!(", `{}`", option.name);
                 }
                 Err(Problem::new(
-                    name.span,
+                    &name.span,
                     format!("`{}` is short for several options", name.text),
                 )
                 .hint(format!("write more of one of {names}")))
             }
             (None, None, _) => {
                 self.at = back;
-                let suggestion = suggest::hint(name.text, options.iter().map(|o| o.name));
-                let all = || {
-                    let names: Vec<_> = options.iter().map(|o| o.name).collect();
-                    format!("the options are {}", names.join(", "))
-                };
+                let names: Vec<_> = options.iter().map(|option| option.name).collect();
+                let hint = suggest::hint(name.text, names.iter().copied())
+                    .unwrap_or_else(|| format!("the options are {}", names.join(", ")));
                 let command = self.spec.map_or("this command", |spec| spec.name);
                 Err(Problem::new(
-                    name.span,
+                    &name.span,
                     format!("`{command}` has no option `{}`", name.text),
                 )
-                .hint(suggestion.unwrap_or_else(all)))
+                .hint(hint))
             }
         }
     }
@@ -363,7 +355,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         })
     }
 
-    /// The end of the command.
+    /// Expects the end of the command.
     ///
     /// # Errors
     /// If something is left.
@@ -373,7 +365,7 @@ impl<'e, 'a> Reader<'e, 'a> {
         }
         let found = &self.text[self.here()];
         Err(Problem::new(
-            self.here(),
+            &self.here(),
             format!("the command is complete before `{found}`"),
         )
         .maybe_hint(self.usage()))

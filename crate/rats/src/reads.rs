@@ -1,4 +1,5 @@
-//! Which files a text asks for, so that whoever keeps files can fetch them before compiling.
+//! Lists the files that a text asks for, so that whoever keeps files can fetch them before
+//! compiling.
 
 use crate::parser::parse;
 use crate::symbol::Symbols;
@@ -6,8 +7,9 @@ use crate::syntax::{Block, Command, Datum, Node, Syntax};
 use crate::{is_strokes, start_file};
 use std::ops::Range;
 
-/// The file names after every `read` of a text, in order, wherever it stands, then the texts of
-/// strokes after `mesh`. Nothing is run, so a `read` that a condition would skip is listed too.
+/// Returns the file names after every `read` of a text, in order, wherever it stands, then the
+/// texts of strokes after `mesh`. Nothing is run, so a `read` that a condition would skip is listed
+/// too.
 #[must_use]
 pub fn reads(text: &str) -> Vec<String> {
     let mut symbols = Symbols::default();
@@ -20,21 +22,22 @@ pub fn reads(text: &str) -> Vec<String> {
     names
 }
 
-/// The names that a file may have in the project which the text `reader` calls `wanted`: beside the
-/// reader first, unless that leads out of the project's folder, then as it is.
+/// Returns the names that a file may have in the project which the text `reader` calls `wanted`:
+/// beside the reader first, unless that leads out of the project's folder, then as it is.
 #[must_use]
 pub fn places(reader: &str, wanted: &str) -> Vec<String> {
     let bare = wanted.strip_prefix("./").unwrap_or(wanted);
     let mut places = Vec::new();
     if let Some((folder, _)) = reader.rsplit_once('/') {
-        places.extend(joined(folder, bare));
+        places.extend(join(folder, bare));
     }
     places.push(bare.to_owned());
     places
 }
 
-/// A name as seen from a folder, without `.` and `..`.
-fn joined(folder: &str, name: &str) -> Option<String> {
+/// Joins a folder and a name, without `.` and `..`; `None` if the name leads out of the project's
+/// folder.
+fn join(folder: &str, name: &str) -> Option<String> {
     let mut parts: Vec<&str> = folder.split('/').collect();
     for part in name.split('/') {
         match part {
@@ -53,10 +56,10 @@ pub const ASSET_ENDINGS: [&str; 10] = [
     "png", "tif", "tiff", "tga", "gif", "mtv", "obj", "ply", "stl", "glb",
 ];
 
-/// How many of [`ASSET_ENDINGS`] are those of images.
+/// Number of [`ASSET_ENDINGS`] that are those of images.
 const IMAGES: usize = 6;
 
-/// Whether a name has the ending of an image.
+/// Returns whether a name has the ending of an image.
 #[must_use]
 pub fn is_image(name: &str) -> bool {
     has_ending(name, &ASSET_ENDINGS[..IMAGES])
@@ -70,12 +73,12 @@ fn has_ending(name: &str, endings: &[&str]) -> bool {
     })
 }
 
-/// The images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`), in order,
-/// wherever it does. A text of strokes asks for the mesh that it starts from.
+/// Returns the images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`),
+/// in order, wherever it does. A text of strokes asks for the mesh that it starts from.
 #[must_use]
 pub fn asset_names(text: &str) -> Vec<String> {
-    let is_remark = |line: &&str| line.trim().is_empty() || line.trim_start().starts_with('#');
-    let first = text.lines().find(|line| !is_remark(line));
+    let mut lines = text.lines().map(str::trim_start);
+    let first = lines.find(|line| !line.is_empty() && !line.starts_with('#'));
     if first.is_some_and(|line| line.split_whitespace().next() == Some("strokes")) {
         return start_file(text).into_iter().collect();
     }
@@ -88,10 +91,11 @@ pub fn asset_names(text: &str) -> Vec<String> {
     names
 }
 
+/// Adds the file names after some commands of a block.
 fn collect(block: &Block, commands: &[&str], syntax: &Syntax, text: &str, names: &mut Vec<String>) {
     for node in block {
         match node {
-            Node::Command(command) => names_of(command, commands, syntax, text, names),
+            Node::Command(command) => add_names(command, commands, syntax, text, names),
             Node::For(each) => collect(&each.body, commands, syntax, text, names),
             Node::If(choice) => {
                 collect(&choice.then, commands, syntax, text, names);
@@ -102,7 +106,8 @@ fn collect(block: &Block, commands: &[&str], syntax: &Syntax, text: &str, names:
     }
 }
 
-fn names_of(
+/// Adds the file names behind a command, if it is one of some.
+fn add_names(
     command: &Command,
     commands: &[&str],
     syntax: &Syntax,
@@ -147,7 +152,8 @@ mod tests {
 
     #[test]
     fn names_are_found_wherever_read_stands() {
-        let text = "read a.rat, sub/b-2.rat # not c.rat\nif 1 {\n  @READ d.rat\n}\nfor i = 1 to 2 {\n read e.rat\n}\nreadx f.rat\n";
+        let text = "read a.rat, sub/b-2.rat # not c.rat\nif 1 {\n  @READ d.rat\n}\n\
+            for i = 1 to 2 {\n read e.rat\n}\nreadx f.rat\n";
         assert_eq!(reads(text), ["a.rat", "sub/b-2.rat", "d.rat", "e.rat"]);
     }
 
@@ -162,8 +168,9 @@ mod tests {
 
     #[test]
     fn images_and_meshes_are_found() {
-        let text = "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\nmesh robust\n\
-            texture Mona { diffuse mona.tif plain, scale 2 2 1 }\nbackground Red\nbackground sky.png\n";
+        let text = "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\n\
+            mesh robust\ntexture Mona { diffuse mona.tif plain, scale 2 2 1 }\n\
+            background Red\nbackground sky.png\n";
         assert_eq!(
             asset_names(text),
             ["parts/bunny.ply", "hills.png", "mona.tif", "sky.png"]

@@ -1,5 +1,4 @@
-//! Collects what is to be said about a text: each thing once, the worst kept when there is too
-//! much.
+//! Collects the messages about a text: each once, and the worst when there are too many.
 
 use crate::diagnostic::Related;
 use crate::limits::MAX_DIAGNOSTICS;
@@ -12,11 +11,12 @@ use std::ops::Range;
 #[derive(Debug, Default)]
 pub struct Report {
     messages: Vec<Message>,
-    /// A loop meets the same place again and again; only the first message of a place counts.
+    /// The places of messages: a loop meets the same place again and again, and only the first
+    /// message of a place counts.
     seen: HashSet<(usize, usize, usize, usize)>,
-    /// How many of each severity were kept.
+    /// The number of messages of each severity that were kept.
     kept: [usize; 3],
-    /// How many of each severity were left out.
+    /// The number of messages of each severity that were left out.
     dropped: [usize; 3],
     /// Whether warnings are not wanted (`warning off`).
     pub no_warnings: bool,
@@ -34,19 +34,14 @@ struct Message {
 impl Report {
     /// Adds a message about a file.
     pub fn add(&mut self, file: usize, severity: Severity, problem: Box<Problem>) {
-        let place = (
-            file,
-            problem.span.start,
-            problem.span.end,
-            severity as usize,
-        );
+        let rank = severity as usize;
+        let place = (file, problem.span.start, problem.span.end, rank);
         if self.is_unwanted(severity)
             || problem.quiet
             || (self.seen.contains(&place) && !problem.fatal)
         {
             return;
         }
-        let rank = severity as usize;
         // Places are bounded by the text's length, but a small bound keeps the memory small too.
         if self.kept[rank] >= MAX_DIAGNOSTICS {
             if self.seen.len() < 100_000 {
@@ -64,6 +59,7 @@ impl Report {
         });
     }
 
+    /// Returns whether messages of this severity are not wanted.
     fn is_unwanted(&self, severity: Severity) -> bool {
         match severity {
             Severity::Note => self.no_notes,
@@ -72,27 +68,27 @@ impl Report {
         }
     }
 
-    /// Whether a message of this severity about this place would say something new.
+    /// Returns whether a message of this severity about this place would say something new.
     #[must_use]
     pub fn is_new(&self, file: usize, severity: Severity, span: &Range<usize>) -> bool {
         let place = (file, span.start, span.end, severity as usize);
         !self.is_unwanted(severity) && !self.seen.contains(&place)
     }
 
-    /// Whether the run was stopped before its end.
+    /// Returns whether the run was stopped before its end.
     #[must_use]
     pub fn is_cut_off(&self) -> bool {
         self.messages.iter().any(|message| message.problem.fatal)
     }
 
-    /// Whether there is an error.
+    /// Returns whether there is an error.
     #[must_use]
     pub fn has_errors(&self) -> bool {
         self.kept[Severity::Error as usize] > 0
     }
 
-    /// The messages in the order of the text; at most [`MAX_DIAGNOSTICS`], errors before warnings
-    /// before notes.
+    /// Returns the messages in the order of the text: at most [`MAX_DIAGNOSTICS`], of which errors
+    /// are kept before warnings, and these before notes.
     #[must_use]
     pub fn finish(mut self, project: &Project) -> Vec<Diagnostic> {
         self.messages.sort_by_key(|m| std::cmp::Reverse(m.severity));
@@ -125,7 +121,7 @@ impl Report {
             diagnostics.push(places.diagnostic(Message {
                 file: 0,
                 severity,
-                problem: Problem::new(span, format!("… and {left_out} more messages")),
+                problem: Problem::new(&span, format!("… and {left_out} more messages")),
             }));
         }
         diagnostics
@@ -152,6 +148,7 @@ impl<'p> Places<'p> {
         }
     }
 
+    /// Returns a message with its lines and columns.
     fn diagnostic(&mut self, message: Message) -> Diagnostic {
         let Message {
             file,
@@ -201,6 +198,7 @@ impl<'p> Places<'p> {
         }
     }
 
+    /// Returns the name and text of a file.
     fn file(&self, file: usize) -> (&'p str, &'p str) {
         self.project
             .files
@@ -209,7 +207,7 @@ impl<'p> Places<'p> {
     }
 }
 
-/// A range inside the text, on character boundaries.
+/// Clips a range to the text and widens it to character boundaries.
 fn clip(text: &str, span: &Range<usize>) -> Range<usize> {
     let start = text.floor_char_boundary(span.start.min(text.len()));
     let end = text.ceil_char_boundary(span.end.clamp(start, text.len()));

@@ -1,5 +1,4 @@
-//! The state of a running text besides the scene: variables, random numbers and how long it has
-//! run.
+//! The state of a running text besides the scene: variables, random numbers and steps.
 
 use crate::limits;
 use crate::problem::{Outcome, Problem};
@@ -15,7 +14,7 @@ enum Slot {
     /// Never set.
     #[default]
     Empty,
-    /// Its command failed, which was reported; uses of it are not reported again.
+    /// Missing: the command failed, which was reported; uses of it are not reported again.
     Broken,
     /// Set.
     Full(Value),
@@ -43,7 +42,7 @@ pub struct Frame {
 }
 
 impl<'a> Scope<'a> {
-    /// A scope without variables.
+    /// Makes a scope without variables.
     #[must_use]
     pub fn new(symbols: Symbols<'a>) -> Self {
         let globals = vec![Slot::Empty; symbols.count()];
@@ -68,7 +67,7 @@ impl<'a> Scope<'a> {
             return Ok(());
         }
         Err(Problem::new(
-            span.clone(),
+            span,
             format!(
                 "stopped here: the text took more than {} steps",
                 limits::MAX_STEPS
@@ -78,7 +77,7 @@ impl<'a> Scope<'a> {
         .fatal())
     }
 
-    /// Work counted so far.
+    /// Returns the work counted so far.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps.get()
@@ -89,12 +88,13 @@ impl<'a> Scope<'a> {
         self.steps.set(self.steps.get().saturating_add(cost));
     }
 
-    /// Looking through the variables of a call takes time where there are many.
+    /// Counts a look through the variables of the running call, which takes time where there are
+    /// many.
     fn charge_locals(&self) {
         self.charge((self.locals.len() - self.frame) as u64 / 16);
     }
 
-    /// The value of a variable: of the running call, else of the whole text.
+    /// Returns the value of a variable: of the running call, else of the whole text.
     #[must_use]
     pub fn get(&self, name: Symbol) -> Option<Value> {
         self.charge_locals();
@@ -111,7 +111,7 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// Whether the command that should have set a variable failed.
+    /// Returns whether the command that should have set a variable failed.
     #[must_use]
     pub fn is_broken(&self, name: Symbol) -> bool {
         self.globals.get(name.index()) == Some(&Slot::Broken)
@@ -178,13 +178,13 @@ impl<'a> Scope<'a> {
         self.calls -= 1;
     }
 
-    /// The number of calls that are running.
+    /// Returns the number of calls that are running.
     #[must_use]
     pub fn calls(&self) -> usize {
         self.calls
     }
 
-    /// The names of all variables that are set, for suggestions.
+    /// Returns the names of all variables that are set, for suggestions.
     pub fn names(&self) -> impl Iterator<Item = &'a str> {
         let locals = self.locals[self.frame..].iter().map(|(name, _)| *name);
         let globals = (0..self.globals.len())

@@ -12,20 +12,20 @@ use std::collections::HashSet;
 /// A text of the run.
 #[derive(Debug)]
 pub struct Source<'a> {
-    /// The file's name; of an example `test NAME`.
+    /// The file's name, or `test NAME` for an example.
     pub name: String,
-    /// Its text.
+    /// The text.
     pub text: &'a str,
-    /// Its commands.
+    /// The commands.
     pub syntax: Syntax,
 }
 
-/// All texts; the project's come first.
+/// The texts of a run; the project's come first.
 #[derive(Debug)]
 pub struct Sources<'a> {
     /// The texts.
     pub all: Vec<Source<'a>>,
-    /// How many of them are the project's.
+    /// The number of them that are the project's.
     pub own: usize,
 }
 
@@ -44,7 +44,7 @@ impl<'a> Sources<'a> {
         while next < sources.all.len() {
             let mut wanted = Vec::new();
             let source = &sources.all[next];
-            used(&source.syntax.block, source, &mut wanted);
+            add_names(&source.syntax.block, source, &mut wanted);
             for name in wanted {
                 if known.contains(&name) {
                     continue;
@@ -69,39 +69,37 @@ impl<'a> Sources<'a> {
         self.all.push(Source { name, text, syntax });
     }
 
-    /// The index of a file; one of the project hides one of the library of the same name.
+    /// Finds the index of a file; one of the project hides one of the library of the same name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<usize> {
         self.all.iter().position(|source| source.name == name)
     }
 
-    /// The index of a file of the library, or of an example (`test NAME`).
+    /// Finds the index of a file of the library, or of an example (`test NAME`).
     #[must_use]
     pub fn find_built_in(&self, name: &str) -> Option<usize> {
-        let built_in = self.all.iter().skip(self.own);
-        let index = built_in
-            .into_iter()
-            .position(|source| source.name == name)?;
-        Some(self.own + index)
+        let mut built_in = self.all[self.own..].iter();
+        Some(self.own + built_in.position(|source| source.name == name)?)
     }
 }
 
-/// The names of what the commands of a block may use.
-fn used(block: &Block, source: &Source<'_>, names: &mut Vec<String>) {
+/// Adds the names of the texts that the commands of a block may use.
+fn add_names(block: &Block, source: &Source<'_>, names: &mut Vec<String>) {
     for node in block {
         match node {
-            Node::Command(command) => used_by(command, source, names),
-            Node::For(node) => used(&node.body, source, names),
+            Node::Command(command) => add_names_of(command, source, names),
+            Node::For(node) => add_names(&node.body, source, names),
             Node::If(node) => {
-                used(&node.then, source, names);
-                used(&node.otherwise, source, names);
+                add_names(&node.then, source, names);
+                add_names(&node.otherwise, source, names);
             }
-            Node::Define(node) => used(&node.body, source, names),
+            Node::Define(node) => add_names(&node.body, source, names),
         }
     }
 }
 
-fn used_by(command: &Command, source: &Source<'_>, names: &mut Vec<String>) {
+/// Adds the names of the texts that a command may use.
+fn add_names_of(command: &Command, source: &Source<'_>, names: &mut Vec<String>) {
     let Some(spec) = command.spec else { return };
     if spec.is_library() {
         names.push(format!("{}.rat", spec.name));

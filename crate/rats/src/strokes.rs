@@ -1,8 +1,8 @@
 //! Meshes made by strokes: texts of a project with the ending `.strokes`, which `mesh` uses like
 //! files of meshes.
 //!
-//! What was made is kept while compilations ask for it, and a text that has only grown is carried
-//! on from where the last one ended, as a text is compiled after every stroke.
+//! The meshes are kept while compilations ask for them, and a text that has only grown goes on from
+//! where the last one ended, as a text is compiled after every stroke.
 
 use crate::limits::{MAX_STROKES_FACES, MAX_STROKES_WORK};
 use crate::project::Asset;
@@ -13,15 +13,15 @@ use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 use std::sync::{Arc, Weak};
 
-/// How many meshes are kept.
+/// Number of meshes that are kept.
 const KEPT: usize = 12;
-/// How many sculptures are kept to go on with.
+/// Number of sculptures that are kept to go on with.
 const KEPT_CLAYS: usize = 3;
 
 /// A mesh made by strokes.
 #[derive(Debug)]
 pub struct Sculpted {
-    /// Its triangles.
+    /// The triangles.
     pub mesh: Rc<TriangleMesh>,
     topology: OnceCell<Option<Topology>>,
 }
@@ -34,10 +34,10 @@ impl Sculpted {
         }
     }
 
-    /// Its topology; `None` if it cannot be told.
+    /// Returns the topology; `None` if it cannot be found.
     pub fn topology(&self) -> Option<&Topology> {
-        let tell = || Topology::of(&self.mesh).ok();
-        self.topology.get_or_init(tell).as_ref()
+        let topology = self.topology.get_or_init(|| Topology::of(&self.mesh).ok());
+        topology.as_ref()
     }
 }
 
@@ -82,7 +82,7 @@ thread_local! {
     static CLAYS: RefCell<Vec<KeptClay>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Whether a file of a project is a text of strokes, by its name.
+/// Returns whether a file of a project is a text of strokes, by its name.
 ///
 /// ```
 /// assert!(rats::is_strokes("parts/dog.strokes") && !rats::is_strokes("strokes.rat"));
@@ -93,7 +93,7 @@ pub fn is_strokes(name: &str) -> bool {
         .is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("strokes"))
 }
 
-/// The name of the mesh file that a text of strokes starts from, if it does.
+/// Returns the name of the mesh file that a text of strokes starts from, if it does.
 ///
 /// ```
 /// assert_eq!(rats::start_file("strokes 1\nstart file head.obj\n").as_deref(), Some("head.obj"));
@@ -102,31 +102,35 @@ pub fn is_strokes(name: &str) -> bool {
 #[must_use]
 pub fn start_file(text: &str) -> Option<String> {
     // A text with mistakes names its file, too.
-    let plain = |line: &str| line.split('#').next().unwrap_or_default().trim().to_owned();
-    let lines = text.lines().map(plain).filter(|line| !line.is_empty());
-    let start = lines.skip(1).find(|line| line.starts_with("start"))?;
-    let name = start.strip_prefix("start")?.trim_start();
+    let lines = text.lines().filter_map(|line| line.split('#').next());
+    let lines = lines.map(str::trim).filter(|line| !line.is_empty());
+    let name = lines
+        .skip(1)
+        .find_map(|line| line.strip_prefix("start"))?
+        .trim_start();
     let name = name.strip_prefix("file")?.trim();
     (!name.is_empty()).then(|| name.to_owned())
 }
 
-/// The mesh that a text of strokes makes; `start` is the file of which [`start_file`] has the name.
+/// Makes the mesh of a text of strokes, or finds it if it was kept; `start` is the file of which
+/// [`start_file`] has the name.
 ///
 /// # Errors
-/// What is wrong with the text.
-pub fn sculpted(text: &str, start: Option<&Asset>) -> Made {
-    if let Some(made) = kept(text, start) {
+/// The mistakes of the text.
+pub fn sculpt(text: &str, start: Option<&Asset>) -> Made {
+    if let Some(made) = find(text, start) {
         return made;
     }
-    let made = replayed(text, start).map_err(Rc::new);
+    let made = replay(text, start).map_err(Rc::new);
     keep(text, start, made.clone());
     made
 }
 
-fn kept(text: &str, start: Option<&Asset>) -> Option<Made> {
+/// Finds the mesh of a text among those that are kept.
+fn find(text: &str, start: Option<&Asset>) -> Option<Made> {
     MESHES.with_borrow_mut(|kept| {
-        let is_it = |kept: &Kept| kept.text == text && kept.start.is(start);
-        let at = kept.iter().position(is_it)?;
+        let mut all = kept.iter();
+        let at = all.position(|kept| kept.text == text && kept.start.is(start))?;
         kept[at..].rotate_left(1);
         kept.last().map(|kept| kept.made.clone())
     })
@@ -154,16 +158,16 @@ pub fn keep_sculpted(text: &str, start: Option<&Asset>, mesh: TriangleMesh) {
     }
 }
 
-fn replayed(text: &str, start: Option<&Asset>) -> Result<Rc<Sculpted>, Vec<Diagnostic>> {
+/// Carries out the strokes of a text and keeps the clay.
+fn replay(text: &str, start: Option<&Asset>) -> Result<Rc<Sculpted>, Vec<Diagnostic>> {
     let script = Script::parse(text)?;
-    let (clay, from) = match resumed(&script, start) {
+    let (mut clay, from) = match take_clay(&script, start) {
         Some(found) => found,
-        None => (begun(&script, start).map_err(|told| vec![told])?, 0),
+        None => (begin(&script, start).map_err(|mistake| vec![mistake])?, 0),
     };
-    let mut clay = clay;
     script
         .resume(&mut clay, from, MAX_STROKES_WORK)
-        .map_err(|told| vec![told])?;
+        .map_err(|mistake| vec![mistake])?;
     let mesh = clay
         .to_triangles()
         .map_err(|error| vec![script.problem_at_start(&error.0)])?;
@@ -181,23 +185,25 @@ fn replayed(text: &str, start: Option<&Asset>) -> Result<Rc<Sculpted>, Vec<Diagn
     Ok(Rc::new(Sculpted::new(mesh)))
 }
 
-/// The kept clay on which most of the strokes were carried out, and how many.
-fn resumed(script: &Script, start: Option<&Asset>) -> Option<(Clay, usize)> {
+/// Takes the kept clay on which most of the strokes were carried out; returns it and their number.
+fn take_clay(script: &Script, start: Option<&Asset>) -> Option<(Clay, usize)> {
     CLAYS.with_borrow_mut(|kept| {
-        let is_begun = |kept: &KeptClay| {
+        let begun = kept.iter().enumerate().filter(|(_, kept)| {
             kept.start.is(start)
                 && kept.script.start == script.start
                 && script.strokes.starts_with(&kept.script.strokes)
-        };
-        let begun = kept.iter().enumerate().filter(|(_, kept)| is_begun(kept));
+        });
         let (at, _) = begun.max_by_key(|(_, kept)| kept.script.strokes.len())?;
         let found = kept.remove(at);
         Some((found.clay, found.script.strokes.len()))
     })
 }
 
-/// The clay that the strokes begin with, if it is small enough for a picture.
-fn begun(script: &Script, start: Option<&Asset>) -> Result<Clay, Diagnostic> {
+/// Makes the clay that the strokes begin with.
+///
+/// # Errors
+/// If there is no such file, or it has too many faces for a model.
+fn begin(script: &Script, start: Option<&Asset>) -> Result<Clay, Diagnostic> {
     let faces = match &script.start {
         Beginning::Shape(start) => start.face_count(),
         Beginning::File(name) => {
@@ -211,14 +217,13 @@ fn begun(script: &Script, start: Option<&Asset>) -> Result<Clay, Diagnostic> {
         }
     };
     if faces > MAX_STROKES_FACES {
-        return Err(script.problem_at_start(&format!(
-            "this start has {faces} faces; in a model it may have {MAX_STROKES_FACES}, `sinew sculpt` takes more"
-        )));
+        let most = format_args!("in a model it may have {MAX_STROKES_FACES}");
+        let message = format!("this start has {faces} faces; {most}, `sinew sculpt` takes more");
+        return Err(script.problem_at_start(&message));
     }
-    let mut load = |_: &str| match start.map(assets::mesh) {
+    script.begin(&mut |_: &str| match start.map(assets::mesh) {
         Some(Ok(mesh)) => Ok((*mesh).clone()),
         Some(Err(error)) => Err(error.0),
         None => Err(String::from("there is no such file")),
-    };
-    script.begin(&mut load)
+    })
 }

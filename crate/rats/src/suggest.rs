@@ -1,34 +1,32 @@
-//! "Did you mean …?"
+//! Hints for mistyped words: "did you mean …?"
 
-/// Longer words are no typing slips, and comparing them would cost time.
+/// Bytes of the longest word that is taken for a slip; comparing longer ones would cost time.
 const MAX_WORD: usize = 40;
-/// Among more names than these no hint is looked for: a text can have many thousands, and as many
-/// slips.
+/// Names among which a hint is looked for; a text can have many thousands, and as many slips.
 const MAX_CANDIDATES: usize = 2000;
 /// Pairs of letters that one hint may compare, a tenth of a millisecond; where it would take more,
 /// no hint is looked for.
 const MAX_PAIRS: usize = 60_000;
 
-/// The candidate that is nearest to a mistyped word, ignoring case, if it is near enough to be what
-/// was meant: at most one slip in three letters. Of several equally near the first of the alphabet.
+/// Finds the candidate that is nearest to a mistyped word, ignoring case, if it is near enough: at
+/// most one slip in three letters. Of several equally near ones the first in the alphabet counts.
 #[must_use]
 pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.len() > MAX_WORD {
         return None;
     }
-    let candidates: Vec<&str> = candidates.into_iter().take(MAX_CANDIDATES + 1).collect();
+    let mut candidates: Vec<&str> = candidates.into_iter().take(MAX_CANDIDATES + 1).collect();
     if candidates.len() > MAX_CANDIDATES {
         return None;
     }
     let allowed = (word.chars().count() / 3).max(1);
-    let fits = |c: &&str| c.len().abs_diff(word.len()) <= allowed && c.len() <= MAX_WORD;
-    let letters: usize = candidates.iter().filter(|c| fits(c)).map(|c| c.len()).sum();
+    candidates.retain(|c| c.len().abs_diff(word.len()) <= allowed && c.len() <= MAX_WORD);
+    let letters: usize = candidates.iter().map(|c| c.len()).sum();
     if letters * word.len() > MAX_PAIRS {
         return None;
     }
     candidates
         .into_iter()
-        .filter(fits)
         .map(|c| (distance(word.as_bytes(), c.as_bytes()), c))
         .filter(|(d, _)| *d <= allowed)
         // Some candidates come from maps, which have no order; the same text must get the same
@@ -37,14 +35,14 @@ pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) ->
         .map(|(_, c)| c)
 }
 
-/// The hint for a mistyped word.
+/// Returns a hint for a mistyped word, if a candidate is near.
 #[must_use]
 pub fn hint<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<String> {
     nearest(word, candidates).map(|c| format!("did you mean `{c}`?"))
 }
 
-/// The optimal string alignment distance, ignoring case: insertions, deletions, replacements and
-/// swaps of neighbours. Both words have at most [`MAX_WORD`] bytes.
+/// Computes the optimal string alignment distance, ignoring case: insertions, deletions,
+/// replacements and swaps of neighbours. Both words have at most [`MAX_WORD`] bytes.
 fn distance(a: &[u8], b: &[u8]) -> usize {
     let same = |x: u8, y: u8| x.eq_ignore_ascii_case(&y);
     let mut rows = [[0_usize; MAX_WORD + 1]; 3];

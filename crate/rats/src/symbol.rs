@@ -1,4 +1,4 @@
-//! Words as small numbers, so that variables are found by index and not by comparing text.
+//! Words as small numbers, so that variables are found by index, not by comparing text.
 
 use std::collections::HashMap;
 
@@ -7,14 +7,14 @@ use std::collections::HashMap;
 pub struct Symbol(u32);
 
 impl Symbol {
-    /// Its index, from 0 without gaps.
+    /// Returns the index, from 0 without gaps.
     #[must_use]
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// All words met so far.
+/// The words met so far.
 #[derive(Clone, Debug, Default)]
 pub struct Symbols<'a> {
     symbols: HashMap<&'a str, Symbol>,
@@ -22,7 +22,7 @@ pub struct Symbols<'a> {
 }
 
 impl<'a> Symbols<'a> {
-    /// The symbol of a word, made if the word is new.
+    /// Returns the symbol of a word, a new one for a new word.
     pub fn intern(&mut self, word: &'a str) -> Symbol {
         *self.symbols.entry(word).or_insert_with(|| {
             self.words.push(word);
@@ -30,25 +30,25 @@ impl<'a> Symbols<'a> {
         })
     }
 
-    /// The symbol of a word, if it occurs in the texts.
+    /// Finds the symbol of a word, if it occurs in the texts.
     #[must_use]
     pub fn find(&self, word: &str) -> Option<Symbol> {
         self.symbols.get(word).copied()
     }
 
-    /// The word of a symbol.
+    /// Returns the word of a symbol.
     #[must_use]
     pub fn word(&self, symbol: Symbol) -> &'a str {
         self.words[symbol.index()]
     }
 
-    /// The word with an index.
+    /// Returns the word with an index.
     #[must_use]
     pub fn at(&self, index: usize) -> &'a str {
         self.words[index]
     }
 
-    /// The number of words.
+    /// Returns the number of words.
     #[must_use]
     pub fn count(&self) -> usize {
         self.words.len()

@@ -5,19 +5,19 @@ use crate::problem::Problem;
 use crate::symbol::Symbol;
 use std::ops::Range;
 
-/// One file, parsed.
+/// A file as a tree of commands.
 #[derive(Debug)]
 pub struct Syntax {
-    /// Its commands.
+    /// The commands.
     pub block: Block,
-    /// The operands of all its commands, which commands index by ranges.
+    /// The operands of all commands, which these index by ranges.
     pub items: Vec<Item>,
-    /// The mistakes of its form, in the order in which they were found.
+    /// The mistakes of form, in the order in which they were found.
     pub(crate) problems: Vec<Problem>,
 }
 
 impl Syntax {
-    /// The first mistake of form: its byte range and message. `None` if the text is well-formed.
+    /// Returns the byte range and message of the first mistake of form; `None` if there is none.
     #[must_use]
     pub fn mistake(&self) -> Option<(Range<usize>, &str)> {
         let problem = self.problems.first()?;
@@ -31,18 +31,18 @@ pub type Block = Vec<Node>;
 /// A word, number or sign of a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
-    /// Its kind and value.
+    /// The kind and value.
     pub datum: Datum,
-    /// First byte.
+    /// The first byte.
     pub start: u32,
-    /// One past the last byte.
+    /// The end: one past the last byte.
     pub end: u32,
     /// Whether white space comes before it.
     pub spaced: bool,
 }
 
 impl Item {
-    /// Its byte range.
+    /// Returns the byte range.
     #[must_use]
     pub fn span(&self) -> Range<usize> {
         self.start as usize..self.end as usize
@@ -80,13 +80,13 @@ pub enum Node {
 pub struct Command {
     /// The opcode as written.
     pub word: Symbol,
-    /// Where the opcode is.
+    /// The place of the opcode.
     pub word_span: Range<usize>,
-    /// Its row in the table; `None` for commands that the text defines, and for mistakes.
+    /// The row in the table; `None` for commands that the text defines, and for mistakes.
     pub spec: Option<&'static CommandSpec>,
     /// The operands, a range of [`Syntax::items`].
     pub items: Range<usize>,
-    /// From the opcode to the last operand.
+    /// The range from the opcode to the last operand.
     pub span: Range<usize>,
 }
 
@@ -104,9 +104,9 @@ pub struct For {
 pub struct If {
     /// `if` and what stands before the brace.
     pub head: Command,
-    /// Run if the condition holds.
+    /// The commands that are run if the condition holds.
     pub then: Block,
-    /// Run if not.
+    /// The commands that are run if not.
     pub otherwise: Block,
 }
 
@@ -117,7 +117,7 @@ pub struct Define {
     pub head: Command,
     /// The new command's name.
     pub name: Symbol,
-    /// Its parameters.
+    /// The parameters.
     pub parameters: Vec<Formal>,
     /// The commands that a call runs.
     pub body: Block,
@@ -126,15 +126,15 @@ pub struct Define {
 /// A parameter of a command that the text defines.
 #[derive(Clone, Debug)]
 pub struct Formal {
-    /// Its name.
+    /// The name.
     pub name: Symbol,
-    /// As messages call it.
+    /// The words by which messages call it.
     pub shown: String,
     /// The kind of value it takes.
     pub takes: Takes,
     /// The operands that make its default, a range of [`Syntax::items`]; empty if it must be given.
     pub default: Range<usize>,
-    /// Where its name stands.
+    /// The place of its name.
     pub span: Range<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! Work on pictures, as the commands of the TOOLS group ask for it.
+//! Work on pictures that the commands of the TOOLS group ask for.
 //!
 //! The compiler touches no files. It turns `resize`, `collage`, `diff` … into the jobs below, in
 //! the order of the text, and leaves them to whoever keeps files: the program carries them out in
@@ -13,7 +13,7 @@ pub enum Tool {
     Animate {
         /// The frames, in order.
         files: Vec<String>,
-        /// How playing goes on after the last frame.
+        /// The way in which playing goes on after the last frame.
         playback: Playback,
         /// Whether colours that a format of 256 colours cannot show are mixed from dots.
         dither: bool,
@@ -32,7 +32,7 @@ pub enum Tool {
     },
     /// `collage [columns n] fn1 fn2 …`: several pictures on one sheet.
     Collage {
-        /// How many stand side by side; `None`: about as many as stand below each other.
+        /// The number of pictures side by side; `None`: about as many as below each other.
         columns: Option<u32>,
         /// The pictures, row by row.
         files: Vec<String>,
@@ -68,7 +68,7 @@ pub enum Tool {
         a: String,
         /// The second picture.
         b: String,
-        /// Where the result is written, if it is.
+        /// The file to which the result is written, if it is.
         save: Option<String>,
     },
     /// `and fn1 fn2 [save]`: the bits that two pictures share.
@@ -77,7 +77,7 @@ pub enum Tool {
         a: String,
         /// The second picture.
         b: String,
-        /// Where the result is written, if it is.
+        /// The file to which the result is written, if it is.
         save: Option<String>,
     },
     /// `xor fn1 fn2 [save]`: the bits in which two pictures differ.
@@ -86,7 +86,7 @@ pub enum Tool {
         a: String,
         /// The second picture.
         b: String,
-        /// Where the result is written, if it is.
+        /// The file to which the result is written, if it is.
         save: Option<String>,
     },
     /// `show …`: a file, a colour or a palette.
@@ -102,7 +102,7 @@ pub enum Tool {
 }
 
 impl Tool {
-    /// The command that asks for it.
+    /// Returns the command that asks for it.
     #[must_use]
     pub fn command(&self) -> &'static str {
         match self {
@@ -121,7 +121,7 @@ impl Tool {
         }
     }
 
-    /// The names of the pictures that the job looks at.
+    /// Returns the names of the pictures that the job looks at.
     #[must_use]
     pub fn reads(&self) -> Vec<&str> {
         match self {
@@ -142,7 +142,7 @@ impl Tool {
         }
     }
 
-    /// The name that the text gives to the result, if it does.
+    /// Returns the name that the text gives to the result, if it does.
     #[must_use]
     pub fn writes(&self) -> Option<&str> {
         match self {
@@ -155,15 +155,15 @@ impl Tool {
     }
 }
 
-/// How an animation goes on after its last frame.
+/// Way in which an animation goes on after its last frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Playback {
-    /// It stops.
+    /// Stop.
     #[default]
     Once,
-    /// It begins again.
+    /// Begin again.
     Loop,
-    /// It runs back to the first frame, and so on.
+    /// Run back to the first frame, and so on.
     Mirror,
 }
 
@@ -174,7 +174,7 @@ pub enum Shown {
     File(String),
     /// A colour.
     Colour {
-        /// Its name, or how it was written.
+        /// The name, or the words by which it was written.
         name: String,
         /// Red, green, blue, each 0 … 1.
         rgb: [f32; 3],

@@ -8,7 +8,7 @@ use glam::DVec3;
 pub enum Value {
     /// A number.
     Scalar(f64),
-    /// Three numbers.
+    /// A vector: three numbers.
     Vector(DVec3),
     /// A colour: red, green, blue, 1 being full.
     Colour(DVec3),
@@ -17,7 +17,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Its kind as messages name it: `a number`.
+    /// Returns the kind as messages name it: `a number`.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
@@ -40,7 +40,7 @@ impl Value {
         }
     }
 
-    /// Whether all its numbers have a property.
+    /// Returns whether all its numbers have a property.
     #[must_use]
     pub fn all(&self, property: impl Fn(f64) -> bool) -> bool {
         match self {
@@ -51,10 +51,7 @@ impl Value {
     }
 
     /// Joins two values number by number: scalars with scalars, triples with triples of any kind (a
-    /// vector and a colour give a colour).
-    ///
-    /// # Errors
-    /// `None` for a scalar and a triple.
+    /// vector and a colour give a colour). `None` for a scalar and a triple.
     #[must_use]
     pub fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Option<Self> {
         let each = |a: DVec3, b: DVec3| DVec3::new(f(a.x, b.x), f(a.y, b.y), f(a.z, b.z));
@@ -68,7 +65,7 @@ impl Value {
         })
     }
 
-    /// `x`, `y` or `z` of a triple.
+    /// Returns the component `x`, `y`, `z` (or `r`, `g`, `b`) of a triple.
     #[must_use]
     pub fn component(self, name: &str) -> Option<f64> {
         let (Self::Vector(v) | Self::Colour(v)) = self else {

@@ -23,7 +23,7 @@
 //! // One that stays, and three nodes.
 //! assert_eq!(rig.joints.len(), 4);
 //! let [left, right] =
-//!     [0, 1].map(|i| rig.(mesh.positions[i], &rig.shares[0][i], &rig.frames[2]));
+//!     [0, 1].map(|i| rig.skin(mesh.positions[i], &rig.shares[0][i], &rig.frames[2]));
 //! assert!(left.distance(mesh.positions[0]) < 0.2);
 //! assert!(right.y > 1.5);
 //! ```

@@ -2,7 +2,7 @@
 
 use crate::app::{App, Dialog, Tab};
 use crate::command::Command;
-use crate::intake::Taken;
+use crate::intake::Incoming;
 use crate::notice::Notice;
 use crate::pencil::{Pencil, page, tool::Tool};
 use crate::project_file::{self, Project};
@@ -19,7 +19,7 @@ impl App {
             ctx.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
         };
         if self.sculpts() && self.dialog.is_none() {
-            // The place has keys of its own.
+            // Sculpting has keys of its own.
             return;
         }
         if self.lab.is_open() {
@@ -58,7 +58,7 @@ impl App {
         let session = &mut self.work.session;
         match command {
             Command::Edit { edits, step } => self.edit(ctx, &edits, step, now),
-            Command::Tell(text) => self.notice = Some(Notice::done(text, now)),
+            Command::Tell(text) => self.notice = Some(Notice::success(text, now)),
             Command::SetHints(hints) => self.settings.hints = hints,
             Command::AddFile => {
                 let result = session.add_file(now);
@@ -266,34 +266,34 @@ impl App {
                 match example.and_then(|example| example.text) {
                     Some(text) => {
                         let result = self.work.open_example(index, text, Vec::new());
-                        self.opened_or(ctx, result);
+                        self.show_opened(ctx, result);
                     }
                     None => self.fetch_example(index),
                 }
             }
             Command::OpenSaved(id) => {
                 let result = self.work.open_saved(&id);
-                self.opened_or(ctx, result);
+                self.show_opened(ctx, result);
             }
             Command::OpenText { name, text } => {
                 let result = self.work.open_text(&name, text);
-                self.opened_or(ctx, result);
+                self.show_opened(ctx, result);
             }
             Command::New => {
                 let result = self.work.open_new();
-                self.opened_or(ctx, result);
+                self.show_opened(ctx, result);
             }
             Command::DrawNew => {
                 let text = page::fresh(self.ratio(ctx));
                 let result = self.work.open_page(text);
-                self.opened_or(ctx, result);
+                self.show_opened(ctx, result);
                 self.pencil.take(Some(Tool::Draw));
             }
             Command::GoBack => {
                 if let Some(id) = self.work.before().map(str::to_owned) {
                     platform::set_hash("");
                     let result = self.work.open_saved(&id);
-                    self.opened_or(ctx, result);
+                    self.show_opened(ctx, result);
                 }
             }
             Command::Rename(name) => self.work.rename(name, now),
@@ -305,8 +305,8 @@ impl App {
         }
     }
 
-    /// Takes a tool for drawing in hand. What begins on a page with nothing of one's own to draw on
-    /// begins on an empty one.
+    /// Takes a drawing tool in hand, or lays it down. Drawing begins on an empty page if the open
+    /// one is an example or a link without a skeleton.
     fn take_tool(&mut self, ctx: &Context, tool: Option<Tool>, now: f64) {
         let begins = tool.is_some() && self.pencil.tool().is_none();
         self.pencil.take(tool);
@@ -327,7 +327,7 @@ impl App {
         }
     }
 
-    /// Height of the picture to draw on, to its width: on a narrow page it has all the place
+    /// Returns height by width of the picture to draw on: on an upright page it fills the space
     /// between the bars.
     fn ratio(&self, ctx: &Context) -> f64 {
         let size = ctx.content_rect().size();
@@ -368,7 +368,7 @@ impl App {
         if let Some(asset) = self.work.session.remove_asset(name) {
             let text = format!("Removed {name}.");
             let put_back = Command::PutAsset(asset);
-            self.notice = Some(Notice::done(text, now).offering("Put it back", put_back));
+            self.notice = Some(Notice::success(text, now).with_button("Put it back", put_back));
         }
     }
 
@@ -397,7 +397,8 @@ impl App {
         platform::push_hash(&lesson.hash());
     }
 
-    pub(crate) fn opened_or(&mut self, ctx: &Context, result: Result<(), String>) {
+    /// Shows a work that was opened, or why it could not be.
+    pub(crate) fn show_opened(&mut self, ctx: &Context, result: Result<(), String>) {
         match result {
             Ok(()) => {
                 if self.lab.is_open() {
@@ -405,7 +406,7 @@ impl App {
                     platform::push_hash("");
                 }
                 platform::set_hash("");
-                self.opened(ctx);
+                self.reset_panels(ctx);
             }
             Err(trouble) => {
                 self.dialog = None;
@@ -425,33 +426,33 @@ impl App {
                 platform::download(&name, "image/png", &bytes);
                 let [width, height] = image.size;
                 let text = format!("Saved {name}, {width} × {height} pixels.");
-                self.notice = Some(Notice::done(text, now));
+                self.notice = Some(Notice::success(text, now));
             }
             Err(error) => self.notice = Some(Notice::trouble(error.to_string())),
         }
     }
 
-    /// Gives the user all texts, images and meshes as one file.
+    /// Writes all texts, images and meshes to one file.
     fn save_project(&mut self, now: f64) {
         let session = &self.work.session;
         let packed = project_file::pack(&Project {
             name: self.work.name.clone(),
             texts: session.project().files.clone(),
             assets: session.assets().to_vec(),
-            camera: session.chosen_camera(),
+            camera: session.user_camera(),
         });
         self.notice = Some(match packed {
             Ok(bytes) => {
                 let name = format!("{}.zip", work::file_stem(&self.work.name));
                 platform::download(&name, "application/zip", &bytes);
                 let size = asset::size(bytes.len());
-                Notice::done(format!("Saved {name}, {size}. Open takes it back."), now)
+                Notice::success(format!("Saved {name}, {size}. Open it here to go on."), now)
             }
             Err(trouble) => Notice::trouble(trouble),
         });
     }
 
-    /// Gives the user the mesh on show.
+    /// Writes the mesh on show to files.
     fn save_mesh(&mut self, now: f64) {
         let files = self.mesh_export.files();
         for file in files {
@@ -460,7 +461,7 @@ impl App {
         let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
         if !names.is_empty() {
             let text = format!("Saved {}.", names.join(" and "));
-            self.notice = Some(Notice::done(text, now));
+            self.notice = Some(Notice::success(text, now));
         }
     }
 
@@ -470,19 +471,20 @@ impl App {
             // The browser makes a file of the last part of the name.
             let name = film.name.rsplit(['/', '\\']).next().unwrap_or_default();
             platform::download(name, film.mime(), &film.bytes);
-            self.notice = Some(Notice::done(
+            self.notice = Some(Notice::success(
                 format!("Saved {name}, {}.", film.facts()),
                 now,
             ));
         }
     }
 
-    /// As if the file were dropped on the page, but the text stays in view.
+    /// Adds a result to the work's images, like a file that is dropped on the page; the text stays
+    /// in view.
     fn keep_result(&mut self, ctx: &Context, index: usize, now: f64) {
         let items = self.tray.items();
         if let Some(film) = items.get(index).and_then(Item::film) {
-            // An image of the work stays what it is.
-            let taken = Taken {
+            // A free name: an image of the work is not replaced.
+            let taken = Incoming {
                 name: self.work.session.free_name(&film.name),
                 bytes: Ok(film.bytes.to_vec()),
             };
@@ -494,11 +496,7 @@ impl App {
 
     fn share(&mut self, ctx: &Context, now: f64) {
         let session = &self.work.session;
-        match share::link(
-            &platform::page(),
-            session.project(),
-            session.chosen_camera(),
-        ) {
+        match share::link(&platform::page(), session.project(), session.user_camera()) {
             Ok(link) => {
                 if let Some((_, fragment)) = link.split_once('#') {
                     platform::set_hash(&format!("#{fragment}"));
@@ -511,7 +509,7 @@ impl App {
                 };
                 let text = format!("Link copied ({size}). {carries}");
                 ctx.copy_text(link);
-                self.notice = Some(Notice::done(text, now));
+                self.notice = Some(Notice::success(text, now));
             }
             Err(trouble) => self.notice = Some(Notice::trouble(trouble)),
         }

@@ -1,8 +1,8 @@
-//! The draft where the processor draws the window: on a graphics card that the browser pretends to
-//! have, small, and read back into a texture of egui's.
+//! The draft where the processor draws the window. A graphics card that the browser emulates draws
+//! it small, and it is read back into a texture of egui's.
 //!
-//! The processor has no time for it while a traced picture comes soon, so it is made ready only
-//! when it was wanted for [`PATIENCE`].
+//! A traced picture that comes soon needs the processor more, so the card is asked for only after
+//! the draft was wanted for [`PATIENCE`].
 
 use crate::platform;
 use crate::session::Session;
@@ -15,10 +15,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Seconds for which a draft is wanted in vain before the card is asked for.
+/// Seconds that a draft is wanted in vain before the card is asked for.
 const PATIENCE: f64 = 0.5;
-/// Seconds between two looks for a picture on its way back: a card that is lost never sends it.
-const LOOK: f32 = 0.02;
+/// Seconds between two checks for a picture on its way back: a card that is lost never sends it.
+const CHECK: f32 = 0.02;
 /// Longest side of the draft, pixels.
 const LARGEST: f32 = 360.0;
 
@@ -26,24 +26,24 @@ const LARGEST: f32 = 360.0;
 #[derive(Default)]
 pub struct Apart {
     card: Rc<RefCell<Card>>,
-    /// When the draft came to be wanted, and when it last was.
+    /// Seconds on the app's clock when the draft began to be wanted, and when it last was.
     wanted: Option<[f64; 2]>,
 }
 
-/// The pretended graphics card.
+/// The emulated graphics card.
 #[derive(Default)]
 enum Card {
-    /// Not asked for.
+    /// The card was not asked for.
     #[default]
     Unknown,
-    /// Asked for, or refused.
+    /// The card was asked for, or refused.
     Away,
-    /// There.
+    /// The card is there.
     Here(Box<Drawer>),
 }
 
 impl Apart {
-    /// The draft of the session's scene at a size in pixels; `None` until there is one.
+    /// Returns the draft of the session's scene at a size in pixels; `None` until there is one.
     pub fn texture(
         &mut self,
         ctx: &Context,
@@ -66,7 +66,7 @@ impl Apart {
             Card::Unknown => {
                 *card = Card::Away;
                 let (place, ctx) = (Rc::downgrade(&self.card), ctx.clone());
-                platform::pretended_card(move |device, queue| {
+                platform::ask_emulated_card(move |device, queue| {
                     if let Some(place) = place.upgrade() {
                         *place.borrow_mut() = Card::Here(Box::new(Drawer::new(device, queue)));
                         ctx.request_repaint();
@@ -87,6 +87,7 @@ struct Coming {
     /// Bytes from one row to the next.
     stride: usize,
     size: [usize; 2],
+    /// 0 until it has come, then [`DONE`] or [`LOST`].
     state: Arc<AtomicU8>,
 }
 
@@ -118,7 +119,8 @@ impl Drawer {
         }
     }
 
-    /// The last draft that came back; unless it `follows` others only the wanted one.
+    /// Returns the last draft that came back, even one of an older camera or scene if others were
+    /// shown just before (`follows`).
     fn texture(
         &mut self,
         ctx: &Context,
@@ -139,12 +141,12 @@ impl Drawer {
             self.draw(session, wanted);
         }
         if self.coming.is_some() {
-            ctx.request_repaint_after_secs(LOOK);
+            ctx.request_repaint_after_secs(CHECK);
         }
         self.texture.as_ref().map(TextureHandle::id)
     }
 
-    /// Draws, and sends for the pixels.
+    /// Draws the subject, and asks the card for the pixels. Does nothing without a scene.
     fn draw(&mut self, session: &Session, subject: Subject) -> Option<()> {
         let Self { device, queue, .. } = self;
         let (generation, camera, size) = subject;
@@ -181,9 +183,9 @@ impl Drawer {
         let size = [texture.width(), texture.height()].map(|side| side as usize);
         queue.submit([encoder.finish()]);
         let state = Arc::new(AtomicU8::new(0));
-        let told = state.clone();
+        let outcome = state.clone();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            told.store(if result.is_ok() { DONE } else { LOST }, Ordering::Relaxed);
+            outcome.store(if result.is_ok() { DONE } else { LOST }, Ordering::Relaxed);
         });
         self.coming = Some(Coming {
             buffer,
@@ -196,14 +198,16 @@ impl Drawer {
 
     /// Takes in the pixels, if they have come.
     fn take(&mut self, ctx: &Context) {
-        // An error is that of a device that is lost, which shows no more drafts.
+        // It fails when the device is lost, which then shows no more drafts.
         let _ = self.device.poll(wgpu::PollType::Poll);
-        let is_over = |coming: &mut Coming| coming.state.load(Ordering::Relaxed) != 0;
-        let Some(coming) = self.coming.take_if(is_over) else {
+        let Some(coming) = self
+            .coming
+            .take_if(|coming| coming.state.load(Ordering::Relaxed) != 0)
+        else {
             return;
         };
         let Ok(bytes) = coming.buffer.get_mapped_range(..) else {
-            // It may be tried again.
+            // Next time the subject is drawn again.
             self.drawn = None;
             return;
         };

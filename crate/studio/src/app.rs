@@ -49,13 +49,13 @@ pub enum Dialog {
     Help,
     /// A result of the text's jobs on pictures.
     Result,
-    /// How to begin a sculpture.
+    /// Choices of how to begin a sculpture.
     Sculpt,
     /// The model as a mesh.
     Mesh,
 }
 
-/// Which part a narrow page shows below the picture.
+/// The part that a narrow page shows below the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tab {
     /// The editor.
@@ -79,7 +79,7 @@ pub enum StandIn {
 }
 
 impl StandIn {
-    /// Its name, for the status line and for scripts.
+    /// The name, for the status line and for scripts.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -170,35 +170,35 @@ pub struct App {
     started: Option<f64>,
     healthy: bool,
     /// The name in the title of the browser's tab.
-    titled: String,
+    tab_title: String,
     /// Scripts that wait for the picture to be finished.
     pub(crate) finished: Vec<Answer>,
-    /// Tests that wait until nothing changes its place any more.
+    /// Tests that wait until no widget moves any more.
     pub(crate) still: Vec<Box<dyn FnOnce()>>,
-    /// Frames in which nothing has.
+    /// The number of frames since a widget moved.
     pub(crate) same: u32,
     pub(crate) touch: Option<bool>,
 }
 
 /// Seconds that tiles wait to be shown where the processor that traces them draws the page, too:
-/// each time it does keeps the workers waiting.
+/// each frame keeps the workers waiting.
 const REST: f32 = 0.4;
 
-/// Frames after which what has its place keeps it: in the first ones a menu that opens grows.
+/// Frames without a move after which widgets are at rest: a menu that opens grows in the first.
 const STILL: u32 = 3;
 
-/// Has the window drawn again, once: what egui is asked for at once it draws twice.
-pub(crate) fn once(ctx: &Context) {
+/// Asks egui for one more frame. The delay matters: a repaint without one is drawn twice.
+pub(crate) fn repaint_once(ctx: &Context) {
     ctx.request_repaint_after_secs(1e-3);
 }
 
 fn is_drawn_by_processor(backend: Backend, state: Option<&egui_wgpu::RenderState>) -> bool {
-    let by_software = |state: &egui_wgpu::RenderState| {
-        let info = state.adapter.get_info();
-        info.device_type == egui_wgpu::wgpu::DeviceType::Cpu
-            || crate::backend::is_processor(&info.name)
-    };
-    backend == Backend::None || state.is_some_and(by_software)
+    backend == Backend::None
+        || state.is_some_and(|state| {
+            let info = state.adapter.get_info();
+            info.device_type == egui_wgpu::wgpu::DeviceType::Cpu
+                || crate::backend::is_processor(&info.name)
+        })
 }
 
 impl App {
@@ -210,9 +210,9 @@ impl App {
         backend: Backend,
         parts: Parts,
     ) -> Self {
-        let calm = !platform::troubled();
+        let is_calm = !platform::has_stopped_before();
         // Until the start has gone well, a stop counts as a bad start.
-        platform::set_troubled(true);
+        platform::set_stopped(true);
         let hash = platform::hash();
         let lesson = Lesson::of_hash(&hash);
         // A link to a lesson or to an example carries no work.
@@ -222,7 +222,7 @@ impl App {
         } else {
             &hash
         };
-        let (work, trouble) = Work::start(parts.shelf.clone(), carried, calm);
+        let (work, trouble) = Work::start(parts.shelf.clone(), carried, is_calm);
         parts.requests.attach(ctx);
         if to_example {
             parts.requests.ask(Request::HashChanged);
@@ -237,11 +237,11 @@ impl App {
             0.0
         };
         let repaint = ctx.clone();
-        let pool = Pool::new(move || once(&repaint));
+        let pool = Pool::new(move || repaint_once(&repaint));
         let pool = Rc::new(RefCell::new(pool));
         parts.pool.replace(Rc::downgrade(&pool));
         let repaint = ctx.clone();
-        let tools = Tools::new(move || once(&repaint));
+        let tools = Tools::new(move || repaint_once(&repaint));
         let mut app = Self {
             reading: MeshReading::new(tools.clone()),
             fitting: Fitting::new(tools.clone()),
@@ -278,7 +278,7 @@ impl App {
             reported: None,
             started: None,
             healthy: false,
-            titled: String::new(),
+            tab_title: String::new(),
             finished: Vec::new(),
             still: Vec::new(),
             same: 0,
@@ -292,20 +292,22 @@ impl App {
 
     /// Says at the start what the user should know.
     fn greet(&mut self, trouble: Option<String>, now: f64) {
-        if !self.work.session.enabled() {
-            let text = "Sinew stopped unexpectedly the last time. Your text is here and safe; nothing is drawn until you say so.";
-            self.notice = Some(Notice::trouble(text).offering("Draw", Command::Enable));
+        if !self.work.session.is_enabled() {
+            let text = "Sinew stopped unexpectedly last time. Your text is here and safe; \
+                nothing is drawn until you say so.";
+            self.notice = Some(Notice::trouble(text).with_button("Draw", Command::Enable));
         } else if let Some(trouble) = trouble {
             let text = format!("{trouble} You see your own work instead.");
             self.notice = Some(Notice::trouble(text));
         } else if self.work.origin == Origin::Link {
             self.welcome_link();
         } else if !platform::has_storage() {
-            let text = "This browser stores nothing for this page, so your work lasts until you close it. Share makes a link that keeps it.";
+            let text = "This browser stores nothing for this page, so your work lasts until you \
+                close it. Share makes a link that keeps it.";
             self.notice = Some(Notice::trouble(text));
         } else if self.backend == Backend::None {
-            let text = "No graphics card here: few drafts or none, everything else works.";
-            self.notice = Some(Notice::done(text, now));
+            let text = "No graphics card here: few drafts or none, but everything else works.";
+            self.notice = Some(Notice::success(text, now));
         }
     }
 
@@ -317,7 +319,7 @@ impl App {
             until: None,
         };
         self.notice = Some(match self.work.before() {
-            Some(_) => notice.offering("Back to my work", Command::GoBack),
+            Some(_) => notice.with_button("Back to my work", Command::GoBack),
             None => Notice {
                 text: String::from(
                     "You are looking at a shared link. Change it as you like: it becomes yours.",
@@ -327,7 +329,7 @@ impl App {
         });
     }
 
-    /// Does what time and messages demand. Call it before each frame, and also while the tab is
+    /// Does the work of timers and messages. Call it before each frame, and also while the tab is
     /// hidden.
     pub fn tick(&mut self, ctx: &Context) {
         let now = platform::now(ctx);
@@ -365,15 +367,15 @@ impl App {
             self.parts.shelf.borrow_mut().set_settings(&self.settings);
         }
         let title = self.lab.title().unwrap_or(&self.work.name);
-        if self.titled != title {
-            self.titled = title.to_owned();
-            platform::set_title(&self.titled);
+        if self.tab_title != title {
+            self.tab_title = title.to_owned();
+            platform::set_title(&self.tab_title);
         }
         self.screen(ctx, now);
         self.trace(ctx, now);
-        if self.work.session.enabled() && !self.healthy && now - started > HEALTHY {
+        if self.work.session.is_enabled() && !self.healthy && now - started > HEALTHY {
             self.healthy = true;
-            platform::set_troubled(false);
+            platform::set_stopped(false);
         }
         if !self.lab.is_open() {
             let finished = self.is_finished().then(|| self.renderer.image()).flatten();
@@ -390,7 +392,7 @@ impl App {
         if self.same >= STILL {
             answers.append(&mut self.still);
         } else if !self.still.is_empty() {
-            once(ctx);
+            repaint_once(ctx);
         }
         for answer in answers {
             answer();
@@ -411,7 +413,7 @@ impl App {
             Some(notice) => notice.until.map(|until| until - now),
             None => None,
         });
-        if !self.healthy && self.work.session.enabled() {
+        if !self.healthy && self.work.session.is_enabled() {
             waits.push(Some(started + HEALTHY - now));
         }
         // The progress bar and the remaining time move even while no tile comes.
@@ -428,12 +430,12 @@ impl App {
         }
     }
 
-    /// Begins the picture that is wanted, if its time has come, and takes in what the workers have
-    /// done.
+    /// Begins the picture that is wanted, if its time has come, and takes in the tiles that workers
+    /// have traced.
     pub(crate) fn trace(&mut self, ctx: &Context, now: f64) {
         let size = self.size(ctx);
         let session = &self.work.session;
-        if !session.enabled() {
+        if !session.is_enabled() {
             return;
         }
         self.renderer.want(session.generation(), size, now);
@@ -443,12 +445,12 @@ impl App {
         } else {
             self.lab.pictures.pause();
             let scene = session.scene();
-            self.renderer.tick(ctx, now, scene, session.chosen_camera());
+            self.renderer.tick(ctx, now, scene, session.user_camera());
         }
     }
 
-    /// Whether a picture is being traced by the processor that draws the window, too: what need not
-    /// be drawn is not.
+    /// Whether the processor that draws the window is tracing a picture, too, so that frames cost
+    /// the picture time.
     pub(crate) fn is_short_of_time(&self) -> bool {
         self.rest > 0.0 && self.renderer.phase() == Phase::Tracing
     }
@@ -470,20 +472,20 @@ impl App {
         }
     }
 
-    /// Whether nothing more will happen to the picture by itself.
+    /// Whether the picture will not change by itself.
     fn rests(&self) -> bool {
         let session = &self.work.session;
-        if session.enabled() && !session.is_compiled() {
+        if session.is_enabled() && !session.is_compiled() {
             return false;
         }
         match self.renderer.phase() {
             Phase::Done | Phase::Cancelled => true,
-            Phase::Idle => !self.work.session.enabled(),
+            Phase::Idle => !self.work.session.is_enabled(),
             Phase::Waiting | Phase::Tracing => false,
         }
     }
 
-    /// The film as the strip below the picture has it.
+    /// Length and rate of the film in the strip below the picture.
     pub(crate) fn film(&self) -> crate::mesh_export::Film {
         crate::mesh_export::Film {
             count: self.player.count,
@@ -491,7 +493,7 @@ impl App {
         }
     }
 
-    /// The size to trace at.
+    /// The size of the traced picture, pixels.
     pub(crate) fn size(&self, ctx: &Context) -> [u32; 2] {
         if let Some(size) = self.forced_size {
             return size;
@@ -501,8 +503,8 @@ impl App {
         size::pixels(self.settings.size, frame, self.place, longest)
     }
 
-    /// Another work is open: forget what belonged to the one before.
-    pub(crate) fn opened(&mut self, ctx: &Context) {
+    /// Forgets what belonged to the work before, when another one was opened.
+    pub(crate) fn reset_panels(&mut self, ctx: &Context) {
         self.lab.close();
         self.sculpting = None;
         self.player = Player::default();
@@ -524,7 +526,7 @@ impl App {
 }
 
 impl Drop for App {
-    /// The window may be started anew on another backend; nothing that waits is lost.
+    /// Writes what waits to be stored: the window may be started anew on another backend.
     fn drop(&mut self) {
         // A refused write stays on the shelf and is tried again by the next app.
         let _ = self.work.flush();

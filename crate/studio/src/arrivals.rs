@@ -1,10 +1,10 @@
-//! Taking in files that were dropped on the page or opened: a new work where nothing of the user's
-//! is open, else new tabs.
+//! Taking in files that were dropped on the page or opened: as new tabs if a work of the user's is
+//! open, else as a new work.
 
 use crate::app::{App, Tab};
 use crate::asset::Asset;
 use crate::examples;
-use crate::intake::{self, Sorted, Taken};
+use crate::intake::{self, Incoming, Sorted};
 use crate::notice::Notice;
 use crate::platform;
 use crate::project_file::{self, Project};
@@ -15,7 +15,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 impl App {
-    /// Asks the browser for what was dropped on the window; it answers later.
+    /// Asks the browser for files that were dropped on the window; it answers later.
     pub(crate) fn catch_drops(&self, ctx: &Context) {
         let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
         if !dropped.is_empty() {
@@ -24,7 +24,7 @@ impl App {
     }
 
     /// Fetches the text, the images and the meshes of an example, which is opened when all are
-    /// here. An image or a mesh that does not come is missed by the text, which says so.
+    /// here. An image or a mesh that does not come becomes an error of the text.
     pub(crate) fn fetch_example(&self, index: usize) {
         let Some(example) = examples::ALL.get(index) else {
             return;
@@ -56,12 +56,12 @@ impl App {
     }
 
     /// Makes texts into tabs or a new work, and puts images and meshes beside them.
-    pub(crate) fn take_in(&mut self, ctx: &Context, taken: Vec<Taken>, now: f64) {
+    pub(crate) fn take_in(&mut self, ctx: &Context, taken: Vec<Incoming>, now: f64) {
         let (projects, taken): (Vec<_>, Vec<_>) = taken
             .into_iter()
             .partition(|file| project_file::is_project(&file.name));
         if let Some(project) = projects.into_iter().next() {
-            // What was dropped with it would only mix with it.
+            // Other files that were dropped with it would mix with its own.
             self.take_project(ctx, project, now);
             return;
         }
@@ -79,12 +79,9 @@ impl App {
             self.fitting.add(name, bytes);
             self.tab = Tab::Fit;
         }
-        let names = |texts: &[rats::File], assets: &[Asset]| {
-            let texts = texts.iter().map(|file| file.name.clone());
-            let assets = assets.iter().map(|asset| asset.name.clone());
-            listed(&texts.chain(assets).collect::<Vec<_>>())
-        };
-        let all = names(&texts, &assets);
+        let text_names = texts.iter().map(|file| file.name.clone());
+        let asset_names = assets.iter().map(|asset| asset.name.clone());
+        let all = list_names(&text_names.chain(asset_names).collect::<Vec<_>>());
         if self.lab.is_open() && !all.is_empty() {
             platform::push_hash("");
             self.lab.close();
@@ -96,7 +93,7 @@ impl App {
                 if replaced.is_empty() {
                     format!("Added {all}.")
                 } else {
-                    format!("Took in {all}; Undo brings back {}.", listed(&replaced))
+                    format!("Added {all}; Undo brings back {}.", list_names(&replaced))
                 }
             })
         } else {
@@ -107,7 +104,7 @@ impl App {
             };
             self.work.open_files(project).map(|()| {
                 platform::set_hash("");
-                self.opened(ctx);
+                self.reset_panels(ctx);
                 format!("Opened {all} as a new work.")
             })
         };
@@ -117,7 +114,7 @@ impl App {
 
     /// Opens an archive of a whole work as a new one, or adds its images and meshes to the open one
     /// if it has no texts.
-    fn take_project(&mut self, ctx: &Context, file: Taken, now: f64) {
+    fn take_project(&mut self, ctx: &Context, file: Incoming, now: f64) {
         let unpacked = file
             .bytes
             .and_then(|bytes| project_file::unpack(&bytes).map_err(|why| format!("it {why}")));
@@ -133,7 +130,7 @@ impl App {
             }
         };
         let names = project.assets.iter().map(|asset| asset.name.clone());
-        let names = listed(&names.collect::<Vec<_>>());
+        let names = list_names(&names.collect::<Vec<_>>());
         let outcome = if project.texts.is_empty() {
             let added = self.add(Vec::new(), project.assets, now);
             added.map(|_| format!("Added {names}."))
@@ -144,7 +141,7 @@ impl App {
             }
             self.work.open_files(project).map(|()| {
                 platform::set_hash("");
-                self.opened(ctx);
+                self.reset_panels(ctx);
                 format!("Opened {} as a new work.", self.work.name)
             })
         };
@@ -152,32 +149,33 @@ impl App {
         ctx.request_repaint();
     }
 
-    /// Says what became of files, and which were not taken.
+    /// Shows a notice of what became of files, and of those that were refused.
     fn tell(&mut self, outcome: Result<String, String>, refused: &[String], now: f64) {
-        let mut said = Vec::new();
+        let mut sentences = Vec::new();
         let bad = outcome.is_err() || !refused.is_empty();
         match outcome {
-            Ok(done) => said.extend((!done.is_empty()).then_some(done)),
-            Err(trouble) => said.push(trouble),
+            Ok(done) => sentences.extend((!done.is_empty()).then_some(done)),
+            Err(trouble) => sentences.push(trouble),
         }
         let (few, more) = refused.split_at(refused.len().min(3));
         if !refused.is_empty() {
-            said.push(format!("Not taken: {}", few.join(" ")));
+            sentences.push(format!("Not taken: {}", few.join(" ")));
         }
         if !more.is_empty() {
-            said.push(format!("And {} more.", more.len()));
+            sentences.push(format!("And {} more.", more.len()));
         }
-        let text = said.join(" ");
+        let text = sentences.join(" ");
         if !text.is_empty() {
             self.notice = Some(if bad {
                 Notice::trouble(text)
             } else {
-                Notice::done(text, now)
+                Notice::success(text, now)
             });
         }
     }
 
-    /// Adds to the open work. Gives the names of texts that were replaced.
+    /// Adds files to the open work, and shows the first text or the last asset. Returns the names
+    /// of texts that were replaced.
     fn add(
         &mut self,
         texts: Vec<rats::File>,
@@ -212,8 +210,8 @@ impl App {
     }
 }
 
-/// Names in a sentence; many are counted.
-fn listed(names: &[String]) -> String {
+/// Returns names as a part of a sentence: up to three in full, of more the first and a count.
+fn list_names(names: &[String]) -> String {
     match names {
         [] => String::new(),
         [one] => one.clone(),
@@ -233,9 +231,9 @@ mod tests {
     #[test]
     fn names_make_a_sentence() {
         let names = ["a", "b", "c", "d"].map(String::from);
-        assert_eq!(listed(&names[..1]), "a");
-        assert_eq!(listed(&names[..2]), "a and b");
-        assert_eq!(listed(&names[..3]), "a, b and c");
-        assert_eq!(listed(&names), "a and 3 more files");
+        assert_eq!(list_names(&names[..1]), "a");
+        assert_eq!(list_names(&names[..2]), "a and b");
+        assert_eq!(list_names(&names[..3]), "a, b and c");
+        assert_eq!(list_names(&names), "a and 3 more files");
     }
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// Largest image or mesh, bytes.
 pub const MAX_ASSET: usize = 8 << 20;
-/// All images and meshes of a work together, bytes.
+/// Largest sum of all images and meshes of a work, bytes.
 pub const MAX_ALL: usize = 24 << 20;
 /// Most images and meshes of a work.
 pub const MAX_ASSETS: usize = 16;
@@ -27,7 +27,7 @@ pub enum Kind {
     Mesh,
 }
 
-/// The end of a file's name after the last point, in small letters.
+/// Returns the end of a file's name after the last dot, in lower case.
 #[must_use]
 pub fn extension(name: &str) -> String {
     name.rsplit_once('.')
@@ -35,7 +35,7 @@ pub fn extension(name: &str) -> String {
         .unwrap_or_default()
 }
 
-/// Kind of a file by its name; `None` if it is neither.
+/// Returns the kind of a file by its name; `None` if it is neither.
 #[must_use]
 pub fn kind(name: &str) -> Option<Kind> {
     match extension(name).as_str() {
@@ -45,7 +45,7 @@ pub fn kind(name: &str) -> Option<Kind> {
     }
 }
 
-/// Whether this is a mesh that the page's thread must not read, as it would stand still.
+/// Whether this is a mesh so large that reading it would freeze the page's thread.
 #[must_use]
 pub fn is_large_mesh(asset: &Asset) -> bool {
     kind(&asset.name) == Some(Kind::Mesh) && asset.bytes.len() > LARGE_MESH
@@ -83,7 +83,7 @@ pub fn facts(asset: &Asset) -> Result<String, String> {
     }
 }
 
-/// A size in words.
+/// Returns a size in words, rounded up to kB or rounded to 0.1 MB.
 #[must_use]
 pub fn size(bytes: usize) -> String {
     match bytes {
@@ -103,15 +103,28 @@ struct Counts {
 impl Counts {
     fn words(self) -> String {
         match self.corners {
-            Some(corners) => format!("{corners} corners, {} faces", self.faces),
-            None => format!("{} triangles", self.faces),
+            Some(corners) => {
+                format!(
+                    "{}, {}",
+                    number(corners, "corner"),
+                    number(self.faces, "face")
+                )
+            }
+            None => number(self.faces, "triangle"),
         }
     }
 }
 
+/// Returns a number of things in words.
+fn number(count: u64, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 fn obj(bytes: &[u8]) -> Option<Counts> {
-    let lines = || bytes.split(|byte| *byte == b'\n' || *byte == b'\r');
-    let count = |word: &[u8]| lines().filter(|line| line.starts_with(word)).count() as u64;
+    let count = |word: &[u8]| {
+        let lines = bytes.split(|byte| *byte == b'\n' || *byte == b'\r');
+        lines.filter(|line| line.starts_with(word)).count() as u64
+    };
     let counts = Counts {
         corners: Some(count(b"v ")),
         faces: count(b"f "),
@@ -138,13 +151,14 @@ fn ply(bytes: &[u8]) -> Option<Counts> {
 }
 
 fn stl(bytes: &[u8]) -> Option<Counts> {
-    let told = bytes
+    let count = bytes
         .get(80..84)
         .and_then(|number| number.try_into().ok())
         .map_or(0, |number| u64::from(u32::from_le_bytes(number)));
-    let faces = if bytes.len() as u64 == 84 + 50 * told {
-        told
+    let faces = if bytes.len() as u64 == 84 + 50 * count {
+        count
     } else {
+        // A text, not the binary format.
         let lines = bytes.split(|byte| *byte == b'\n' || *byte == b'\r');
         lines
             .filter(|line| line.trim_ascii_start().starts_with(b"facet"))
@@ -157,14 +171,11 @@ fn stl(bytes: &[u8]) -> Option<Counts> {
 }
 
 fn glb(bytes: &[u8]) -> Option<Counts> {
-    let number = |at: usize| {
-        let bytes = bytes.get(at..at + 4)?.try_into().ok()?;
-        Some(u32::from_le_bytes(bytes) as usize)
-    };
     if bytes.get(..4)? != b"glTF" || bytes.get(16..20)? != b"JSON" {
         return None;
     }
-    let json = bytes.get(20..20_usize.checked_add(number(12)?)?)?;
+    let length = u32::from_le_bytes(bytes.get(12..16)?.try_into().ok()?) as usize;
+    let json = bytes.get(20..20_usize.checked_add(length)?)?;
     let json: serde_json::Value = serde_json::from_slice(json).ok()?;
     let accessor = |index: &serde_json::Value| {
         let index = usize::try_from(index.as_u64()?).ok()?;
@@ -189,7 +200,7 @@ fn glb(bytes: &[u8]) -> Option<Counts> {
 mod tests {
     use super::*;
 
-    fn told(name: &str, bytes: &[u8]) -> Result<String, String> {
+    fn describe(name: &str, bytes: &[u8]) -> Result<String, String> {
         facts(&Asset {
             name: String::from(name),
             bytes: bytes.into(),
@@ -199,22 +210,24 @@ mod tests {
     #[test]
     fn meshes_tell_their_counts() {
         let obj = b"# a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1 2 3\n";
-        assert_eq!(told("a.OBJ", obj).unwrap(), "3 corners, 1 faces");
-        let ply = b"ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nelement face 12\nend_header\n";
-        assert_eq!(told("a.ply", ply).unwrap(), "8 corners, 12 faces");
+        assert_eq!(describe("a.OBJ", obj).unwrap(), "3 corners, 1 face");
+        let ply = b"ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\n\
+            element face 12\nend_header\n";
+        assert_eq!(describe("a.ply", ply).unwrap(), "8 corners, 12 faces");
         let mut stl = vec![0; 84 + 100];
         stl[80] = 2;
-        assert_eq!(told("a.stl", &stl).unwrap(), "2 triangles");
+        assert_eq!(describe("a.stl", &stl).unwrap(), "2 triangles");
         let stl = b"solid a\n facet normal 0 0 1\n endfacet\nendsolid a\n";
-        assert_eq!(told("a.stl", stl).unwrap(), "1 triangles");
-        let json = br#"{"accessors":[{"count":24},{"count":36}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}]}"#;
+        assert_eq!(describe("a.stl", stl).unwrap(), "1 triangle");
+        let json = br#"{"accessors":[{"count":24},{"count":36}],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}]}"#;
         let mut glb = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
         glb.extend((json.len() as u32).to_le_bytes());
         glb.extend(b"JSON");
         glb.extend(json);
-        assert_eq!(told("a.glb", &glb).unwrap(), "24 corners, 12 faces");
+        assert_eq!(describe("a.glb", &glb).unwrap(), "24 corners, 12 faces");
         glb[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
-        assert!(told("a.glb", &glb).is_err());
+        assert!(describe("a.glb", &glb).is_err());
     }
 
     #[test]
@@ -229,15 +242,15 @@ mod tests {
                 b"\x89PNG\r\n\x1a\n",
                 &[255; 99],
             ] {
-                assert!(told(name, bytes).is_err(), "{name}");
+                assert!(describe(name, bytes).is_err(), "{name}");
             }
         }
         let png = |size: [u32; 2]| {
             let rgba = vec![9; 4 * size[0] as usize * size[1] as usize];
             crate::picture::png(&crate::picture::Image { size, rgba }).unwrap()
         };
-        assert_eq!(told("a.png", &png([2, 3])).unwrap(), "2 × 3 pixels");
-        let wide = told("a.png", &png([MAX_SIDE + 1, 1]));
+        assert_eq!(describe("a.png", &png([2, 3])).unwrap(), "2 × 3 pixels");
+        let wide = describe("a.png", &png([MAX_SIDE + 1, 1]));
         assert!(wide.unwrap_err().contains("limit"));
     }
 }

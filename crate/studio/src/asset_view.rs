@@ -19,7 +19,7 @@ pub struct AssetView {
 }
 
 impl AssetView {
-    /// Shows an image or a mesh in all the space of `ui`. Gives whether the user goes back to the
+    /// Shows an image or a mesh in all the space of `ui`. Returns whether the user goes back to the
     /// text.
     pub fn show(&mut self, ui: &mut Ui, asset: &Asset, commands: &mut Vec<Command>) -> bool {
         let palette = theme::palette(ui.visuals());
@@ -34,7 +34,8 @@ impl AssetView {
                 ui.label(RichText::new(format!("{facts}, {size}")).color(palette.text));
                 ui.label(
                     RichText::new(
-                        "It belongs to this work and stays in this browser. Links carry texts only.",
+                        "It belongs to this work and stays in this browser. \
+                            Links carry texts only.",
                     )
                     .color(palette.weak)
                     .size(12.5),
@@ -58,7 +59,7 @@ impl AssetView {
     fn image(&mut self, ui: &mut Ui, asset: &Asset) {
         let known = self.image.as_ref();
         if known.is_none_or(|(bytes, _)| !Arc::ptr_eq(bytes, &asset.bytes)) {
-            // The head was checked when it was taken in; an old record may hold anything.
+            // The header is checked again, as an old record may hold anything.
             let image = asset::facts(asset)
                 .ok()
                 .and_then(|_| decode(asset))

@@ -7,8 +7,8 @@ pub enum Backend {
     WebGpu,
     /// WebGL2: window and draft.
     WebGl2,
-    /// Neither, or only pretended: the window is drawn on the processor, and a draft only where the
-    /// traced picture takes long.
+    /// Neither, or an emulation: the processor draws the window, and a draft only where the traced
+    /// picture takes long.
     None,
 }
 
@@ -49,12 +49,13 @@ mod tests {
 
     #[test]
     fn processors_are_known_by_their_programs_names() {
-        let pretended = [
-            "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero) (0x0000C0DE)), SwiftShader driver)",
+        let emulations = [
+            "ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero) (0x0000C0DE)), \
+                SwiftShader driver)",
             "llvmpipe (LLVM 15.0.6, 256 bits)",
             "ANGLE (Microsoft, Microsoft Basic Render Driver Direct3D11 vs_5_0 ps_5_0)",
         ];
-        assert!(pretended.iter().all(|name| is_processor(name)));
+        assert!(emulations.iter().all(|name| is_processor(name)));
         let cards = [
             "ANGLE (Intel, Mesa Intel(R) UHD Graphics 620 (KBL GT2), OpenGL 4.6)",
             "Apple GPU",

@@ -33,7 +33,7 @@ pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
         }
         let lab = ui
             .button("Lab")
-            .on_hover_text("See and touch how convolution surfaces work");
+            .on_hover_text("See and try out how convolution surfaces work");
         places::note(ui.ctx(), "lab", lab.rect);
         if lab.clicked() {
             commands.push(Command::ShowLab);

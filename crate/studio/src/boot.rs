@@ -1,14 +1,13 @@
 //! Starts the window on the best that the browser can draw with: WebGPU, else WebGL2, else the
 //! processor ([`crate::software`]).
 //!
-//! A browser's claims and abilities differ: `navigator.gpu` may be there without an
-//! adapter, a context may be refused, and a device may be lost while the page runs. So each
-//! [`Backend`] is probed, then tried, and when it fails the next one is tried on a fresh canvas (a
-//! canvas that once had a context of one kind never gives another).
+//! A browser may claim more than it can do: `navigator.gpu` may be there without an adapter, a
+//! context may be refused, and a device may be lost while the page runs. So each [`Backend`] is
+//! probed, then tried, and when it fails the next one is tried on a fresh canvas (a canvas that
+//! once had a context of one kind never gives another).
 //!
-//! If the browser only pretends to have WebGL2 and computes it on the processor, the processor
-//! draws the window itself: it does so many times more quickly, as it draws what changed, and
-//! leaves the time to the workers.
+//! If the browser emulates WebGL2 on the processor, the processor draws the window itself: it does
+//! so many times more quickly, as it draws only what changed, and leaves the time to the workers.
 //!
 //! `?backend=webgpu|webgl|none` in the page's address says where to begin, for tests and support.
 
@@ -24,17 +23,17 @@ use web_sys::{Document, HtmlCanvasElement, WebGl2RenderingContext, Window};
 use crate::backend::{self, Backend};
 use crate::{frames, software};
 
-/// The order of trial.
+/// Backends in the order in which they are tried.
 const ORDER: [Backend; 3] = [Backend::WebGpu, Backend::WebGl2, Backend::None];
 
-/// A backend that is lost is given up for the next one. If it ran for this time, in milliseconds,
-/// it is first tried once more, because drivers reset and laptops sleep.
+/// Milliseconds of running after which a backend that is lost is tried once more, because drivers
+/// reset and laptops sleep. One that is lost earlier is given up for the next one.
 const STEADY: f64 = 10_000.0;
 
 /// Milliseconds that a browser may take to say whether it has WebGPU. It may never answer.
 const PATIENCE: i32 = 5_000;
 
-/// UNMASKED_RENDERER_WEBGL of WEBGL_debug_renderer_info.
+/// Constant UNMASKED_RENDERER_WEBGL of the extension WEBGL_debug_renderer_info.
 const UNMASKED_RENDERER: u32 = 0x9246;
 
 /// The event that a lost WebGPU device sends to the canvas; WebGL has its own.
@@ -43,11 +42,11 @@ const DEVICE_LOST: &str = "sinew-device-lost";
 /// The parameter of the page's address that says where to begin.
 const PARAMETER: &str = "backend";
 
-/// Starts the app on the canvas with the identifier `canvas_id` and says what draws it.
+/// Starts the app on the canvas with the identifier `canvas_id`. Returns the backend that draws it.
 ///
 /// `create` makes the app. It is called again, with another backend, when the one in use fails for
-/// good; the app it made before is dropped then, so what must not be lost belongs into what
-/// `create` captures or into the storage.
+/// good; the app it made before is dropped then, so state that must not be lost belongs in the
+/// captures of `create` or in the storage.
 ///
 /// # Errors
 /// A sentence for the user when the page has no such canvas or nothing could start, not even
@@ -61,7 +60,7 @@ pub async fn start<A: App + 'static>(
         create: Box::new(move |context, backend| Box::new(create(context, backend))),
         retried: Cell::new(None),
     });
-    let first = forced().unwrap_or(Backend::WebGpu);
+    let first = backend_of_address().unwrap_or(Backend::WebGpu);
     boot.start_from(first).await
 }
 
@@ -79,7 +78,7 @@ impl Boot {
     async fn start_from(self: Rc<Self>, first: Backend) -> Result<Backend, String> {
         let mut reasons = Vec::new();
         for backend in ORDER.into_iter().skip_while(|&backend| backend != first) {
-            if !is_there(backend, forced() == Some(backend)).await {
+            if !is_there(backend, backend_of_address() == Some(backend)).await {
                 continue;
             }
             match self.clone().run(backend).await {
@@ -91,14 +90,15 @@ impl Boot {
             }
         }
         Err(format!(
-            "The window could not start in this browser ({}). Reload the page or use another browser.",
+            "The window could not start in this browser ({}). \
+                Reload the page or use another browser.",
             reasons.join("; ")
         ))
     }
 
     async fn run(self: Rc<Self>, backend: Backend) -> Result<(), String> {
         let canvas = self.fresh_canvas()?;
-        frames::rest();
+        frames::take_over();
         let runner = WebRunner::new();
         let options = eframe::WebOptions {
             wgpu_options: options(backend).await?,
@@ -150,7 +150,7 @@ impl Boot {
         Ok(new)
     }
 
-    /// When the canvas loses its device or context, starts anew.
+    /// Starts anew when the canvas loses its device or context.
     fn restart_when_lost(
         self: Rc<Self>,
         canvas: &HtmlCanvasElement,
@@ -160,7 +160,7 @@ impl Boot {
         let started = js_sys::Date::now();
         let done = Cell::new(false);
         let on_loss = Closure::<dyn Fn()>::new(move || {
-            // A lost device may be told more than once.
+            // A lost device may be reported more than once.
             if done.replace(true) {
                 return;
             }
@@ -168,7 +168,7 @@ impl Boot {
             let next = if steady && self.retried.replace(Some(backend)) != Some(backend) {
                 backend
             } else {
-                after(backend)
+                fallback(backend)
             };
             warn(&format!(
                 "{} was lost; going on with {}",
@@ -192,16 +192,16 @@ impl Boot {
     }
 }
 
-/// The backend to fall back to.
-fn after(backend: Backend) -> Backend {
+/// Returns the backend to fall back to.
+fn fallback(backend: Backend) -> Backend {
     match backend {
         Backend::WebGpu => Backend::WebGl2,
         Backend::WebGl2 | Backend::None => Backend::None,
     }
 }
 
-/// Options in the page's address.
-fn forced() -> Option<Backend> {
+/// Returns the backend that the page's address asks for.
+fn backend_of_address() -> Option<Backend> {
     let query = window().location().search().ok()?;
     let parameters = web_sys::UrlSearchParams::new_with_str(&query).ok()?;
     match parameters.get(PARAMETER)?.as_str() {
@@ -212,11 +212,11 @@ fn forced() -> Option<Backend> {
     }
 }
 
-/// Whether the browser really offers the backend. `forced`: it was asked for, and may be slow.
-async fn is_there(backend: Backend, forced: bool) -> bool {
+/// Whether the browser really offers the backend. One that was asked for may be slow.
+async fn is_there(backend: Backend, was_asked_for: bool) -> bool {
     match backend {
         Backend::WebGpu => has_webgpu().await,
-        Backend::WebGl2 => webgl2().is_some_and(|context| forced || !is_pretended(&context)),
+        Backend::WebGl2 => webgl2().is_some_and(|context| was_asked_for || !is_emulated(&context)),
         Backend::None => true,
     }
 }
@@ -240,7 +240,7 @@ fn webgl2() -> Option<WebGl2RenderingContext> {
 }
 
 /// Whether the processor computes what a context draws.
-fn is_pretended(context: &WebGl2RenderingContext) -> bool {
+fn is_emulated(context: &WebGl2RenderingContext) -> bool {
     let is_processor = |name: u32| {
         let name = context.get_parameter(name).ok();
         name.and_then(|name| name.as_string())
@@ -254,7 +254,7 @@ fn is_pretended(context: &WebGl2RenderingContext) -> bool {
         ) && is_processor(UNMASKED_RENDERER)
 }
 
-/// How wgpu is set up for a backend.
+/// Returns the settings of wgpu for a backend.
 async fn options(backend: Backend) -> Result<WgpuConfiguration, String> {
     let wgpu_setup = match backend {
         Backend::WebGpu => on_gpu(wgpu::Backends::BROWSER_WEBGPU),
@@ -318,7 +318,7 @@ fn warn(message: &str) {
     web_sys::console::warn_1(&message.into());
 }
 
-/// First line of an error's message, without the stack trace that some carry below it.
+/// Returns the first line of an error's message, without the stack trace that some have below it.
 fn text_of(error: &JsValue) -> String {
     let text = error
         .as_string()

@@ -5,8 +5,7 @@ use assist::highlight::{TokenKind, highlight};
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Color32, FontId};
 
-/// Lays out a text with coloured words, wrapped at `width`. The last result is kept, because the
-/// same text is asked for at every frame.
+/// A layout of coloured words, kept because every frame asks for the same text.
 #[derive(Default)]
 pub struct Colouring {
     text: String,
@@ -15,7 +14,7 @@ pub struct Colouring {
 }
 
 impl Colouring {
-    /// The layout job for a text.
+    /// Returns the layout of a text, wrapped at `width`.
     pub fn job(&mut self, text: &str, palette: &Palette, dark: bool, width: f32) -> LayoutJob {
         if self.text != text || self.dark != dark || self.job.is_empty() {
             text.clone_into(&mut self.text);
@@ -28,7 +27,7 @@ impl Colouring {
     }
 }
 
-/// A text with coloured words, not wrapped.
+/// Returns a text with coloured words, not wrapped.
 #[must_use]
 pub fn colour(text: &str, palette: &Palette) -> LayoutJob {
     let mut job = LayoutJob {

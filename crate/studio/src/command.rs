@@ -12,10 +12,10 @@ use rats::TextEdit;
 use scene::Camera;
 use std::ops::Range;
 
-/// One wish of the user.
+/// A wish of the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Change the texts: in a file in its order, and apart from each other.
+    /// Change the texts. Edits of one file are in its order and do not overlap.
     Edit {
         /// The changes.
         edits: Vec<TextEdit>,
@@ -24,7 +24,7 @@ pub enum Command {
     },
     /// Say something about the text.
     Tell(String),
-    /// Whether a line at the caret says how its command is written.
+    /// Show a line at the caret that says how its command is written, or hide it.
     SetHints(bool),
     /// Add an empty file.
     AddFile,
@@ -38,13 +38,13 @@ pub enum Command {
     PutAsset(Asset),
     /// Take an image or a mesh away.
     RemoveAsset(String),
-    /// A gesture that is one undo step begins.
+    /// Begin a gesture that is one undo step.
     Hold,
-    /// The gesture ends.
+    /// End the gesture.
     Release,
-    /// One step back.
+    /// Go one step back.
     Undo,
-    /// One step forth.
+    /// Go one step forward.
     Redo,
     /// Put the cursor at a place of the text.
     Jump {
@@ -60,9 +60,9 @@ pub enum Command {
         /// The byte.
         byte: usize,
     },
-    /// Look at the scene with this camera; `None`: with the text's.
+    /// Look at the scene with this camera, or with that of the text if it is `None`.
     SetCamera(Option<Camera>),
-    /// See the whole model.
+    /// Bring the whole model into view.
     ShowAll,
     /// Stop the picture.
     Cancel,
@@ -78,25 +78,25 @@ pub enum Command {
     SetTool(Option<Tool>),
     /// Begin an empty work to draw on.
     DrawNew,
-    /// Draft, picture, or both in turn.
+    /// Show the draft, the picture, or both in turn.
     SetShow(Show),
-    /// Another picture size.
+    /// Choose a picture size.
     SetSize(size::Choice),
-    /// Another palette.
+    /// Choose a palette.
     SetTheme(theme::Choice),
     /// Play the film, or pause it.
     Play,
     /// Show a frame of the film.
     SetFilmFrame(u32),
-    /// How many frames the film has.
+    /// Set the number of frames of the film.
     SetFilmLength(u32),
-    /// How many frames of the film are shown in a second.
+    /// Set the number of frames that are shown in a second.
     SetFilmRate(u16),
-    /// What comes after the film's last frame.
+    /// Choose what follows the film's last frame.
     SetPlayback(Playback),
     /// Write all frames of the film to a file.
     SaveFilm(Kind),
-    /// Give that up.
+    /// Stop writing the film.
     StopFilm,
     /// Show a result of the text's jobs on pictures large.
     ShowResult(usize),
@@ -124,7 +124,7 @@ pub enum Command {
     OpenSaved(String),
     /// Open a text as an example is opened.
     OpenText {
-        /// Its name.
+        /// The name of the work.
         name: String,
         /// The dataset.
         text: String,
@@ -156,7 +156,7 @@ pub enum Command {
     SetStrokes {
         /// The file's name.
         name: String,
-        /// Its new text.
+        /// The new text.
         text: String,
         /// The mesh that it makes, if it is known.
         mesh: Option<Box<mesh::TriangleMesh>>,
@@ -165,7 +165,7 @@ pub enum Command {
     GrowFlesh {
         /// The name of its text.
         name: String,
-        /// As what.
+        /// The kind of flesh.
         flesh: modeling::Flesh,
         /// The mean length of its edges.
         edge: f64,
@@ -180,7 +180,7 @@ pub enum Command {
     New,
     /// Give the work another name.
     Rename(String),
-    /// Go back to the own work that a link took the place of.
+    /// Go back to the user's own work, which a link has replaced.
     GoBack,
     /// Compile and trace again after a failed start.
     Enable,
@@ -209,8 +209,8 @@ impl Command {
         Self::Edit { edits, step: true }
     }
 
-    /// The command that carries out a wish of the lab; `None` if it is to open an example that
-    /// there is not.
+    /// Returns the command that carries out a wish of the lab; `None` if the example to open does
+    /// not exist.
     #[must_use]
     pub fn of_lab(wish: lab::Command) -> Option<Self> {
         Some(match wish {

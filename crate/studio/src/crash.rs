@@ -1,4 +1,4 @@
-//! When the program stops unexpectedly: keep the text, and say so.
+//! Saves the text and shows a message when the program stops unexpectedly.
 
 use crate::app::Parts;
 use crate::platform;
@@ -8,13 +8,13 @@ use wasm_bindgen::JsValue;
 thread_local! {
     /// The work to save. The hook below must be `Send`, so it cannot hold this itself.
     static PARTS: RefCell<Option<Parts>> = const { RefCell::new(None) };
-    static HAPPENED: Cell<bool> = const { Cell::new(false) };
+    static HAS_STOPPED: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Whether the program has stopped unexpectedly.
 #[must_use]
-pub fn happened() -> bool {
-    HAPPENED.get()
+pub fn has_stopped() -> bool {
+    HAS_STOPPED.get()
 }
 
 /// Installs the panic hook.
@@ -22,8 +22,8 @@ pub fn install(parts: Parts) {
     PARTS.set(Some(parts));
     std::panic::set_hook(Box::new(|info| {
         console_error_panic_hook::hook(info);
-        HAPPENED.set(true);
-        platform::set_troubled(true);
+        HAS_STOPPED.set(true);
+        platform::set_stopped(true);
         let saved = PARTS.with(|parts| {
             let parts = parts.try_borrow().ok()?;
             let mut shelf = parts.as_ref()?.shelf.try_borrow_mut().ok()?;
@@ -32,7 +32,8 @@ pub fn install(parts: Parts) {
         let text = if saved.is_some() {
             "Sinew stopped unexpectedly. Your text is saved; reload the page to go on."
         } else {
-            "Sinew stopped unexpectedly. Your text was saved up to half a second ago; reload the page to go on."
+            "Sinew stopped unexpectedly. Your text as of half a second ago is saved; \
+                reload the page to go on."
         };
         if let Err(error) = show(text) {
             web_sys::console::error_1(&error);

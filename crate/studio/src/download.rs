@@ -1,4 +1,4 @@
-//! The menu of everything that the page gives as a file.
+//! The menu of everything that the page can save as a file.
 
 use crate::app::App;
 use crate::command::Command;
@@ -42,9 +42,10 @@ pub fn menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
 /// Lists the kinds of files that a film can become.
 pub fn films(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let formats = app.videos.as_deref().unwrap_or_default();
-    let is_there =
-        |kind: Kind| !kind.is_video() || formats.iter().any(|format| format.kind == kind);
-    for kind in Kind::ALL.into_iter().filter(|kind| is_there(*kind)) {
+    for kind in Kind::ALL {
+        if kind.is_video() && formats.iter().all(|format| format.kind != kind) {
+            continue;
+        }
         let name = format!("download {}", kind.extension());
         let title = format!("Film: {}", kind.label());
         if row(ui, &name, &title, kind.facts()) {

@@ -1,5 +1,5 @@
-//! The draft on its way to the screen: drawn when the scene, the camera or the size changed, and
-//! given to egui as a texture.
+//! The draft on its way to the screen: a texture of egui's that is drawn anew when the scene, the
+//! camera or the size changes.
 
 use crate::live::Made;
 use crate::session::Session;
@@ -20,7 +20,7 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// A draft on the window's device.
+    /// Makes a draft on the window's device.
     #[must_use]
     pub fn new(state: RenderState) -> Self {
         let draft = preview::Draft::new(&state.device, &state.queue);
@@ -34,8 +34,8 @@ impl Draft {
         }
     }
 
-    /// The draft of the session's scene, `size` pixels large, with a mesh in place of its soft
-    /// elements if there is one; `None` before there is a scene.
+    /// Returns the draft of the session's scene, `size` pixels large, with a mesh in place of its
+    /// soft elements if there is one; `None` before there is a scene.
     pub fn texture(
         &mut self,
         session: &Session,

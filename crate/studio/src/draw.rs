@@ -1,6 +1,6 @@
 //! Drawing one frame of the app.
 
-use crate::app::{App, once};
+use crate::app::{App, repaint_once};
 use crate::{layout, platform, screen, theme};
 use egui::Ui;
 
@@ -28,11 +28,11 @@ impl App {
         self.work.settle(now);
         // Workers need not wait for this frame to be drawn.
         self.trace(&ctx, now);
-        let dear = self.is_short_of_time();
-        platform::set_frames_dear(dear);
-        match (acts, dear) {
+        let is_short = self.is_short_of_time();
+        platform::set_frames_slow(is_short);
+        match (acts, is_short) {
             (true, true) => ctx.request_repaint(),
-            (true, false) => once(&ctx),
+            (true, false) => repaint_once(&ctx),
             (false, _) => {}
         }
     }

@@ -1,6 +1,5 @@
-//! The text editor: colours, line numbers, underlined mistakes, indentation, and what it knows
-//! about the language: completions, cards, the line that says how a command is written,
-//! definitions, renaming.
+//! The text editor: colours, line numbers, underlined mistakes, indentation, completions, cards,
+//! the line that says how a command is written, definitions, renaming.
 
 mod answers;
 mod completion;
@@ -54,7 +53,7 @@ pub struct Editor {
     typed: bool,
     /// The file and byte of the cursor.
     caret: Option<(usize, usize)>,
-    /// The bytes of a file behind which there is light: what is chosen in the picture.
+    /// The file and bytes of the commands that are chosen in the picture, shown on a light ground.
     pub lit: Option<(usize, Range<usize>)>,
 }
 
@@ -65,13 +64,13 @@ impl Editor {
         self.asset = None;
     }
 
-    /// Shows the cursor at a byte range of the file on show, at the next frame.
+    /// Selects a byte range of a file and scrolls to it, at the next frame.
     pub fn jump(&mut self, file: usize, range: Range<usize>) {
         self.open(file);
         self.jump = Some(range);
     }
 
-    /// Takes the session's text again, and puts the cursor where it was: the last edit was refused.
+    /// Takes the session's text again after an edit was refused, with the cursor where it was.
     pub fn resync(&mut self, ctx: &egui::Context) {
         self.synced = None;
         if let Some(mut state) = TextEdit::load_state(ctx, id()) {
@@ -86,13 +85,13 @@ impl Editor {
         self.place = Some(byte);
     }
 
-    /// The file and byte of the cursor, once the text had the focus.
+    /// Returns the file and byte of the cursor; `None` until the text has had the focus.
     #[must_use]
     pub fn caret(&self) -> Option<(usize, usize)> {
         self.caret
     }
 
-    /// Another piece of work is open: its first file, from the top.
+    /// Shows the first file from the top, when another work was opened.
     pub fn reset(&mut self, ctx: &egui::Context) {
         self.open(0);
         self.completions.close();
@@ -104,8 +103,8 @@ impl Editor {
         ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
     }
 
-    /// Shows the editor in all the space of `ui`.
-    /// `hints` is whether a line at the caret says how its command is written.
+    /// Shows the editor in all the space of `ui`, with `hints` also the line at the caret that says
+    /// how its command is written.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -131,10 +130,10 @@ impl Editor {
         self.before =
             TextEdit::load_state(ui.ctx(), id()).and_then(|state| state.cursor.char_range());
         self.offer(ui, session);
-        let taken = self.completions.keys(ui);
-        let mut stepped = self.write(ui, taken);
-        self.questions(ui, session, commands);
-        let keyed = self.keys(ui);
+        let chosen = self.completions.keys(ui);
+        let mut is_step = self.write(ui, chosen);
+        self.ask(ui, session, commands);
+        let has_changed = self.keys(ui);
         let height = ui.available_height();
         let lines = self.buffer.bytes().filter(|byte| *byte == b'\n').count() + 1;
         let digits = lines.to_string().len().max(2);
@@ -157,19 +156,19 @@ impl Editor {
             })
             .inner;
         if let Some((caret, _)) = caret {
-            let taken = self.completions.show(ui, caret);
-            stepped |= self.write(ui, taken);
+            let chosen = self.completions.show(ui, caret);
+            is_step |= self.write(ui, chosen);
             self.show_rename(ui, session, caret, commands);
         }
         let (file, text) = (self.file, &self.buffer);
-        if stepped {
+        if is_step {
             commands.push(Command::step(rats::TextEdit::whole(file, text)));
-        } else if keyed || text != session.text(file) {
+        } else if has_changed || text != session.text(file) {
             commands.push(Command::edit(rats::TextEdit::whole(file, text)));
         }
     }
 
-    /// Shows the text. Gives the caret's rectangle and place.
+    /// Shows the text. Returns the caret's rectangle and place.
     fn text(
         &mut self,
         ui: &mut Ui,
@@ -216,10 +215,9 @@ impl Editor {
             .show(ui);
         let (galley, origin) = (output.galley.clone(), output.galley_pos);
         if output.response.response.changed() {
-            let erased = |input: &egui::InputState| input.key_pressed(Key::Backspace);
             self.typed = ui.input(|input| {
                 input.events.iter().any(writes_letters)
-                    || self.completions.is_open() && erased(input)
+                    || self.completions.is_open() && input.key_pressed(Key::Backspace)
             });
         }
         let mut state = output.state;
@@ -237,7 +235,7 @@ impl Editor {
             state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
             state.clone().store(ui.ctx(), id());
             let place = galley.pos_from_cursor(cursor);
-            // With a few rows around it, as what stands there may take several.
+            // With a few rows around it, as a command may take several.
             let around = place
                 .translate(origin.to_vec2())
                 .expand2(egui::vec2(0.0, 70.0));
@@ -268,7 +266,7 @@ impl Editor {
         if let Some(line) = self.folding.show(ui, palette, self.file, &rows, x) {
             self.fold(ui, line);
         }
-        self.pointed(
+        self.point(
             &output.response.response,
             session,
             &galley,
@@ -282,8 +280,8 @@ impl Editor {
         Some((rect, Place { file, byte }))
     }
 
-    /// Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Gives whether it
-    /// changed.
+    /// Acts on F8, Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Returns
+    /// whether the text changed.
     fn keys(&mut self, ui: &Ui) -> bool {
         if !ui.memory(|memory| memory.has_focus(id())) {
             return false;
@@ -329,6 +327,7 @@ impl Editor {
         true
     }
 
+    /// Draws the numbers of the lines in view. Returns those lines, from 0, and their rows.
     fn line_numbers(
         &self,
         ui: &Ui,
@@ -372,7 +371,7 @@ impl Editor {
         rows
     }
 
-    /// Folds or unfolds what is around a line, and takes the caret out of what is folded.
+    /// Folds or unfolds the block around a line, and takes the caret out of a folded one.
     fn fold(&mut self, ui: &Ui, line: usize) {
         let shut = self.folding.toggle(self.file, line);
         if let (Some(shut), Some((_, byte))) = (shut, self.caret)
@@ -383,8 +382,8 @@ impl Editor {
         ui.ctx().request_repaint();
     }
 
-    /// The caret's place, which no arrow key puts into folded lines; any other way there opens
-    /// them.
+    /// Returns the caret's byte outside of folds: arrow keys step over a fold, and any other way
+    /// into one opens it.
     fn out_of_folds(
         &mut self,
         ui: &Ui,
@@ -392,7 +391,7 @@ impl Editor {
         state: &mut egui::text_edit::TextEditState,
     ) -> usize {
         let line = line_of(&self.buffer, byte);
-        let Some(fold) = self.folding.hiding(self.file, line) else {
+        let Some(fold) = self.folding.around(self.file, line) else {
             return byte;
         };
         let arrows = [
@@ -425,18 +424,18 @@ impl Editor {
     }
 }
 
-/// The line of a byte, from 0.
+/// Returns the line of a byte, from 0.
 fn line_of(text: &str, byte: usize) -> usize {
     text[..text.floor_char_boundary(byte)].matches('\n').count()
 }
 
-/// The byte at the end of a line, before its line end.
+/// Returns the byte at the end of a line, before its line feed.
 fn end_of_line(text: &str, line: usize) -> usize {
     let ends = text.match_indices('\n').map(|(at, _)| at);
     ends.skip(line).chain([text.len()]).next().unwrap_or(0)
 }
 
-/// Whether letters were typed, on a keyboard or on a phone's.
+/// Whether an event types letters, on a keyboard or on that of a phone.
 fn writes_letters(event: &egui::Event) -> bool {
     match event {
         egui::Event::Text(text) | egui::Event::Ime(egui::ImeEvent::Commit(text)) => {

@@ -1,8 +1,8 @@
-//! A mistake of browsers that pretend to be a phone.
+//! Works around a mistake of browsers that emulate a phone.
 //!
 //! The developer tools' phone view changes `devicePixelRatio`, but `devicePixelContentBoxSize`, by
 //! which eframe sizes the canvas, stays that of the real screen, and the page would come out half
-//! as large as it should be. Where the two contradict each other, the second one is taken away, so
+//! as large as it should be. Where the two contradict each other, the second one is removed, so
 //! that eframe computes the size from the ratio.
 
 use js_sys::{Array, Promise, Reflect};
@@ -12,12 +12,13 @@ use web_sys::{
     ResizeObserverSize,
 };
 
-/// How long to wait for the browser's answer, milliseconds. A hidden tab never answers.
+/// Milliseconds to wait for the browser's answer. A hidden tab never answers.
 const PATIENCE: i32 = 250;
 
 const SIZE: &str = "devicePixelContentBoxSize";
 
-/// Looks once at the canvas with this id; call it before eframe does.
+/// Checks the canvas with this id once, and removes the property if it is wrong. Call it before
+/// eframe reads it.
 pub async fn mend(canvas: &str) {
     // A browser that cannot tell sizes in pixels has nothing to mend.
     let _ = watch(canvas).await;
@@ -31,21 +32,21 @@ async fn watch(canvas: &str) -> Result<(), JsValue> {
     let mut observer = None;
     let mut refused = None;
     let answer = Promise::new(&mut |done, _| {
-        let told = done.clone();
-        let look = Closure::once_into_js(move |entries: Array| {
+        let resolve = done.clone();
+        let check = Closure::once_into_js(move |entries: Array| {
             if contradicts(&entries, ratio) == Some(true)
                 && let Ok(class) = Reflect::get(&js_sys::global(), &"ResizeObserverEntry".into())
                 && let Ok(prototype) = Reflect::get(&class, &"prototype".into())
                 && let Ok(prototype) = prototype.dyn_into::<js_sys::Object>()
             {
-                // If it is refused, the page is only too small.
+                // If the browser refuses, the page is only too small.
                 let _ = Reflect::delete_property(&prototype, &SIZE.into());
             }
             // The function of a promise never throws.
-            let _ = told.call0(&JsValue::UNDEFINED);
+            let _ = resolve.call0(&JsValue::UNDEFINED);
         });
         let begin = || {
-            let new = ResizeObserver::new(look.unchecked_ref())?;
+            let new = ResizeObserver::new(check.unchecked_ref())?;
             let options = ResizeObserverOptions::new();
             options.set_box(ResizeObserverBoxOptions::DevicePixelContentBox);
             new.observe_with_options(&canvas, &options);

@@ -9,10 +9,10 @@ use wasm_bindgen::prelude::*;
 /// The id of the page's canvas.
 const CANVAS: &str = "canvas";
 
-/// Called once by the page's script.
+/// Starts the program. The page's script calls it once.
 ///
 /// # Errors
-/// If the page is not one that a program can run in.
+/// If the page has no window or refuses listeners.
 #[wasm_bindgen(start)]
 pub fn start() -> Result<(), JsValue> {
     let parts = Parts::new();
@@ -24,8 +24,8 @@ pub fn start() -> Result<(), JsValue> {
         let again = Cell::new(false);
         let started = boot::start(CANVAS, move |context, backend| {
             if again.replace(true) {
-                // The GPU was lost, which is no fault of the text: go on drawing it.
-                platform::set_troubled(false);
+                // The GPU was lost, not because of the text: go on drawing it.
+                platform::set_stopped(false);
             }
             let state = context.wgpu_render_state.clone();
             App::new(&context.egui_ctx, state, backend, parts.clone())
@@ -61,7 +61,7 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
     window.add_event_listener_with_callback("keydown", keys.as_ref().unchecked_ref())?;
     keys.forget();
     platform::watch_pens();
-    // A page that goes out of sight may never come back; phones end it without another word.
+    // A page that goes out of sight may never come back; phones end it without a further event.
     for event in ["pagehide", "visibilitychange"] {
         let shelf = parts.shelf.clone();
         let target: web_sys::EventTarget = if event == "pagehide" {
@@ -70,9 +70,9 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
             window.document().ok_or(JsValue::NULL)?.into()
         };
         on(&target, event, move || {
-            // A page that is left before it was long enough there is not one that stopped.
-            if event == "pagehide" && !crash::happened() {
-                platform::set_troubled(false);
+            // A page that the user leaves early has not stopped unexpectedly.
+            if event == "pagehide" && !crash::has_stopped() {
+                platform::set_stopped(false);
             }
             if let Ok(mut shelf) = shelf.try_borrow_mut() {
                 // A refused write was already reported, or will be at the next edit.
@@ -96,7 +96,7 @@ fn on(
 
 impl eframe::App for App {
     fn raw_input_hook(&mut self, _ctx: &egui::Context, _input: &mut egui::RawInput) {
-        crate::frames::begun();
+        crate::frames::begin();
     }
 
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {

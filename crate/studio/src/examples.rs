@@ -2,34 +2,33 @@
 
 use rats::{File, Project};
 
-/// One dataset of the gallery.
+/// A dataset of the gallery.
 pub struct Example {
     /// The heading under which the gallery shows it; neighbours in [`ALL`] share one.
     pub group: &'static str,
-    /// Its title.
+    /// The title.
     pub title: &'static str,
-    /// Its subject, in a few words.
+    /// The subject, in a few words.
     pub about: &'static str,
-    /// Its file name.
+    /// The file name.
     pub name: &'static str,
-    /// Address of its text, a file beside the page.
+    /// Address of the text, a file beside the page.
     pub path: &'static str,
-    /// Its text, where it must be there at once: that of the first visit, and of sculptures. All
+    /// The text, if it is part of the program: the first visit's and those of sculptures. All
     /// others are fetched when they are opened, so that no visitor waits for them.
     pub text: Option<&'static str>,
-    /// Address of its thumbnail, a PNG file beside the page: fetched when the gallery is opened, as
+    /// Address of the thumbnail, a PNG file beside the page: fetched when the gallery is opened, as
     /// few visits open it.
     pub thumbnail: &'static str,
-    /// Names and texts of the strokes that its text uses.
+    /// Names and texts of the strokes that the text uses.
     pub texts: &'static [(&'static str, &'static str)],
-    /// Addresses of the images and meshes that its text names, files beside the page: fetched when
+    /// Addresses of the images and meshes that the text uses, files beside the page: fetched when
     /// the example is opened.
     pub files: &'static [&'static str],
 }
 
 impl Example {
-    /// Whether all words of a search, in small letters, stand in its title, subject, group or file
-    /// name.
+    /// Whether title, subject, group and file name contain all words of a search, in lower case.
     #[must_use]
     pub fn matches(&self, words: &[String]) -> bool {
         let text = [self.title, self.about, self.group, self.name].join(" ");
@@ -37,33 +36,33 @@ impl Example {
         words.iter().all(|word| text.contains(word))
     }
 
-    /// A project of its text, and of the strokes beside it.
+    /// Returns a project of the text and its strokes.
     #[must_use]
     pub fn project(&self, text: &str) -> Project {
         let own = (self.name, text);
         let all = core::iter::once(&own).chain(self.texts);
-        let file = |(name, text): &(&str, &str)| File {
+        let files = all.map(|(name, text)| File {
             name: (*name).to_owned(),
             text: (*text).to_owned(),
-        };
+        });
         Project {
-            files: all.map(file).collect(),
+            files: files.collect(),
         }
     }
 }
 
-/// The file name, without its extension, of the example that a fragment leads to, as in
+/// Returns the file name, without its extension, of the example that a fragment leads to, as in
 /// `#example=cowrie`; `None` if it leads to none.
 #[must_use]
 pub fn of_hash(hash: &str) -> Option<&str> {
     hash.strip_prefix("#example=")
 }
 
-/// The place in [`ALL`] of the example with this file name, without its extension.
+/// Returns the index in [`ALL`] of the example with this file name, without its extension.
 #[must_use]
 pub fn find(stem: &str) -> Option<usize> {
-    let is = |example: &Example| example.name.strip_suffix(".rat") == Some(stem);
-    ALL.iter().position(is)
+    ALL.iter()
+        .position(|example| example.name.strip_suffix(".rat") == Some(stem))
 }
 
 macro_rules! example {
@@ -96,7 +95,7 @@ macro_rules! built_in {
     };
 }
 
-/// An example made by the strokes of a text of its name.
+/// An example made by the strokes in a text of the same name.
 macro_rules! sculpted {
     ($title:literal, $about:literal, $name:literal) => {
         Example {
@@ -118,12 +117,12 @@ const MATTER: &str = "Light and matter";
 pub const SCULPTED: &str = "Sculpted";
 const STARFISH: &str = "One skeleton, six kinds of flesh";
 
-/// All of them, group by group. The first one is what a first visit shows.
+/// The examples, group by group. A first visit shows the first one.
 #[rustfmt::skip]
 pub static ALL: [Example; 57] = [
     built_in!(SEA, "Tide line", "a cowrie, two starfish and pebbles", "tide"),
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
-    example!(SEA, "Seahorse", "the classic, all of arcs", "seahorse"),
+    example!(SEA, "Seahorse", "the classic, made of arcs", "seahorse"),
     example!(SEA, "Hermite crab", "988 elements of five kinds", "hermite-crab"),
     example!(SEA, "Coral crab", "a few bones and 608 spikes", "coral-crab"),
     example!(SEA, "Starfish", "arms made by a loop", "starfish"),
@@ -138,14 +137,16 @@ pub static ALL: [Example; 57] = [
     example!(GROWN, "Generators", "six commands, a line each", "generators"),
     example!(GROWN, "Flakes on stems", "Gaussian balls on Cauchy bows", "stem-flakes"),
     example!(GROWN, "Four flakes", "10, 91, 820 and 7,381 balls", "flakes"),
-    example!(GROWN, "A queen grows old", "1,242 triangles, smooth and wrinkled", "queen", "queen.obj"),
+    example!(
+        GROWN, "A queen grows old", "1,242 triangles, smooth and wrinkled", "queen", "queen.obj"
+    ),
     example!(GROWN, "Elder", "3,422 triangles and what age does to them", "elder", "elder.obj"),
     example!(GROWN, "Three heads", "a coarse mesh, as balls and as shells", "heads", "head.obj"),
     example!(MATTER, "Glass drops", "water, a mirror ball and a board", "glass-drops"),
-    example!(MATTER, "Diamond", "a gem that takes light apart", "diamond"),
+    example!(MATTER, "Diamond", "a gem that splits light", "diamond"),
     example!(MATTER, "Still life", "wood, marble and an onion under a sky", "still-life"),
     example!(MATTER, "Patterned urchins", "stripes that dissolve into rings", "urchin-patterns"),
-    example!(MATTER, "Agate ammonite", "carved from stone, in the light of a spot", "agate-shell"),
+    example!(MATTER, "Agate ammonite", "carved from stone, lit by a spotlight", "agate-shell"),
     example!(MATTER, "Standing stones", "low fog in the morning", "fog-stones"),
     example!(MATTER, "Fireflies", "clouds of light between leaves", "fireflies"),
     example!(MATTER, "Three worlds", "craters, bands and squares", "planets"),
@@ -162,7 +163,7 @@ pub static ALL: [Example; 57] = [
     example!(CURVES, "Three bulges", "limbs that press each other flat", "touching"),
     example!(CURVES, "Falling body", "it slides down a wall and folds: play it", "falling"),
     example!(CURVES, "Jelly frog", "it drops on steps: play it", "jelly"),
-    example!(CURVES, "Floppy ears", "a shaken head, and what hangs on it: play it", "floppy-ears"),
+    example!(CURVES, "Floppy ears", "a shaken head and what hangs from it: play it", "floppy-ears"),
     sculpted!("Dog", "six stages from a box", "dog"),
     sculpted!("Fish", "a ball with fins", "fish"),
     sculpted!("Slug", "five minutes of work", "slug"),
@@ -199,7 +200,7 @@ cylinder clay r, -1.5 0 0, 1.5 0 0
 cylinder clay r, 0 -1.5 0, 0 1.5 0
 ";
 
-/// The size and the pixels, RGBA, of a PNG file.
+/// Returns the size and the RGBA pixels of a PNG file; `None` if it is damaged or has a palette.
 #[must_use]
 pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png));
@@ -254,7 +255,7 @@ mod tests {
                 .iter()
                 .map(|d| d.message.as_str())
                 .collect();
-            // What this one shows is what its warning is about.
+            // This one shows what its warning is about.
             let expected: &[&str] = match example.title {
                 "Coated" => &["the bulge of this contact coats `SMALL`"],
                 _ => &[],
@@ -270,25 +271,30 @@ mod tests {
 
     #[test]
     fn links_lead_to_examples() {
-        let found = |hash: &str| of_hash(hash).map(find);
-        assert_eq!(found("#example=tide"), Some(Some(0)));
-        assert_eq!(found("#example=cowrie"), Some(Some(1)));
-        assert_eq!(found("#example=no-such"), Some(None));
-        assert_eq!(found("#example"), None);
-        assert_eq!(found("#lab=kernels"), None);
-        assert_eq!(found("#AXicq1YqzVSyUkrLz1eyMjIw"), None);
+        for (hash, index) in [
+            ("#example=tide", Some(Some(0))),
+            ("#example=cowrie", Some(Some(1))),
+            ("#example=no-such", Some(None)),
+            ("#example", None),
+            ("#lab=kernels", None),
+            ("#AXicq1YqzVSyUkrLz1eyMjIw", None),
+        ] {
+            assert_eq!(of_hash(hash).map(find), index, "{hash}");
+        }
     }
 
     #[test]
     fn search_asks_for_all_words() {
-        let found = |query: &str| {
+        for (query, count) in [
+            ("shell spiral", 2),
+            ("starecase", 1),
+            ("nothing of the kind", 0),
+            ("", ALL.len()),
+        ] {
             let words: Vec<String> = query.split(' ').map(str::to_owned).collect();
-            ALL.iter().filter(|e| e.matches(&words)).count()
-        };
-        assert_eq!(found("shell spiral"), 2);
-        assert_eq!(found("starecase"), 1);
-        assert_eq!(found("nothing of the kind"), 0);
-        assert_eq!(found(""), ALL.len());
+            let found = ALL.iter().filter(|e| e.matches(&words)).count();
+            assert_eq!(found, count, "{query}");
+        }
     }
 
     #[test]

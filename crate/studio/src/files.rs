@@ -11,7 +11,7 @@ use egui::{
     Align, Button, Color32, Key, Layout, Popup, PopupCloseBehavior, RichText, TextEdit, Ui,
 };
 
-/// Shows the strip; with `summary` it says on the right how many problems there are.
+/// Shows the strip; with `summary` also the number of problems, on the right.
 pub fn show(
     ui: &mut Ui,
     session: &Session,
@@ -38,13 +38,14 @@ pub fn show(
                 .on_hover_text(if index == 0 {
                     "This file is run. Right-click to rename it."
                 } else {
-                    "Other files run it with: read and its name. Right-click to rename or remove it."
+                    "Other files run it with `read` and its name. \
+                        Right-click to rename or remove it."
                 });
             if tab.clicked() {
                 editor.open(index);
             }
-            let menu_of_tab = Popup::context_menu(&tab)
-                .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+            let menu_of_tab =
+                Popup::context_menu(&tab).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
             menu_of_tab.show(|ui| menu(ui, index, &file.name, commands));
         }
         for asset in session.assets() {
@@ -62,10 +63,10 @@ pub fn show(
         }
         if editor.asset.is_none() {
             let tip = "Lay the text out neatly (Ctrl+Shift+F)";
-            let lay_out = icon::button(ui, Icon::Lines, tip, true);
-            places::note(ui.ctx(), "lay out", lay_out.rect);
-            if lay_out.clicked() {
-                editor.lay_out(session, commands);
+            let button = icon::button(ui, Icon::Lines, tip, true);
+            places::note(ui.ctx(), "lay out", button.rect);
+            if button.clicked() {
+                editor.format(session, commands);
             }
         }
         if !summary {
@@ -84,7 +85,7 @@ pub fn show(
     });
 }
 
-/// A tab of an image or a mesh: its sign stands before its name.
+/// Shows the tab of an image or a mesh, with an icon before its name.
 fn asset_tab(ui: &mut Ui, asset: &Asset, editor: &mut Editor, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let open = editor.asset.as_deref() == Some(&asset.name);
@@ -119,7 +120,7 @@ fn asset_tab(ui: &mut Ui, asset: &Asset, editor: &mut Editor, commands: &mut Vec
     });
 }
 
-/// Context menu of a tab.
+/// Shows the context menu of a tab.
 fn menu(ui: &mut Ui, index: usize, name: &str, commands: &mut Vec<Command>) {
     ui.set_min_width(190.0);
     let id = ui.scope_id().with(("rename", index));

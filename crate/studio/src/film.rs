@@ -1,4 +1,4 @@
-//! An animated work as a film: which of its frames is on show, and playing them one after another.
+//! An animated work as a film: its length and rate, and playing its frames one after another.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,27 +6,27 @@ use serde::{Deserialize, Serialize};
 pub const MAX_FRAMES: u32 = 240;
 /// Frames in a second, at first.
 pub const RATE: u16 = 12;
-/// Most frames in a second: what a GIF file can hold.
+/// Most frames in a second: a GIF file holds no more.
 pub const MAX_RATE: u16 = 50;
 
-/// What comes after the last frame.
+/// The order of frames after the last one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Playback {
-    /// Nothing.
+    /// The film ends.
     Once,
-    /// The first frame.
+    /// The film begins again with the first frame.
     #[default]
     Loop,
-    /// The frame before, back to the first.
+    /// The film runs backwards to the first frame, and so on.
     Mirror,
 }
 
 impl Playback {
-    /// All of them, in the order of the menu.
+    /// The choices, in the order of the menu.
     pub const ALL: [Self; 3] = [Self::Once, Self::Loop, Self::Mirror];
 
-    /// The text in the menu.
+    /// Returns the text in the menu.
     #[must_use]
     pub fn label(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl Playback {
         }
     }
 
-    /// How many frames a file has in which each of `count` is shown in this way.
+    /// Returns the number of frames of a file that shows `count` frames in this order.
     #[must_use]
     pub fn length(self, count: u32) -> u32 {
         match self {
@@ -46,18 +46,18 @@ impl Playback {
     }
 }
 
-/// Which frames there are and whether they are played.
+/// The film's frames and whether they are played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Player {
-    /// How many frames the film has.
+    /// Number of frames.
     pub count: u32,
     /// Frames in a second.
     pub rate: u16,
-    /// What comes after the last one.
+    /// The order after the last frame.
     pub playback: Playback,
     /// Whether a person has chosen the number of frames or their rate.
     pub chosen: bool,
-    /// When the last frame came, seconds, while the film is played.
+    /// Time of the last frame in seconds on the app's clock, while the film is played.
     playing: Option<f64>,
     /// Whether it is played backwards just now.
     back: bool,
@@ -77,8 +77,8 @@ impl Default for Player {
 }
 
 impl Player {
-    /// Takes the rate of a work that has one of its own, and four seconds of it, unless a person
-    /// has chosen others.
+    /// Takes the rate of a work that has one of its own, and a length of four seconds, unless a
+    /// person has chosen others.
     pub fn follow(&mut self, rate: Option<f64>) {
         let Some(rate) = rate.filter(|_| !self.chosen) else {
             return;
@@ -109,8 +109,7 @@ impl Player {
         self.playing = None;
     }
 
-    /// The frame to show after `frame` if its time has come. `ready` is whether that one could be
-    /// seen.
+    /// Returns the frame to show after `frame` if its time has come. `ready`: `frame` was shown.
     pub fn next(&mut self, frame: u32, ready: bool, now: f64) -> Option<u32> {
         let came = self.playing?;
         if !ready || now - came < 1.0 / f64::from(self.rate.max(1)) {
@@ -140,7 +139,7 @@ impl Player {
         }
     }
 
-    /// Seconds until [`Player::next`] may have something to say.
+    /// Returns the seconds until [`Player::next`] may return a frame; `None` while paused.
     #[must_use]
     pub fn wait(&self, now: f64) -> Option<f64> {
         Some((self.playing? + 1.0 / f64::from(self.rate.max(1)) - now).max(0.0))
@@ -168,8 +167,8 @@ mod tests {
         assert_eq!((player.is_playing(), player.wait(13.0)), (false, None));
     }
 
-    /// The frames that are shown one after the other.
-    fn played(playback: Playback, count: u32, from: u32, most: usize) -> Vec<u32> {
+    /// Returns the frames that are shown one after the other, at most `most`.
+    fn play(playback: Playback, count: u32, from: u32, most: usize) -> Vec<u32> {
         let mut player = Player {
             count,
             playback,
@@ -189,18 +188,18 @@ mod tests {
 
     #[test]
     fn the_end_is_the_end_or_a_new_beginning_or_the_way_back() {
-        assert_eq!(played(Playback::Once, 3, 0, 9), [0, 1, 2]);
-        assert_eq!(played(Playback::Once, 3, 2, 9), [0, 1, 2]);
-        assert_eq!(played(Playback::Loop, 3, 1, 6), [1, 2, 0, 1, 2, 0]);
-        assert_eq!(played(Playback::Mirror, 3, 0, 7), [0, 1, 2, 1, 0, 1, 2]);
-        assert_eq!(played(Playback::Mirror, 3, 2, 4), [2, 1, 0, 1]);
+        assert_eq!(play(Playback::Once, 3, 0, 9), [0, 1, 2]);
+        assert_eq!(play(Playback::Once, 3, 2, 9), [0, 1, 2]);
+        assert_eq!(play(Playback::Loop, 3, 1, 6), [1, 2, 0, 1, 2, 0]);
+        assert_eq!(play(Playback::Mirror, 3, 0, 7), [0, 1, 2, 1, 0, 1, 2]);
+        assert_eq!(play(Playback::Mirror, 3, 2, 4), [2, 1, 0, 1]);
         assert_eq!(
-            played(Playback::Mirror, 3, 9, 4),
+            play(Playback::Mirror, 3, 9, 4),
             [9, 2, 1, 0],
             "it became shorter"
         );
-        assert_eq!(played(Playback::Loop, 3, 9, 3), [9, 0, 1]);
-        assert_eq!(played(Playback::Mirror, 2, 0, 4), [0, 1, 0, 1]);
+        assert_eq!(play(Playback::Loop, 3, 9, 3), [9, 0, 1]);
+        assert_eq!(play(Playback::Mirror, 2, 0, 4), [0, 1, 0, 1]);
         for playback in Playback::ALL {
             let order = ::picture::animation::mirrored(4).count() as u32;
             let length = if playback == Playback::Mirror {

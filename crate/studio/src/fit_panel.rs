@@ -1,15 +1,15 @@
-//! The panel *Fit*: measured files, what is fitted and how, and how it goes.
+//! The panel *Fit*: measured files, the mesh to fit, settings, and progress.
 
 use crate::app::App;
 use crate::command::Command;
-use crate::fitting::{Fitting, Seen, Target};
+use crate::fitting::{Fitting, Surface, Target};
 use crate::icon::{self, Icon};
 use crate::{places, screen, slider, theme};
 use egui::{Button, Color32, Painter, Rect, RichText, Sense, Slider, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Height of the panel beside the text.
 pub const HEIGHT: f32 = 326.0;
-/// Height of the plot, and on a narrow page.
+/// Height of the plot on a wide page and on a narrow one.
 const PLOT: [f32; 2] = [74.0, 56.0];
 
 /// Whether there is something to fit, so that the panel is offered.
@@ -18,7 +18,7 @@ pub fn is_offered(app: &App) -> bool {
     app.fitting.open || !app.fitting.targets.is_empty()
 }
 
-/// The button that shows and hides the panel.
+/// Shows the button that shows and hides the panel.
 pub fn button(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let open = app.fitting.open;
@@ -65,7 +65,7 @@ fn files(fitting: &mut Fitting, ui: &mut Ui, commands: &mut Vec<Command>) {
             let text = format!("{} · {}  ×", file.name, file.words());
             let chip = ui
                 .add(Button::new(RichText::new(text).size(12.5)))
-                .on_hover_text("Take it away");
+                .on_hover_text("Remove it");
             places::note(ui.ctx(), format!("measured {}", file.name), chip.rect);
             if chip.clicked() {
                 removed = Some(index);
@@ -89,7 +89,7 @@ fn files(fitting: &mut Fitting, ui: &mut Ui, commands: &mut Vec<Command>) {
 fn target(fitting: &mut Fitting, ui: &mut Ui, targets: &[(Target, String)]) {
     let palette = theme::palette(ui.visuals());
     let Some((first, first_label)) = targets.first() else {
-        let hint = "Open a mesh and write a mesh command: it can be fitted then.";
+        let hint = "Open a mesh and write a mesh command; then it can be fitted.";
         ui.label(RichText::new(hint).size(12.5).color(palette.weak));
         return;
     };
@@ -115,29 +115,33 @@ fn target(fitting: &mut Fitting, ui: &mut Ui, targets: &[(Target, String)]) {
 
 fn kind(fitting: &mut Fitting, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
-        for (seen, text, tip) in [
+        for (surface, text, tip) in [
             (
-                Seen::Explicit,
+                Surface::Explicit,
                 "Facets",
-                "Distances are taken from the nearest facet",
+                "Distances are measured to the nearest facet",
             ),
             (
-                Seen::Triangular,
+                Surface::Triangular,
                 "Thin shells",
-                "The mesh is seen as the implicit surface of thin shells around its facets",
+                "The mesh stands for the implicit surface of thin shells around its facets",
             ),
             (
-                Seen::Spherical,
+                Surface::Spherical,
                 "Balls",
-                "The mesh is seen as the implicit surface of balls around its facets: thick where facets are large",
+                "The mesh stands for the implicit surface of balls around its facets: \
+                    thick where facets are large",
             ),
         ] {
             let button = ui
-                .selectable_label(fitting.settings.seen == seen, RichText::new(text).size(12.5))
+                .selectable_label(
+                    fitting.settings.surface == surface,
+                    RichText::new(text).size(12.5),
+                )
                 .on_hover_text(tip);
             places::note(ui.ctx(), format!("fit {text}").to_lowercase(), button.rect);
             if button.clicked() {
-                fitting.settings.seen = seen;
+                fitting.settings.surface = surface;
             }
         }
     });
@@ -168,7 +172,7 @@ fn weights(fitting: &mut Fitting, ui: &mut Ui, targets: &[(Target, String)]) {
     }
 }
 
-/// A name, a slider and its value.
+/// Shows a name, a slider and its value.
 fn row(
     ui: &mut Ui,
     name: &str,
@@ -228,9 +232,9 @@ fn buttons(app: &mut App, ui: &mut Ui, targets: &[(Target, String)], commands: &
         let align = ui
             .checkbox(
                 &mut fitting.settings.align,
-                RichText::new("turn and move first").size(12.5),
+                RichText::new("Turn and move first").size(12.5),
             )
-            .on_hover_text("Brings the whole mesh near the points before it is deformed");
+            .on_hover_text("Brings the whole mesh close to the points before it is deformed");
         places::note(ui.ctx(), "fit align", align.rect);
     });
 }
@@ -248,7 +252,7 @@ fn progress(fitting: &Fitting, ui: &mut Ui) {
     } else if fitting.is_running() {
         words.push(String::from("Preparing"));
     }
-    let bad = match &fitting.said {
+    let bad = match &fitting.message {
         Some((text, bad)) => {
             words.push(text.clone());
             *bad
@@ -269,36 +273,33 @@ fn progress(fitting: &Fitting, ui: &mut Ui) {
     }
 }
 
-/// The residuals of all iterations, to the logarithm.
+/// Plots the residuals of all iterations on a logarithmic scale.
 fn plot(painter: &Painter, rect: Rect, residuals: &[f64], palette: &theme::Palette) {
     painter.rect_filled(rect, 6.0, palette.paper);
-    let log = |value: f64| libm::log10(value.max(1e-300));
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for value in residuals {
-        low = low.min(log(*value));
-        high = high.max(log(*value));
-    }
-    high = high.max(low + 0.3);
+    let logs = residuals.iter().map(|r| libm::log10(r.max(1e-300)));
+    let low = logs.clone().fold(f64::INFINITY, f64::min);
+    // At least a factor of two, so that a small change looks small.
+    let high = logs.clone().fold(low + 0.3, f64::max);
     let inner = rect.shrink2(vec2(10.0, 10.0));
     let last = (residuals.len() - 1) as f32;
-    let place = |(i, value): (usize, &f64)| {
-        let share = ((log(*value) - low) / (high - low)) as f32;
-        pos2(
+    let mut line = Vec::new();
+    for (i, log) in logs.enumerate() {
+        let share = ((log - low) / (high - low)) as f32;
+        line.push(pos2(
             inner.left() + inner.width() * i as f32 / last,
             inner.bottom() - inner.height() * share,
-        )
-    };
-    let line: Vec<_> = residuals.iter().enumerate().map(place).collect();
+        ));
+    }
     let end = line[line.len() - 1];
     painter.line(line, Stroke::new(2.0, palette.accent));
     painter.circle_filled(end, 3.5, palette.accent);
     let font = egui::FontId::proportional(11.0);
-    let text = |value: f64| format!("{:.1e}", libm::exp(value * std::f64::consts::LN_10));
+    let [from, to] = [high, low].map(|log| libm::exp(log * std::f64::consts::LN_10));
     let corner = inner.right_top() - vec2(0.0, 4.0);
     painter.text(
         corner,
         egui::Align2::RIGHT_TOP,
-        format!("residual {} to {}", text(high), text(low)),
+        format!("residual {from:.1e} to {to:.1e}"),
         font,
         palette.weak,
     );

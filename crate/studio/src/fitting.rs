@@ -1,7 +1,8 @@
 //! Fitting a mesh of the work to measured points and outlines, in a tools worker.
 //!
-//! The result is text: the `deform` of the mesh is written, or written anew, while the fit goes on,
-//! all as one undo step. Measured files are kept here, not in the work, until the page is closed.
+//! The result is text: the fit writes the `deform` command of the mesh, again and again while it
+//! runs, all as one undo step. Measured files are kept here, not in the work, until the page is
+//! closed.
 
 use crate::report;
 use crate::session::Session;
@@ -13,30 +14,31 @@ use scene::{Form, Origin, Shape};
 use std::ops::Range;
 use tools::{Controls, FitMesh, FitStep, ReadMeasured};
 
-/// Measured files that are kept.
+/// Most measured files that are kept.
 pub const MOST_FILES: usize = 8;
 /// Seconds between changes of the text, for small meshes and for those of more than [`LARGE`]
 /// triangles.
-const BETWEEN: [f64; 2] = [0.25, 3.0];
+const INTERVALS: [f64; 2] = [0.25, 3.0];
+/// Triangles above which a mesh is large.
 const LARGE: usize = 8000;
-/// Points that are drawn over the picture.
-const DRAWN: usize = 2500;
+/// Most points that are drawn over the picture.
+const MOST_POINTS: usize = 2500;
 
 /// A measured file.
 pub struct Measured {
-    /// Its name.
+    /// The file's name.
     pub name: String,
-    /// Its points or lines of sight, once they are read.
+    /// The points or lines of sight, once they are read.
     pub found: Option<Observations>,
     reading: Ticket<Observations>,
 }
 
 impl Measured {
-    /// Its content in a few words.
+    /// Returns the content in a few words.
     #[must_use]
     pub fn words(&self) -> String {
         match &self.found {
-            None => String::from("reading"),
+            None => String::from("reading …"),
             Some(found) if found.points.is_empty() => {
                 format!("{} lines of sight", found.sights.len())
             }
@@ -45,32 +47,32 @@ impl Measured {
     }
 }
 
-/// What a fit can move.
+/// A mesh that can be fitted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
-    /// The control points of a `deform`, by its place in the compiled text's list.
+    /// The mesh of a `deform`, by its index in the compiled text's list.
     Deform(usize),
-    /// A `mesh` command, which gets an automatic cage.
+    /// The mesh of a `mesh` command, which gets an automatic cage.
     Mesh(Origin),
 }
 
-/// How the mesh is seen.
+/// The surface that is brought onto the measured points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Seen {
-    /// By its nearest facet.
+pub enum Surface {
+    /// The facets themselves.
     Explicit,
-    /// As balls.
+    /// The implicit surface of balls around facets.
     Spherical,
-    /// As shells.
+    /// The implicit surface of thin shells around facets.
     #[default]
     Triangular,
 }
 
-/// What the user has set.
+/// Settings by the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How the mesh is seen.
-    pub seen: Seen,
+    /// The surface that is fitted.
+    pub surface: Surface,
     /// Decimal logarithm of the smoothness's weight.
     pub smooth: f64,
     /// Weight of outlines.
@@ -84,7 +86,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            seen: Seen::default(),
+            surface: Surface::default(),
             smooth: -1.7,
             outlines: 1.0,
             count: 60,
@@ -97,21 +99,25 @@ impl Default for Settings {
 struct Run {
     ticket: Ticket<FitStep>,
     file: usize,
-    /// Where its text begins.
+    /// Byte at which its text begins.
     start: usize,
-    /// Its text as it was written last.
+    /// The text as it was written last.
     text: String,
-    /// Before the text where there was none, and before each of its lines.
+    /// Line feed before a text that is added.
     lead: &'static str,
+    /// Blanks before each line.
     indent: String,
     /// The name of the object, with a space before it.
     name: String,
+    /// The last step, until it is written.
     waiting: Option<FitStep>,
+    /// Time of the last change of the text, seconds.
     written: f64,
-    between: f64,
-    /// Whether it has changed the text, so that the undo step is open.
+    /// Seconds between changes.
+    interval: f64,
+    /// Whether the text was changed, so that the undo step is open.
     is_held: bool,
-    /// Whether the worker is done with it.
+    /// Whether the worker has finished.
     done: bool,
 }
 
@@ -122,24 +128,25 @@ pub struct Fitting {
     pub open: bool,
     /// Measured files.
     pub files: Vec<Measured>,
-    /// What the user has set.
+    /// Settings by the user.
     pub settings: Settings,
-    /// What is to be moved.
+    /// The mesh that was chosen.
     pub target: Option<Target>,
-    /// What can be fitted in the text, with a label each, and the revision that this is of.
+    /// The meshes in the text that can be fitted, with a label each.
     pub targets: Vec<(Target, String)>,
-    listed: Option<(u64, bool)>,
+    /// The revision of the text that they are from, and whether it was compiled.
+    targets_of: Option<(u64, bool)>,
     /// Residuals of the iterations of the last fit.
     pub residuals: Vec<f64>,
     /// The last iteration.
     pub last: Option<FitStep>,
-    /// What there is to say, and whether it is bad.
-    pub said: Option<(String, bool)>,
+    /// A message, and whether it is an error.
+    pub message: Option<(String, bool)>,
     run: Option<Run>,
 }
 
 impl Fitting {
-    /// Fits nothing yet.
+    /// Makes a panel that is hidden and fits nothing.
     #[must_use]
     pub fn new(tools: Tools) -> Self {
         Self {
@@ -149,21 +156,21 @@ impl Fitting {
             settings: Settings::default(),
             target: None,
             targets: Vec::new(),
-            listed: None,
+            targets_of: None,
             residuals: Vec::new(),
             last: None,
-            said: None,
+            message: None,
             run: None,
         }
     }
 
-    /// Another work is open: the fit ends, and the measured files stay.
+    /// Ends the fit, when another work was opened; the measured files stay.
     pub fn forget(&mut self) {
         self.run = None;
         self.target = None;
-        self.listed = None;
+        self.targets_of = None;
         self.residuals.clear();
-        (self.last, self.said) = (None, None);
+        (self.last, self.message) = (None, None);
     }
 
     /// Whether a fit runs.
@@ -175,7 +182,7 @@ impl Fitting {
     /// Reads a measured file and shows the panel.
     pub fn add(&mut self, name: String, bytes: Vec<u8>) {
         self.open = true;
-        self.said = None;
+        self.message = None;
         self.files.retain(|file| file.name != name);
         if self.files.len() >= MOST_FILES {
             self.files.remove(0);
@@ -191,7 +198,7 @@ impl Fitting {
         });
     }
 
-    /// Takes a measured file away.
+    /// Removes a measured file.
     pub fn remove(&mut self, index: usize) {
         if index < self.files.len() {
             self.files.remove(index);
@@ -217,20 +224,19 @@ impl Fitting {
         found.any(|found| !found.sights.is_empty())
     }
 
-    /// Points to draw over the picture, not too many.
+    /// Returns points to draw over the picture, at most [`MOST_POINTS`].
     #[must_use]
     pub fn points(&self) -> Vec<DVec3> {
-        let found = || self.files.iter().filter_map(|file| file.found.as_ref());
-        let count: usize = found().map(|found| found.points.len()).sum();
-        let step = count.div_ceil(DRAWN).max(1);
-        let all = found().flat_map(|found| found.points.iter().copied());
+        let found = self.files.iter().filter_map(|file| file.found.as_ref());
+        let all = found.flat_map(|found| found.points.iter().copied());
+        let step = all.clone().count().div_ceil(MOST_POINTS).max(1);
         all.step_by(step).collect()
     }
 
-    /// What can be fitted in the text, with a label each.
+    /// Returns the meshes in the text that can be fitted, with a label each.
     #[must_use]
     pub fn targets(session: &Session) -> Vec<(Target, String)> {
-        let compiled = session.compiled();
+        let compiled = session.compilation();
         let files = session.project().files.len();
         let line = |origin: Origin| {
             let text = session.text(origin.file as usize);
@@ -238,9 +244,8 @@ impl Fitting {
             before.matches('\n').count() + 1
         };
         let mut targets = Vec::new();
-        let own = |deform: &&Deform| !deform.repeated && (deform.origin.file as usize) < files;
         for (index, deform) in compiled.deforms.iter().enumerate() {
-            if own(&deform) {
+            if !deform.repeated && (deform.origin.file as usize) < files {
                 let count = deform.controls.len();
                 let at = line(deform.origin);
                 let label = format!("deform in line {at}, {count} control points");
@@ -251,8 +256,8 @@ impl Fitting {
         let elements = compiled.scene.elements.iter().zip(&compiled.placements);
         for (element, placement) in elements {
             let origin = element.origin;
-            // The triangles of a mesh are always repeated, as their command makes many; whether the
-            // command itself is, the compiler says when the fit begins.
+            // The triangles of a mesh are always repeated, as their command makes many. The
+            // compiler says when the fit begins whether the command itself is.
             let is_mesh = match &element.shape {
                 Shape::Triangle { .. } | Shape::Patch { .. } => true,
                 Shape::Function(function) => {
@@ -280,21 +285,21 @@ impl Fitting {
         targets
     }
 
-    /// Chooses the `mesh` command of a file, or the deformation of what it makes.
+    /// Chooses the mesh of a file: its `mesh` command, or its deformation if there is one.
     pub fn choose(&mut self, session: &Session, file: &str) {
         let bare = file.rsplit('/').next().unwrap_or(file);
         let shows = |origin: Origin| {
             let text = session.text(origin.file as usize);
             let command = text.get(origin.start as usize..origin.end as usize);
             let mut words = command.unwrap_or_default().split_whitespace();
-            let named = words.nth(2).map(|name| name.trim_end_matches([',', ';']));
-            named.is_some_and(|name| name == file || name == bare)
+            let name = words.nth(2).map(|name| name.trim_end_matches([',', ';']));
+            name.is_some_and(|name| name == file || name == bare)
         };
         let found = Self::targets(session)
             .into_iter()
             .find(|(target, _)| match target {
                 Target::Deform(index) => {
-                    let deforms = &session.compiled().deforms;
+                    let deforms = &session.compilation().deforms;
                     deforms[*index].of.iter().any(|origin| shows(*origin))
                 }
                 Target::Mesh(origin) => shows(*origin),
@@ -304,19 +309,19 @@ impl Fitting {
         }
     }
 
-    /// Begins the fit of what is chosen.
+    /// Begins the fit of the chosen mesh, or says why it cannot.
     pub fn start(&mut self, session: &Session, now: f64) {
         self.run = None;
         self.residuals.clear();
-        (self.last, self.said) = (None, None);
+        (self.last, self.message) = (None, None);
         if let Err(trouble) = self.try_start(session, now) {
-            self.said = Some((trouble, true));
+            self.message = Some((trouble, true));
         }
     }
 
     fn try_start(&mut self, session: &Session, now: f64) -> Result<(), String> {
         if !session.is_compiled() || session.errors() > 0 {
-            return Err(String::from("The text has errors; mend them first."));
+            return Err(String::from("The text has errors; fix them first."));
         }
         let targets = Self::targets(session);
         let chosen = targets
@@ -325,10 +330,11 @@ impl Fitting {
             .find(|target| Some(*target) == self.target.as_ref())
             .or(targets.first().map(|(target, _)| target))
             .ok_or_else(|| {
-                String::from(if session.compiled().deforms.is_empty() {
+                String::from(if session.compilation().deforms.is_empty() {
                     "There is no mesh in the text: open one and write a `mesh` command."
                 } else {
-                    "The mesh is deformed in a loop or a defined command, whose numbers are not of one mesh only."
+                    "The mesh is deformed in a loop or a defined command, \
+                        whose numbers apply to more than one mesh."
                 })
             })?;
         let mut observations = Observations::default();
@@ -343,11 +349,11 @@ impl Fitting {
         }
         let (place, deform) = match chosen {
             Target::Deform(index) => {
-                let deform = &session.compiled().deforms[*index];
+                let deform = &session.compilation().deforms[*index];
                 let place = Place::of(session, deform.origin)?;
                 (place, deform.clone())
             }
-            Target::Mesh(origin) => Place::behind(session, *origin)?,
+            Target::Mesh(origin) => Place::after(session, *origin)?,
         };
         let is_new = place.old.is_empty();
         let controls = if is_new {
@@ -356,6 +362,7 @@ impl Fitting {
             let both = deform.controls.iter().map(|c| [c.place, c.way]);
             Controls::Given(both.collect())
         };
+        // The field falls within a twentieth of an edge, and shells are two such lengths thick.
         let edge = fit::mean_edge(&deform.positions, &deform.triangles);
         let slope = 20.0 / edge.max(f64::MIN_POSITIVE);
         let job = FitMesh {
@@ -364,10 +371,10 @@ impl Fitting {
             controls,
             observations,
             options: Options {
-                kind: match self.settings.seen {
-                    Seen::Explicit => Kind::Explicit,
-                    Seen::Spherical => Kind::Spherical,
-                    Seen::Triangular => Kind::Triangular {
+                kind: match self.settings.surface {
+                    Surface::Explicit => Kind::Explicit,
+                    Surface::Spherical => Kind::Spherical,
+                    Surface::Triangular => Kind::Triangular {
                         thickness: 0.1 / slope,
                     },
                 },
@@ -388,31 +395,31 @@ impl Fitting {
             name: place.name,
             waiting: None,
             written: now,
-            between: BETWEEN[usize::from(deform.triangles.len() > LARGE)],
+            interval: INTERVALS[usize::from(deform.triangles.len() > LARGE)],
             is_held: false,
             done: false,
         });
         Ok(())
     }
 
-    /// Ends the fit; what it had found stays in the text.
+    /// Ends the fit; the last step stays in the text.
     pub fn stop(&mut self, session: &mut Session, now: f64) {
         if self.run.is_some() {
             self.write(session, now, true);
             self.finish(session);
-            self.said = Some((String::from("Stopped."), false));
+            self.message = Some((String::from("Stopped."), false));
         }
     }
 
-    /// Takes in what the worker has found. Returns whether the text has changed.
+    /// Takes in steps from the worker and measured files. Returns whether the text has changed.
     pub fn tick(&mut self, session: &mut Session, now: f64) -> bool {
         // A scene may have a million elements, so they are not looked through at every frame.
         let text = (session.revision(), session.is_compiled());
-        if self.listed != Some(text) && session.is_compiled() {
-            self.listed = Some(text);
+        if self.targets_of != Some(text) && session.is_compiled() {
+            self.targets_of = Some(text);
             self.targets = Self::targets(session);
         }
-        let said = &mut self.said;
+        let message = &mut self.message;
         self.files.retain_mut(|file| match file.reading.result() {
             None => true,
             Some(Ok(found)) => {
@@ -420,7 +427,7 @@ impl Fitting {
                 true
             }
             Some(Err(trouble)) => {
-                *said = Some((format!("{}: {trouble}.", file.name), true));
+                *message = Some((format!("{}: {trouble}.", file.name), true));
                 false
             }
         });
@@ -436,7 +443,7 @@ impl Fitting {
                     run.done = true;
                 }
                 Some(Err(trouble)) => {
-                    self.said = Some((format!("{trouble}."), true));
+                    self.message = Some((format!("{trouble}."), true));
                     self.finish(session);
                     return false;
                 }
@@ -445,19 +452,19 @@ impl Fitting {
         self.write(session, now, false)
     }
 
-    /// Writes what has come into the text, if it is time.
+    /// Writes the last step into the text, if it is time. Returns whether the text has changed.
     fn write(&mut self, session: &mut Session, now: f64, at_once: bool) -> bool {
         let Some(run) = &mut self.run else {
             return false;
         };
-        let due = at_once || run.done || now - run.written >= run.between;
+        let due = at_once || run.done || now - run.written >= run.interval;
         let Some(step) = run.waiting.take_if(|_| due) else {
             return false;
         };
-        let text = run.worded(&step.text);
+        let text = run.format(&step.text);
         self.last = Some(step);
         let Some(range) = run.place(session) else {
-            self.said = Some((
+            self.message = Some((
                 String::from("The text was changed where the fit writes, so it has stopped."),
                 true,
             ));
@@ -475,16 +482,16 @@ impl Fitting {
         run.text = text;
         run.written = now;
         if let Err(refused) = replaced {
-            self.said = Some((refused.to_string(), true));
+            self.message = Some((refused.to_string(), true));
             self.finish(session);
         } else if done {
-            self.said = Some((String::from("Done."), false));
+            self.message = Some((String::from("Done."), false));
             self.finish(session);
         }
         true
     }
 
-    /// Ends the fit, with the step of undo that it has opened.
+    /// Ends the fit and its undo step.
     fn finish(&mut self, session: &mut Session) {
         if let Some(run) = self.run.take()
             && run.is_held
@@ -494,7 +501,7 @@ impl Fitting {
         }
     }
 
-    /// Its state for scripts, once the panel was used.
+    /// Returns the state for scripts while the panel is open.
     #[must_use]
     pub fn report(&self) -> Option<report::Fit> {
         let found = self.files.iter().filter_map(|file| file.found.as_ref());
@@ -503,22 +510,22 @@ impl Fitting {
             iteration: self.last.as_ref().map_or(0, |last| last.iteration),
             residual: self.last.as_ref().map_or(0.0, |last| last.residual),
             points: found.map(|found| found.points.len()).sum(),
-            said: self.said.as_ref().map(|(text, _)| text.clone()),
+            said: self.message.as_ref().map(|(text, _)| text.clone()),
         })
     }
 
-    /// Seconds until the text may be changed again.
+    /// Returns the seconds until the last step may be written; `None` if no step waits.
     #[must_use]
     pub fn wait(&self, now: f64) -> Option<f64> {
         let run = self.run.as_ref()?;
         run.waiting.as_ref()?;
-        Some((run.written + run.between - now).max(0.0))
+        Some((run.written + run.interval - now).max(0.0))
     }
 }
 
 impl Run {
-    /// The lines of a step as they stand in the text.
-    fn worded(&self, lines: &str) -> String {
+    /// Returns the lines of a step as they stand in the text: indented, and for the named object.
+    fn format(&self, lines: &str) -> String {
         let mut text = String::from(self.lead);
         for (i, line) in lines.trim_end().lines().enumerate() {
             if i > 0 {
@@ -537,7 +544,7 @@ impl Run {
         text
     }
 
-    /// Where its text is now; `None` if it is there no more, or more than once.
+    /// Returns the bytes of its text now; `None` if the text is gone, or is there more than once.
     fn place(&self, session: &Session) -> Option<Range<usize>> {
         let text = (self.file < session.project().files.len()).then(|| session.text(self.file))?;
         let here = self.start..self.start + self.text.len();
@@ -552,17 +559,17 @@ impl Run {
     }
 }
 
-/// Where a fit writes.
+/// The place in a text where a fit writes.
 struct Place {
     file: usize,
     start: usize,
-    /// The text there; empty if it is to be added.
+    /// The text there; empty if a command is to be added.
     old: String,
     indent: String,
     name: String,
 }
 
-/// The white space at the start of the line that a byte is in.
+/// Returns the blanks at the start of the line that a byte is in.
 fn indent(text: &str, at: usize) -> String {
     let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
     let line = &text[start..at];
@@ -570,7 +577,7 @@ fn indent(text: &str, at: usize) -> String {
 }
 
 impl Place {
-    /// Of a `deform`.
+    /// Returns the place of a `deform`.
     fn of(session: &Session, origin: Origin) -> Result<Self, String> {
         let file = origin.file as usize;
         let text = session.text(file);
@@ -587,15 +594,15 @@ impl Place {
         })
     }
 
-    /// Behind a `mesh`, with what a `deform` there would move.
-    fn behind(session: &Session, origin: Origin) -> Result<(Self, Deform), String> {
+    /// Returns the place after a `mesh`, and the deformation that a `deform` there would be.
+    fn after(session: &Session, origin: Origin) -> Result<(Self, Deform), String> {
         let file = origin.file as usize;
         let text = session.text(file);
         let mut start = origin.end as usize;
         let rest = text.get(start..).ok_or("The text has changed.")?;
         let line = rest.split('\n').next().unwrap_or_default();
-        let behind = line.trim();
-        if behind.is_empty() || behind.starts_with('#') {
+        let tail = line.trim();
+        if tail.is_empty() || tail.starts_with('#') {
             start += line.trim_end().len();
         }
         let indent = indent(text, origin.start as usize);
@@ -611,7 +618,8 @@ impl Place {
             .ok_or("This mesh cannot be deformed where it stands in the text.")?;
         if deform.repeated {
             return Err(String::from(
-                "This mesh stands in a loop or a defined command, where one cage would move all copies.",
+                "This mesh stands in a loop or a defined command, \
+                    where one cage would move all copies.",
             ));
         }
         let place = Self {
@@ -663,12 +671,14 @@ mod tests {
         session
     }
 
-    /// The head sheared by a tenth of its height, as an XYZ file.
+    /// Returns the head sheared by a tenth of its height, as an XYZ file.
     fn cloud() -> Vec<u8> {
         let head = fit::trial::head(300);
-        let points = fit::trial::sample(&head.positions, &head.triangles, 500, 3);
-        let line = |p: &DVec3| format!("{} {} {}\n", p.x + 0.1 * p.z, p.y, p.z);
-        points.iter().map(line).collect::<String>().into_bytes()
+        let mut text = String::new();
+        for p in fit::trial::sample(&head.positions, &head.triangles, 500, 3) {
+            text += &format!("{} {} {}\n", p.x + 0.1 * p.z, p.y, p.z);
+        }
+        text.into_bytes()
     }
 
     fn until(fitting: &mut Fitting, session: &mut Session, done: impl Fn(&Fitting) -> bool) {
@@ -688,7 +698,9 @@ mod tests {
                 "one cage would move all copies",
             ),
             (
-                "surface s, diffuse Red\nfor i = 0 to 1 {\n  mesh s head.obj\n  deform { control <0 0 0> move <i 0 0> control <9 9 9> control <9 0 0> control <0 9 0> control <-9 -9 -9> }\n}\n",
+                "surface s, diffuse Red\nfor i = 0 to 1 {\n  mesh s head.obj\n  \
+                    deform { control <0 0 0> move <i 0 0> control <9 9 9> control <9 0 0> \
+                    control <0 9 0> control <-9 -9 -9> }\n}\n",
                 "deformed in a loop",
             ),
         ] {
@@ -697,7 +709,7 @@ mod tests {
             fitting.add(String::from("cloud.xyz"), cloud());
             until(&mut fitting, &mut session, Fitting::has_data);
             fitting.start(&session, 0.0);
-            let (said, bad) = fitting.said.clone().unwrap();
+            let (said, bad) = fitting.message.clone().unwrap();
             assert!(bad && said.contains(words), "{said}");
             assert!(!fitting.is_running());
             assert_eq!(session.text(0), text);
@@ -721,9 +733,12 @@ mod tests {
         let mut session = session(TEXT);
         let mut fitting = Fitting::new(Tools::new(|| {}));
         fitting.settings.count = 16;
-        fitting.settings.seen = Seen::Explicit;
+        fitting.settings.surface = Surface::Explicit;
         fitting.start(&session, 0.0);
-        assert!(fitting.said.take().is_some_and(|(_, bad)| bad), "no data");
+        assert!(
+            fitting.message.take().is_some_and(|(_, bad)| bad),
+            "no data"
+        );
         fitting.add(String::from("cloud.xyz"), cloud());
         until(&mut fitting, &mut session, Fitting::has_data);
         assert_eq!(fitting.files[0].words(), "500 points");
@@ -732,7 +747,7 @@ mod tests {
         assert_eq!(targets[0].1, "mesh head.obj in line 3, a new cage");
         fitting.start(&session, 0.0);
         until(&mut fitting, &mut session, |fitting| !fitting.is_running());
-        assert_eq!(fitting.said, Some((String::from("Done."), false)));
+        assert_eq!(fitting.message, Some((String::from("Done."), false)));
         let first = fitting.last.clone().expect("a step").residual;
         assert!(first < 0.02, "{first}");
         let text = session.text(0).to_owned();
@@ -742,7 +757,7 @@ mod tests {
         );
         session.compile();
         assert_eq!(session.errors(), 0);
-        assert_eq!(session.compiled().deforms[0].controls.len(), 16);
+        assert_eq!(session.compilation().deforms[0].controls.len(), 16);
         // Fitted again it begins where it was, in the same place.
         let targets = Fitting::targets(&session);
         assert_eq!(targets[0].1, "deform in line 4, 16 control points");
@@ -762,13 +777,15 @@ mod tests {
     }
 
     #[test]
-    fn changed_text_stops_the_fit_and_trouble_is_told() {
+    fn edits_stop_the_fit_and_bad_files_are_refused() {
         let mut session = session(TEXT);
         let mut fitting = Fitting::new(Tools::new(|| {}));
         fitting.add(String::from("bad.xyz"), b"1 2\n".to_vec());
-        until(&mut fitting, &mut session, |fitting| fitting.said.is_some());
+        until(&mut fitting, &mut session, |fitting| {
+            fitting.message.is_some()
+        });
         let said = fitting
-            .said
+            .message
             .take()
             .map(|(text, _)| text)
             .unwrap_or_default();
@@ -784,7 +801,7 @@ mod tests {
                 .expect("taken");
             until(&mut fitting, &mut session, |fitting| !fitting.is_running());
             let said = fitting
-                .said
+                .message
                 .take()
                 .map(|(text, _)| text)
                 .unwrap_or_default();

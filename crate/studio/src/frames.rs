@@ -2,10 +2,10 @@
 //!
 //! eframe asks the browser for an animation frame after every one, drawn or not, which costs a
 //! processor 8 % of its time in Chromium (60 Hz, nothing ever drawn), at the expense of the workers
-//! or of a battery. So the page's `requestAnimationFrame` is replaced: what asks for a frame gets
-//! it when there may be something to draw, that is when egui has asked for it or one of the events
-//! came that eframe listens to, else a few times a second ([`QUIET`]), for what is told to nobody
-//! else, such as another colour scheme of the system.
+//! or of a battery. So the page's `requestAnimationFrame` is replaced: a request gets its frame
+//! when there may be something to draw, that is when egui has asked for it or one of the events
+//! came that eframe listens to, else a few times a second ([`QUIET`]), for changes without an
+//! event, such as another colour scheme of the system.
 //!
 //! egui draws twice more after each event, to let things settle. Where each frame keeps the tracer
 //! waiting, these come [`PACE`] apart, unless a pointer is at work ([`LIVELY`]).
@@ -19,27 +19,28 @@ use wasm_bindgen::prelude::*;
 /// Milliseconds between frames while nothing happens.
 const QUIET: f64 = 250.0;
 
-/// Milliseconds between the frames that egui requests at once, while frames are slow.
+/// Milliseconds between the frames that egui requests without delay, while frames are slow.
 const PACE: f64 = 100.0;
 
-/// Milliseconds after an event of a pointer in which they count as cheap: scrolling and dragging
-/// must stay smooth.
+/// Milliseconds after an event of a pointer in which no frame counts as slow: scrolling and
+/// dragging must stay smooth.
 const LIVELY: f64 = 500.0;
 
 /// Frames that are given without delay once something happens: egui and eframe often want another
 /// after the first.
 const TOGETHER: u32 = 3;
 
-/// Given frames that can still be cancelled, more than anyone waits for.
+/// Most frames in the browser's hands that can still be cancelled, more than anyone waits for.
 const GIVEN: usize = 8;
 
 /// Events of the keyboard and the browser that call for a frame.
-const EVENTS: &str = "beforeinput blur compositionend compositionstart compositionupdate copy cut dragend dragenter \
-    dragleave dragover drop focus hashchange input keydown load pagehide pageshow paste popstate resize scroll \
-    visibilitychange";
-/// Events of pointers that do.
-const POINTER: &str = "gesturechange gestureend gesturestart mousedown mouseleave mousemove mouseup pointercancel \
-    pointerdown pointerleave pointermove pointerup touchcancel touchend touchmove touchstart wheel";
+const EVENTS: &str = "beforeinput blur compositionend compositionstart compositionupdate copy cut \
+    dragend dragenter dragleave dragover drop focus hashchange input keydown load pagehide \
+    pageshow paste popstate resize scroll visibilitychange";
+/// Events of pointers that call for a frame.
+const POINTER: &str = "gesturechange gestureend gesturestart mousedown mouseleave mousemove \
+    mouseup pointercancel pointerdown pointerleave pointermove pointerup touchcancel touchend \
+    touchmove touchstart wheel";
 /// Events that can wait for the next frame.
 const LATER: &str = "keyup";
 
@@ -65,21 +66,21 @@ struct Frames {
     due: f64,
     /// Time at which waiting requests get their frame in any case.
     latest: f64,
-    /// Whether each frame keeps the tracer waiting, …
-    dear: bool,
-    /// … but for this time.
+    /// Whether frames are slow, so that each keeps the tracer waiting.
+    slow: bool,
+    /// Time until which frames do not count as slow.
     lively: f64,
-    /// When the last frame was given.
+    /// Time of the last frame that was given.
     last: f64,
     /// Whether a frame was given that has not come yet.
     coming: bool,
-    /// The timer that wakes the page, and when.
+    /// The timer that wakes the page, and its time.
     timer: Option<(i32, f64)>,
     on_timer: Closure<dyn FnMut()>,
 }
 
-/// Takes over the page's animation frames, once. Without a window or a clock nothing is done.
-pub fn rest() {
+/// Takes over the page's animation frames, once. Does nothing without a window or a clock.
+pub fn take_over() {
     if FRAMES.with_borrow(Option::is_some) {
         return;
     }
@@ -105,22 +106,22 @@ pub fn rest() {
     let listen = |events: &str, act: fn(&mut Frames)| {
         let listener = Closure::<dyn FnMut()>::new(move || with(act)).into_js_value();
         for event in events.split_whitespace() {
-            // Before anyone who might keep it to himself. One that is missed is drawn a little
-            // later.
+            // In the capturing phase, before anyone can stop the event. One that is missed is drawn
+            // a little later.
             let listener = listener.unchecked_ref();
             let _ = window.add_event_listener_with_callback_and_bool(event, listener, true);
         }
     };
-    listen(EVENTS, Frames::happened);
+    listen(EVENTS, Frames::hurry);
     listen(POINTER, |frames| {
         frames.lively = frames.now() + LIVELY;
-        frames.happened();
+        frames.hurry();
     });
     listen(LATER, |frames| frames.want(Duration::ZERO));
     let on_timer = Closure::new(|| {
         with(|frames| {
             frames.timer = None;
-            frames.look();
+            frames.schedule();
         });
     });
     FRAMES.set(Some(Frames {
@@ -133,7 +134,7 @@ pub fn rest() {
         left: TOGETHER,
         due: f64::INFINITY,
         latest: f64::INFINITY,
-        dear: false,
+        slow: false,
         lively: f64::NEG_INFINITY,
         last: f64::NEG_INFINITY,
         coming: false,
@@ -147,19 +148,19 @@ pub fn watch(context: &egui::Context) {
     context.set_repaint_observer(|info| with(|frames| frames.want(info.delay)));
 }
 
-/// egui begins to draw: what it wanted before that does not count any more, as eframe sees it, too.
-pub fn begun() {
+/// Forgets requests that egui made before it begins to draw, as eframe does, too.
+pub fn begin() {
     with(|frames| frames.due = f64::INFINITY);
 }
 
-/// Says whether each frame keeps the tracer waiting from now on.
-pub fn dear(dear: bool) {
+/// Sets whether each frame keeps the tracer waiting from now on.
+pub fn set_slow(slow: bool) {
     with(|frames| {
-        if dear && !frames.dear && frames.left > 0 && frames.now() >= frames.lively {
+        if slow && !frames.slow && frames.left > 0 && frames.now() >= frames.lively {
             frames.left = 0;
             frames.due = frames.due.min(frames.last + PACE);
         }
-        frames.dear = dear;
+        frames.slow = slow;
     });
 }
 
@@ -174,42 +175,42 @@ impl Frames {
             .map_or(0.0, |performance| performance.now())
     }
 
-    /// egui requests a frame after a delay.
+    /// Takes egui's request for a frame after a delay.
     fn want(&mut self, delay: Duration) {
         let now = self.now();
         if !delay.is_zero() {
             // Not a moment before eframe finds that it is time.
             self.due = self.due.min(now + 1000.0 * delay.as_secs_f64() + 1.0);
-        } else if self.dear && now >= self.lively {
+        } else if self.slow && now >= self.lively {
             self.due = self.due.min(now.max(self.last + PACE));
         } else {
             self.left = TOGETHER;
         }
-        self.look();
+        self.schedule();
     }
 
-    /// Something happened that may be seen at once.
-    fn happened(&mut self) {
+    /// Gives a frame at once after an event that may change what is seen.
+    fn hurry(&mut self) {
         let now = self.now();
-        if !self.dear || now < self.lively {
+        if !self.slow || now < self.lively {
             self.left = TOGETHER;
         } else if !self.coming {
             self.due = self.due.min(now);
         }
-        self.look();
+        self.schedule();
     }
 
-    /// Registers a request for a frame; returns its number.
+    /// Registers a request for a frame. Returns its number.
     fn ask(&mut self, callback: Function) -> i32 {
         self.coming = false;
         self.number = self.number.wrapping_add(1);
         self.held.push_back((self.number, callback));
         self.latest = self.latest.min(self.now() + QUIET);
-        self.look();
+        self.schedule();
         self.number
     }
 
-    /// Someone does not want a frame any more.
+    /// Cancels a request by its number.
     fn withdraw(&mut self, number: i32) {
         self.held.retain(|(held, _)| *held != number);
         let given = self.given.iter().find(|(given, _)| *given == number);
@@ -219,8 +220,8 @@ impl Frames {
         }
     }
 
-    /// Runs the waiting requests, or schedules them for later.
-    fn look(&mut self) {
+    /// Gives waiting requests their frame, or schedules them for later.
+    fn schedule(&mut self) {
         if self.held.is_empty() {
             return;
         }

@@ -7,7 +7,7 @@ use crate::thumbnail::Thumbnail;
 use crate::{examples, places};
 use egui::{
     Align2, Button, Color32, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
-    Vec2, vec2,
+    Vec2, pos2, vec2,
 };
 
 /// The gallery's thumbnails, fetched when it is first opened, and the works.
@@ -19,14 +19,14 @@ pub struct Gallery {
     /// The saved works, read when the gallery opens.
     entries: Vec<Entry>,
     /// The work whose deletion waits for a second click.
-    doomed: Option<String>,
+    to_delete: Option<String>,
 }
 
 impl Gallery {
     /// Reads the list of saved works anew.
     pub fn refresh(&mut self, entries: Vec<Entry>) {
         self.entries = entries;
-        self.doomed = None;
+        self.to_delete = None;
         self.search.clear();
     }
 
@@ -81,8 +81,10 @@ impl Gallery {
     fn examples(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui.visuals());
         if self.thumbnails.is_empty() {
-            let fetch = |example: &examples::Example| Thumbnail::fetch(ui, example.thumbnail);
-            self.thumbnails = examples::ALL.iter().map(fetch).collect();
+            self.thumbnails = examples::ALL
+                .iter()
+                .map(|example| Thumbnail::fetch(ui, example.thumbnail))
+                .collect();
         }
         for thumbnail in &mut self.thumbnails {
             thumbnail.arrive(ui);
@@ -96,11 +98,9 @@ impl Gallery {
         let found: Vec<usize> = (0..examples::ALL.len())
             .filter(|&index| examples::ALL[index].matches(&words))
             .collect();
-        let of_same_group =
-            |&a: &usize, &b: &usize| examples::ALL[a].group == examples::ALL[b].group;
-        for group in found.chunk_by(of_same_group) {
-            let title = examples::ALL[group[0]].group;
-            ui.label(RichText::new(title).color(palette.weak));
+        let group_of = |index: &usize| examples::ALL[*index].group;
+        for group in found.chunk_by(|a, b| group_of(a) == group_of(b)) {
+            ui.label(RichText::new(group_of(&group[0])).color(palette.weak));
             for row in group.chunks(columns as usize) {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = gap;
@@ -119,12 +119,13 @@ impl Gallery {
         }
     }
 
-    /// The words of the search, in small letters.
+    /// Returns the words of the search, in lower case.
     fn words(&self) -> Vec<String> {
         let text = self.search.to_lowercase();
         text.split_whitespace().map(str::to_owned).collect()
     }
 
+    /// Shows the card of an example. Returns whether it was clicked.
     fn card(&self, ui: &mut Ui, index: usize, width: f32) -> bool {
         let palette = theme::palette(ui.visuals());
         let example = &examples::ALL[index];
@@ -139,10 +140,9 @@ impl Gallery {
         let place = Rect::from_min_size(rect.min, picture);
         if let Some(Thumbnail::Here(texture)) = self.thumbnails.get(index) {
             // The card's upper corners are round.
-            let corner = |is_there: bool| if is_there { 8 } else { 0 };
             let corners_of = |rect: Rect| CornerRadius {
-                nw: corner(rect.min == place.min),
-                ne: corner(rect.right_top() == place.right_top()),
+                nw: 8 * u8::from(rect.min == place.min),
+                ne: 8 * u8::from(rect.right_top() == place.right_top()),
                 sw: 0,
                 se: 0,
             };
@@ -181,11 +181,11 @@ impl Gallery {
     fn works(&mut self, ui: &mut Ui, open: Option<&str>, now: f64, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui.visuals());
         let words = self.words();
-        let is_found = |entry: &&Entry| {
+        for entry in &self.entries {
             let name = entry.name.to_lowercase();
-            words.iter().all(|word| name.contains(word))
-        };
-        for entry in self.entries.iter().filter(is_found) {
+            if !words.iter().all(|word| name.contains(word)) {
+                continue;
+            }
             let is_open = open == Some(entry.id.as_str());
             ui.horizontal(|ui| {
                 let name = if entry.name.is_empty() {
@@ -228,8 +228,8 @@ impl Gallery {
                         ui.label(RichText::new("open").color(palette.weak).size(12.5));
                         return;
                     }
-                    let doomed = self.doomed.as_ref() == Some(&entry.id);
-                    let (text, colour) = if doomed {
+                    let is_sure = self.to_delete.as_ref() == Some(&entry.id);
+                    let (text, colour) = if is_sure {
                         ("Really delete?", palette.error)
                     } else {
                         ("Delete", palette.weak)
@@ -237,10 +237,10 @@ impl Gallery {
                     let button = Button::new(RichText::new(text).color(colour).size(12.5))
                         .fill(Color32::TRANSPARENT);
                     if ui.add(button).clicked() {
-                        if doomed {
+                        if is_sure {
                             commands.push(Command::Delete(entry.id.clone()));
                         }
-                        self.doomed = Some(entry.id.clone());
+                        self.to_delete = Some(entry.id.clone());
                     }
                 });
             });
@@ -248,8 +248,8 @@ impl Gallery {
     }
 }
 
-/// The largest rectangle of a picture's proportions in the middle of a place; the place itself if
-/// they are nearly the same.
+/// Returns the largest rectangle of a picture's proportions in the middle of a place; the place
+/// itself if they are nearly the same.
 pub(crate) fn contain(picture: Vec2, place: Rect) -> Rect {
     let scale = (place.width() / picture.x.max(1.0)).min(place.height() / picture.y.max(1.0));
     let size = picture * scale;
@@ -260,7 +260,7 @@ pub(crate) fn contain(picture: Vec2, place: Rect) -> Rect {
     }
 }
 
-/// How long ago, in words.
+/// Returns an age in words.
 fn ago(milliseconds: f64) -> String {
     let minutes = (milliseconds / 60_000.0).max(0.0);
     if minutes < 1.0 {
@@ -274,24 +274,23 @@ fn ago(milliseconds: f64) -> String {
     }
 }
 
-/// The two strips of free space beside a picture in a place, each with the texture coordinates of
-/// the nearest column or row of the picture.
+/// Returns the two strips of free space beside a picture in a place, each with the texture
+/// coordinates of the nearest column or row of the picture.
 fn strips(inner: Rect, place: Rect, size: egui::Vec2) -> [(Rect, Rect); 2] {
     let [column, row] = [0.5 / size.x, 0.5 / size.y];
-    let edge = |from: [f32; 2], to: [f32; 2]| Rect::from_min_max(from.into(), to.into());
     if inner.width() < place.width() {
         let [left, right] = [
             place.with_max_x(inner.left()),
             place.with_min_x(inner.right()),
         ];
-        let at = |x: f32| edge([x, 0.0], [x, 1.0]);
+        let at = |x| Rect::from_min_max(pos2(x, 0.0), pos2(x, 1.0));
         [(left, at(column)), (right, at(1.0 - column))]
     } else {
         let [above, below] = [
             place.with_max_y(inner.top()),
             place.with_min_y(inner.bottom()),
         ];
-        let at = |y: f32| edge([0.0, y], [1.0, y]);
+        let at = |y| Rect::from_min_max(pos2(0.0, y), pos2(1.0, y));
         [(above, at(row)), (below, at(1.0 - row))]
     }
 }
@@ -299,7 +298,6 @@ fn strips(inner: Rect, place: Rect, size: egui::Vec2) -> [(Rect, Rect); 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui::pos2;
 
     #[test]
     fn thumbnails_are_seen_whole() {

@@ -1,22 +1,30 @@
 //! The page handle: `window.sinew`, for scripts of a page that embeds Sinew and for tests.
 //!
-//! | member | what it does |
-//! |---|---|
-//! | `ready` | promise, resolved when the app runs; rejected with the reason when it cannot start |
-//! | `load(text)`, `load({name: text, …})` | opens texts (the first one is run) like an example: the user's own work is kept; promise, resolved when they are compiled, rejected when they are too long |
-//! | `take({name: text or Uint8Array, …})` | takes in texts, images, meshes and projects (.zip) as if they were dropped on the page |
-//! | `text()` | the text of the first file |
-//! | `files()` | all texts, as `{name: text, …}` |
-//! | `status()` | the state, see below |
-//! | `finished()` | promise of a `status()`, resolved when the picture of the present text, camera and size is finished or was stopped; rejected while the lab keeps that picture waiting |
-//! | `image()` | promise of a PNG `Blob` of the traced picture as it is now; rejected while there is none |
-//! | `mesh({format, tolerance, size, union, rig})` | promise of a `Uint8Array`: the model as a file of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`, `tolerance` the largest distance from the surface as a part of the longest side (0.0015), `size` the longest side in millimetres (100), `union` whether bodies that overlap become one, `rig` (GLB only) whether skeletons become joints and the film an animation |
-//! | `link()` | the full address that Share copies |
-//! | `camera()` | `{eye, target, up, fov}` in use |
-//! | `setCamera(camera)` | looks from there; `null` goes back to the camera of the text |
-//! | `cancel()`, `render()` | stops the picture; traces it again |
-//! | `lab()` | the open lesson of the lab, see below; null in the editor |
-//! | `sculpture()` | the sculpture that is worked on: `{name, counts: [vertices, faces], depth: [undo, redo]}`; null in the editor |
+//! - `ready`: promise, resolved when the app runs; rejected with the reason when it cannot start
+//! - `load(text)`, `load({name: text, …})`: opens texts (the first one is run) like an example: the
+//!   user's own work is kept; promise, resolved when they are compiled, rejected when they are too
+//!   long
+//! - `take({name: text or Uint8Array, …})`: takes in texts, images, meshes and projects (.zip) as
+//!   if they were dropped on the page
+//! - `text()`: the text of the first file
+//! - `files()`: all texts, as `{name: text, …}`
+//! - `status()`: the state, see below
+//! - `finished()`: promise of a `status()`, resolved when the picture of the present text, camera
+//!   and size is finished or was stopped; rejected while the lab keeps that picture waiting
+//! - `image()`: promise of a PNG `Blob` of the traced picture as it is now; rejected while there is
+//!   none
+//! - `mesh({format, tolerance, size, union, rig})`: promise of a `Uint8Array`: the model as a file
+//!   of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`,
+//!   `tolerance` the largest distance from the surface as a part of the longest side (0.0015),
+//!   `size` the longest side in millimetres (100), `union` whether bodies that overlap become one,
+//!   `rig` (GLB only) whether skeletons become joints and the film an animation
+//! - `link()`: the full address that Share copies
+//! - `camera()`: `{eye, target, up, fov}` in use
+//! - `setCamera(camera)`: looks from there; `null` goes back to the camera of the text
+//! - `cancel()`, `render()`: stops the picture; traces it again
+//! - `lab()`: the open lesson of the lab, see below; null in the editor
+//! - `sculpture()`: the sculpture that is worked on: `{name, counts: [vertices, faces], depth:
+//!   [undo, redo]}`; null in the editor
 //!
 //! `status()` gives `phase` (`"idle"`, `"waiting"` for a pause in typing, `"tracing"`, `"done"`,
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null),
@@ -50,7 +58,7 @@
 //! which stops the program as a mistake in it would.
 
 use crate::app::Parts;
-use crate::intake::Taken;
+use crate::intake::Incoming;
 use crate::mesh_export::Order;
 use crate::picture;
 use crate::platform;
@@ -60,7 +68,7 @@ use js_sys::{Function, JSON, Object, Promise, Reflect};
 use rats::{File, Project};
 use wasm_bindgen::prelude::*;
 
-/// Makes `window.sinew`. What is given back rejects `ready`.
+/// Makes `window.sinew`. Returns the function that rejects `ready`.
 ///
 /// # Errors
 /// If the window takes no new property.
@@ -89,17 +97,16 @@ fn texts(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     method(sinew, "load", move |texts, _| {
         let project = project(&texts)?;
         Ok(promise(|yes, no| {
-            let answer = move |result: Result<(), String>| match result {
+            let answer = Box::new(move |result: Result<(), String>| match result {
                 Ok(()) => call(&yes, &JsValue::UNDEFINED),
                 Err(reason) => call(&no, &js_sys::Error::new(&reason)),
-            };
-            p.requests
-                .ask(Request::Load(project.clone(), Box::new(answer)));
+            });
+            p.requests.ask(Request::Load(project.clone(), answer));
         }))
     })?;
     let p = parts.clone();
     method(sinew, "take", move |files, _| {
-        p.requests.ask(Request::Files(taken(&files)?));
+        p.requests.ask(Request::Files(self::files(&files)?));
         Ok(JsValue::UNDEFINED)
     })?;
     let p = parts.clone();
@@ -162,11 +169,11 @@ fn state(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     method(sinew, "mesh", move |order, _| {
         let order = order_of(&order)?;
         Ok(promise(|yes, no| {
-            let answer = move |result: Result<Vec<u8>, String>| match result {
+            let answer = Box::new(move |result: Result<Vec<u8>, String>| match result {
                 Ok(bytes) => call(&yes, &js_sys::Uint8Array::from(&bytes[..])),
                 Err(reason) => call(&no, &js_sys::Error::new(&reason)),
-            };
-            p.requests.ask(Request::Mesh(order, Box::new(answer)));
+            });
+            p.requests.ask(Request::Mesh(order, answer));
         }))
     })?;
     let p = parts.clone();
@@ -267,13 +274,12 @@ fn to_js(value: &impl serde::Serialize) -> Result<JsValue, JsValue> {
     JSON::parse(&json)
 }
 
-/// A mesh that a script asks for.
+/// Returns the mesh that a script asks for.
 fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     let mut order = Order::default();
     if options.is_undefined() || options.is_null() {
         return Ok(order);
     }
-    let wrong = |what: &str| js_sys::TypeError::new(what);
     let part = |name: &str| {
         let value = Reflect::get(options, &name.into())?;
         Ok::<_, JsValue>((!value.is_undefined()).then_some(value))
@@ -281,7 +287,8 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     if let Some(format) = part("format")? {
         let name = format.as_string().unwrap_or_default();
         let format = mesh::Format::of_name(&format!("model.{name}"));
-        order.format = format.ok_or_else(|| wrong("format is one of stl, 3mf, glb, obj, ply"))?;
+        order.format = format
+            .ok_or_else(|| js_sys::TypeError::new("format is one of stl, 3mf, glb, obj, ply"))?;
     }
     for (name, place) in [
         ("tolerance", &mut order.tolerance),
@@ -289,7 +296,8 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     ] {
         if let Some(number) = part(name)? {
             let number = number.as_f64();
-            *place = number.ok_or_else(|| wrong("tolerance and size are numbers"))?;
+            *place =
+                number.ok_or_else(|| js_sys::TypeError::new("tolerance and size are numbers"))?;
         }
     }
     for (name, place) in [("union", &mut order.union), ("rig", &mut order.rig)] {
@@ -300,7 +308,7 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     Ok(order)
 }
 
-/// Texts given by a script as a project.
+/// Returns the project of texts that a script gives.
 fn project(texts: &JsValue) -> Result<Project, JsValue> {
     let file = |name: String, text: String| File { name, text };
     if let Some(text) = texts.as_string() {
@@ -323,7 +331,8 @@ fn project(texts: &JsValue) -> Result<Project, JsValue> {
     Ok(Project { files })
 }
 
-fn taken(files: &JsValue) -> Result<Vec<Taken>, JsValue> {
+/// Returns the files that a script gives.
+fn files(files: &JsValue) -> Result<Vec<Incoming>, JsValue> {
     let wrong = || js_sys::TypeError::new("take() takes an object {name: text or Uint8Array, …}");
     let object = files.dyn_ref::<Object>().ok_or_else(wrong)?;
     let mut taken = Vec::new();
@@ -335,7 +344,7 @@ fn taken(files: &JsValue) -> Result<Vec<Taken>, JsValue> {
             (None, None) => return Err(wrong().into()),
         };
         let name = name.as_string().ok_or_else(wrong)?;
-        taken.push(Taken {
+        taken.push(Incoming {
             name,
             bytes: Ok(bytes),
         });

@@ -9,7 +9,7 @@ use egui::{RichText, ScrollArea, Ui};
 const LANGUAGE: [(&str, &str); 9] = [
     (
         "surface flesh, diffuse Coral, specular White, shine 40, blobbiness -2",
-        "a material; blobbiness makes what is made of it soft",
+        "a material; blobbiness makes its shapes soft",
     ),
     ("sphere flesh 0.5, 0 0 0", "a ball: radius, centre"),
     (
@@ -33,7 +33,7 @@ const LANGUAGE: [(&str, &str); 9] = [
         "for i = 1 to 10 { sphere flesh 0.2, i/4 0 0 }",
         "repeats; numbers can be computed: 2*r, sin(i), rand(i)",
     ),
-    ("# words", "a remark"),
+    ("# words", "a comment"),
 ];
 
 const KEYS: [(&str, &str); 15] = [
@@ -45,16 +45,16 @@ const KEYS: [(&str, &str); 15] = [
         "find it in the text; its knobs move its numbers",
     ),
     (
-        "Shift with a knob, Page Up and Page Down",
+        "Shift-drag a knob, Page Up and Page Down",
         "move it away from you and back",
     ),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
-    ("Ctrl+/", "turn lines into remarks and back"),
+    ("Ctrl+/", "turn lines into comments and back"),
     ("Tab, Shift+Tab", "indent"),
     ("Ctrl+Space", "what can be written here"),
     ("F1", "the manual of the command at the caret"),
-    ("F12, Ctrl+click", "go to where a name is made"),
-    ("F2", "give a name another one, everywhere"),
+    ("F12, Ctrl+click", "go to where a name is defined"),
+    ("F2", "rename it everywhere"),
     ("F8", "fold the block at the caret, or unfold it"),
     ("Ctrl+Shift+F", "lay the text out neatly"),
     ("Ctrl+S", "save the picture as PNG"),
@@ -63,10 +63,10 @@ const KEYS: [(&str, &str); 15] = [
 /// Page of the help.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Page {
-    /// A few words for a beginning.
+    /// An introduction.
     #[default]
     Words,
-    /// All commands.
+    /// The reference of all commands.
     Reference,
 }
 
@@ -131,8 +131,8 @@ fn words(ui: &mut Ui, mut hints: bool, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     ui.label(
         "A model is a text: a list of shapes made of materials. Soft shapes melt into each \
-                 other where they come near. Change a number and the picture follows; the link \
-                 behind Share carries everything.",
+            other where they come near. Change a number and the picture follows; the link \
+            behind Share carries everything.",
     );
     heading(ui, "Words");
     for (code, meaning) in LANGUAGE {
@@ -167,7 +167,7 @@ fn words(ui: &mut Ui, mut hints: bool, commands: &mut Vec<Command>) {
     if ui
         .checkbox(
             &mut hints,
-            "While writing, show how the command at the caret is written",
+            "While typing, show how the command at the caret is written",
         )
         .changed()
     {
@@ -175,10 +175,10 @@ fn words(ui: &mut Ui, mut hints: bool, commands: &mut Vec<Command>) {
     }
     heading(ui, "Yours");
     ui.label(
-                "What you write stays in this browser, under My work in the gallery. A link that \
-                 someone sends you never overwrites it. Texts, images and meshes can be dropped on the \
-                 page; links carry the texts.",
-            );
+        "What you write stays in this browser, under My work in the gallery. A link that \
+            someone sends you never overwrites it. Texts, images and meshes can be dropped on \
+            the page; links carry the texts.",
+    );
 }
 
 fn heading(ui: &mut Ui, text: &str) {

@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 pub const QUIET: f64 = 0.5;
 /// Steps kept.
 pub const MAX_STEPS: usize = 300;
-/// Bytes kept, as told by [`Snapshot::bytes`].
+/// Bytes kept, as [`Snapshot::bytes`] counts them.
 pub const MAX_BYTES: usize = 16 << 20;
 
 /// Something that can be put back.
 pub trait Snapshot: Clone + PartialEq {
-    /// About how much memory it takes.
+    /// Returns about how many bytes of memory it takes.
     fn bytes(&self) -> usize;
 }
 
@@ -24,7 +24,7 @@ pub trait Snapshot: Clone + PartialEq {
 pub struct History<T> {
     past: Vec<T>,
     future: Vec<T>,
-    /// When the last edit of the step that is still open was made.
+    /// Time of the last edit of the step that is still open, seconds.
     #[serde(skip)]
     open: Option<f64>,
     #[serde(skip)]
@@ -56,7 +56,7 @@ impl<T: Snapshot> History<T> {
         self.open = Some(now);
     }
 
-    /// From now on all edits belong to one step, which starts with the next edit.
+    /// Makes all edits until [`History::release`] one step, which starts with the next edit.
     pub fn hold(&mut self) {
         if !self.held {
             self.open = None;
@@ -64,7 +64,7 @@ impl<T: Snapshot> History<T> {
         }
     }
 
-    /// Ends what [`History::hold`] began.
+    /// Ends the step that [`History::hold`] began.
     pub fn release(&mut self) {
         if self.held {
             self.held = false;
@@ -72,22 +72,22 @@ impl<T: Snapshot> History<T> {
         }
     }
 
-    /// The next edit starts a new step, however soon it comes.
+    /// Ends the step, so that the next edit starts a new one, however soon it comes.
     pub fn close(&mut self) {
         self.open = None;
     }
 
-    /// Goes one step back: gives the state to put in place of `present`.
+    /// Goes one step back. Returns the state to put in place of `present`.
     pub fn undo(&mut self, present: &T) -> Option<T> {
         Self::step(&mut self.past, &mut self.future, &mut self.open, present)
     }
 
-    /// Takes back an [`History::undo`].
+    /// Goes one step forward again after [`History::undo`].
     pub fn redo(&mut self, present: &T) -> Option<T> {
         Self::step(&mut self.future, &mut self.past, &mut self.open, present)
     }
 
-    /// The states that [`History::undo`] and [`History::redo`] would go to.
+    /// Returns the states that [`History::undo`] and [`History::redo`] would go to.
     #[must_use]
     pub fn next(&self) -> [Option<&T>; 2] {
         [self.past.last(), self.future.last()]
@@ -105,7 +105,7 @@ impl<T: Snapshot> History<T> {
         !self.future.is_empty()
     }
 
-    /// A copy that takes at most `bytes`, for keeping: the steps nearest to the present.
+    /// Returns a copy of at most `bytes` to store: the steps nearest to the present.
     #[must_use]
     pub fn within(&self, bytes: usize) -> Self {
         let mut left = bytes;

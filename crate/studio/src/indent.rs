@@ -33,7 +33,7 @@ fn each_line(
     )
 }
 
-/// Tab: two blanks, or all selected lines moved to the right.
+/// Acts on Tab: adds two blanks, or moves all selected lines to the right.
 #[must_use]
 pub fn tab(text: &str, selection: std::ops::Range<usize>) -> Edited {
     if text[selection.clone()].contains('\n') {
@@ -56,7 +56,7 @@ pub fn tab(text: &str, selection: std::ops::Range<usize>) -> Edited {
     )
 }
 
-/// Shift+Tab: the touched lines moved to the left.
+/// Acts on Shift+Tab: moves the touched lines to the left.
 #[must_use]
 pub fn back_tab(text: &str, selection: std::ops::Range<usize>) -> Edited {
     let single = !text[selection.clone()].contains('\n');
@@ -78,7 +78,7 @@ pub fn back_tab(text: &str, selection: std::ops::Range<usize>) -> Edited {
     (edited, selected)
 }
 
-/// Enter: a new line that begins like the one it leaves, one step deeper after `{`.
+/// Acts on Enter: begins a line with the indentation of the one before, one step deeper after `{`.
 #[must_use]
 pub fn enter(text: &str, selection: std::ops::Range<usize>) -> Edited {
     let line = &text[line_start(text, selection.start)..selection.start];
@@ -99,7 +99,7 @@ pub fn enter(text: &str, selection: std::ops::Range<usize>) -> Edited {
     )
 }
 
-/// `}`: on a line of blanks it moves one step to the left, to stand below what it closes.
+/// Acts on `}`: on a line of blanks it goes one step to the left, below the line that it closes.
 #[must_use]
 pub fn brace(text: &str, selection: std::ops::Range<usize>) -> Edited {
     let start = line_start(text, selection.start);
@@ -115,7 +115,7 @@ pub fn brace(text: &str, selection: std::ops::Range<usize>) -> Edited {
     )
 }
 
-/// Ctrl+/: comments the touched lines out, or in again if all of them are comments.
+/// Acts on Ctrl+/: comments the touched lines out, or in again if all of them are comments.
 #[must_use]
 pub fn comment(text: &str, selection: std::ops::Range<usize>) -> Edited {
     let start = line_start(text, selection.start);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_go_and_come() {
+    fn comments_come_and_go() {
         let (out, selected) = comment("a\n  b\n", 0..4);
         assert_eq!(out, "# a\n  # b\n");
         assert_eq!(comment(&out, selected).0, "a\n  b\n");

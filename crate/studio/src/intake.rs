@@ -1,5 +1,5 @@
-//! Files that the user drops on the page or opens: which become texts of the work, which become
-//! images and meshes beside it, and which are refused, with the reason.
+//! Files that the user drops on the page or opens, sorted into texts of the work, images and meshes
+//! beside it, measured points, and refused files with the reason.
 
 use crate::asset::{self, Asset, MAX_ASSET};
 use crate::project_file;
@@ -12,16 +12,18 @@ const TEXTS: [&str; 6] = ["rat", "art", "ice", "dat", "txt", "strokes"];
 /// Extensions of measured points and outlines, beside PLY files without faces.
 const MEASURED: [&str; 2] = ["xyz", "json"];
 /// The kinds of files that are accepted, in words.
-pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif .mtv), meshes (.obj .ply .stl .glb), points to fit to (.ply .xyz), outlines (.json) and projects (.zip)";
-/// Files that are read at once.
+pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif \
+    .mtv), meshes (.obj .ply .stl .glb), points to fit to (.ply .xyz), outlines (.json) and \
+    projects (.zip)";
+/// Most files that are read at once.
 pub const MOST: usize = 32;
 
 /// A file from outside.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Taken {
-    /// Its name, perhaps with folders before it.
+pub struct Incoming {
+    /// The name, perhaps with folders before it.
     pub name: String,
-    /// Its content, or why it could not be read.
+    /// The content, or why it could not be read.
     pub bytes: Result<Vec<u8>, String>,
 }
 
@@ -34,14 +36,14 @@ pub struct Sorted {
     pub assets: Vec<Asset>,
     /// Measured points and outlines: names and contents.
     pub measured: Vec<(String, Vec<u8>)>,
-    /// Why some were left out, a sentence each.
+    /// A sentence for each file that was refused: its name and the reason.
     pub refused: Vec<String>,
 }
 
-/// Whether a file of this size is read at all.
+/// Checks the size of a file by the limit for its kind.
 ///
 /// # Errors
-/// Says the limit.
+/// If it is larger; the message says the limit.
 pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
     let (most, what) = if project_file::is_project(name) {
         (project_file::MAX_BYTES, "a project")
@@ -53,36 +55,33 @@ pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
     if bytes > most as f64 {
         let size = asset::size(bytes as usize);
         return Err(format!(
-            "it has {size} and {what} may have {}",
+            "it has {size}, and {what} may have {}",
             asset::size(most)
         ));
     }
     Ok(())
 }
 
-/// Sorts files from outside. Their folders are forgotten.
+/// Sorts files from outside. Their folders are dropped.
 #[must_use]
-pub fn sort(taken: Vec<Taken>) -> Sorted {
-    let last = |name: &str| {
-        name.rsplit(['/', '\\'])
-            .next()
-            .unwrap_or_default()
-            .to_owned()
-    };
-    let plain = taken.into_iter().map(|file| Taken {
-        name: plain_name(&last(&file.name)),
-        ..file
+pub fn sort(files: Vec<Incoming>) -> Sorted {
+    let plain = files.into_iter().map(|file| {
+        let last = file.name.rsplit(['/', '\\']).next();
+        Incoming {
+            name: plain_name(last.unwrap_or_default()),
+            ..file
+        }
     });
     sort_named(plain.collect(), MOST)
 }
 
 /// Sorts files of an archive. They keep their folders.
 #[must_use]
-pub fn sort_archive(taken: Vec<Taken>) -> Sorted {
-    let plain = taken.into_iter().map(|file| {
+pub fn sort_archive(files: Vec<Incoming>) -> Sorted {
+    let plain = files.into_iter().map(|file| {
         let parts = file.name.split(['/', '\\']).map(plain_name);
         let parts = parts.filter(|part| !part.chars().all(|c| c == '.'));
-        Taken {
+        Incoming {
             name: parts.collect::<Vec<_>>().join("/"),
             ..file
         }
@@ -90,9 +89,9 @@ pub fn sort_archive(taken: Vec<Taken>) -> Sorted {
     sort_named(plain.collect(), project_file::MOST)
 }
 
-fn sort_named(taken: Vec<Taken>, most: usize) -> Sorted {
+fn sort_named(files: Vec<Incoming>, most: usize) -> Sorted {
     let mut sorted = Sorted::default();
-    for (index, file) in taken.into_iter().enumerate() {
+    for (index, file) in files.into_iter().enumerate() {
         let name = file.name;
         let outcome = if index >= most {
             Err(format!("only {most} files are taken at once"))
@@ -111,15 +110,14 @@ fn sort_named(taken: Vec<Taken>, most: usize) -> Sorted {
         .iter()
         .flat_map(|file| rats::reads(&file.text))
         .collect();
-    let is_read = |file: &File| {
-        let own = |wanted: &String| {
-            let ends = file.name.strip_suffix(wanted.trim_start_matches("./"));
-            ends.is_some_and(|before| before.is_empty() || before.ends_with('/'))
-        };
-        read.iter().any(own)
-    };
-    let run = |file: &File| !is_read(file) && !rats::is_strokes(&file.name);
-    if let Some(first) = sorted.texts.iter().position(run) {
+    let first = sorted.texts.iter().position(|file| {
+        let is_read = read.iter().any(|wanted| {
+            let folders = file.name.strip_suffix(wanted.trim_start_matches("./"));
+            folders.is_some_and(|folders| folders.is_empty() || folders.ends_with('/'))
+        });
+        !is_read && !rats::is_strokes(&file.name)
+    });
+    if let Some(first) = first {
         sorted.texts[..=first].rotate_right(1);
     }
     sorted
@@ -136,10 +134,10 @@ pub fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// An image or a mesh of a work.
+/// Makes an image or a mesh of a work.
 ///
 /// # Errors
-/// If it is too large, or not what its name says.
+/// If it is too large, or not of the format that its name says.
 pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
     check_length(name, bytes.len() as f64)?;
     let asset = Asset {
@@ -150,6 +148,7 @@ pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
     Ok(asset)
 }
 
+/// Adds a file to those of its kind, or says why it is refused.
 fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     check_length(name, bytes.len() as f64)?;
     let extension = asset::extension(name);
@@ -172,29 +171,31 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether the heading of a PLY file tells of faces, or is none.
+/// Whether a file is no cloud of points: the header of a PLY file lists faces, or is damaged.
 fn has_faces(bytes: &[u8]) -> bool {
-    let head = &bytes[..bytes.len().min(1 << 16)];
-    let head = String::from_utf8_lossy(head);
-    let heading = head.split("end_header").next().unwrap_or_default();
-    let mut lines = heading.lines();
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
+    let header = start.split("end_header").next().unwrap_or_default();
+    let mut lines = header.lines();
     let is_ply = lines.next().is_some_and(|line| line.trim() == "ply");
-    let has_vertices = heading.contains("element vertex");
+    let has_vertices = header.contains("element vertex");
     let faces = lines.find_map(|line| line.trim().strip_prefix("element face"));
     !is_ply || !has_vertices || faces.is_some_and(|count| count.trim() != "0")
 }
 
-/// A name, or a part of one between folders, in letters that a text can name it by.
+/// Returns a name, or a part of one between folders, with a hyphen for each character that a name
+/// in a text cannot have.
 fn plain_name(name: &str) -> String {
-    let plain = |c: char| match c {
-        '.' | '_' | '-' => c,
-        c if c.is_alphanumeric() => c,
-        _ => '-',
-    };
-    name.trim().chars().map(plain).collect()
+    let letters = name.trim().chars();
+    letters
+        .map(|c| match c {
+            '.' | '_' | '-' => c,
+            c if c.is_alphanumeric() => c,
+            _ => '-',
+        })
+        .collect()
 }
 
-/// A text in UTF-8, or in Latin-1 as old datasets are; `None` if it is none.
+/// Decodes a text in UTF-8, or in Latin-1 as old datasets are; `None` if the file is binary.
 fn text(bytes: Vec<u8>) -> Option<String> {
     if bytes.contains(&0) {
         return None;
@@ -211,8 +212,8 @@ fn text(bytes: Vec<u8>) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn taken(name: &str, bytes: &[u8]) -> Taken {
-        Taken {
+    fn file(name: &str, bytes: &[u8]) -> Incoming {
+        Incoming {
             name: name.to_owned(),
             bytes: Ok(bytes.to_vec()),
         }
@@ -221,9 +222,9 @@ mod tests {
     #[test]
     fn the_text_that_no_other_reads_is_run() {
         let sorted = sort(vec![
-            taken("a/leg.rat", b"sphere a 1, 0 0 0\r\n"),
-            taken("body.rat", b"read leg.rat\n"),
-            taken("mö (bel).txt", b"# \xe4"),
+            file("a/leg.rat", b"sphere a 1, 0 0 0\r\n"),
+            file("body.rat", b"read leg.rat\n"),
+            file("mö (bel).txt", b"# \xe4"),
         ]);
         let names: Vec<&str> = sorted.texts.iter().map(|file| file.name.as_str()).collect();
         assert_eq!(names, ["body.rat", "leg.rat", "mö--bel-.txt"]);
@@ -234,19 +235,17 @@ mod tests {
 
     #[test]
     fn points_are_measured_and_meshes_are_assets() {
-        let heading = |faces: &str| {
-            format!(
-                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{faces}end_header\n0 0 0\n1 0 0\n0 1 0\n"
-            )
-        };
-        let cloud = heading("");
-        let mesh =
-            heading("element face 1\nproperty list uchar int vertex_indices\n") + "3 0 1 2\n";
+        let start = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n\
+            property float y\nproperty float z\n";
+        let points = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+        let faces = "element face 1\nproperty list uchar int vertex_indices\n";
+        let cloud = format!("{start}{points}");
+        let mesh = format!("{start}{faces}{points}3 0 1 2\n");
         let sorted = sort(vec![
-            taken("cloud.ply", cloud.as_bytes()),
-            taken("mesh.ply", mesh.as_bytes()),
-            taken("a/b.xyz", b"0 0 0\n"),
-            taken("o.json", b"[]"),
+            file("cloud.ply", cloud.as_bytes()),
+            file("mesh.ply", mesh.as_bytes()),
+            file("a/b.xyz", b"0 0 0\n"),
+            file("o.json", b"[]"),
         ]);
         let names: Vec<&str> = sorted.measured.iter().map(|m| m.0.as_str()).collect();
         assert_eq!(names, ["cloud.ply", "b.xyz", "o.json"]);
@@ -255,23 +254,23 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_taken_is_told() {
-        let unread = Taken {
+    fn reasons_of_refusal_are_given() {
+        let unread = Incoming {
             name: String::from("b.rat"),
             bytes: Err(String::from("it could not be read")),
         };
         let long = vec![b' '; MAX_TEXT + 1];
         let sorted = sort(vec![
-            taken("a.gif", b"GIF"),
-            taken("a.rat", b"\0"),
-            taken("a.png", b"GIF"),
-            taken("long.rat", &long),
-            taken("/", b""),
+            file("a.gif", b"GIF"),
+            file("a.rat", b"\0"),
+            file("a.png", b"GIF"),
+            file("long.rat", &long),
+            file("/", b""),
             unread,
         ]);
         assert_eq!((sorted.texts.len(), sorted.assets.len()), (0, 0));
         assert_eq!(sorted.refused.len(), 6, "{:?}", sorted.refused);
-        let many = (0..MOST + 3).map(|i| taken(&format!("{i}.rat"), b"# x"));
+        let many = (0..MOST + 3).map(|i| file(&format!("{i}.rat"), b"# x"));
         let sorted = sort(many.collect());
         assert_eq!((sorted.texts.len(), sorted.refused.len()), (MOST, 3));
     }

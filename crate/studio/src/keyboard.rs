@@ -1,7 +1,7 @@
-//! Keeps what a user does in order when much of it comes in one frame.
+//! Keeps input in order when much of it comes in one frame.
 //!
 //! A slow frame may bring a click, arrow keys, F2, "a" and Enter at once, and each of them is meant
-//! for what the one before has led to. Widgets see a frame's events all together, though, and some
+//! for the state after the one before. Widgets see a frame's events all together, though, and some
 //! keys (Enter, Tab, undo …) are handled by us before egui's text field sees the rest. So
 //! - such a key comes first in its frame, and keys after it wait for the next frame;
 //! - so do keys after a click or a key that may move the focus, and they wait a frame more, in
@@ -49,18 +49,18 @@ impl egui::Plugin for Keyboard {
     }
 }
 
-/// Where keys go.
+/// The receiver of keys.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Focus {
-    /// To a widget that may not have it for long enough.
+    /// A widget that may have had the focus too shortly.
     Moves,
-    /// To a widget.
+    /// A widget.
     Stays,
-    /// To none: each key is a command.
+    /// The app itself: each key is a command.
     Nowhere,
 }
 
-/// Returns how many of the events this frame gets.
+/// Returns the number of events that this frame gets.
 fn count(events: &[Event], focus: Focus) -> usize {
     let mut closed = focus == Focus::Moves;
     let mut written = false;
@@ -102,7 +102,7 @@ fn writes(event: &Event) -> bool {
     )
 }
 
-/// Whether it is a key that we handle before the text field does.
+/// Whether an event is a key that we handle before the text field does.
 fn is_ours(event: &Event) -> bool {
     if is_brace(event) {
         return true;

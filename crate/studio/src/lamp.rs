@@ -1,4 +1,4 @@
-//! A lamp for texts without any: they draw nearly black, and the page offers to add a `light`.
+//! A light for texts without any: their pictures are nearly black, and the page offers to add one.
 
 use crate::command::Command;
 use crate::session::Session;
@@ -8,27 +8,29 @@ use glam::DVec3;
 use rats::{Project, TextEdit};
 use scene::{Camera, Finish, Scene};
 
-/// Most ambient light at which a material counts as dark, in shares of its diffuse colour: what it
-/// has where the text says nothing.
+/// Most ambient light at which a material counts as dark, as a share of its diffuse colour: the
+/// share where the text gives none.
 const DARK: f32 = 1.01 * Finish::AMBIENT_SHARE;
 
 /// Whether nothing shines on a scene: no light, sky or cloud, and no element that glows by itself.
 #[must_use]
 pub fn is_dark(scene: &Scene) -> bool {
-    let glows = |finish: &Finish| {
-        let mut pairs = finish.ambient.iter().zip(&finish.diffuse);
-        pairs.any(|(ambient, diffuse)| *ambient > DARK * diffuse + 1e-3)
-    };
-    let finish = |index: u32| scene.finishes.get(index as usize);
-    let lit = !scene.lights.is_empty() || scene.sky.is_some() || !scene.clouds.is_empty();
-    !lit && !scene.elements.is_empty()
-        && !scene
-            .elements
-            .iter()
-            .any(|element| finish(element.finish).is_some_and(glows))
+    let is_lit = !scene.lights.is_empty() || scene.sky.is_some() || !scene.clouds.is_empty();
+    !is_lit
+        && !scene.elements.is_empty()
+        && !scene.elements.iter().any(|element| {
+            scene
+                .finishes
+                .get(element.finish as usize)
+                .is_some_and(|finish| {
+                    let mut pairs = finish.ambient.iter().zip(&finish.diffuse);
+                    pairs.any(|(ambient, diffuse)| *ambient > DARK * diffuse + 1e-3)
+                })
+        })
 }
 
-/// A text with a white light up and to the right behind the eye, before its `shoot` if it has one.
+/// Returns a text with a white light up and to the right behind the eye, before its `shoot` if it
+/// has one.
 #[must_use]
 pub fn with_light(text: &str, camera: &Camera) -> String {
     let back = camera.eye - camera.target;
@@ -57,10 +59,10 @@ pub fn with_light(text: &str, camera: &Camera) -> String {
     format!("{text}{gap}{line}")
 }
 
-/// The project's first text with a light that shines; `None` if adding one does not help, as where
-/// a block is not closed.
+/// Returns the project's first text with a light that shines; `None` if adding one does not help,
+/// as where a block is not closed.
 #[must_use]
-pub fn lit(session: &Session) -> Option<String> {
+pub fn light(session: &Session) -> Option<String> {
     let text = with_light(session.text(0), &session.camera());
     let mut project: Project = session.project().clone();
     project.files.first_mut()?.text.clone_from(&text);
@@ -68,7 +70,7 @@ pub fn lit(session: &Session) -> Option<String> {
     (!compiled.scene.lights.is_empty()).then_some(text)
 }
 
-/// The button on the picture of a dark scene.
+/// Shows the button that adds a light on the picture of a dark scene.
 pub fn show(ui: &mut Ui, picture: Rect, session: &Session, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let font = FontId::proportional(14.0);
@@ -92,14 +94,15 @@ pub fn show(ui: &mut Ui, picture: Rect, session: &Session, commands: &mut Vec<Co
     let at = place.center() - 0.5 * galley.size();
     ui.painter().galley(at, galley, palette.text);
     let clicked = response
-        .on_hover_text("Write a white lamp into the text, behind the eye")
+        .on_hover_text("Write a white light into the text, behind the eye")
         .on_hover_cursor(egui::CursorIcon::PointingHand)
         .clicked();
     if clicked {
-        commands.push(match lit(session) {
+        commands.push(match light(session) {
             Some(text) => Command::step(TextEdit::whole(0, text)),
             None => Command::Tell(String::from(
-                "A light at the end of this text would not shine: write one before its pictures are made.",
+                "A light at the end of this text would not shine: \
+                    write one before its pictures are made.",
             )),
         });
     }
@@ -118,7 +121,8 @@ mod tests {
         for text in [
             "surface s diffuse Gold, blob -2\nsphere s 1 0 0 0",
             "surface s diffuse Gold\r\nsphere s 1 0 0 0\r\nSHOOT\r\n",
-            "eyep 0 0 2000\nsurface s diffuse Gold, blob -2\nobject A\nsphere s 1 0 0 0\nclose\nshoot # now",
+            "eyep 0 0 2000\nsurface s diffuse Gold, blob -2\nobject A\nsphere s 1 0 0 0\nclose\n\
+                shoot # now",
         ] {
             let dark = scene(text);
             assert!(is_dark(&dark), "{text}");
@@ -131,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_glows_is_not_dark() {
+    fn glowing_and_empty_scenes_are_not_dark() {
         for text in [
             "",
             "light White position 1 2 3\nsurface s diffuse Gold\nsphere s 1 0 0 0",

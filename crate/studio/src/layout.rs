@@ -1,5 +1,5 @@
-//! Layout of the page. Wide: text on the left, picture on the right, with a split
-//! that can be dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
+//! Layout of the page. Wide: text on the left, picture on the right, with a split that can be
+//! dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
 
 use crate::app::{App, Dialog, StandIn, Tab};
 use crate::command::Command;
@@ -58,7 +58,7 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         .exact_size(if narrow { 40.0 } else { 32.0 })
         .frame(flat)
         .show(ui, |ui| {
-            let enabled = app.work.session.enabled();
+            let enabled = app.work.session.is_enabled();
             places::note(ui.ctx(), "status", ui.max_rect());
             let reading = app.reading.current();
             status::show(
@@ -72,7 +72,7 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             );
         });
     if narrow {
-        stacked(app, ui, commands);
+        narrow_page(app, ui, commands);
     } else {
         let width = ui.available_width();
         let panel = Panel::left("text")
@@ -99,7 +99,7 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     drop_hint(ui.ctx());
 }
 
-/// The left side of a wide page: files, text, sliders, problems.
+/// Shows the left side of a wide page: files, text, sliders, problems.
 fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let inset = Frame::new()
@@ -125,8 +125,8 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
             .frame(inset)
             .show(ui, |ui| fit_panel::show(app, ui, commands));
     }
-    if !app.work.session.compiled().hot.is_empty() {
-        let rows = sliders::height(ui, &app.work.session.compiled().hot);
+    if !app.work.session.compilation().hot.is_empty() {
+        let rows = sliders::height(ui, &app.work.session.compilation().hot);
         let most = (0.4 * ui.available_height()).clamp(60.0, 260.0);
         Panel::bottom("sliders")
             .exact_size(rows.min(most) + 42.0)
@@ -136,7 +136,7 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     CentralPanel::no_frame().show(ui, |ui| text_or_asset(app, ui, commands));
 }
 
-/// The editor, or the image or mesh whose tab is open.
+/// Shows the editor, or the image or mesh whose tab is open.
 fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let assets = app.work.session.assets();
     let shown = app.editor.asset.as_ref();
@@ -159,7 +159,7 @@ fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
-/// Says, while files are dragged over the page, what becomes of them.
+/// Shows the accepted kinds of files while files are dragged over the page.
 fn drop_hint(ctx: &Context) {
     if ctx.input(|input| input.raw.hovered_files.is_empty()) {
         return;
@@ -202,12 +202,12 @@ fn slider_list(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         .min_scrolled_height(0.0)
         .auto_shrink(false)
         .show(ui, |ui| {
-            let hot = &app.work.session.compiled().hot;
+            let hot = &app.work.session.compilation().hot;
             app.sliders.show(ui, hot, commands);
         });
 }
 
-/// The strip above the picture: what to show, size, save.
+/// Shows the strip above the picture: draft or picture, size, download.
 fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     ui.painter().rect_filled(place, 0.0, palette.panel);
@@ -251,7 +251,8 @@ fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
             (
                 Show::Draft,
                 "Draft",
-                "Only the instant draft: shapes before they melt together; once you turn or drag, a mesh of the surface where it comes soon enough",
+                "Only the instant draft: shapes before they melt together; \
+                    once you turn or drag, a mesh of the surface if it comes soon enough",
             ),
             (Show::Traced, "Traced", "Only the ray-traced picture"),
         ] {
@@ -301,11 +302,11 @@ fn size_menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
 }
 
 fn reset_view(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    if app.work.session.chosen_camera().is_some() {
+    if app.work.session.user_camera().is_some() {
         let reset = ui.button(RichText::new("Reset view").size(12.5));
         places::note(ui.ctx(), "reset view", reset.rect);
         if reset
-            .on_hover_text("Look from where the text says")
+            .on_hover_text("Go back to the camera of the text")
             .clicked()
         {
             commands.push(Command::SetCamera(None));
@@ -313,14 +314,14 @@ fn reset_view(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
-/// Whether there is room for the tray below the picture: not where the keyboard takes half of a
-/// phone.
+/// Whether there is room for the tray below the picture, as there is not where the keyboard takes
+/// half of a phone.
 fn has_tray(place: Rect, narrow: bool) -> bool {
     let height = tray::strip::height(narrow, false);
     place.height() > height + if narrow { 60.0 } else { 160.0 }
 }
 
-/// The picture in its place.
+/// Shows the picture in a place, with the strips below it and everything that is drawn on it.
 fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let narrow = screen::is_narrow(ui.ctx());
@@ -368,7 +369,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let now = platform::now(ui.ctx());
     let slow = app.rest > 0.0;
     if slow && app.renderer.is_near(view::SOON, now) {
-        // If it does not come then the draft is drawn.
+        // If it does not come by then, the draft is drawn.
         ui.ctx().request_repaint_after_secs(view::SOON as f32);
     }
     let session = &app.work.session;
@@ -376,7 +377,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let draft = if view::needs_draft(app.settings.show, session, &app.renderer, slow, now) {
         match &mut app.draft {
             Some(draft) => {
-                let mesh = app.live.shown(session, now);
+                let mesh = app.live.mesh(session, now);
                 stand_in = mesh.map_or(StandIn::Draft, |_| StandIn::Mesh);
                 draft.texture(session, app.place, mesh)
             }
@@ -388,7 +389,7 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
     let stand_in = draft.map(|_| stand_in);
     if app.stand_in != stand_in {
         app.stand_in = stand_in;
-        // The strip with its name was drawn before.
+        // The status line, which names it, was drawn before.
         ui.ctx().request_repaint();
     }
     let scenery = Scenery {
@@ -428,34 +429,34 @@ fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
             touch: app.touch == Some(true),
         };
         app.pencil.show(ui, rect, &picture, &around, commands);
-        if let Some(pair) = app.pencil.other(session)
-            && session.enabled()
+        if let Some(pair) = app.pencil.alternative(session)
+            && session.is_enabled()
             && pencil::bar::turn(ui, rect, pair)
         {
             app.pencil.turn(session, commands);
         }
     } else {
         app.hands.show(ui, rect, &picture, &around, commands);
-        let is_well = session.enabled() && session.is_compiled() && session.errors() == 0;
-        if is_well && app.dialog.is_none() && lamp::is_dark(&session.compiled().scene) {
+        let is_well = session.is_enabled() && session.is_compiled() && session.errors() == 0;
+        if is_well && app.dialog.is_none() && lamp::is_dark(&session.compilation().scene) {
             lamp::show(ui, rect, session, commands);
         }
-        if session.enabled() && app.dialog.is_none() {
+        if session.is_enabled() && app.dialog.is_none() {
             pencil::bar::start(ui, rect, commands);
         }
     }
     if let Some(notice) = &app.notice {
         notice::show(ui, place, notice, commands);
     }
-    let noted = places::all(ui.ctx());
-    let lying = ["notice", "draw other"]
+    let rects = places::all(ui.ctx());
+    let covers = ["notice", "draw other"]
         .iter()
-        .filter_map(|name| noted.get(*name));
-    app.pencil.keep_off(lying.copied().collect());
+        .filter_map(|name| rects.get(*name));
+    app.pencil.keep_off(covers.copied().collect());
 }
 
-/// A narrow page below the bar.
-fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+/// Shows a narrow page below the bar.
+fn narrow_page(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let all = ui.available_rect_before_wrap();
     let [w, h] = app.work.session.frame().map(|side| side as f32);
@@ -502,8 +503,11 @@ fn stacked(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         }
         Tab::Sliders => {
             Frame::new().inner_margin(14).show(&mut ui, |ui| {
-                if app.work.session.compiled().hot.is_empty() {
-                    ui.weak("Write “hot” after a variable, as in  var r = 0.3 hot,  and it gets a slider here.");
+                if app.work.session.compilation().hot.is_empty() {
+                    ui.weak(
+                        "Write “hot” after a variable, as in  var r = 0.3 hot,  \
+                            and it gets a slider here.",
+                    );
                 } else {
                     slider_list(app, ui, commands);
                 }
@@ -535,16 +539,18 @@ fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 4.0;
     let problems = app.work.session.diagnostics().len();
     let errors = app.work.session.errors() > 0;
-    let sliders = app.work.session.compiled().hot.len();
-    let count = |text: &str, number: usize| match number {
-        0 => text.to_owned(),
-        number => format!("{text} {number}"),
-    };
-    let mut tabs = vec![
-        (Tab::Text, String::from("Text")),
-        (Tab::Sliders, count("Sliders", sliders)),
-        (Tab::Problems, count("Problems", problems)),
-    ];
+    let sliders = app.work.session.compilation().hot.len();
+    let mut tabs = vec![(Tab::Text, String::from("Text"))];
+    for (tab, title, count) in [
+        (Tab::Sliders, "Sliders", sliders),
+        (Tab::Problems, "Problems", problems),
+    ] {
+        let title = match count {
+            0 => title.to_owned(),
+            count => format!("{title} {count}"),
+        };
+        tabs.push((tab, title));
+    }
     if fit_panel::is_offered(app) {
         tabs.push((Tab::Fit, String::from("Fit")));
     } else if app.tab == Tab::Fit {
@@ -571,11 +577,12 @@ fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.add_space(6.0);
-        let moved = app.work.session.chosen_camera().is_some();
+        let is_moved = app.work.session.user_camera().is_some();
         if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
             commands.push(Command::ShowAll);
         }
-        if moved && icon::button(ui, Icon::Home, "Look from where the text says", true).clicked() {
+        let tip = "Go back to the camera of the text";
+        if is_moved && icon::button(ui, Icon::Home, tip, true).clicked() {
             commands.push(Command::SetCamera(None));
         }
     });
@@ -615,7 +622,7 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
                 Dialog::Gallery => {
                     let shelf = app.work.shelf().borrow();
                     app.gallery
-                        .show(ui, shelf.opened(), platform::unix_time(), commands);
+                        .show(ui, shelf.open_id(), platform::unix_time(), commands);
                 }
                 Dialog::Result => {
                     let inner = size - Vec2::splat(inner);

@@ -1,10 +1,10 @@
-//! A mesh of the model's true surface for the draft, while a hand turns the model or drags a part
+//! A mesh of the model's true surface for the draft, while the user turns the model or drags a part
 //! of it.
 //!
-//! A tools worker makes it, apart from the page's thread: coarsely while the text changes, and
-//! finely once nothing changes and no picture is traced. Until it is there, and where it would come
-//! too late to follow a hand, the draft shows the elements before they melt together. Nothing is
-//! made, nor fetched, before a hand turns or drags for the first time.
+//! A tools worker makes it, apart from the page's thread: a coarse one while the text changes, and
+//! a fine one once nothing changes and no picture is traced. Until it is there, and where it would
+//! come too late to follow a drag, the draft shows the elements before they melt together. No mesh
+//! is made, and no worker fetched, before the user turns or drags for the first time.
 
 use crate::session::Session;
 use pool::{Ticket, Tools};
@@ -13,7 +13,7 @@ use scene::{Element, Scene, Shape};
 use std::sync::Arc;
 use tools::{Detail, ViewMesh, ViewScene};
 
-/// Seconds that a coarse mesh may take to be one that follows a hand.
+/// Most seconds that a coarse mesh may take to follow a drag.
 const QUICK: f64 = 0.15;
 /// Seconds for which such a mesh stands in for the next one.
 const LATE: f64 = 0.35;
@@ -29,24 +29,24 @@ struct Running {
     ticket: Ticket<ViewMesh>,
     shape: u64,
     detail: Detail,
-    /// When it was last seen to wait for its turn.
-    begun: f64,
+    /// Time at which it was last seen to wait for its turn.
+    start: f64,
 }
 
 /// A mesh that is there.
 pub struct Made {
-    /// Another one has another number.
+    /// A number that tells it from other meshes.
     pub number: u64,
     mesh: ViewMesh,
     /// [`Session::shape`] of its scene.
     shape: u64,
     detail: Detail,
-    /// When it last was, or may have been, that of the present scene.
+    /// Time at which it last was, or may have been, the mesh of the present scene.
     current: f64,
 }
 
 impl Made {
-    /// The mesh as the draft takes it.
+    /// Returns the mesh as the draft takes it.
     #[must_use]
     pub fn mesh(&self) -> Mesh<'_> {
         Mesh {
@@ -67,16 +67,16 @@ pub struct LiveMesh {
     count: u64,
     /// Seconds that the last coarse mesh took.
     seconds: f64,
-    /// The scene of which there is no mesh, or none that is finer.
+    /// [`Session::shape`] of a scene that cannot be meshed, or no finer.
     hopeless: Option<u64>,
-    /// Elements of the scene that took too long: another try waits until there are others.
+    /// Number of elements of a scene that took too long: another try waits until it changes.
     slow: Option<usize>,
-    /// The scene seen last, and when it changed.
+    /// [`Session::shape`] of the scene seen last, and the time at which it changed.
     seen: (u64, f64),
 }
 
 impl LiveMesh {
-    /// Makes nothing yet.
+    /// Makes no mesh until one is wanted.
     #[must_use]
     pub fn new(tools: Tools) -> Self {
         Self {
@@ -92,12 +92,12 @@ impl LiveMesh {
         }
     }
 
-    /// A hand turns or drags: meshes are made from now on.
+    /// Makes meshes from now on, as the user turns or drags.
     pub fn want(&mut self) {
         self.is_wanted = true;
     }
 
-    /// Forgets all: another work is open.
+    /// Forgets everything, when another work was opened.
     pub fn forget(&mut self) {
         self.running = None;
         self.is_wanted = false;
@@ -107,20 +107,20 @@ impl LiveMesh {
         self.slow = None;
     }
 
-    /// Leaves the worker to a hand that waits for it: a fine mesh is made later.
+    /// Gives up a fine mesh, which is made later, so that the worker is free for other jobs.
     pub fn give_way(&mut self) {
         self.running
             .take_if(|running| running.detail == Detail::Fine);
     }
 
-    /// Takes in what the worker has made, and begins the next mesh. `is_drawn`: a draft is on the
+    /// Takes in a mesh from the worker, and begins the next one. `is_drawn`: a draft is on the
     /// screen; `rests`: no picture is being traced.
     pub fn tick(&mut self, session: &Session, now: f64, is_drawn: bool, rests: bool) {
         if let Some(running) = &mut self.running {
             if let Some(result) = running.ticket.result() {
                 self.take(result, now);
             } else if running.ticket.fraction().is_none() {
-                running.begun = now;
+                running.start = now;
             }
         }
         let shape = session.shape();
@@ -132,7 +132,7 @@ impl LiveMesh {
         }
         if let Some(running) = &self.running {
             let is_old = running.shape != shape && running.detail == Detail::Fine;
-            let is_long = now - running.begun > LIMIT;
+            let is_long = now - running.start > LIMIT;
             if is_long {
                 self.hopeless = Some(running.shape);
                 self.slow = Some(elements(session));
@@ -165,11 +165,11 @@ impl LiveMesh {
             ticket: self.tools.submit(job),
             shape,
             detail,
-            begun: now,
+            start: now,
         });
     }
 
-    /// Takes the result of the mesh that was being made.
+    /// Takes in the mesh that was being made.
     fn take(&mut self, result: Result<ViewMesh, String>, now: f64) {
         let Some(running) = self.running.take() else {
             return;
@@ -179,7 +179,7 @@ impl LiveMesh {
             return;
         };
         if running.detail == Detail::Coarse {
-            self.seconds = now - running.begun;
+            self.seconds = now - running.start;
         }
         self.count += 1;
         self.made = Some(Made {
@@ -187,21 +187,21 @@ impl LiveMesh {
             mesh,
             shape: running.shape,
             detail: running.detail,
-            current: running.begun,
+            current: running.start,
         });
     }
 
-    /// The mesh to draw: that of the present scene, or while a hand drags and meshes are quick, the
-    /// one before.
+    /// Returns the mesh to draw: that of the present scene or, while the user drags and meshes are
+    /// quick, the one before.
     #[must_use]
-    pub fn shown(&self, session: &Session, now: f64) -> Option<&Made> {
+    pub fn mesh(&self, session: &Session, now: f64) -> Option<&Made> {
         let follows = self.seconds <= QUICK && self.hopeless != Some(session.shape());
-        let fits =
-            |made: &&Made| made.shape == session.shape() || (follows && now - made.current <= LATE);
-        self.made.as_ref().filter(fits)
+        self.made
+            .as_ref()
+            .filter(|made| made.shape == session.shape() || (follows && now - made.current <= LATE))
     }
 
-    /// Seconds until [`LiveMesh::tick`] has something to do, if it waits for a time.
+    /// Returns the seconds until [`LiveMesh::tick`] begins a fine mesh; `None` if it will not.
     #[must_use]
     pub fn wait(&self, session: &Session, now: f64) -> Option<f64> {
         let made = self.made.as_ref().filter(|_| self.is_wanted)?;
@@ -212,19 +212,19 @@ impl LiveMesh {
 }
 
 fn elements(session: &Session) -> usize {
-    session.compiled().scene.elements.len()
+    session.compilation().scene.elements.len()
 }
 
-/// The soft elements of a scene, and what their surfaces depend on; `None` if there are
-/// none, too many, or one that has no end.
+/// Returns a scene of the soft elements and everything that their surfaces depend on; `None` if
+/// there are none, too many, or one that has no end.
 fn soft_part(scene: &Scene) -> Option<Scene> {
-    let soft = || scene.elements.iter().filter(|e| scene.is_soft(e));
-    let has_end = |element: &Element| !matches!(element.shape, Shape::Plane { .. });
-    if !(1..=MOST).contains(&soft().count()) || !soft().all(has_end) {
+    let soft: Vec<&Element> = scene.elements.iter().filter(|e| scene.is_soft(e)).collect();
+    let mut shapes = soft.iter().map(|element| &element.shape);
+    if !(1..=MOST).contains(&soft.len()) || shapes.any(|s| matches!(s, Shape::Plane { .. })) {
         return None;
     }
     Some(Scene {
-        elements: soft().cloned().collect(),
+        elements: soft.into_iter().cloned().collect(),
         bodies: scene.bodies.clone(),
         contacts: scene.contacts.clone(),
         flesh: scene.flesh.clone(),
@@ -257,14 +257,14 @@ mod tests {
     }
 
     #[test]
-    fn mesh_is_made_once_a_hand_moves_and_becomes_finer_when_it_rests() {
+    fn mesh_is_made_once_the_user_drags_and_becomes_finer_afterwards() {
         let session = Session::of_text(BALLS);
         let mut live = LiveMesh::new(Tools::new(|| {}));
         settle(&mut live, &session, 0.0, true);
-        assert!(live.shown(&session, 0.0).is_none());
+        assert!(live.mesh(&session, 0.0).is_none());
         live.want();
         settle(&mut live, &session, 1.0, false);
-        let coarse = live.shown(&session, 1.0).unwrap();
+        let coarse = live.mesh(&session, 1.0).unwrap();
         assert_eq!((coarse.number, coarse.detail), (1, Detail::Coarse));
         assert!(coarse.mesh().triangles.len() > 100);
         // Not while a picture is traced, nor at once.
@@ -272,12 +272,12 @@ mod tests {
         assert_eq!(live.count, 1);
         assert!(live.wait(&session, 1.2).is_some());
         settle(&mut live, &session, 9.0, true);
-        let fine = live.shown(&session, 9.0).unwrap();
+        let fine = live.mesh(&session, 9.0).unwrap();
         assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
         settle(&mut live, &session, 99.0, true);
         assert_eq!((live.count, live.wait(&session, 99.0)), (2, None));
         live.forget();
-        assert!(live.shown(&session, 99.0).is_none());
+        assert!(live.mesh(&session, 99.0).is_none());
     }
 
     #[test]
@@ -291,13 +291,13 @@ mod tests {
             .edit(&[rats::TextEdit::whole(0, moved)], 1.0)
             .unwrap();
         session.compile();
-        assert!(live.seconds <= QUICK && live.shown(&session, 1.1).is_some());
-        assert!(live.shown(&session, 1.1 + LATE).is_none());
+        assert!(live.seconds <= QUICK && live.mesh(&session, 1.1).is_some());
+        assert!(live.mesh(&session, 1.1 + LATE).is_none());
         // One that takes long never does.
         live.seconds = 2.0 * QUICK;
-        assert!(live.shown(&session, 1.1).is_none());
+        assert!(live.mesh(&session, 1.1).is_none());
         settle(&mut live, &session, 1.2, false);
-        let followed = live.shown(&session, 1.2).unwrap();
+        let followed = live.mesh(&session, 1.2).unwrap();
         assert_eq!((followed.number, followed.shape), (2, session.shape()));
     }
 
@@ -305,14 +305,15 @@ mod tests {
     fn scenes_without_a_finite_surface_are_left_to_the_draft() {
         for text in [
             "surface a, diffuse Red\nsphere a 1, 0 0 0\n",
-            "surface a, diffuse Red, blobbiness -2, radius 0.3\nsphere a 1, 0 0 0\nplane a, <0 -2 0>, <0 1 0>\n",
+            "surface a, diffuse Red, blobbiness -2, radius 0.3\nsphere a 1, 0 0 0\n\
+                plane a, <0 -2 0>, <0 1 0>\n",
         ] {
             let session = Session::of_text(text);
             assert_eq!(session.errors(), 0);
             let mut live = LiveMesh::new(Tools::new(|| {}));
             live.want();
             settle(&mut live, &session, 1.0, true);
-            assert!(live.shown(&session, 1.0).is_none() && live.hopeless.is_some());
+            assert!(live.mesh(&session, 1.0).is_none() && live.hopeless.is_some());
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Places of the compiler's messages in the laid-out text: underlines, dots beside the line
-//! numbers, and which messages are under the pointer.
+//! Places of the compiler's messages in the laid-out text: underlines, dots beside line numbers,
+//! and the messages under the pointer.
 
 use crate::problems;
 use crate::theme::Palette;
@@ -8,7 +8,7 @@ use egui::{Galley, Painter, Pos2, Rect, Shape, Stroke, pos2};
 use rats::{Diagnostic, Project, Severity};
 use std::ops::Range;
 
-/// Messages that are marked in the text; the list shows more.
+/// Most messages that are marked in the text; the list shows more.
 const MOST: usize = 300;
 
 /// The messages about one file, with their places counted in characters.
@@ -58,7 +58,7 @@ impl Marks {
         }
     }
 
-    /// The worst message of a line, counted from 1.
+    /// Returns the worst severity in a line, counted from 1.
     #[must_use]
     pub fn of_line(&self, line: usize) -> Option<Severity> {
         self.marks
@@ -68,7 +68,7 @@ impl Marks {
             .max()
     }
 
-    /// Indices of the messages at a character.
+    /// Returns the indices of the messages at a character.
     pub fn at(&self, char: usize) -> impl Iterator<Item = usize> {
         self.marks
             .iter()
@@ -106,7 +106,7 @@ impl<'a> File<'a> {
     }
 }
 
-/// Turns byte positions into character positions, fast when they rise.
+/// Turns byte positions into character positions, quickly when they rise.
 struct Counter<'a> {
     text: &'a str,
     byte: usize,
@@ -133,7 +133,7 @@ impl<'a> Counter<'a> {
     }
 }
 
-/// The rectangles that a range of characters covers, one for each row.
+/// Returns the rectangles that a range of characters covers, one for each row.
 pub(crate) fn rows(galley: &Galley, chars: Range<usize>) -> Vec<Rect> {
     let start = galley.layout_from_cursor(CCursor::new(chars.start));
     let end = galley.layout_from_cursor(CCursor::new(chars.end));

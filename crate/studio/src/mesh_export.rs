@@ -1,9 +1,9 @@
 //! The model as a mesh, for printers and other programs: the jobs of the tools worker, and scripts
 //! that ask for a file. The dialog is in `mesh_panel`.
 //!
-//! The mesh is made apart from the page's thread; until it is there a coat of the skeletons is
-//! seen. Another format or size only writes the mesh again. Of a model with a skeleton the motion
-//! is asked of the language frame by frame, some at each tick, so that the page stays responsive.
+//! The mesh is made apart from the page's thread; until it is there the dialog shows a coat of the
+//! skeletons. Another format or size only writes the mesh again. The motion of a skeleton is
+//! compiled frame by frame, some at each tick, so that the page stays responsive.
 
 use crate::film::MAX_FRAMES;
 use crate::mesh_panel::Show;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 use tools::{CoatScene, Coated, MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
 use viewport::{Surface, View};
 
-/// Bound of the coat that is shown until the mesh that was asked for is there.
+/// Bound of the coat that is shown until the mesh is there.
 const COAT: f64 = 0.05;
 /// Most elements of a scene that gets such a coat.
 const MOST_COATED: usize = 20_000;
@@ -29,7 +29,7 @@ pub(crate) const MOST_EDGES: usize = 300_000;
 /// Seconds of a tick that frames of a motion may take.
 const SLICE: f64 = 0.008;
 
-/// What is to be made.
+/// The mesh file that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
     /// Format of the file.
@@ -57,20 +57,20 @@ impl Default for Order {
 }
 
 impl Order {
-    /// What is wrong with it, in a sentence.
+    /// Checks numbers and format.
     ///
     /// # Errors
-    /// If a number is none, or out of its range.
+    /// A sentence, if a number is out of its range or the format has no joints.
     pub fn check(&self) -> Result<(), String> {
         let [finest, coarsest] = [1e-6, 0.5];
         if !(finest..=coarsest).contains(&self.tolerance) {
             return Err(format!(
-                "The tolerance is a part of the model's length from {finest} to {coarsest}."
+                "The tolerance must be from {finest} to {coarsest} of the model's length."
             ));
         }
         if !(1e-3..=1e6).contains(&self.size) {
             return Err(String::from(
-                "The size is a length in millimetres from 0.001 to 1000000.",
+                "The size must be a length in millimetres from 0.001 to 1000000.",
             ));
         }
         if self.rig && self.format != Format::Glb {
@@ -88,24 +88,24 @@ impl Order {
 /// Frames of the film that a motion is taken from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
-    /// How many.
+    /// Number of frames.
     pub count: u32,
-    /// In a second.
+    /// Frames in a second.
     pub rate: u16,
 }
 
-/// What the triangles depend on.
+/// The settings that triangles depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shape {
     tolerance: f64,
     union: bool,
-    /// Of the scene that is meshed.
+    /// [`Session::generation`] of the scene.
     generation: u64,
-    /// Whether it is the film's first frame that is meshed, while another one is on show.
+    /// Whether the film's first frame is meshed, while another one is on show.
     first_frame: bool,
 }
 
-/// What a file depends on beside the triangles.
+/// The settings that a file depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wanted {
     shape: Shape,
@@ -118,14 +118,14 @@ pub type Taker = Box<dyn FnOnce(Result<Vec<u8>, String>)>;
 
 /// A job that is not over.
 struct Running<K, T> {
-    /// What it is for.
+    /// The settings or the receiver of the result.
     of: K,
     ticket: Ticket<T>,
 }
 
 impl<K, T> Running<K, T> {
     /// Takes the result of a job that is over, and forgets the job.
-    fn finished(job: &mut Option<Self>) -> Option<(K, Result<T, String>)> {
+    fn take_result(job: &mut Option<Self>) -> Option<(K, Result<T, String>)> {
         let result = job.as_mut()?.ticket.result()?;
         job.take().map(|job| (job.of, result))
     }
@@ -135,7 +135,7 @@ impl<K, T> Running<K, T> {
     }
 }
 
-/// Frames of a motion that are being asked of the language.
+/// Frames of a motion that are being compiled.
 struct Filming {
     project: Project,
     assets: Vec<Asset>,
@@ -144,11 +144,11 @@ struct Filming {
     next: Next,
 }
 
-/// What comes after the frames.
+/// The use of the frames.
 enum Next {
-    /// The dialog's file is written.
+    /// The dialog's file.
     File(Wanted),
-    /// A script's mesh is made.
+    /// A script's mesh.
     Script(Box<(Order, String, Taker)>),
 }
 
@@ -175,27 +175,27 @@ pub struct MeshExport {
     filming: Vec<Filming>,
     pub(crate) made: Option<Made>,
     written: Option<(Wanted, Written)>,
-    /// Why the settings made last give no file.
+    /// Settings that give no file, and the reason.
     trouble: Option<(Wanted, String)>,
     pub(crate) show: Show,
-    /// Name of the files without ending.
+    /// Name of the files without extension.
     name: String,
 }
 
-/// How far the dialog's mesh is.
+/// The progress of the dialog's mesh.
 pub(crate) enum State<'a> {
-    /// It is being made: the fraction done.
+    /// The mesh is being made; the fraction done.
     Making(f32),
-    /// There is none, for this reason.
+    /// The mesh cannot be made, for this reason.
     Trouble(&'a str),
-    /// It is there, with its file.
+    /// The mesh and its file are there.
     Done(&'a MeshFacts, &'a Written),
     /// Nothing was asked for yet.
     Idle,
 }
 
 impl MeshExport {
-    /// Makes nothing yet.
+    /// Makes no mesh until one is asked for.
     #[must_use]
     pub fn new(tools: Tools) -> Self {
         Self {
@@ -214,11 +214,11 @@ impl MeshExport {
         }
     }
 
-    /// Takes in what the worker has done. Returns whether it must be called again soon.
+    /// Takes in results of the worker. Returns whether it must be called again soon.
     pub fn tick(&mut self) -> bool {
-        // What is laid out in a new way is known, also to scripts, a frame later.
+        // Widgets that move are known, also to scripts, a frame later.
         let mut again = false;
-        if let Some((shape, result)) = Running::finished(&mut self.coating) {
+        if let Some((shape, result)) = Running::take_result(&mut self.coating) {
             again = true;
             if let Ok(Coated { parts, .. }) = result
                 && !parts.is_empty()
@@ -226,14 +226,14 @@ impl MeshExport {
                 self.take(shape, parts, MeshFacts::default());
             }
         }
-        if let Some((shape, result)) = Running::finished(&mut self.meshing) {
+        if let Some((shape, result)) = Running::take_result(&mut self.meshing) {
             again = true;
             match result {
                 Ok(meshed) => self.take(shape, meshed.parts, meshed.facts),
                 Err(reason) => self.fail(shape, reason),
             }
         }
-        if let Some((wanted, result)) = Running::finished(&mut self.writing) {
+        if let Some((wanted, result)) = Running::take_result(&mut self.writing) {
             again = true;
             match result {
                 Ok(written) => {
@@ -248,10 +248,11 @@ impl MeshExport {
                 None => self.scripts.push(script),
                 Some(result) => {
                     again = true;
-                    // OBJ has its materials in a second file, which it can do without.
-                    let file = |meshed: Meshed| meshed.written.files.into_iter().next();
-                    let bytes = |meshed| file(meshed).map_or_else(Vec::new, |file| file.bytes);
-                    (script.of)(result.map(bytes));
+                    // The materials of OBJ are in a second file, which is not needed.
+                    (script.of)(result.map(|meshed| {
+                        let first = meshed.written.files.into_iter().next();
+                        first.map_or_else(Vec::new, |file| file.bytes)
+                    }));
                 }
             }
         }
@@ -259,14 +260,14 @@ impl MeshExport {
         again || !self.filming.is_empty()
     }
 
-    /// Asks the language for frames, as many as there is time for.
+    /// Compiles frames for [`SLICE`] seconds, and begins the jobs of those that are complete.
     fn film(&mut self) {
         let start = clock::stopwatch();
         while let Some(filming) = self.filming.first_mut() {
             if filming.scenes.len() < filming.film.count as usize {
                 let frame = filming.scenes.len() as f64;
                 let scene = rats::compile_at(&filming.project, &filming.assets, frame).scene;
-                // The first one is meshed, of the others only the motion counts.
+                // The first one is meshed; the others only give the motion.
                 filming.scenes.push(if filming.scenes.is_empty() {
                     Arc::unwrap_or_clone(scene)
                 } else {
@@ -292,6 +293,7 @@ impl MeshExport {
         }
     }
 
+    /// Takes in a mesh, and looks at it from the front if it is of another scene.
     fn take(&mut self, shape: Shape, parts: Vec<(String, TriangleMesh)>, facts: MeshFacts) {
         let surface = surface(&parts, facts.is_closed);
         let other = self.made.as_ref().map(|made| made.shape.generation) != Some(shape.generation);
@@ -353,7 +355,7 @@ impl MeshExport {
         }
     }
 
-    /// Has a scene meshed and written for a script.
+    /// Begins a job that meshes and writes a scene for a script.
     fn make(
         &mut self,
         order: Order,
@@ -373,7 +375,7 @@ impl MeshExport {
         });
     }
 
-    /// Has the dialog's mesh written.
+    /// Begins a job that writes the dialog's mesh.
     fn write(&mut self, wanted: Wanted, rig: Option<Poses>) {
         let Some(made) = self.made.as_ref().filter(|made| made.shape == wanted.shape) else {
             return;
@@ -391,9 +393,9 @@ impl MeshExport {
         });
     }
 
-    /// Ends the jobs of the dialog, as it is closed or nobody wants their results any more.
+    /// Ends the jobs of the dialog, when it is closed or their results are not wanted any more.
     pub fn stop(&mut self) {
-        // The last ones first, so that none of them is begun.
+        // The last ones first, so that ending one does not begin the next.
         self.writing = None;
         self.meshing = None;
         self.coating = None;
@@ -401,11 +403,11 @@ impl MeshExport {
             .retain(|filming| matches!(filming.next, Next::Script(_)));
     }
 
-    /// Ends the jobs of the dialog at a person's word.
-    pub(crate) fn stop_asked(&mut self, session: &Session, film: Film) {
+    /// Ends the jobs of the dialog at the user's wish, until the settings change.
+    pub(crate) fn give_up(&mut self, session: &Session, film: Film) {
         self.stop();
         let text = String::from("Stopped. Choose less detail, or go on.");
-        self.trouble = Some((self.wanted(session, film), text));
+        self.trouble = Some((self.target(session, film), text));
     }
 
     /// Whether the mesh on show is only a coat of the skeletons.
@@ -424,30 +426,33 @@ impl MeshExport {
         self.trouble = None;
     }
 
-    fn wanted(&self, session: &Session, film: Film) -> Wanted {
+    /// Returns the file that the dialog's settings ask for.
+    fn target(&self, session: &Session, film: Film) -> Wanted {
         let order = Order {
             rig: self.order.is_rigged(),
             ..self.order
         };
-        let moves = order.rig && session.is_animated();
+        let has_motion = order.rig && session.is_animated();
         Wanted {
             shape: Shape {
                 tolerance: order.tolerance,
                 union: order.union,
                 generation: session.generation(),
-                first_frame: moves && session.film_frame() > 0,
+                first_frame: has_motion && session.film_frame() > 0,
             },
             order,
-            film: moves.then_some(film),
+            film: has_motion.then_some(film),
         }
     }
 
-    /// Has made what the dialog's settings ask for, unless it is there or comes.
+    /// Begins the next job for the dialog's settings, unless their file is there or on its way.
     pub(crate) fn follow(&mut self, session: &Session, film: Film, name: &str) {
-        let wanted = self.wanted(session, film);
+        let wanted = self.target(session, film);
         let Wanted { shape, order, .. } = wanted;
-        let same = |(of, _): &(Wanted, String)| of.shape == shape && of.order == order;
-        if self.trouble.as_ref().is_some_and(same) {
+        if let Some((of, _)) = &self.trouble
+            && of.shape == shape
+            && of.order == order
+        {
             return;
         }
         name.clone_into(&mut self.name);
@@ -466,24 +471,24 @@ impl MeshExport {
             let Some(scene) = scene else {
                 return;
             };
-            let is_other = |made: &Made| {
+            let is_other = self.made.as_ref().is_none_or(|made| {
                 made.shape.generation != shape.generation
                     || made.shape.first_frame != shape.first_frame
-            };
-            if scene.elements.len() <= MOST_COATED && self.made.as_ref().is_none_or(is_other) {
+            });
+            if is_other && scene.elements.len() <= MOST_COATED {
                 let job = CoatScene {
                     scene: scene.clone(),
                     bound: COAT,
                     coatings: Vec::new(),
                 };
-                // No mesh that is asked for is taken for it.
+                // A tolerance that no mesh has.
                 let tolerance = f64::INFINITY;
                 self.coating = Some(Running {
                     ticket: self.tools.submit(job),
                     of: Shape { tolerance, ..shape },
                 });
             }
-            // The dialog's files are written apart from that.
+            // The dialog's files are written by another job.
             let job = meshing(scene, order, name.to_owned());
             self.meshing = Some(Running {
                 ticket: self.tools.submit(job),
@@ -492,9 +497,12 @@ impl MeshExport {
             return;
         }
         let is_written = matches!(&self.written, Some((of, _)) if *of == wanted);
-        let comes = self.writing.as_ref().is_some_and(|job| job.of == wanted);
-        let filmed = |filming: &Filming| matches!(&filming.next, Next::File(of) if *of == wanted);
-        if is_written || comes || self.filming.iter().any(filmed) {
+        let is_coming = self.writing.as_ref().is_some_and(|job| job.of == wanted)
+            || self
+                .filming
+                .iter()
+                .any(|filming| matches!(&filming.next, Next::File(of) if *of == wanted));
+        if is_written || is_coming {
             return;
         }
         self.stop();
@@ -506,9 +514,9 @@ impl MeshExport {
         }
     }
 
-    /// How far the mesh of the dialog's settings is.
+    /// Returns the progress of the mesh of the dialog's settings.
     pub(crate) fn state(&self, session: &Session, film: Film) -> State<'_> {
-        let wanted = self.wanted(session, film);
+        let wanted = self.target(session, film);
         let Wanted { shape, order, .. } = wanted;
         if let Some((of, reason)) = &self.trouble
             && of.shape == shape
@@ -526,21 +534,20 @@ impl MeshExport {
         if let Some(fraction) = meshing.or(self.writing.as_ref().map(Running::fraction)) {
             return State::Making(fraction);
         }
-        let filmed = |filming: &&Filming| matches!(filming.next, Next::File(_));
-        if let Some(filming) = self.filming.iter().find(filmed) {
+        let mut filming = self.filming.iter();
+        if let Some(filming) = filming.find(|filming| matches!(filming.next, Next::File(_))) {
             return State::Making(filming.scenes.len() as f32 / filming.film.count.max(1) as f32);
         }
         State::Idle
     }
 
-    /// How much longer the model's lengths are in the present settings than in the facts of its
-    /// mesh.
+    /// Returns the factor from lengths in the facts of a mesh to those in the present settings.
     pub(crate) fn growth(&self, facts: &MeshFacts) -> f64 {
         let longest = facts.sides.into_iter().fold(0.0, f64::max);
         self.order.size / longest
     }
 
-    /// The files of the mesh on show.
+    /// Returns the files of the mesh on show.
     #[must_use]
     pub fn files(&self) -> &[mesh::ExportedFile] {
         self.written
@@ -548,7 +555,7 @@ impl MeshExport {
             .map_or(&[], |(_, written)| &written.files)
     }
 
-    /// The state for scripts; `None` before anything was made.
+    /// Returns the state for scripts; `None` before a mesh was asked for.
     #[must_use]
     pub fn report(&self, session: &Session, film: Film) -> Option<report::Mesh> {
         let shown = self.made.as_ref();
@@ -556,7 +563,6 @@ impl MeshExport {
         if shown.is_none() && matches!(state, State::Idle) {
             return None;
         }
-        let bytes = |written: &Written| written.files.iter().map(|file| file.bytes.len()).sum();
         Some(report::Mesh {
             running: matches!(state, State::Making(_)),
             shown: shown.map_or(0, |made| made.surface.triangles.len()),
@@ -565,7 +571,9 @@ impl MeshExport {
                 _ => None,
             },
             bytes: match state {
-                State::Done(_, written) => Some(bytes(written)),
+                State::Done(_, written) => {
+                    Some(written.files.iter().map(|file| file.bytes.len()).sum())
+                }
                 _ => None,
             },
             said: match state {
@@ -576,7 +584,7 @@ impl MeshExport {
     }
 }
 
-/// The job of meshing a scene for the eye.
+/// Returns the job that meshes a scene for the dialog.
 fn meshing(scene: Arc<Scene>, order: Order, name: String) -> MeshScene {
     MeshScene {
         scene,
@@ -592,7 +600,7 @@ fn meshing(scene: Arc<Scene>, order: Order, name: String) -> MeshScene {
     }
 }
 
-/// Frames of a session's work, to be asked for.
+/// Begins to compile the frames of a session's work.
 fn filming(session: &Session, film: Option<Film>, next: Next) -> Filming {
     let still = Film { count: 1, rate: 1 };
     let film = film.filter(|_| session.is_animated()).unwrap_or(still);
@@ -608,7 +616,7 @@ fn filming(session: &Session, film: Option<Film>, next: Next) -> Filming {
     }
 }
 
-/// The parts of a mesh as one surface to be drawn.
+/// Returns the parts of a mesh as one surface to be drawn.
 fn surface(parts: &[(String, TriangleMesh)], is_closed: bool) -> Surface {
     let mut all = Surface {
         is_closed,
@@ -620,7 +628,7 @@ fn surface(parts: &[(String, TriangleMesh)], is_closed: bool) -> Surface {
         all.positions
             .extend(mesh.positions.iter().map(|p| p.as_vec3()));
         match &mesh.colors {
-            Some(colors) => all.colors.extend(colors.iter().map(|c| c.map(encoded))),
+            Some(colors) => all.colors.extend(colors.iter().map(|c| c.map(to_srgb))),
             None => all.colors.extend(of_materials(mesh, clay)),
         }
         let triangles = mesh.triangles.iter().map(|t| t.map(|i| first + i));
@@ -628,22 +636,23 @@ fn surface(parts: &[(String, TriangleMesh)], is_closed: bool) -> Surface {
     }
     all.smooth();
     if all.triangles.len() <= MOST_EDGES {
-        // Of a closed mesh each edge has two triangles, in opposite directions.
-        let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
-        let edges = all.triangles.iter().flat_map(sides);
-        all.edges = edges.filter(|[a, b]| a < b || !is_closed).collect();
+        // Each edge of a closed mesh has two triangles, in opposite directions.
+        for [a, b, c] in &all.triangles {
+            let edges = [[*a, *b], [*b, *c], [*c, *a]].into_iter();
+            all.edges.extend(edges.filter(|[a, b]| a < b || !is_closed));
+        }
     }
     all
 }
 
-/// A colour for each vertex of a mesh that has none: its material's, else another.
+/// Returns a colour for each vertex of a mesh: its material's, else another.
 fn of_materials(mesh: &TriangleMesh, other: [f32; 3]) -> Vec<[f32; 3]> {
     let mut colors = vec![other; mesh.positions.len()];
     for group in &mesh.groups {
         let Some(material) = &group.material else {
             continue;
         };
-        let color = material.color.map(encoded);
+        let color = material.color.map(to_srgb);
         let range = group.triangles.start as usize..group.triangles.end as usize;
         for triangle in mesh.triangles.get(range).unwrap_or_default() {
             for vertex in triangle {
@@ -654,8 +663,8 @@ fn of_materials(mesh: &TriangleMesh, other: [f32; 3]) -> Vec<[f32; 3]> {
     colors
 }
 
-/// A channel of linear light as sRGB shows it, closely enough for a view.
-fn encoded(channel: f32) -> f32 {
+/// Encodes a channel of linear light as sRGB, exactly enough for a view.
+fn to_srgb(channel: f32) -> f32 {
     libm::powf(channel.clamp(0.0, 1.0), 1.0 / 2.2)
 }
 
@@ -666,7 +675,7 @@ mod tests {
     use std::rc::Rc;
     use std::time::{Duration, Instant};
 
-    fn made_for_a_script(text: &str, order: Order) -> Result<Vec<u8>, String> {
+    fn make_for_script(text: &str, order: Order) -> Result<Vec<u8>, String> {
         let mut export = MeshExport::new(Tools::new(|| {}));
         let given = Rc::new(RefCell::new(None));
         let place = given.clone();
@@ -691,16 +700,16 @@ mod tests {
             size: 30.0,
             ..Order::default()
         };
-        let bytes = made_for_a_script(BALL, order).unwrap();
+        let bytes = make_for_script(BALL, order).unwrap();
         let mesh = mesh::read("ball.stl", &bytes).unwrap();
         let far = mesh.positions.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
         assert!((far - 15.0).abs() < 0.5, "{far}");
     }
 
     #[test]
-    fn what_cannot_be_made_is_told() {
+    fn scripts_learn_why_there_is_no_mesh() {
         let order = Order::default();
-        let nothing = made_for_a_script("surface s diffuse Gold\n", order).unwrap_err();
+        let nothing = make_for_script("surface s diffuse Gold\n", order).unwrap_err();
         assert!(nothing.contains("no surface"), "{nothing}");
         for (tolerance, size) in [
             (0.0, 1.0),
@@ -713,7 +722,7 @@ mod tests {
                 size,
                 ..order
             };
-            assert!(made_for_a_script(BALL, order).is_err());
+            assert!(make_for_script(BALL, order).is_err());
         }
     }
 
@@ -728,22 +737,22 @@ mod tests {
             rig: true,
             ..Order::default()
         };
-        let bytes = made_for_a_script(ARM, order).unwrap();
+        let bytes = make_for_script(ARM, order).unwrap();
         let text = String::from_utf8_lossy(&bytes);
         for word in ["\"skins\"", "\"animations\"", "JOINTS_0", "WEIGHTS_0"] {
             assert!(text.contains(word), "{word}");
         }
-        let nothing = made_for_a_script(BALL, order).unwrap_err();
+        let nothing = make_for_script(BALL, order).unwrap_err();
         assert!(nothing.contains("no skeleton"), "{nothing}");
         let other = Order {
             format: Format::Stl,
             ..order
         };
-        assert!(made_for_a_script(ARM, other).unwrap_err().contains("GLB"));
+        assert!(make_for_script(ARM, other).unwrap_err().contains("GLB"));
     }
 
-    /// Follows the settings until their file is there or cannot be had. Returns how many jobs were
-    /// begun.
+    /// Follows the settings until their file is there or has failed. Returns the number of jobs
+    /// that were begun.
     fn follow(export: &mut MeshExport, session: &Session) -> usize {
         let film = Film { count: 5, rate: 12 };
         let deadline = Instant::now() + Duration::from_secs(120);
@@ -815,13 +824,13 @@ mod tests {
     }
 
     #[test]
-    fn stopping_is_not_undone_until_one_asks() {
+    fn a_stopped_mesh_is_not_made_until_the_user_asks() {
         let ball = Session::of_text(BALL);
         let film = Film { count: 5, rate: 12 };
         let mut export = MeshExport::new(Tools::new(|| {}));
         export.order.tolerance = 3e-4;
         export.follow(&ball, film, "ball");
-        export.stop_asked(&ball, film);
+        export.give_up(&ball, film);
         export.follow(&ball, film, "ball");
         assert!(export.meshing.is_none() && export.coating.is_none());
         assert!(matches!(export.state(&ball, film), State::Trouble(_)));

@@ -14,12 +14,12 @@ use viewport::{Frame, Look, View};
 
 /// Finest and coarsest tolerance that the dialog offers, as parts of the longest side.
 const TOLERANCES: [f64; 2] = [1e-4, 2e-2];
-/// Lengths of the longest side that can be asked for, millimetres.
+/// Shortest and longest length that can be asked for, millimetres.
 const SIZES: [f64; 2] = [1.0, 5000.0];
 /// Most pixels of the view, so that it follows a hand where the processor draws it.
 const MOST_PIXELS: f32 = 480_000.0;
 
-/// How the mesh is shown.
+/// The view of the mesh.
 pub(crate) struct Show {
     wireframe: bool,
     /// The camera, once there is a mesh.
@@ -83,7 +83,7 @@ impl MeshExport {
                 });
             });
         } else {
-            // How the mesh fares stays in view below the rest.
+            // Progress and facts of the mesh stay in view below the rest.
             let below = 150.0;
             let height = (size.y - 60.0 - below).max(120.0);
             let above = ScrollArea::vertical().id_salt("mesh settings");
@@ -109,7 +109,7 @@ impl MeshExport {
         }
     }
 
-    /// Shows the mesh, to be turned, shifted and brought nearer.
+    /// Shows the mesh, which can be turned, shifted and zoomed.
     fn view(&mut self, ui: &mut Ui, size: Vec2) {
         let palette = theme::palette(ui.visuals());
         let (rect, response) = ui.allocate_exact_size(size, Sense::drag());
@@ -193,7 +193,7 @@ impl MeshExport {
         self.show.is_stale |= *view != before;
     }
 
-    /// Shows the settings. Returns whether they are not just being changed.
+    /// Shows the settings. Returns whether they are settled: no slider is being dragged.
     fn settings(&mut self, ui: &mut Ui, session: &Session) -> bool {
         let palette = theme::palette(ui.visuals());
         let mut settled = true;
@@ -253,7 +253,7 @@ impl MeshExport {
             .checkbox(&mut self.order.union, "Join bodies that overlap")
             .on_hover_text("One shell instead of several that go through each other");
         places::note(ui.ctx(), "mesh union", union.rect);
-        let scene = &session.compiled().scene;
+        let scene = &session.compilation().scene;
         if self.order.format == Format::Glb && rig::has_skeleton(scene) {
             let title = if session.is_animated() {
                 "With joints and motion"
@@ -261,14 +261,15 @@ impl MeshExport {
                 "With joints"
             };
             let rig = ui.checkbox(&mut self.order.rig, title).on_hover_text(
-                "Nodes of the skeleton as bones, so that the mesh can be posed; the film as an animation",
+                "Nodes of the skeleton as bones, so that the mesh can be posed; \
+                    the film as an animation",
             );
             places::note(ui.ctx(), "mesh rig", rig.rect);
         }
         settled
     }
 
-    /// Shows progress, or what the mesh is like and the button that saves it.
+    /// Shows progress, or the button that saves the mesh and facts about it.
     fn outcome(&mut self, ui: &mut Ui, session: &Session, film: Film, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui.visuals());
         ui.spacing_mut().item_spacing.y = 4.0;
@@ -278,13 +279,13 @@ impl MeshExport {
                 let bar = ui.add(ProgressBar::new(fraction).desired_width(220.0));
                 places::note(ui.ctx(), "mesh progress", bar.rect);
                 if self.shows_coat() {
-                    let text = "Till then you see a rough coat of it.";
+                    let text = "Until then you see a rough coat of it.";
                     ui.label(RichText::new(text).size(12.5).color(palette.weak));
                 }
                 let stop = ui.button("Stop");
                 places::note(ui.ctx(), "stop mesh", stop.rect);
                 if stop.clicked() {
-                    self.stop_asked(session, film);
+                    self.give_up(session, film);
                 }
             }
             State::Trouble(reason) => {
@@ -313,7 +314,7 @@ impl MeshExport {
     }
 }
 
-/// What a mesh is like, in lines.
+/// Returns lines of facts about a mesh.
 fn lines(facts: &MeshFacts, growth: f64, written: &Written, film: Film) -> Vec<String> {
     let bytes = written.files.iter().map(|file| file.bytes.len()).sum();
     let [x, y, z] = facts.sides.map(|side| millimetres(side * growth));
@@ -337,7 +338,8 @@ fn lines(facts: &MeshFacts, growth: f64, written: &Written, film: Film) -> Vec<S
     }
     let unsure = match facts.undecided + facts.unproved {
         0 => String::new(),
-        places => format!(", but for {} places", thousands(places)),
+        1 => String::from(", except in one place"),
+        places => format!(", except in {} places", thousands(places)),
     };
     let error = millimetres(facts.error * growth);
     lines.push(format!("proved: at most {error} off{unsure}"));
@@ -353,7 +355,8 @@ fn lines(facts: &MeshFacts, growth: f64, written: &Written, film: Film) -> Vec<S
             0 | 1 => String::new(),
             frames => format!(", {frames} frames at {} a second", film.rate),
         };
-        lines.push(format!("{} joints{motion}", written.joints));
+        let s = if written.joints == 1 { "" } else { "s" };
+        lines.push(format!("{} joint{s}{motion}", written.joints));
     }
     lines
 }
@@ -363,7 +366,7 @@ const FORMATS: [(Format, &str, &str); 5] = [
     (
         Format::Stl,
         "STL",
-        "Every printer's program takes it; no colours",
+        "Every program for printing reads it; no colours",
     ),
     (
         Format::ThreeMf,
@@ -378,7 +381,7 @@ const FORMATS: [(Format, &str, &str); 5] = [
     (
         Format::Obj,
         "OBJ",
-        "Old and known everywhere; its materials are a second file",
+        "Old and known everywhere; materials are in a second file",
     ),
     (
         Format::Ply,
@@ -387,12 +390,12 @@ const FORMATS: [(Format, &str, &str); 5] = [
     ),
 ];
 
-/// Colours as they are shown, 0 … 1.
+/// Returns the channels of a colour as they are shown, 0 … 1.
 fn channels(color: Color32) -> [f32; 3] {
     [color.r(), color.g(), color.b()].map(|channel| f32::from(channel) / 255.0)
 }
 
-/// A length in words.
+/// Returns a length in words.
 fn millimetres(length: f64) -> String {
     if length >= 100.0 {
         format!("{length:.0} mm")
@@ -403,7 +406,7 @@ fn millimetres(length: f64) -> String {
     }
 }
 
-/// A volume in words, of cubic millimetres.
+/// Returns a volume, given in cubic millimetres, in words.
 fn cubic(volume: f64) -> String {
     let centimetres = volume / 1000.0;
     if centimetres >= 100.0 {
@@ -415,7 +418,7 @@ fn cubic(volume: f64) -> String {
     }
 }
 
-/// A number with its thousands apart.
+/// Returns a number with a narrow space between its thousands.
 fn thousands(number: usize) -> String {
     let digits = number.to_string();
     let mut apart = String::new();
@@ -428,7 +431,7 @@ fn thousands(number: usize) -> String {
     apart
 }
 
-/// A text that begins with a capital letter.
+/// Returns a text with a capital letter at its start.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {

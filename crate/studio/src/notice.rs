@@ -1,5 +1,5 @@
-//! One message at a time across the top of the picture: what went wrong or what was done, and
-//! perhaps one thing to do about it.
+//! A message across the top of the picture: something that went wrong or was done, perhaps with a
+//! button. There is one at a time.
 
 use crate::command::Command;
 use crate::icon::{self, Icon};
@@ -9,20 +9,20 @@ use egui::{Align, Button, Frame, Label, Layout, Margin, Rect, RichText, Ui, vec2
 /// A message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// Its text.
+    /// The text.
     pub text: String,
     /// Whether something went wrong.
     pub bad: bool,
-    /// A button: its text and what it does.
+    /// A button: its text and its command.
     pub action: Option<(String, Command)>,
-    /// When it goes by itself, seconds on the app's clock.
+    /// Time at which the message disappears by itself, seconds on the app's clock.
     pub until: Option<f64>,
 }
 
 impl Notice {
-    /// Something was done; goes after some seconds.
+    /// Makes a message about something that was done. It disappears after six seconds.
     #[must_use]
-    pub fn done(text: impl Into<String>, now: f64) -> Self {
+    pub fn success(text: impl Into<String>, now: f64) -> Self {
         Self {
             text: text.into(),
             bad: false,
@@ -31,7 +31,7 @@ impl Notice {
         }
     }
 
-    /// Something went wrong; stays until closed.
+    /// Makes a message about something that went wrong. It stays until it is closed.
     #[must_use]
     pub fn trouble(text: impl Into<String>) -> Self {
         Self {
@@ -42,9 +42,9 @@ impl Notice {
         }
     }
 
-    /// With a button.
+    /// Adds a button.
     #[must_use]
-    pub fn offering(mut self, text: &str, command: Command) -> Self {
+    pub fn with_button(mut self, text: &str, command: Command) -> Self {
         self.action = Some((text.to_owned(), command));
         self
     }

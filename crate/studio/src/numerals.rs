@@ -1,6 +1,6 @@
 //! Durations and counts in words.
 
-/// A duration in words.
+/// Returns a duration in words.
 #[must_use]
 pub fn duration(seconds: f64) -> String {
     if seconds < 0.95 {
@@ -14,7 +14,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// A count with a unit prefix: 1.2 M.
+/// Returns a count with a unit prefix: 1.2 M.
 #[must_use]
 pub fn count(number: u64) -> String {
     let number = number as f64;

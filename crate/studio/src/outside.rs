@@ -1,4 +1,4 @@
-//! Between the app and what is outside its window: serving requests, and telling how things are.
+//! The app and scripts of the page: serves their requests, and reports the state to them.
 
 use crate::app::{App, Dialog};
 use crate::command::Command;
@@ -12,6 +12,7 @@ use lab::Lesson;
 use std::rc::Rc;
 
 impl App {
+    /// Carries out a request. Answers that wait for the end of the tick go to `answers`.
     pub(crate) fn serve(
         &mut self,
         ctx: &Context,
@@ -29,17 +30,18 @@ impl App {
                     if self.lab.is_open() {
                         platform::push_hash("");
                     }
-                    self.opened(ctx);
+                    self.reset_panels(ctx);
                 }
                 answers.push(Box::new(move || answer(result)));
             }
             Request::Files(taken) => self.take_in(ctx, taken, now),
             Request::Example(index, Some(text), assets) => {
                 let result = self.work.open_example(index, &text, assets);
-                self.opened_or(ctx, result);
+                self.show_opened(ctx, result);
             }
             Request::Example(..) => {
-                let text = "This example could not be loaded. Check the connection and try again; your work stays open.";
+                let text = "This example could not be loaded. Check the connection and try \
+                    again; your work stays open.";
                 self.dialog = None;
                 self.notice = Some(Notice::trouble(text));
             }
@@ -66,8 +68,8 @@ impl App {
         }
     }
 
-    /// Goes where the fragment of the address now leads: to a lesson, to an example, to a shared
-    /// work, or back to the editor.
+    /// Follows the fragment of the address to a lesson, an example, a shared work, or back to the
+    /// editor.
     fn follow(&mut self, ctx: &Context, now: f64) {
         let hash = platform::hash();
         if let Some(lesson) = Lesson::of_hash(&hash) {
@@ -88,7 +90,7 @@ impl App {
         }
         match self.work.open_link(&hash) {
             Ok(true) => {
-                self.opened(ctx);
+                self.reset_panels(ctx);
                 self.welcome_link();
             }
             Ok(false) => {}
@@ -100,6 +102,7 @@ impl App {
         ctx.request_repaint();
     }
 
+    /// Writes the state that scripts can read.
     pub(crate) fn report(&mut self, ctx: &Context) {
         let (session, film) = (&self.work.session, self.film());
         let mut outbox = self.parts.outbox.borrow_mut();
@@ -143,15 +146,15 @@ impl App {
             self.reported = Some(text);
             state.diagnostics = session.diagnostics().into();
             state.errors = session.errors();
-            state.elements = session.compiled().scene.elements.len();
+            state.elements = session.compilation().scene.elements.len();
             state.timings.compile = session.compile_seconds();
-            let hot = &session.compiled().hot;
+            let hot = &session.compilation().hot;
             state.hot = hot.iter().map(|variable| variable.name.clone()).collect();
             let assets = session.assets().iter();
             state.assets = assets.map(|asset| asset.name.clone()).collect();
             outbox.project = Rc::new(session.project().clone());
         }
-        outbox.chosen = session.chosen_camera();
+        outbox.chosen = session.user_camera();
         outbox.camera = session.camera();
         let places = places::all(ctx);
         self.same = if places == outbox.places {

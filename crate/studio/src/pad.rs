@@ -19,22 +19,22 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The nearest number that these bounds allow, without digits that no hand could set.
+    /// Returns the nearest number that these bounds allow, without digits finer than a pixel.
     fn snap(self, value: f64) -> f64 {
         let (low, high) = self.range;
         let value = value.clamp(low, high);
-        slider::stepped(value, low, self.step, slider::decimals(high - low))
+        slider::snap(value, low, self.step, slider::decimals(high - low))
     }
 }
 
-/// How high the controls are.
+/// Space between the three fields.
+const GAP: f32 = 3.0;
+
+/// Returns the height of the controls.
 #[must_use]
 pub fn height(ui: &Ui) -> f32 {
     3.0 * ui.spacing().interact_size.y + 2.0 * GAP
 }
-
-/// Between the three fields.
-const GAP: f32 = 3.0;
 
 /// Shows the controls. Returns whether a drag continues, and the vector if it changed.
 pub fn show(
@@ -92,7 +92,7 @@ pub fn show(
     (dragging, changed.then_some(vector))
 }
 
-/// The square: a dot at x and y.
+/// Shows the square with a dot at x and y. Changes the vector by pointer, keys and wheel.
 fn square(ui: &mut Ui, name: &str, vector: &mut [f64; 3], bounds: Bounds, side: f32) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click_and_drag());
     places::note(ui.ctx(), format!("pad {name}"), rect);
@@ -116,17 +116,16 @@ fn square(ui: &mut Ui, name: &str, vector: &mut [f64; 3], bounds: Bounds, side: 
         info
     });
     paint(ui, &response, rect, *vector, bounds.range);
-    response
-        .on_hover_text("Drag: x and y. Wheel, Page Up and Page Down: z. Arrow keys move it too.")
+    response.on_hover_text("Drag or arrow keys: x and y. Wheel, Page Up and Page Down: z.")
 }
 
-/// Numbers at the pointer; y grows upwards.
+/// Returns x and y at the pointer; y grows upwards.
 fn numbers(at: Pos2, rect: Rect, (low, high): (f64, f64)) -> [f64; 2] {
     let share = (at - rect.min) / rect.size();
     [share.x, 1.0 - share.y].map(|share| low + f64::from(share.clamp(0.0, 1.0)) * (high - low))
 }
 
-/// Position of the numbers in the square.
+/// Returns the position of x and y in the square.
 fn place(x: f64, y: f64, rect: Rect, (low, high): (f64, f64)) -> Pos2 {
     let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
     pos2(
@@ -135,7 +134,7 @@ fn place(x: f64, y: f64, rect: Rect, (low, high): (f64, f64)) -> Pos2 {
     )
 }
 
-/// How far the keys move the vector.
+/// Returns the movement of the vector by keys.
 fn keys(ui: &Ui, response: &Response, bounds: Bounds) -> glam::DVec3 {
     if !response.has_focus() {
         return glam::DVec3::ZERO;
@@ -164,9 +163,9 @@ fn keys(ui: &Ui, response: &Response, bounds: Bounds) -> glam::DVec3 {
     })
 }
 
-/// How far the wheel over the square moves z. The list does not scroll meanwhile.
+/// Returns the movement of z by the wheel over the square. The list does not scroll meanwhile.
 fn wheel(ui: &Ui, response: &Response, bounds: Bounds) -> glam::DVec3 {
-    /// Points of scrolling that go from one end to the other.
+    /// Points of scrolling from one end of the range to the other.
     const WHOLE: f64 = 1200.0;
     if !response.hovered() {
         return glam::DVec3::ZERO;

@@ -3,7 +3,7 @@
 pub use pool::Image;
 use tracer::Tile;
 
-/// Cuts a tile out of a picture, RGBA.
+/// Returns the RGBA pixels of a tile of a picture.
 #[must_use]
 pub fn cut(image: &Image, tile: Tile) -> Vec<u8> {
     let width = image.size[0] as usize;
@@ -15,7 +15,7 @@ pub fn cut(image: &Image, tile: Tile) -> Vec<u8> {
     rgba
 }
 
-/// The picture as a PNG file.
+/// Encodes the picture as a PNG file.
 ///
 /// # Errors
 /// Only if the encoder refuses the size.

@@ -1,4 +1,4 @@
-//! The list of what the compiler has to say, all of it at once. A click goes to the place.
+//! The list of all messages of the compiler. A click goes to the place.
 
 use crate::command::Command;
 use crate::theme::{self, Palette};
@@ -6,10 +6,10 @@ use egui::{Button, Color32, RichText, Sense, Ui, vec2};
 use rats::{Diagnostic, Project, Severity};
 use std::ops::Range;
 
-/// Rows shown; a text can have thousands of mistakes.
+/// Most rows that are shown; a text can have thousands of mistakes.
 const MOST: usize = 200;
 
-/// The colour of a severity.
+/// Returns the colour of a severity.
 #[must_use]
 pub fn colour(palette: &Palette, severity: Severity) -> Color32 {
     match severity {
@@ -19,22 +19,17 @@ pub fn colour(palette: &Palette, severity: Severity) -> Color32 {
     }
 }
 
-/// How many errors, warnings and notes there are, in words; empty if there are none.
+/// Returns the numbers of errors, warnings and notes in words; empty if there are none.
 #[must_use]
 pub fn summary(diagnostics: &[Diagnostic]) -> String {
-    let count = |severity| {
-        diagnostics
-            .iter()
-            .filter(|diagnostic| diagnostic.severity == severity)
-            .count()
-    };
     let mut parts = Vec::new();
     for (severity, one, many) in [
         (Severity::Error, "error", "errors"),
         (Severity::Warning, "warning", "warnings"),
         (Severity::Note, "note", "notes"),
     ] {
-        match count(severity) {
+        let of_severity = diagnostics.iter().filter(|d| d.severity == severity);
+        match of_severity.count() {
             0 => {}
             1 => parts.push(format!("1 {one}")),
             n => parts.push(format!("{n} {many}")),
@@ -65,7 +60,7 @@ pub fn show(
     }
 }
 
-/// Goes to a place, if its file is still there.
+/// Returns the command that goes to a place, if its file is still there.
 fn jump(project: &Project, (name, span): (&String, &Range<usize>)) -> Option<Command> {
     let file = project.files.iter().position(|file| file.name == *name)?;
     Some(Command::Jump {
@@ -74,7 +69,7 @@ fn jump(project: &Project, (name, span): (&String, &Range<usize>)) -> Option<Com
     })
 }
 
-/// Below a message: other places that explain it, and the way to the manual.
+/// Shows buttons below a message: other places that explain it, and the manual.
 fn more(
     ui: &mut Ui,
     palette: &Palette,

@@ -1,12 +1,12 @@
 //! A whole work as one file: a zip archive of its texts, images and meshes, which other programs
 //! unpack as well.
 //!
-//! Beside them the archive has a description, `sinew.json`, with the work's name, its view, and
-//! which members are texts, the one that is run first. Archives without one are read as well: their
-//! files count as if they were dropped on the page one by one.
+//! The archive also has a description, `sinew.json`, with the work's name, its camera and the names
+//! of its texts, the one that is run first. The files of an archive without a description are taken
+//! in as if they were dropped on the page one by one.
 
 use crate::asset::{Asset, MAX_ALL, MAX_ASSET, MAX_ASSETS};
-use crate::intake::{self, Sorted, Taken};
+use crate::intake::{self, Incoming, Sorted};
 use crate::session::{MAX_FILES, MAX_TEXT};
 use ::archive::{Archive, Entry, Error, Member};
 use rats::File;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 /// Largest archive that is read, bytes.
 pub const MAX_BYTES: usize = MAX_ALL + MAX_TEXT + (1 << 20);
-/// Most members of an archive, with those that are passed over.
+/// Most members of an archive, including those that are ignored.
 pub const MAX_MEMBERS: usize = 1000;
 /// Name of the description.
 const DESCRIPTION: &str = "sinew.json";
@@ -25,13 +25,13 @@ const MAX_DESCRIPTION: usize = 64 * 1024;
 /// A work.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Project {
-    /// Its name; empty if the file does not tell it.
+    /// The name; empty if the file does not have it.
     pub name: String,
-    /// Its texts; the first one is run.
+    /// The texts; the first one is run.
     pub texts: Vec<File>,
-    /// Its images and meshes.
+    /// The images and meshes.
     pub assets: Vec<Asset>,
-    /// The camera chosen by hand.
+    /// The camera chosen by the user.
     pub camera: Option<Camera>,
 }
 
@@ -50,10 +50,10 @@ pub fn is_project(name: &str) -> bool {
     crate::asset::extension(name) == "zip"
 }
 
-/// The archive of a work.
+/// Writes the archive of a work.
 ///
 /// # Errors
-/// Why it cannot be written, as a sentence.
+/// A sentence, if it cannot be written.
 pub fn pack(project: &Project) -> Result<Vec<u8>, String> {
     let description = Description {
         name: project.name.clone(),
@@ -72,7 +72,7 @@ pub fn pack(project: &Project) -> Result<Vec<u8>, String> {
     let mut members: Vec<Member<'_>> = texts
         .chain(assets)
         .map(|(name, bytes)| Member {
-            packed: is_packed(name),
+            packed: is_compressed(name),
             ..Member::new(name, bytes)
         })
         .collect();
@@ -80,33 +80,32 @@ pub fn pack(project: &Project) -> Result<Vec<u8>, String> {
     ::archive::write(&members).map_err(|error| format!("The project {error}."))
 }
 
-/// Whether packing makes no smaller what has a name like this.
-fn is_packed(name: &str) -> bool {
+/// Whether a file of this name is compressed already, so that packing makes it no smaller.
+fn is_compressed(name: &str) -> bool {
     matches!(crate::asset::extension(name).as_str(), "png" | "gif")
 }
 
-/// The work in an archive, and of each file that was left out a sentence that says why.
+/// Reads the work in an archive. Returns it with a sentence for each file that was refused.
 ///
 /// # Errors
-/// Why the archive cannot be read, or has nothing for a work: the end of a sentence that begins
-/// with "it".
+/// If the archive cannot be read or has nothing for a work: the end of a sentence that begins with
+/// "it".
 pub fn unpack(bytes: &[u8]) -> Result<(Project, Vec<String>), String> {
-    let told = |error: Error| error.to_string();
     if bytes.len() > MAX_BYTES {
         let most = crate::asset::size(MAX_BYTES);
         return Err(format!("is larger than {most}"));
     }
-    let archive = Archive::open(bytes, MAX_MEMBERS).map_err(told)?;
+    let archive = Archive::open(bytes, MAX_MEMBERS).map_err(|error: Error| error.to_string())?;
     let description = archive
         .entries()
         .iter()
         .find(|entry| entry.name == DESCRIPTION)
         .map(|entry| archive.read(entry, MAX_DESCRIPTION))
         .transpose()
-        .map_err(told)?
+        .map_err(|error| error.to_string())?
         .and_then(|bytes| serde_json::from_slice::<Description>(&bytes).ok());
     let (project, refused) = match description {
-        Some(description) => own(&archive, description)?,
+        Some(description) => native(&archive, description)?,
         None => foreign(&archive),
     };
     if project.texts.is_empty() && project.assets.is_empty() {
@@ -118,8 +117,11 @@ pub fn unpack(bytes: &[u8]) -> Result<(Project, Vec<String>), String> {
     Ok((project, refused))
 }
 
-/// A work that was packed here.
-fn own(archive: &Archive<'_>, description: Description) -> Result<(Project, Vec<String>), String> {
+/// Reads a work that [`pack`] has written.
+fn native(
+    archive: &Archive<'_>,
+    description: Description,
+) -> Result<(Project, Vec<String>), String> {
     let mut project = Project {
         name: description.name.chars().take(60).collect(),
         camera: description.camera,
@@ -156,7 +158,7 @@ fn own(archive: &Archive<'_>, description: Description) -> Result<(Project, Vec<
     Ok((project, refused))
 }
 
-/// A work of files that someone has packed.
+/// Reads an archive that another program has written.
 fn foreign(archive: &Archive<'_>) -> (Project, Vec<String>) {
     let names: Vec<&str> = archive
         .entries()
@@ -166,10 +168,10 @@ fn foreign(archive: &Archive<'_>) -> (Project, Vec<String>) {
         .collect();
     let common = common_folder(&names);
     let mut all = 0;
-    let mut taken = Vec::new();
+    let mut files = Vec::new();
     for entry in archive.entries().iter().filter(|entry| is_meant(entry)) {
         let is_text = crate::asset::kind(&entry.name).is_none();
-        taken.push(Taken {
+        files.push(Incoming {
             name: entry.name[common..].to_owned(),
             bytes: content(archive, entry, is_text, &mut all),
         });
@@ -179,7 +181,7 @@ fn foreign(archive: &Archive<'_>) -> (Project, Vec<String>) {
         assets,
         refused,
         ..
-    } = intake::sort_archive(taken);
+    } = intake::sort_archive(files);
     let project = Project {
         texts,
         assets,
@@ -188,27 +190,27 @@ fn foreign(archive: &Archive<'_>) -> (Project, Vec<String>) {
     (project, refused)
 }
 
-/// Whether a member is a file that a person put there.
+/// Whether a member is a file that a person put there, and not a hidden one.
 fn is_meant(entry: &Entry) -> bool {
-    let hidden = |part: &str| part == "__MACOSX" || part.starts_with('.') && part != "..";
-    !entry.is_folder() && !entry.name.split('/').any(hidden)
+    let mut parts = entry.name.split('/');
+    !entry.is_folder()
+        && !parts.any(|part| part == "__MACOSX" || part.starts_with('.') && part != "..")
 }
 
-/// How many bytes of all names are the folders that all files are in.
+/// Returns the length in bytes of the path that all files have in common.
 fn common_folder(names: &[&str]) -> usize {
     let Some(first) = names.first() else {
         return 0;
     };
-    let shared = |end: &usize| names.iter().all(|name| name.starts_with(&first[..*end]));
     first
         .match_indices('/')
         .map(|(at, _)| at + 1)
-        .take_while(shared)
+        .take_while(|end| names.iter().all(|name| name.starts_with(&first[..*end])))
         .last()
         .unwrap_or(0)
 }
 
-/// The content of a member, within the limits of its kind and of all together.
+/// Reads a member within the limits of its kind and of all together. Adds its bytes to `all`.
 fn content(
     archive: &Archive<'_>,
     entry: &Entry,
@@ -224,7 +226,7 @@ fn content(
     Ok(bytes)
 }
 
-/// Most files that are taken of an archive.
+/// Most files that are taken from an archive.
 pub const MOST: usize = MAX_FILES + MAX_ASSETS;
 
 #[cfg(test)]
@@ -260,7 +262,7 @@ mod tests {
         };
         let project = Project {
             name: String::from("Drôle d’os"),
-            // The first one is run though the second reads it; a name may have folders.
+            // The first text is run though the second reads it; names may have folders.
             texts: vec![file("a b.rat", "# ä\n"), file("x/y.rat", "read a b.rat\n")],
             assets: vec![
                 mesh("x/bone.obj"),
@@ -313,14 +315,14 @@ mod tests {
 
     #[test]
     fn bombs_and_broken_archives_are_refused() {
-        let told = |bytes: &[u8]| unpack(bytes).unwrap_err();
-        assert!(told(b"PK").contains("no zip archive"));
-        assert!(told(&vec![0; MAX_BYTES + 1]).contains("larger than"));
-        assert!(told(&zip(&[("a.txt/", b"")])).contains("no texts"));
+        let reason = |bytes: &[u8]| unpack(bytes).unwrap_err();
+        assert!(reason(b"PK").contains("no zip archive"));
+        assert!(reason(&vec![0; MAX_BYTES + 1]).contains("larger than"));
+        assert!(reason(&zip(&[("a.txt/", b"")])).contains("no texts"));
         let zeros = vec![b' '; MAX_TEXT + 1];
-        assert!(told(&zip(&[("a.rat", &zeros)])).contains("bytes when it is unpacked"));
+        assert!(reason(&zip(&[("a.rat", &zeros)])).contains("bytes when it is unpacked"));
         let many: Vec<(&str, &[u8])> = vec![("a.rat", b""); MAX_MEMBERS + 1];
-        assert!(told(&zip(&many)).contains("members"));
+        assert!(reason(&zip(&many)).contains("members"));
         // Many files that are small by themselves.
         let image = vec![0; MAX_ASSET];
         let names: Vec<String> = (0..5).map(|i| format!("{i}.stl")).collect();
@@ -328,9 +330,9 @@ mod tests {
             .iter()
             .map(|name| (name.as_str(), &image[..]))
             .collect();
-        assert!(told(&zip(&members)).starts_with("has nothing for a work"));
+        assert!(reason(&zip(&members)).starts_with("has nothing for a work"));
         let description = br#"{"name": "a", "texts": ["main.rat"]}"#;
         let lacking = zip(&[("sinew.json", description)]);
-        assert_eq!(told(&lacking), "lacks its text main.rat");
+        assert_eq!(reason(&lacking), "lacks its text main.rat");
     }
 }

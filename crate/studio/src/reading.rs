@@ -30,7 +30,7 @@ pub struct MeshReading {
 }
 
 impl MeshReading {
-    /// Reads nothing yet.
+    /// Reads no file until [`MeshReading::tick`].
     #[must_use]
     pub fn new(tools: Tools) -> Self {
         Self {
@@ -39,8 +39,8 @@ impl MeshReading {
         }
     }
 
-    /// Starts reading the meshes that the session waits for, gives up those it does not want any
-    /// more, and keeps those that are read. Returns whether one is, so that the session may
+    /// Starts reading the meshes that the session waits for, gives up those that it does not need
+    /// any more, and keeps those that are read. Returns whether one is, so that the session may
     /// compile.
     pub fn tick(&mut self, session: &Session) -> bool {
         let mut any_read = false;
@@ -52,7 +52,7 @@ impl MeshReading {
             }
             None => true,
         });
-        let wanted: Vec<Asset> = if session.enabled() {
+        let wanted: Vec<Asset> = if session.is_enabled() {
             session.unread_meshes().cloned().collect()
         } else {
             Vec::new()
@@ -91,7 +91,7 @@ mod tests {
     fn large(name: &str, face: &str) -> Asset {
         let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
         while text.len() <= LARGE_MESH {
-            text.push_str("# a remark that makes the file large\n");
+            text.push_str("# a comment that makes the file large\n");
         }
         text.push_str(face);
         Asset {
@@ -135,7 +135,7 @@ mod tests {
         session.compile();
         assert!(session.is_compiled());
         assert_eq!(session.diagnostics(), []);
-        assert_eq!(session.compiled().scene.elements.len(), 1);
+        assert_eq!(session.compilation().scene.elements.len(), 1);
     }
 
     #[test]
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn removed_mesh_is_not_read() {
+    fn mesh_that_is_removed_is_not_read() {
         let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
         let mut reading = MeshReading::new(Tools::new(|| {}));
         reading.tick(&session);

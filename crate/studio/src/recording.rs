@@ -1,7 +1,7 @@
 //! A film on its way into a file, frame by frame.
 //!
 //! Frames are encoded as they come from the tracer. Those that a film shows a second time, on its
-//! way back, are kept as small as PNG files until then.
+//! way back, are kept as PNG files until then.
 
 use crate::film::{MAX_FRAMES, Playback, Player};
 use crate::picture::Image;
@@ -13,10 +13,10 @@ use std::io::Write;
 use std::rc::Rc;
 use video::{Codec, Colours, Video};
 
-/// Largest film that is saved, pixels over all frames of the file.
+/// Largest film that is saved: sum of the pixels of all frames of the file.
 pub const MAX_PIXELS: u64 = 120_000_000;
 
-/// Frames that wait for a video's encoder while more are given to it.
+/// Most frames that wait for a video's encoder while it is given another one.
 const WAITING: usize = 4;
 
 /// A kind of file for films.
@@ -33,10 +33,10 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All kinds, in the order of the menu.
+    /// The kinds in the order of the menu.
     pub const ALL: [Self; 4] = [Self::Mp4, Self::WebM, Self::Gif, Self::Png];
 
-    /// Its name.
+    /// Returns the name in the menu.
     #[must_use]
     pub fn label(self) -> &'static str {
         match self {
@@ -47,18 +47,18 @@ impl Kind {
         }
     }
 
-    /// What it is good for, in a few words.
+    /// Returns advantages and drawbacks in a few words.
     #[must_use]
     pub fn facts(self) -> &'static str {
         match self {
-            Self::Png => "every colour as it was traced; browsers play it",
+            Self::Png => "exactly the colours that were traced; browsers play it",
             Self::Gif => "everything plays it; 256 colours a frame",
             Self::WebM => "a small video; browsers play it",
             Self::Mp4 => "a small video; phones and televisions play it",
         }
     }
 
-    /// The ending of its file's name.
+    /// Returns the extension of the file's name.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -69,7 +69,7 @@ impl Kind {
         }
     }
 
-    /// How browsers call it.
+    /// Returns the media type.
     #[must_use]
     pub fn mime(self) -> &'static str {
         match self {
@@ -86,7 +86,7 @@ impl Kind {
         matches!(self, Self::WebM | Self::Mp4)
     }
 
-    /// The size of its frames for pictures of a size: those of a video are even.
+    /// Returns the size of frames for pictures of a size: the sides of a video's frames are even.
     #[must_use]
     pub fn size(self, size: [u32; 2]) -> [u32; 2] {
         if self.is_video() {
@@ -100,13 +100,13 @@ impl Kind {
 /// An encoder of videos that the browser has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VideoFormat {
-    /// The kind of file that its videos are for.
+    /// The kind of file for its videos.
     pub kind: Kind,
-    /// The browser's name of the codec, as `vp09.00.51.08`.
+    /// The browser's name of the codec, such as `vp09.00.51.08`.
     pub codec: String,
 }
 
-/// Bytes that are still written to while someone else waits for them.
+/// Bytes of a file, shared by its writer and the recording.
 #[derive(Clone, Default)]
 struct Bytes(Rc<RefCell<Vec<u8>>>);
 
@@ -128,27 +128,28 @@ enum Sink {
 
 /// A film on its way into a file.
 pub struct Recording {
-    /// What becomes of it.
+    /// The kind of file.
     pub kind: Kind,
     sink: Sink,
     size: [u32; 2],
     count: u32,
     rate: u16,
     playback: Playback,
-    /// Frames that were traced.
+    /// Number of frames that were traced.
     traced: u32,
-    /// Frames that were given to the file.
-    given: u32,
-    /// Those that come again, as PNG files.
+    /// Number of frames that were written to the file.
+    written: u32,
+    /// Frames that come again, as PNG files.
     kept: Vec<Vec<u8>>,
-    begun: f64,
+    /// Time of the start, seconds.
+    start: f64,
 }
 
 impl Recording {
     /// Begins a film with pictures of a size. For a video `formats` must have an encoder.
     ///
     /// # Errors
-    /// If it would be too large, or the encoder cannot be had.
+    /// If it would be too large, or the browser has no encoder.
     pub fn begin(
         kind: Kind,
         player: &Player,
@@ -160,7 +161,9 @@ impl Recording {
         let pixels = u64::from(size[0]) * u64::from(size[1]) * u64::from(length);
         if count == 0 || count > MAX_FRAMES || pixels > MAX_PIXELS {
             return Err(format!(
-                "{length} frames of {} × {} pixels are too many for one file: {MAX_FRAMES} frames and {} million pixels are the limits. Choose fewer frames or a smaller picture.",
+                "{length} frames of {} × {} pixels are too many for one file: \
+                    {MAX_FRAMES} frames and {} million pixels are the limits. \
+                    Choose fewer frames or a smaller picture.",
                 size[0],
                 size[1],
                 MAX_PIXELS / 1_000_000
@@ -181,39 +184,39 @@ impl Recording {
             rate: player.rate,
             playback: player.playback,
             traced: 0,
-            given: 0,
+            written: 0,
             kept: Vec::new(),
-            begun: now,
+            start: now,
         })
     }
 
-    /// The frame that is to be traced next; `None` if all are.
+    /// Returns the frame to trace next; `None` once all are traced.
     #[must_use]
-    pub fn wanted(&self) -> Option<u32> {
+    pub fn next_frame(&self) -> Option<u32> {
         (self.traced < self.count).then_some(self.traced)
     }
 
-    /// Fraction done, 0 … 1: of tracing, as encoding takes little time beside it.
+    /// Returns the fraction of frames that are traced, 0 … 1. Encoding takes little time beside it.
     #[must_use]
     pub fn fraction(&self) -> f32 {
         self.traced as f32 / self.count as f32
     }
 
-    /// Its progress in words.
+    /// Returns the progress in words.
     #[must_use]
     pub fn words(&self, now: f64) -> String {
-        let Some(frame) = self.wanted() else {
+        let Some(frame) = self.next_frame() else {
             return format!("Writing the {} file", self.kind.label());
         };
         let mut words = format!("Frame {} of {}", frame + 1, self.count);
         if frame > 0 {
-            let left = (now - self.begun) / f64::from(frame) * f64::from(self.count - frame);
+            let left = (now - self.start) / f64::from(frame) * f64::from(self.count - frame);
             words.push_str(&format!(" · {} left", crate::numerals::duration(left)));
         }
         words
     }
 
-    /// Takes the frame that was wanted.
+    /// Adds the frame that was to be traced next.
     ///
     /// # Errors
     /// If it has another size than the film, or cannot be encoded.
@@ -224,7 +227,7 @@ impl Recording {
         let [width, height] = image.size;
         let picture = Picture::new(width, height, image.rgba.clone());
         let picture = picture.map_err(|problem| problem.to_string())?;
-        self.give(&picture)?;
+        self.write(&picture)?;
         let last = self.count - 1;
         if self.playback == Playback::Mirror && (1..last).contains(&self.traced) {
             let small = file::encode(&picture, Format::Png);
@@ -235,7 +238,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Does a part of what is to be done once all frames are traced. Returns the file when it is
+    /// Does a part of the work that is left once all frames are traced. Returns the file when it is
     /// complete; until then call it again soon.
     ///
     /// # Errors
@@ -248,7 +251,7 @@ impl Recording {
         }
         if let Some(small) = self.kept.pop() {
             let picture = file::decode(&small, Format::Png).map_err(|p| p.to_string())?;
-            self.give(&picture)?;
+            self.write(&picture)?;
             return Ok(None);
         }
         match &mut self.sink {
@@ -278,43 +281,44 @@ impl Recording {
         }
     }
 
-    fn give(&mut self, picture: &Picture) -> Result<(), String> {
-        let told = |problem: ::picture::Problem| problem.to_string();
+    /// Writes a frame to the file, or gives it to the encoder.
+    fn write(&mut self, picture: &Picture) -> Result<(), String> {
+        let in_words = |problem: ::picture::Problem| problem.to_string();
         match &mut self.sink {
-            Sink::Pictures(_, Some(writer)) => writer.add(picture).map_err(told)?,
+            Sink::Pictures(_, Some(writer)) => writer.add(picture).map_err(in_words)?,
             Sink::Pictures(bytes, writer) => {
                 let format = match self.kind {
                     Kind::Gif => Format::Gif,
                     _ => Format::Png,
                 };
                 let repeats = self.playback != Playback::Once;
-                let timing = Timing::new(f64::from(self.rate), repeats).map_err(told)?;
+                let timing = Timing::new(f64::from(self.rate), repeats).map_err(in_words)?;
                 let length = self.playback.length(self.count);
-                let begun = Writer::begin(bytes.clone(), format, picture, length, timing, true);
-                *writer = Some(begun.map_err(told)?);
+                let new = Writer::begin(bytes.clone(), format, picture, length, timing, true);
+                *writer = Some(new.map_err(in_words)?);
             }
             Sink::Video(encoder) => {
-                let time = u64::from(self.given) * frame_time(self.rate);
-                // One can go to each second of the film.
-                let is_key = self.given.is_multiple_of(u32::from(self.rate.max(1)));
+                let time = u64::from(self.written) * frame_time(self.rate);
+                // A player can jump to each second of the film.
+                let is_key = self.written.is_multiple_of(u32::from(self.rate.max(1)));
                 encoder.encode(picture, time, is_key)?;
             }
         }
-        self.given += 1;
+        self.written += 1;
         Ok(())
     }
 }
 
-/// How long a frame is shown, microseconds.
+/// Returns the time for which a frame is shown, microseconds.
 fn frame_time(rate: u16) -> u64 {
     1_000_000 / u64::from(rate.max(1))
 }
 
-/// What a browser's encoder has made.
-pub struct Encoded {
-    /// How it is encoded.
+/// A video from a browser's encoder.
+pub struct EncodedVideo {
+    /// The codec.
     pub codec: Codec,
-    /// What its colours mean.
+    /// The meaning of the colours.
     pub colours: Colours,
     /// The frames.
     pub packets: Vec<video::Packet>,
@@ -323,11 +327,11 @@ pub struct Encoded {
 /// A film that is being saved.
 pub(crate) struct Saving {
     pub(crate) recording: Recording,
-    /// The text it is of.
+    /// The revision of the text.
     pub(crate) revision: u64,
     /// The frame that was on show before.
     pub(crate) before: u32,
-    /// The size of the picture that tests asked for before.
+    /// The size of the picture that tests had asked for.
     pub(crate) forced: Option<[u32; 2]>,
 }
 
@@ -342,7 +346,7 @@ mod tests {
         player
     }
 
-    /// A picture of a colour of its own for each frame.
+    /// Returns a picture with a colour of its own for each frame.
     fn image(frame: u32) -> Image {
         Image {
             size: [6, 4],
@@ -354,7 +358,7 @@ mod tests {
         let formats = crate::platform::native_formats();
         let player = player(count, playback);
         let mut film = Recording::begin(kind, &player, [6, 4], &formats, 0.0).unwrap();
-        while let Some(frame) = film.wanted() {
+        while let Some(frame) = film.next_frame() {
             assert_eq!(film.fraction(), frame as f32 / count as f32);
             film.add(&image(frame)).unwrap();
         }
@@ -411,30 +415,32 @@ mod tests {
         let bytes = record(Kind::WebM, 4, Playback::Mirror);
         assert!(bytes.starts_with(&[0x1a, 0x45, 0xdf, 0xa3]));
         // The stand-in for an encoder makes PNG files.
-        let starts = |bytes: &[u8]| {
-            let found = bytes.windows(4).filter(|four| four == b"\x89PNG");
-            found.count()
+        let count = |bytes: &[u8]| {
+            let starts = bytes.windows(4).filter(|four| four == b"\x89PNG");
+            starts.count()
         };
-        assert_eq!(starts(&bytes), 6);
-        assert_eq!(starts(&record(Kind::Mp4, 3, Playback::Loop)), 3);
+        assert_eq!(count(&bytes), 6);
+        assert_eq!(count(&record(Kind::Mp4, 3, Playback::Loop)), 3);
         assert_eq!(Kind::WebM.size([33, 1]), [32, 2]);
         assert_eq!(Kind::Gif.size([33, 1]), [33, 1]);
     }
 
     #[test]
-    fn what_cannot_be_saved_is_refused() {
-        let begin = |kind, count, playback, size| {
+    fn films_that_cannot_be_saved_are_refused() {
+        let trouble = |kind, count, playback, size| {
             Recording::begin(kind, &player(count, playback), size, &[], 0.0).err()
         };
-        let told = |count, playback, size| begin(Kind::Png, count, playback, size).is_some();
-        assert!(told(MAX_FRAMES + 1, Playback::Loop, [2, 2]));
-        assert!(told(24, Playback::Loop, [4000, 4000]));
-        assert!(!told(24, Playback::Loop, [2000, 2000]));
-        assert!(
-            told(24, Playback::Mirror, [2000, 2000]),
-            "the way back counts"
-        );
-        let encoder = begin(Kind::WebM, 24, Playback::Loop, [800, 600]).unwrap();
+        for (count, playback, size, is_refused) in [
+            (MAX_FRAMES + 1, Playback::Loop, [2, 2], true),
+            (24, Playback::Loop, [4000, 4000], true),
+            (24, Playback::Loop, [2000, 2000], false),
+            // The way back counts, too.
+            (24, Playback::Mirror, [2000, 2000], true),
+        ] {
+            let trouble = trouble(Kind::Png, count, playback, size);
+            assert_eq!(trouble.is_some(), is_refused, "{count} {size:?}");
+        }
+        let encoder = trouble(Kind::WebM, 24, Playback::Loop, [800, 600]).unwrap();
         assert!(encoder.contains("no encoder"), "{encoder}");
         let player = player(2, Playback::Loop);
         let mut film = Recording::begin(Kind::Png, &player, [6, 4], &[], 0.0).unwrap();

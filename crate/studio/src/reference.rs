@@ -1,5 +1,4 @@
-//! The reference in the help: every command of the language, by group, with a field that searches
-//! names and meanings.
+//! The reference in the help: the commands of the language by group, with a search field.
 
 use crate::command::Command;
 use crate::{places, theme};
@@ -21,7 +20,7 @@ const ORDER: [(Group, &str); 9] = [
     (Group::Tools, "Pictures and films"),
 ];
 
-/// The commands of a group.
+/// Returns the commands of a group.
 fn group_list(group: Group) -> &'static [&'static CommandSpec] {
     GROUPS
         .iter()
@@ -44,7 +43,7 @@ impl Reference {
         self.wanted = Some(name.to_owned());
     }
 
-    /// Shows the field and what it finds.
+    /// Shows the search field and the commands that it finds.
     pub fn show(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui.visuals());
         let field = ui.add(
@@ -96,7 +95,7 @@ fn heading(spec: &CommandSpec, palette: &theme::Palette) -> LayoutJob {
     job
 }
 
-/// How a command is written, what its operands and options mean, and an example to try.
+/// Shows the synopsis of a command, the meanings of operands and options, and an example to try.
 pub fn card(ui: &mut Ui, spec: &CommandSpec, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let small = |text: &str, colour| RichText::new(text).size(13.0).color(colour);
@@ -157,7 +156,7 @@ pub fn card(ui: &mut Ui, spec: &CommandSpec, commands: &mut Vec<Command>) {
     ui.add_space(6.0);
 }
 
-/// Operands and options: how each is written, what it means, and whether it is an option.
+/// Returns spelling and meaning of operands and options, and whether each is an option.
 fn rows(spec: &CommandSpec) -> Vec<(String, String, bool)> {
     let with_default = |meaning: &str, default: &str| match default {
         "" => meaning.to_owned(),
@@ -182,7 +181,7 @@ fn rows(spec: &CommandSpec) -> Vec<(String, String, bool)> {
     rows
 }
 
-/// Whether all words of the search are found in the command's name, meaning or options.
+/// Whether a command's name, meaning or options contain all words of the search.
 fn matches(spec: &CommandSpec, search: &str) -> bool {
     search.split_whitespace().all(|word| {
         let word = word.to_lowercase();
@@ -209,7 +208,7 @@ mod tests {
 
     #[test]
     fn names_meanings_and_options_are_searched() {
-        let find = |search: &str| -> Vec<&str> {
+        let find = |search| -> Vec<&str> {
             commands::all()
                 .filter(|spec| matches(spec, search))
                 .map(|spec| spec.name)

@@ -1,8 +1,8 @@
-//! When to trace, and the traced picture on its way to the screen.
+//! The traced picture: the time at which it begins, and its way to the screen.
 //!
-//! A change is traced at once where the workers soon have a coarse picture of it; else after a
-//! short pause, so that typing does not have a large scene prepared at every key. The running
-//! picture is given up at the change itself, which frees the workers for the next one.
+//! A change is traced at once if the workers soon have a coarse picture of it; else after a short
+//! pause, so that a large scene is not prepared anew at every key. The running picture is given up
+//! at the change itself, which frees the workers for the next one.
 
 use crate::picture;
 use egui::{ColorImage, TextureHandle, TextureOptions};
@@ -14,11 +14,12 @@ use std::sync::Arc;
 use tracer::Pass;
 use worker::Kind;
 
-/// Seconds of quiet before a change of a scene is traced that takes longer than [`QUICK`].
+/// Seconds without a change before a scene is traced whose coarse picture takes longer than
+/// [`QUICK`].
 pub const DEBOUNCE: f64 = 0.15;
-/// Seconds to the coarse picture that a scene may take whose changes are traced at once.
+/// Seconds up to which a coarse picture is quick enough for changes to be traced at once.
 pub const QUICK: f64 = 0.25;
-/// Seconds of quiet before a new size of the view is traced: the split is being dragged.
+/// Seconds without a change before a new size of the view is traced, as the split may be dragged.
 pub const RESIZE_DEBOUNCE: f64 = 0.35;
 /// Seconds in which the window finds its size before the first picture begins.
 pub const START: f64 = 0.05;
@@ -28,7 +29,7 @@ pub const FADE: f64 = 0.22;
 /// State of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Nothing to draw yet.
+    /// Nothing is to be drawn yet.
     Idle,
     /// Waiting for the text or the camera to come to rest.
     Waiting,
@@ -41,7 +42,7 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// Its name in the page handle's status.
+    /// Returns the name in the page handle's status.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
@@ -57,9 +58,9 @@ impl Phase {
 /// Seconds from the start of the picture to its milestones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Timings {
-    /// Every pixel there, coarsely.
+    /// The coarse picture is complete.
     pub coarse: Option<f64>,
-    /// Finished.
+    /// The picture is finished.
     pub done: Option<f64>,
 }
 
@@ -71,10 +72,11 @@ pub struct Renderer {
     phase: Phase,
     /// The picture wanted last: the session's generation and the size.
     wanted: Option<(u64, [u32; 2])>,
+    /// Time at which it begins.
     due: f64,
     /// Number of the running picture. Sizes change too, so it is not the session's generation.
     number: u64,
-    /// The session's generation of the running picture, and when it began.
+    /// The session's generation of the running picture, and the time at which it began.
     running: (u64, f64),
     /// The session's generation of the picture on the screen.
     shown: Option<u64>,
@@ -86,7 +88,7 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer without a picture.
+    /// Makes a renderer without a picture.
     #[must_use]
     pub fn new(pool: Rc<RefCell<Pool>>) -> Self {
         Self {
@@ -106,8 +108,8 @@ impl Renderer {
         }
     }
 
-    /// Says what should be on the screen. When that differs from what is coming, the running
-    /// picture is given up and a new one begins, after a pause unless scenes are quick.
+    /// Sets generation and size of the picture that is wanted. If they differ from those of the
+    /// running one, that is given up and a new one begins, after a pause unless scenes are quick.
     pub fn want(&mut self, generation: u64, size: [u32; 2], now: f64) {
         let Some((old_generation, old_size)) = self.wanted else {
             self.wanted = Some((generation, size));
@@ -135,14 +137,14 @@ impl Renderer {
         }
     }
 
-    /// Seconds until [`Renderer::tick`] has something to do, if it waits for a time.
+    /// Returns the seconds until [`Renderer::tick`] begins a picture; `None` if none waits.
     #[must_use]
     pub fn wait(&self, now: f64) -> Option<f64> {
         (self.phase == Phase::Waiting).then_some((self.due - now).max(0.0))
     }
 
-    /// Begins the wanted picture when its time has come, of this scene and by this camera if it is
-    /// another than the scene's, and takes in tiles. Gives whether something changed.
+    /// Begins the wanted picture of a scene when its time has come, seen by `camera` if it is not
+    /// the scene's own, and takes in tiles. Returns whether something changed.
     pub fn tick(
         &mut self,
         ctx: &egui::Context,
@@ -193,7 +195,7 @@ impl Renderer {
             .generation
             .is_some_and(|number| number != self.number)
         {
-            // The workers were last at a picture of the lab.
+            // The last picture of the workers was one of the lab.
             progress = Progress {
                 workers: progress.workers,
                 restarted: progress.restarted,
@@ -219,7 +221,7 @@ impl Renderer {
         changed
     }
 
-    /// Stops the running picture; what is there stays.
+    /// Stops the running picture; its tiles stay.
     pub fn cancel(&mut self) {
         if matches!(self.phase, Phase::Tracing | Phase::Waiting) {
             self.halt();
@@ -236,7 +238,7 @@ impl Renderer {
         }
     }
 
-    /// Forgets the picture: another piece of work is open.
+    /// Forgets the picture, when another work was opened.
     pub fn clear(&mut self) {
         self.halt();
         self.assembly.clear();
@@ -253,14 +255,14 @@ impl Renderer {
         }
     }
 
-    /// State of the picture.
+    /// Returns the state of the picture.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// Whether the picture on the screen may stand in for one that is wanted: it has its size, and
-    /// a coarse one is expected within so many seconds of work, which are not over yet.
+    /// Whether the picture on the screen may stand in for the wanted one: it has the same size, and
+    /// the coarse picture is expected within `seconds` of work, which are not over yet.
     #[must_use]
     pub fn is_near(&self, seconds: f64, now: f64) -> bool {
         let coming = match self.phase {
@@ -275,33 +277,33 @@ impl Renderer {
             && size == self.wanted.map(|(_, size)| size)
     }
 
-    /// How far the running picture is.
+    /// Returns the progress of the running picture.
     #[must_use]
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
 
-    /// How long its milestones took.
+    /// Returns the times of its milestones.
     #[must_use]
     pub fn timings(&self) -> Timings {
         self.timings
     }
 
-    /// The picture on the screen.
+    /// Returns the picture on the screen.
     #[must_use]
     pub fn image(&self) -> Option<&Image> {
         self.assembly.shown().map(|(_, image)| image)
     }
 
-    /// The texture of the picture on the screen, and the session's generation it shows.
+    /// Returns the texture of the picture on the screen, and the session's generation of it.
     #[must_use]
     pub fn texture(&self) -> Option<(&TextureHandle, u64)> {
         Some((self.texture.as_ref()?, self.shown?))
     }
 
-    /// How far the picture has faded in over the draft, 0 … 1.
+    /// Returns the opacity of the picture over the draft, 0 … 1.
     #[must_use]
-    pub fn faded(&self, now: f64) -> f32 {
+    pub fn opacity(&self, now: f64) -> f32 {
         ((now - self.appeared) / FADE).clamp(0.0, 1.0) as f32
     }
 
@@ -310,7 +312,7 @@ impl Renderer {
             return;
         };
         let size = image.size.map(|side| side as usize);
-        // All of it is opaque.
+        // Every pixel is opaque.
         let pixels = ColorImage::from_rgba_premultiplied(size, &image.rgba);
         match &mut self.texture {
             Some(texture) => texture.set(pixels, TextureOptions::LINEAR),
@@ -334,7 +336,7 @@ impl Renderer {
     }
 }
 
-/// Name of a pass, for display.
+/// Returns the name of a pass, for display.
 #[must_use]
 pub fn pass_label(pass: Pass) -> &'static str {
     match pass {

@@ -16,7 +16,7 @@ pub struct Report {
     pub progress: f64,
     /// `coarse`, `full` or `smooth` while tracing.
     pub pass: Option<&'static str>,
-    /// Seconds until the picture is finished, once that can be guessed.
+    /// Seconds until the picture is finished, once there is an estimate.
     pub remaining: Option<f64>,
     /// `webgpu`, `webgl2` or `none`.
     pub backend: &'static str,
@@ -24,15 +24,15 @@ pub struct Report {
     pub workers: usize,
     /// Workers replaced since the page was opened.
     pub replaced: u32,
-    /// Why tracing does not work, if so.
+    /// The reason why tracing does not work.
     pub failure: Option<String>,
     /// Whether the picture on the screen is of the present text and camera.
     pub fresh: bool,
-    /// How many of the diagnostics are errors.
+    /// Number of diagnostics that are errors.
     pub errors: usize,
-    /// What stands in for the picture on the screen: `draft` or `mesh`.
+    /// The stand-in for the picture on the screen: `draft` or `mesh`.
     pub stand_in: Option<&'static str>,
-    /// Elements of the scene that the text now makes.
+    /// Number of elements of the scene that the text makes.
     pub elements: usize,
     /// Messages of the compiler.
     pub diagnostics: Vec<Diagnostic>,
@@ -48,7 +48,7 @@ pub struct Report {
     pub assets: Vec<String>,
     /// Name of the mesh that is being read.
     pub reading: Option<String>,
-    /// The fit of a mesh that runs, or was last.
+    /// The fit of a mesh that runs, or ran last.
     pub fit: Option<Fit>,
     /// The mesh of the dialog, once one was asked for.
     pub mesh: Option<Mesh>,
@@ -68,15 +68,15 @@ pub struct Report {
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Mesh {
-    /// Whether the one that was asked for is being made.
+    /// Whether the mesh that was asked for is being made.
     pub running: bool,
     /// Triangles on show.
     pub shown: usize,
-    /// Triangles of the one that was asked for.
+    /// Triangles of the mesh that was asked for.
     pub triangles: Option<usize>,
-    /// Length of its files.
+    /// Length of the files together.
     pub bytes: Option<usize>,
-    /// Why there is none.
+    /// The reason why there is none.
     pub said: Option<String>,
 }
 
@@ -87,22 +87,22 @@ pub struct Fit {
     pub running: bool,
     /// Iterations that were written into the text.
     pub iteration: u32,
-    /// Residual after those.
+    /// Residual after the last iteration.
     pub residual: f64,
     /// Measured points that are read.
     pub points: usize,
-    /// What the panel says.
+    /// The message in the panel.
     pub said: Option<String>,
 }
 
 /// Seconds from the start of the picture.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Timings {
-    /// Every pixel there, coarsely.
+    /// The coarse picture is complete.
     pub coarse: Option<f64>,
-    /// Finished.
+    /// The picture is finished.
     pub done: Option<f64>,
-    /// Compiling the text.
+    /// Seconds that compiling the text took.
     pub compile: f64,
 }
 
@@ -134,7 +134,7 @@ pub struct Outbox {
     pub report: Report,
     /// The texts.
     pub project: Rc<Project>,
-    /// The camera chosen by hand.
+    /// The camera chosen by the user.
     pub chosen: Option<Camera>,
     /// The camera in use.
     pub camera: Camera,
@@ -146,16 +146,16 @@ pub struct Outbox {
     pub places: crate::places::Places,
 }
 
-/// The sculpture that is worked on.
+/// The open sculpture.
 #[derive(Clone, Debug, Serialize)]
 pub struct Sculpture {
-    /// Name of its text.
+    /// Name of the text.
     pub name: String,
     /// Vertices and faces.
     pub counts: [usize; 2],
-    /// Strokes that can be undone, and that can be redone.
+    /// Numbers of strokes that can be undone and redone.
     pub depth: [usize; 2],
 }
 
-/// Shared between the app and the handle.
+/// The outbox, shared by the app and the page handle.
 pub type Shared = Rc<RefCell<Outbox>>;

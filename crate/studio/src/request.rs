@@ -2,7 +2,7 @@
 //! itself.
 
 use crate::asset::Asset;
-use crate::intake::Taken;
+use crate::intake::Incoming;
 use crate::mesh_export::{Order, Taker};
 use crate::picture::Image;
 use crate::recording::VideoFormat;
@@ -12,30 +12,30 @@ use scene::Camera;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Looks at the traced picture, if there is one.
+/// A function that looks at the traced picture, if there is one.
 pub type Viewer = Box<dyn FnOnce(Option<&Image>)>;
 
-/// Takes the outcome of a request, with the reason if it was refused.
+/// A function that takes the outcome of a request, with the reason if it was refused.
 pub type Answer = Box<dyn FnOnce(Result<(), String>)>;
 
-/// One wish from outside. The app carries it out at its next tick.
+/// A wish from outside. The app carries it out at its next tick.
 pub enum Request {
     /// Answer when the app runs.
     Ready(Box<dyn FnOnce()>),
-    /// The fragment of the page's address changed.
+    /// Follow the fragment of the page's address, which changed.
     HashChanged,
-    /// Open these texts; the answer is given when they are compiled.
+    /// Open these texts, and answer when they are compiled.
     Load(Project, Answer),
     /// Take in files that the user dropped or chose.
-    Files(Vec<Taken>),
-    /// Open an example of the gallery with its text, `None` if that did not come, and its images
-    /// and meshes, which were fetched.
+    Files(Vec<Incoming>),
+    /// Open an example of the gallery with its text, or `None` if that did not come, and with
+    /// images and meshes that were fetched.
     Example(usize, Option<String>, Vec<Asset>),
     /// Sculpt the mesh of the model, as a PLY file, or say why there is none.
     SculptModel(Result<Vec<u8>, String>),
-    /// The browser has these encoders of videos.
+    /// Take note of the browser's encoders of videos.
     Videos(Vec<VideoFormat>),
-    /// Look at the scene with this camera; `None`: with the text's.
+    /// Look at the scene with this camera, or with that of the text if it is `None`.
     SetCamera(Option<Camera>),
     /// Give the traced picture.
     Picture(Viewer),
@@ -44,13 +44,13 @@ pub enum Request {
     /// Answer when the picture of the present text and camera is finished, or was stopped. It is
     /// refused, with the reason, while the lab keeps the picture waiting.
     Finished(Answer),
-    /// Answer when nothing in the window changes its place any more. For tests.
+    /// Answer when no widget moves any more. For tests.
     Still(Box<dyn FnOnce()>),
     /// Stop tracing.
     Cancel,
     /// Trace again.
     Again,
-    /// Trace at this size; `None`: at the size the user chose. For tests.
+    /// Trace at this size, or at the size that the user chose if it is `None`. For tests.
     PictureSize(Option<[u32; 2]>),
     /// Stop the program unexpectedly. For tests.
     Panic,
@@ -64,12 +64,12 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Sets the context that is woken by requests.
+    /// Sets the context that requests wake.
     pub fn attach(&self, ctx: &Context) {
         self.ctx.replace(Some(ctx.clone()));
     }
 
-    /// Asks for something.
+    /// Adds a request and wakes the app.
     pub fn ask(&self, request: Request) {
         self.waiting.borrow_mut().push(request);
         if let Some(ctx) = &*self.ctx.borrow() {
@@ -77,7 +77,7 @@ impl Requests {
         }
     }
 
-    /// All that was asked since the last call.
+    /// Takes the requests since the last call.
     #[must_use]
     pub fn take(&self) -> Vec<Request> {
         std::mem::take(&mut *self.waiting.borrow_mut())

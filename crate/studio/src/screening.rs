@@ -1,4 +1,4 @@
-//! Playback of an animated work, and saving of its frames: the app's part, frame by frame.
+//! Playback of an animated work, and saving its frames as a film.
 
 use crate::app::App;
 use crate::notice::Notice;
@@ -10,7 +10,7 @@ use crate::{platform, work};
 use egui::Context;
 
 impl App {
-    /// Whether the picture of what is to be drawn is finished.
+    /// Whether the picture of the present scene and camera is finished.
     pub(crate) fn is_finished(&self) -> bool {
         let generation = self.work.session.generation();
         self.renderer.phase() == Phase::Done
@@ -20,6 +20,7 @@ impl App {
                 .is_some_and(|(_, shown)| shown == generation)
     }
 
+    /// Shows a frame of the film.
     pub(crate) fn go_to_frame(&mut self, frame: u32) {
         self.work.session.set_film_frame(frame);
         self.work.session.compile();
@@ -32,7 +33,7 @@ impl App {
         self.go_to_frame(first);
     }
 
-    /// Shows the next frame if its time has come; saves the one that is finished.
+    /// Shows the next frame of the film if its time has come, or saves the one that is finished.
     pub(crate) fn screen(&mut self, ctx: &Context, now: f64) {
         if self.work.session.is_animated() && self.videos.is_none() {
             self.videos = Some(Vec::new());
@@ -75,7 +76,7 @@ impl App {
         }
     }
 
-    /// Gives up saving; what was made so far is thrown away.
+    /// Gives up saving the film, for a reason that is shown.
     pub(crate) fn stop_film(&mut self, why: &str) {
         if let Some(saving) = self.saving.take() {
             self.forced_size = saving.forced;
@@ -84,6 +85,7 @@ impl App {
         }
     }
 
+    /// Adds a frame that is finished to the film, or ends the film after the last one.
     fn save_frame(&mut self, ctx: &Context, now: f64) {
         let finished = self.is_finished();
         let Some(saving) = &mut self.saving else {
@@ -97,13 +99,13 @@ impl App {
             self.stop_film("The picture was stopped.");
             return;
         }
-        if saving.recording.wanted().is_some() {
+        if saving.recording.next_frame().is_some() {
             let Some(image) = self.renderer.image().filter(|_| finished) else {
                 return;
             };
             match saving.recording.add(image) {
                 Ok(()) => {
-                    if let Some(next) = saving.recording.wanted() {
+                    if let Some(next) = saving.recording.next_frame() {
                         self.go_to_frame(next);
                         return;
                     }
@@ -117,12 +119,13 @@ impl App {
         match saving.recording.finish() {
             // A video's encoder works beside the page.
             Ok(None) => ctx.request_repaint_after_secs(0.01),
-            Ok(Some(bytes)) => self.film_is_complete(&bytes, now),
+            Ok(Some(bytes)) => self.save_film(&bytes, now),
             Err(trouble) => self.stop_film(&trouble),
         }
     }
 
-    fn film_is_complete(&mut self, bytes: &[u8], now: f64) {
+    /// Saves the file of a film that is complete.
+    fn save_film(&mut self, bytes: &[u8], now: f64) {
         let Some(saving) = self.saving.take() else {
             return;
         };
@@ -134,6 +137,6 @@ impl App {
         let text = format!("Saved {name}, {} frames, {size}.", self.player.count);
         self.forced_size = saving.forced;
         self.go_to_frame(saving.before);
-        self.notice = Some(Notice::done(text, now));
+        self.notice = Some(Notice::success(text, now));
     }
 }

@@ -1,5 +1,5 @@
-//! Sculpting in the page: which text of strokes is open in the place (crate `modeling`), how one
-//! begins, and what it writes.
+//! Sculpting in the page: opens and begins texts of strokes in the sculpting view (crate
+//! `modeling`), and carries out its wishes.
 
 use crate::app::{App, Dialog, Tab};
 use crate::asset::{self, Kind};
@@ -23,7 +23,7 @@ const SHAPES: [(&str, &str); 5] = [
     ("Plane", "start plane 24"),
 ];
 
-/// What a new work is seen in.
+/// Camera and lights of a new work.
 const STUDIO: &str = "\
 # The mesh is made by strokes of tools: Sculpt, above, goes on with it.
 framesize 640 480
@@ -40,13 +40,12 @@ light <0.35 0.35 0.42> point, position -6 -3 3
 /// The name of the first sculpture of a work.
 const FIRST: &str = "sculpture.strokes";
 
-/// The mesh file that a text of strokes of the session starts from.
+/// Returns the mesh file that a text of strokes of the session starts from.
 fn start_of(session: &Session, name: &str, text: &str) -> Option<Asset> {
     let wanted = rats::start_file(text)?;
-    let all = session.assets();
-    let places = rats::places(name, &wanted);
-    let find = |place: &String| all.iter().find(|asset| asset.name == *place);
-    places.iter().find_map(find).cloned()
+    let mut places = rats::places(name, &wanted).into_iter();
+    let all = session.assets().iter();
+    places.find_map(|place| all.clone().find(|asset| asset.name == place).cloned())
 }
 
 /// Reads the file that strokes start from.
@@ -58,24 +57,23 @@ fn load(start: Option<&Asset>, name: &str) -> Result<mesh::TriangleMesh, String>
 /// The colour of clay.
 const CLAY: &str = "<0.78 0.62 0.5>";
 
-/// The lines that show a sculpture, of a material whose name the text does not have.
-fn shown(text: &str, file: &str, diffuse: &str) -> String {
-    let is_free = |name: &str| !text.contains(name);
+/// Returns the lines that show a sculpture, with a material whose name the text does not have.
+fn lines(text: &str, file: &str, diffuse: &str) -> String {
     let name = (1..)
         .map(|n| match n {
             1 => String::from("Clay"),
             n => format!("Clay{n}"),
         })
-        .find(|name| is_free(name))
+        .find(|name| !text.contains(name))
         .unwrap_or_default();
     format!("surface {name}, diffuse {diffuse}, specular White, shine 20\nmesh {name} {file}\n")
 }
 
-/// A text whose `mesh` command for a file shows it in another way; `None` if it has no such
+/// Returns the text with other flesh in its `mesh` command for a file; `None` if it has no such
 /// command.
-fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
+fn grow(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
     let bare = file.rsplit('/').next().unwrap_or(file);
-    let is_it = |line: &&str| {
+    let line = text.lines().find(|line| {
         let words = line.split(|c: char| c.is_whitespace() || c == ',');
         let mut words = words.filter(|word| !word.is_empty());
         let is_mesh = words.next() == Some("mesh");
@@ -83,15 +81,13 @@ fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
             && words
                 .nth(1)
                 .is_some_and(|name| name == file || name == bare)
-    };
-    let line = text.lines().find(is_it)?;
+    })?;
     let old = line.split_whitespace().nth(1)?.trim_end_matches(',');
     let short = |x: f64| {
         let digits = (2.0 - libm::floor(libm::log10(x.max(1e-9)))).clamp(0.0, 9.0) as usize;
         format!("{x:.digits$}")
     };
-    // Materials that flesh was grown of have names of their own, so that it can be taken away
-    // again.
+    // The material of flesh has a name of its own, so that the hard one can be found again.
     let hard = old
         .strip_suffix("Flesh")
         .filter(|name| !name.is_empty())
@@ -108,7 +104,8 @@ fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
             let command = format!("mesh {soft} {file}");
             let is_there = text.contains(&format!("surface {soft},"));
             let material = format!(
-                "surface {soft}, diffuse Coral, specular White, shine 40, kernel quartic, blobbiness -2, radius {}\n",
+                "surface {soft}, diffuse Coral, specular White, shine 40, kernel quartic, \
+                    blobbiness -2, radius {}\n",
                 short(0.5 * edge)
             );
             if is_there {
@@ -122,27 +119,25 @@ fn grown(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
 }
 
 impl App {
-    /// Whether the place is open.
+    /// Whether the sculpting view is open.
     pub(crate) fn sculpts(&self) -> bool {
         self.sculpting.is_some()
     }
 
-    /// Goes on with the text of strokes in the editor, or the first of the work, or asks how to
-    /// begin.
+    /// Opens the text of strokes in the editor or else the first of the work, or asks how to begin.
     pub(crate) fn show_sculpt(&mut self) {
         let files = &self.work.session.project().files;
-        let shown = files
+        let on_show = files
             .get(self.editor.file)
-            .filter(|_| self.editor.asset.is_none());
-        let shown = shown.filter(|file| is_strokes(&file.name));
+            .filter(|file| self.editor.asset.is_none() && is_strokes(&file.name));
         let first = files.iter().find(|file| is_strokes(&file.name));
-        match shown.or(first).map(|file| file.name.clone()) {
+        match on_show.or(first).map(|file| file.name.clone()) {
             Some(name) => self.open_sculpture(&name),
             None => self.dialog = Some(Dialog::Sculpt),
         }
     }
 
-    /// Opens a text of strokes in the place.
+    /// Opens a text of strokes in the sculpting view.
     pub(crate) fn open_sculpture(&mut self, name: &str) {
         self.dialog = None;
         let session = &self.work.session;
@@ -170,26 +165,22 @@ impl App {
     /// Begins a sculpture with a line of its text, in a new work or in the open one.
     pub(crate) fn begin_sculpture(&mut self, ctx: &Context, start: &str, is_new: bool, now: f64) {
         self.dialog = None;
-        let taken = |name: &str| {
-            let files = &self.work.session.project().files;
-            !is_new && files.iter().any(|file| file.name == name)
-        };
+        let files = &self.work.session.project().files;
         let name = (1..)
             .map(|n| match n {
                 1 => String::from(FIRST),
                 n => format!("sculpture{n}.strokes"),
             })
-            .find(|name| !taken(name))
+            .find(|name| is_new || files.iter().all(|file| file.name != *name))
             .unwrap_or_default();
         let strokes = File {
             name: name.clone(),
             text: format!("strokes 1\n{start}\n"),
         };
         let result = if is_new {
-            let main = format!("{STUDIO}\n{}", shown("", &name, CLAY));
             let main = File {
                 name: String::from("main.rat"),
-                text: main,
+                text: format!("{STUDIO}\n{}", lines("", &name, CLAY)),
             };
             let project = Project {
                 name: String::from("Sculpture"),
@@ -199,7 +190,7 @@ impl App {
             let result = self.work.open_files(project);
             if result.is_ok() {
                 platform::set_hash("");
-                self.opened(ctx);
+                self.reset_panels(ctx);
             }
             result
         } else {
@@ -208,11 +199,11 @@ impl App {
                 if !main.text.ends_with('\n') {
                     main.text.push('\n');
                 }
-                main.text += &shown(&main.text, &name, CLAY);
+                main.text += &lines(&main.text, &name, CLAY);
             }
             files.push(strokes);
-            let put = self.work.session.put_files(files, now);
-            put.map_err(|refused| refused.to_string())
+            let result = self.work.session.put_files(files, now);
+            result.map_err(|refused| refused.to_string())
         };
         match result {
             Ok(()) => self.open_sculpture(&name),
@@ -220,13 +211,13 @@ impl App {
         }
     }
 
-    /// Has the model meshed, to be sculpted when the mesh is there.
+    /// Begins to mesh the model, which is sculpted when the mesh is there.
     pub(crate) fn sculpt_model(&mut self, now: f64) {
         self.dialog = None;
         let order = Order {
             format: mesh::Format::Ply,
             tolerance: 1.2e-2,
-            // As large as the shapes that one may begin with.
+            // As large as the shapes to begin with.
             size: 2.0,
             union: true,
             rig: false,
@@ -234,40 +225,38 @@ impl App {
         let requests = self.parts.requests.clone();
         let taker = Box::new(move |result| requests.ask(Request::SculptModel(result)));
         let text = String::from("The model is being meshed; then you can sculpt it.");
-        self.notice = Some(Notice::done(text, now));
+        self.notice = Some(Notice::success(text, now));
         let session = &self.work.session;
         let film = self.film();
         self.mesh_export
             .make_for(session, film, "model", order, taker);
     }
 
-    /// Puts the mesh of the model in the place of its texts, to be sculpted: one step, which undo
-    /// takes back.
+    /// Replaces the texts by the mesh of the model, as one undo step, and opens it.
     pub(crate) fn sculpt_mesh(&mut self, result: Result<Vec<u8>, String>, now: f64) {
         let session = &mut self.work.session;
-        let put = result.and_then(|bytes| {
+        let result = result.and_then(|bytes| {
             let asset = crate::intake::asset(&session.free_name("model.ply"), bytes)?;
-            let text = |name: &str, text: String| File {
-                name: name.to_owned(),
-                text,
+            let strokes = File {
+                name: FIRST.to_owned(),
+                text: format!("strokes 1\nstart file {}\n", asset.name),
             };
-            let start = format!("strokes 1\nstart file {}\n", asset.name);
-            let strokes = text(FIRST, start);
-            // Colours of the model, which the file has for each vertex, take the place of clay's.
+            // If the file has a colour for each vertex, it replaces that of clay.
             let head = &asset.bytes[..asset.bytes.len().min(400)];
             let is_coloured = head.windows(5).any(|word| word == b" red\n");
             let diffuse = if is_coloured { "White" } else { CLAY };
-            let name = &session.project().files[0].name;
-            let main = text(name, format!("{STUDIO}\n{}", shown("", FIRST, diffuse)));
+            let main = File {
+                name: session.project().files[0].name.clone(),
+                text: format!("{STUDIO}\n{}", lines("", FIRST, diffuse)),
+            };
             session
                 .put_assets(vec![asset])
                 .and_then(|()| session.set_files(vec![main, strokes], now))
                 .map_err(|refused| refused.to_string())
         });
-        match put {
+        match result {
             Ok(()) => {
-                // The clay is as large as the shapes that one may begin with, wherever the model
-                // was looked at from.
+                // The clay has a size and a place of its own, which the old camera may not see.
                 session.set_camera(None);
                 self.editor.open(0);
                 self.hands.clear();
@@ -277,12 +266,12 @@ impl App {
         }
     }
 
-    /// Leaves the place for the editor.
+    /// Leaves the sculpting view for the editor.
     pub(crate) fn close_sculpt(&mut self) {
         self.sculpting = None;
     }
 
-    /// Draws the place, if it is open.
+    /// Shows the sculpting view, if it is open.
     pub(crate) fn sculpt(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let Some(place) = &mut self.sculpting else {
             return;
@@ -330,7 +319,7 @@ impl App {
         }));
     }
 
-    /// Takes over the text of a sculpture, with the mesh that it makes.
+    /// Takes over the text of a sculpture from the sculpting view, with the mesh that it makes.
     pub(crate) fn set_strokes(
         &mut self,
         name: &str,
@@ -348,17 +337,17 @@ impl App {
             rats::keep_sculpted(&text, start.as_ref(), mesh);
         }
         if let Err(refused) = session.step(TextEdit::whole(file, text), now) {
-            // What is on the screen goes back to what is kept.
+            // The sculpting view then goes back to the session's text.
             self.notice = Some(Notice::trouble(refused.to_string()));
         }
     }
 
-    /// Shows a sculpture in another way: changes the `mesh` command of the text that uses it.
+    /// Gives a sculpture other flesh: changes the `mesh` command of the text that shows it.
     pub(crate) fn grow_flesh(&mut self, name: &str, flesh: Flesh, edge: f64, now: f64) {
         let files = self.work.session.project().files.iter().enumerate();
         let changed = files
             .filter(|(_, file)| !is_strokes(&file.name))
-            .find_map(|(index, file)| Some((index, grown(&file.text, name, flesh, edge)?)));
+            .find_map(|(index, file)| Some((index, grow(&file.text, name, flesh, edge)?)));
         let Some((index, text)) = changed else {
             let text = format!("No text of this work has a line “mesh … {name}”.");
             self.notice = Some(Notice::trouble(text));
@@ -369,15 +358,15 @@ impl App {
         let result = session.edit(&[TextEdit::whole(index, text)], now);
         session.end_step();
         self.notice = Some(match result {
-            Ok(()) => Notice::done(
-                String::from("The text says so now; the picture follows."),
+            Ok(()) => Notice::success(
+                String::from("The text has changed; the picture follows."),
                 now,
             ),
             Err(refused) => Notice::trouble(refused.to_string()),
         });
     }
 
-    /// Shows the panel that fits meshes, with the mesh of a sculpture chosen if a text shows it.
+    /// Shows the panel that fits meshes, and chooses the mesh of a sculpture if a text shows it.
     pub(crate) fn fit_sculpture(&mut self, name: &str) {
         self.sculpting = None;
         self.fitting.open = true;
@@ -388,11 +377,14 @@ impl App {
         }
     }
 
-    /// The dialog that asks how to begin.
+    /// Shows the dialog that asks how to begin.
     pub(crate) fn sculpt_dialog(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let palette = theme::palette(ui.visuals());
         ui.label(RichText::new("Sculpt").heading().color(palette.strong));
-        ui.label("Push, pull, refine and smooth a mesh with virtual tools. What you do is written as a text of strokes, which belongs to the work like any other.");
+        ui.label(
+            "Push, pull, refine and smooth a mesh with virtual tools. What you do is written as a \
+                text of strokes, which belongs to the work like any other.",
+        );
         let heading = |ui: &mut Ui, text: &str| {
             ui.add_space(10.0);
             ui.label(RichText::new(text).size(13.0).color(palette.weak));
@@ -419,7 +411,7 @@ impl App {
                 }
             }
         });
-        let check = ui.checkbox(&mut here, "add it to the open work");
+        let check = ui.checkbox(&mut here, "Add it to the open work");
         places::note(ui.ctx(), "begin here", check.rect);
         ui.data_mut(|data| data.insert_temp(id, here));
         heading(ui, "This model");
@@ -427,7 +419,7 @@ impl App {
             let label = Button::new(RichText::new("Sculpt this").size(14.5));
             let button = ui
                 .add(label)
-                .on_hover_text("The model as it is drawn is meshed first; undo brings it back");
+                .on_hover_text("The model is meshed first; undo brings its text back");
             places::note(ui.ctx(), "begin this", button.rect);
             if button.clicked() {
                 commands.push(Command::SculptModel);
@@ -487,66 +479,53 @@ impl App {
 mod tests {
     use super::*;
 
+    fn compile(main: &str, strokes: &str) -> rats::Compiled {
+        let files = [("main.rat", main), ("a.strokes", strokes)];
+        rats::compile(&rats::Project {
+            files: files
+                .map(|(name, text)| File {
+                    name: name.into(),
+                    text: text.into(),
+                })
+                .to_vec(),
+        })
+    }
+
     #[test]
     fn a_new_work_compiles_cleanly_with_each_shape() {
         for (name, start) in SHAPES {
-            let file = |name: &str, text: String| File {
-                name: name.into(),
-                text,
-            };
-            let project = rats::Project {
-                files: vec![
-                    file(
-                        "main.rat",
-                        format!("{STUDIO}{}", shown("", "a.strokes", CLAY)),
-                    ),
-                    file("a.strokes", format!("strokes 1\n{start}\n")),
-                ],
-            };
-            let compiled = rats::compile(&project);
+            let main = format!("{STUDIO}{}", lines("", "a.strokes", CLAY));
+            let compiled = compile(&main, &format!("strokes 1\n{start}\n"));
             // A corner of the box may be outside the picture, which is worth a note.
-            let is_note = |d: &rats::Diagnostic| d.severity == rats::Severity::Note;
-            assert!(
-                compiled.diagnostics.iter().all(is_note),
-                "{name}: {:?}",
-                compiled.diagnostics
-            );
+            for diagnostic in &compiled.diagnostics {
+                assert_eq!(
+                    diagnostic.severity,
+                    rats::Severity::Note,
+                    "{name}: {diagnostic:?}"
+                );
+            }
             let faces = compiled.scene.elements.len();
             assert!((700..1300).contains(&faces), "{name}: {faces}");
         }
         let text = "surface Clay, diffuse Red\nmesh Clay, a.strokes\n";
-        let told = |text: &str| {
-            let file = |name: &str, text: &str| File {
-                name: name.into(),
-                text: text.into(),
-            };
-            let strokes = file("a.strokes", "strokes 1\nstart sphere 3\n");
-            let project = rats::Project {
-                files: vec![file("main.rat", text), strokes],
-            };
-            rats::compile(&project)
-        };
-        let soft = grown(text, "a.strokes", Flesh::Convolved, 0.4).unwrap();
+        let strokes = "strokes 1\nstart sphere 3\n";
+        let soft = grow(text, "a.strokes", Flesh::Convolved, 0.4).unwrap();
         assert!(soft.contains("mesh ClayFlesh a.strokes"), "{soft}");
-        assert_eq!(
-            told(&soft)
-                .diagnostics
-                .iter()
-                .filter(|d| d.severity == rats::Severity::Error)
-                .count(),
-            0
-        );
-        let balls = grown(&soft, "a.strokes", Flesh::Metaballs, 0.4).unwrap();
+        let diagnostics = compile(&soft, strokes).diagnostics;
+        for diagnostic in &diagnostics {
+            assert_ne!(diagnostic.severity, rats::Severity::Error, "{diagnostic:?}");
+        }
+        let balls = grow(&soft, "a.strokes", Flesh::Metaballs, 0.4).unwrap();
         assert!(
             balls.ends_with("mesh Clay a.strokes metaballs triangular 0.0600 35.0\n"),
             "{balls}"
         );
-        assert_eq!(told(&balls).scene.elements.len(), 1);
-        let hard = grown(&balls, "a.strokes", Flesh::Hard, 0.4).unwrap();
+        assert_eq!(compile(&balls, strokes).scene.elements.len(), 1);
+        let hard = grow(&balls, "a.strokes", Flesh::Hard, 0.4).unwrap();
         assert!(hard.ends_with("\nmesh Clay a.strokes\n"), "{hard}");
-        assert_eq!(grown(text, "b.strokes", Flesh::Hard, 0.4), None);
+        assert_eq!(grow(text, "b.strokes", Flesh::Hard, 0.4), None);
         assert!(
-            shown("surface Clay, diffuse Red\n", "b.strokes", CLAY).starts_with("surface Clay2,")
+            lines("surface Clay, diffuse Red\n", "b.strokes", CLAY).starts_with("surface Clay2,")
         );
     }
 }

@@ -1,9 +1,9 @@
-//! The user's work without any window: the project, its undo steps, what the compiler
-//! says about it, the last scene that could be drawn, and the camera chosen by hand.
+//! The user's work without any window: the project, its undo steps, the result of compiling it, the
+//! last scene that could be drawn, and the camera chosen by the user.
 //!
-//! Three counters tell others what changed: [`Session::revision`] rises with every change of the
-//! text, [`Session::generation`] with every change of what is to be drawn, [`Session::shape`] with
-//! those that are no mere turn of the camera. Times are seconds on any clock that never goes back.
+//! Three counters tell of changes: [`Session::revision`] rises with every change of the texts,
+//! [`Session::generation`] with every change of the scene or the camera, [`Session::shape`] with
+//! every change of the scene. Times are seconds on any clock that never goes back.
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
@@ -14,8 +14,8 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 use tracer::Picker;
 
-/// Longest project the editor takes, bytes over all files. The editor lays the whole text out at
-/// every key, so this is far below what a link could carry.
+/// Longest project that the editor takes: sum of the bytes of all files. The editor lays the whole
+/// text out at every key, so the limit is far below that of links.
 pub const MAX_TEXT: usize = 256 * 1024;
 /// Most files in a project.
 pub const MAX_FILES: usize = 64;
@@ -29,24 +29,24 @@ impl Snapshot for Project {
     }
 }
 
-/// Why a text was not taken over.
+/// The reason why a text or an asset was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// Longer than [`MAX_TEXT`].
+    /// The texts are longer than [`MAX_TEXT`].
     TooLong {
-        /// Its length in bytes.
+        /// Length in bytes.
         bytes: usize,
     },
-    /// More files than [`MAX_FILES`].
+    /// The files are more than [`MAX_FILES`].
     TooManyFiles {
-        /// How many there are.
+        /// Number of files.
         files: usize,
     },
-    /// More images and meshes than [`MAX_ASSETS`], or larger than [`MAX_ALL`] together.
+    /// The images and meshes are more than [`MAX_ASSETS`], or larger than [`MAX_ALL`].
     TooManyAssets {
-        /// How many there are.
+        /// Number of images and meshes.
         assets: usize,
-        /// Their bytes.
+        /// Sum of their bytes.
         bytes: usize,
     },
 }
@@ -56,17 +56,20 @@ impl std::fmt::Display for Refused {
         match self {
             Self::TooLong { bytes } => write!(
                 f,
-                "This text is {} kB long and the editor takes {} kB. Nothing was changed; use loops to write less, or the command-line program for long files.",
+                "This text is {} kB long and the editor takes {} kB. Nothing was changed; \
+                    use loops to write less, or the command-line program for long files.",
                 bytes.div_ceil(1024),
                 MAX_TEXT / 1024
             ),
             Self::TooManyFiles { files } => write!(
                 f,
-                "This project has {files} files and the editor takes {MAX_FILES}. Nothing was changed; join some of them."
+                "This project has {files} files and the editor takes {MAX_FILES}. \
+                    Nothing was changed; join some of them."
             ),
             Self::TooManyAssets { assets, bytes } => write!(
                 f,
-                "That would make {assets} images and meshes of {}; a work takes {MAX_ASSETS} of {}. None was added; remove some first.",
+                "That would make {assets} images and meshes of {}; \
+                    a work takes {MAX_ASSETS} of {}. None was added; remove some first.",
                 asset::size(*bytes),
                 asset::size(MAX_ALL)
             ),
@@ -110,7 +113,7 @@ pub fn check_assets(all: &[Asset]) -> Result<(), Refused> {
 pub struct Kept {
     /// The texts.
     pub project: Project,
-    /// The camera chosen by hand.
+    /// The camera chosen by the user.
     pub camera: Option<Camera>,
     /// Undo steps.
     #[serde(default)]
@@ -126,8 +129,9 @@ pub struct Session {
     assets: Vec<Asset>,
     history: History<Project>,
     compiled: Compiled,
+    /// The scene to draw.
     good: Option<Arc<Scene>>,
-    /// That scene ready for clicks, and as the draft shows it.
+    /// Pickers of that scene and of its draft.
     pickers: [OnceCell<Picker>; 2],
     camera: Option<Camera>,
     revision: u64,
@@ -140,8 +144,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Starts with what was kept. The project gets at least one file. With `compile` false nothing
-    /// is ever compiled before [`Session::enable`] is called.
+    /// Starts with a work that was kept. The project gets at least one file. With `compile` false
+    /// nothing is compiled before [`Session::enable`] is called.
     #[must_use]
     pub fn new(kept: Kept, compile: bool) -> Self {
         let mut session = Self {
@@ -164,7 +168,7 @@ impl Session {
         session
     }
 
-    /// Replaces everything: another piece of work.
+    /// Replaces everything by another work.
     pub fn open(&mut self, kept: Kept) {
         self.project = kept.project;
         if self.project.files.is_empty() {
@@ -179,10 +183,10 @@ impl Session {
         self.film_frame = 0;
         self.good = None;
         self.pickers = Default::default();
-        self.changed();
+        self.note_change();
     }
 
-    /// The part to keep when the page is closed; the undo steps take at most `history_bytes`.
+    /// Returns the part to keep when the page is closed; undo steps take at most `history_bytes`.
     #[must_use]
     pub fn keep(&self, history_bytes: usize) -> Kept {
         Kept {
@@ -193,13 +197,13 @@ impl Session {
         }
     }
 
-    /// The texts.
+    /// Returns the texts.
     #[must_use]
     pub fn project(&self) -> &Project {
         &self.project
     }
 
-    /// The text of a file; empty if there is no such file.
+    /// Returns the text of a file; empty if there is no such file.
     #[must_use]
     pub fn text(&self, file: usize) -> &str {
         self.project
@@ -208,7 +212,7 @@ impl Session {
             .map_or("", |file| file.text.as_str())
     }
 
-    /// Changes the texts. A range that does not lie on characters is left alone.
+    /// Changes the texts. An edit whose range does not begin and end between characters is ignored.
     ///
     /// # Errors
     /// If the project would become too long; then nothing changes.
@@ -220,12 +224,13 @@ impl Session {
         check_size(&project)?;
         self.history.record(&self.project, now);
         self.project = project;
-        self.changed();
+        self.note_change();
         Ok(())
     }
 
-    /// Changes a text as a step of its own. If the last step led here from just that state, or the
-    /// next one leads there, it is undone or redone: whoever goes back, there is one history.
+    /// Changes a text as a step of its own. An edit that leads to the state before or after the
+    /// present one in the history undoes or redoes instead, so that the sculpting view, which has
+    /// undo steps of its own, adds none.
     ///
     /// # Errors
     /// If the project would become too long; then nothing changes.
@@ -254,11 +259,11 @@ impl Session {
         check_size(&project)?;
         self.whole_step(now);
         self.project = project;
-        self.changed();
+        self.note_change();
         Ok(())
     }
 
-    /// Adds an empty file and gives its index.
+    /// Adds an empty file. Returns its index.
     ///
     /// # Errors
     /// If there are [`MAX_FILES`] already.
@@ -276,14 +281,14 @@ impl Session {
             name,
             text: String::new(),
         });
-        self.changed();
+        self.note_change();
         Ok(self.project.files.len() - 1)
     }
 
     /// Gives a file another name, also where it is read. One undo step.
     ///
     /// # Errors
-    /// Says why not, if the name is taken or cannot be written in a text; then nothing changes.
+    /// If the name is taken or cannot be written in a text; then nothing changes.
     pub fn rename_file(&mut self, file: usize, name: &str, now: f64) -> Result<(), String> {
         let name = name.trim();
         let Some(present) = self.project.files.get(file) else {
@@ -304,7 +309,7 @@ impl Session {
         check_size(&project).map_err(|refused| refused.to_string())?;
         self.whole_step(now);
         self.project = project;
-        self.changed();
+        self.note_change();
         Ok(())
     }
 
@@ -313,11 +318,11 @@ impl Session {
         if file > 0 && file < self.project.files.len() {
             self.whole_step(now);
             self.project.files.remove(file);
-            self.changed();
+            self.note_change();
         }
     }
 
-    /// Adds files; one whose name is taken replaces what was there. One undo step.
+    /// Adds files; one whose name is taken replaces the old file. One undo step.
     ///
     /// # Errors
     /// If there would be too many, or too much text; then nothing changes.
@@ -333,18 +338,19 @@ impl Session {
         if project != self.project {
             self.whole_step(now);
             self.project = project;
-            self.changed();
+            self.note_change();
         }
         Ok(())
     }
 
-    /// Images and meshes beside the texts.
+    /// Returns the images and meshes beside the texts.
     #[must_use]
     pub fn assets(&self) -> &[Asset] {
         &self.assets
     }
 
-    /// A name that no image or mesh of the work has: this one, or with a number before its ending.
+    /// Returns a name that no image or mesh of the work has: this one, or one with a number before
+    /// its extension.
     #[must_use]
     pub fn free_name(&self, name: &str) -> String {
         let (stem, ending) = darkroom::name::split(name);
@@ -357,8 +363,8 @@ impl Session {
         free
     }
 
-    /// Adds images and meshes; one whose name is taken replaces what was there. Undo does not know
-    /// of them.
+    /// Adds images and meshes; one whose name is taken replaces the old one. They are not part of
+    /// undo steps.
     ///
     /// # Errors
     /// If there would be too many or they would be too large; then nothing changes.
@@ -371,22 +377,24 @@ impl Session {
             }
         }
         check_assets(&all)?;
-        // The same content in other memory is taken over, too: a file whose reading failed may be
-        // put again.
-        let is_same = |(new, old): (&Asset, &Asset)| {
-            new.name == old.name && Arc::ptr_eq(&new.bytes, &old.bytes)
-        };
-        if all.len() != self.assets.len() || !all.iter().zip(&self.assets).all(is_same) {
+        // The same content in other memory counts as new: a file whose reading failed may be put
+        // again.
+        let is_same = all.len() == self.assets.len()
+            && all
+                .iter()
+                .zip(&self.assets)
+                .all(|(new, old)| new.name == old.name && Arc::ptr_eq(&new.bytes, &old.bytes));
+        if !is_same {
             self.assets = all;
-            self.changed();
+            self.note_change();
         }
         Ok(())
     }
 
-    /// Takes an image or a mesh away and gives it.
+    /// Removes an image or a mesh. Returns it.
     pub fn remove_asset(&mut self, name: &str) -> Option<Asset> {
         let index = self.assets.iter().position(|asset| asset.name == name)?;
-        self.changed();
+        self.note_change();
         Some(self.assets.remove(index))
     }
 
@@ -394,14 +402,14 @@ impl Session {
         self.project.files.iter().all(|file| file.name != name)
     }
 
-    /// Notes an edit that is an undo step by itself.
+    /// Records that the next edit is an undo step by itself.
     fn whole_step(&mut self, now: f64) {
         self.history.close();
         self.history.record(&self.project, now);
         self.history.close();
     }
 
-    /// The next edit begins an undo step, however soon it comes.
+    /// Ends the undo step, so that the next edit begins a new one, however soon it comes.
     pub fn end_step(&mut self) {
         self.history.close();
     }
@@ -416,13 +424,14 @@ impl Session {
         self.history.release();
     }
 
-    /// Takes the last step back. Gives the file and byte position where the text changed.
+    /// Undoes the last step. Returns the file and the byte at which the text changed.
     pub fn undo(&mut self) -> Option<(usize, usize)> {
         let project = self.history.undo(&self.project)?;
         Some(self.restore(project))
     }
 
-    /// Does again what was undone.
+    /// Redoes the step that was undone last. Returns the file and the byte at which the text
+    /// changed.
     pub fn redo(&mut self) -> Option<(usize, usize)> {
         let project = self.history.redo(&self.project)?;
         Some(self.restore(project))
@@ -440,19 +449,19 @@ impl Session {
         self.history.can_redo()
     }
 
-    /// Result of the last [`Session::compile`].
+    /// Returns the result of the last [`Session::compile`].
     #[must_use]
-    pub fn compiled(&self) -> &Compiled {
+    pub fn compilation(&self) -> &Compiled {
         &self.compiled
     }
 
-    /// The messages about the text at the last [`Session::compile`].
+    /// Returns the messages of the last [`Session::compile`].
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.compiled.diagnostics
     }
 
-    /// How many errors the present text has.
+    /// Returns the number of errors at the last [`Session::compile`].
     #[must_use]
     pub fn errors(&self) -> usize {
         self.diagnostics()
@@ -461,15 +470,16 @@ impl Session {
             .count()
     }
 
-    /// The scene to draw: that of the last text without errors. It is seen by [`Session::camera`].
-    /// While no text was ever free of errors, what could be understood is better than nothing.
-    /// `None` before anything was compiled.
+    /// Returns the scene to draw, seen by [`Session::camera`]: that of the last text without
+    /// errors, or while there was none that of the first text, as far as it was understood. `None`
+    /// before a text was compiled.
     #[must_use]
     pub fn scene(&self) -> Option<&Arc<Scene>> {
         self.good.as_ref()
     }
 
-    /// The scene to draw ready for clicks, or its draft, in which shapes have not melted together.
+    /// Returns the picker of the scene to draw, or of its draft, in which shapes have not melted
+    /// together.
     #[must_use]
     pub fn picker(&self, of_draft: bool) -> Option<&Picker> {
         let scene = self.good.as_ref()?;
@@ -484,7 +494,7 @@ impl Session {
         }))
     }
 
-    /// The dataset as the lab sees it. Its scene has the text's camera.
+    /// Returns the dataset as the lab sees it. Its scene has the text's camera.
     #[must_use]
     pub fn dataset(&self) -> lab::Dataset<'_> {
         lab::Dataset {
@@ -494,7 +504,7 @@ impl Session {
         }
     }
 
-    /// The frame of the scene to draw, pixels.
+    /// Returns the frame of the scene to draw, pixels.
     #[must_use]
     pub fn frame(&self) -> [u32; 2] {
         self.good
@@ -502,7 +512,7 @@ impl Session {
             .map_or([4, 3], |scene| scene.settings.frame.map(|side| side.max(1)))
     }
 
-    /// The background of the scene to draw.
+    /// Returns the background of the scene to draw.
     #[must_use]
     pub fn background(&self) -> scene::Rgb {
         self.good
@@ -510,7 +520,7 @@ impl Session {
             .map_or(scene::DEFAULT_BACKGROUND, |scene| scene.background.mean())
     }
 
-    /// The camera in use.
+    /// Returns the camera in use.
     #[must_use]
     pub fn camera(&self) -> Camera {
         self.camera
@@ -518,14 +528,14 @@ impl Session {
             .unwrap_or_default()
     }
 
-    /// The camera chosen by hand, if any.
+    /// Returns the camera chosen by the user, if any.
     #[must_use]
-    pub fn chosen_camera(&self) -> Option<Camera> {
+    pub fn user_camera(&self) -> Option<Camera> {
         self.camera
     }
 
-    /// Chooses a camera by hand, or with `None` goes back to the text's. Editing the text never
-    /// changes a camera chosen by hand. A camera with a number that is not finite is refused.
+    /// Sets a camera chosen by the user, or with `None` goes back to the text's. Editing the text
+    /// never changes a chosen camera. A camera with a number that is not finite is ignored.
     pub fn set_camera(&mut self, camera: Option<Camera>) {
         let finite = camera.is_none_or(|camera| {
             camera.eye.is_finite()
@@ -540,7 +550,7 @@ impl Session {
         }
     }
 
-    /// Frames of a second, if the text says so.
+    /// Returns the frames in a second, if the text gives them.
     #[must_use]
     pub fn film_rate(&self) -> Option<f64> {
         self.compiled.rate
@@ -552,7 +562,7 @@ impl Session {
         self.compiled.animated
     }
 
-    /// The frame of the film on show, from 0.
+    /// Returns the frame of the film on show, from 0.
     #[must_use]
     pub fn film_frame(&self) -> u32 {
         self.film_frame
@@ -566,25 +576,25 @@ impl Session {
         }
     }
 
-    /// How long compiling the present text took.
+    /// Returns the seconds that the last [`Session::compile`] took.
     #[must_use]
     pub fn compile_seconds(&self) -> f64 {
         self.compile_seconds
     }
 
-    /// Rises with every change of the texts and of what lies beside them.
+    /// Returns a number that rises with every change of the texts, images and meshes.
     #[must_use]
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Rises with every change of what [`Session::scene`] and [`Session::camera`] give.
+    /// Returns a number that rises with every change of [`Session::scene`] or [`Session::camera`].
     #[must_use]
     pub fn generation(&self) -> u64 {
         self.generation
     }
 
-    /// Rises with every change of what [`Session::scene`] gives.
+    /// Returns a number that rises with every change of [`Session::scene`].
     #[must_use]
     pub fn shape(&self) -> u64 {
         self.shape
@@ -592,11 +602,11 @@ impl Session {
 
     /// Whether texts are compiled. False after a start that failed, until the user asks.
     #[must_use]
-    pub fn enabled(&self) -> bool {
+    pub fn is_enabled(&self) -> bool {
         self.enabled
     }
 
-    /// Whether [`Session::compiled`] is of the present text.
+    /// Whether [`Session::compilation`] is of the present text.
     #[must_use]
     pub fn is_compiled(&self) -> bool {
         self.enabled && !self.stale
@@ -607,22 +617,20 @@ impl Session {
         self.enabled = true;
     }
 
-    /// Large meshes that the text names and that are not read yet. Until [`rats::keep_mesh`] was
-    /// called for each, [`Session::compile`] waits.
+    /// Returns large meshes that the text names and that are not read yet. [`Session::compile`]
+    /// waits until [`rats::keep_mesh`] was called for each.
     pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
-        let files = &self.project.files;
-        // A text in the same folder may leave the folder out.
-        let is_named = |asset: &Asset| {
+        self.assets.iter().filter(|asset| {
+            // A text in the same folder may leave the folder out.
             let name = asset.name.rsplit('/').next().unwrap_or_default();
-            files.iter().any(|file| file.text.contains(name))
-        };
-        self.assets.iter().filter(move |asset| {
-            asset::is_large_mesh(asset) && is_named(asset) && !rats::is_mesh_read(asset)
+            asset::is_large_mesh(asset)
+                && self.project.files.iter().any(|f| f.text.contains(name))
+                && !rats::is_mesh_read(asset)
         })
     }
 
-    /// Compiles the present text if it changed since the last call and all large meshes it names
-    /// are read. Call it after the text was stored, so that nothing typed is lost if the compiler
+    /// Compiles the present text if it changed since the last call and all large meshes that it
+    /// names are read. Call it after the text was stored, so that no text is lost if the compiler
     /// stops the program.
     pub fn compile(&mut self) {
         if !self.enabled || !self.stale || self.unread_meshes().next().is_some() {
@@ -643,20 +651,22 @@ impl Session {
         }
     }
 
+    /// Puts a state of the history in place. Returns the file and the byte at which it differs.
     fn restore(&mut self, project: Project) -> (usize, usize) {
         let place = first_difference(&self.project, &project);
         self.project = project;
-        self.changed();
+        self.note_change();
         place
     }
 
-    fn changed(&mut self) {
+    /// Notes that texts, images or meshes have changed.
+    fn note_change(&mut self) {
         self.revision += 1;
         self.stale = true;
     }
 }
 
-/// The file and the byte in the new text where it starts to differ from the old one.
+/// Returns the file and the byte in the new text at which it begins to differ from the old one.
 fn first_difference(old: &Project, new: &Project) -> (usize, usize) {
     for (index, file) in new.files.iter().enumerate() {
         let before = old.files.get(index).map_or("", |file| file.text.as_str());
@@ -675,7 +685,7 @@ fn first_difference(old: &Project, new: &Project) -> (usize, usize) {
 
 #[cfg(test)]
 impl Session {
-    /// A session of one text, compiled.
+    /// Makes a session of one text, and compiles it.
     pub fn of_text(text: &str) -> Self {
         let kept = Kept {
             project: Project::single(text),
@@ -741,20 +751,20 @@ mod tests {
         let mut session = Session::of_text(TEXT);
         assert!(Arc::ptr_eq(
             session.scene().unwrap(),
-            &session.compiled().scene
+            &session.compilation().scene
         ));
-        let met = |session: &Session| {
+        let pick = |session: &Session| {
             let picker = session.picker(true).unwrap();
             let hit = picker.pick(glam::DVec3::new(0.0, 0.0, 5.0), glam::DVec3::NEG_Z);
             hit.map(|hit| hit.t)
         };
-        assert_eq!(met(&session), Some(4.5));
+        assert_eq!(pick(&session), Some(4.5));
         edit(&mut session, &TEXT.replace("0.5", "1.5"), 1.0);
-        assert_eq!(met(&session), Some(3.5));
+        assert_eq!(pick(&session), Some(3.5));
     }
 
     #[test]
-    fn a_remark_draws_no_new_picture() {
+    fn a_comment_draws_no_new_picture() {
         let mut session = Session::of_text(TEXT);
         let generation = session.generation();
         edit(&mut session, &format!("# words\n{TEXT}"), 1.0);
@@ -763,29 +773,29 @@ mod tests {
     }
 
     #[test]
-    fn editing_never_moves_a_camera_chosen_by_hand() {
+    fn editing_never_moves_the_users_camera() {
         let mut session = Session::of_text(TEXT);
-        let chosen = Camera {
+        let own = Camera {
             eye: glam::DVec3::new(1.0, 2.0, 3.0),
             ..Camera::default()
         };
-        session.set_camera(Some(chosen));
+        session.set_camera(Some(own));
         edit(&mut session, &format!("{TEXT}eyep 9 9 9\n"), 1.0);
-        assert_eq!(session.camera(), chosen);
+        assert_eq!(session.camera(), own);
         session.set_camera(None);
         assert_eq!(session.camera().eye, glam::DVec3::splat(9.0));
         let shape = session.shape();
-        session.set_camera(Some(chosen));
+        session.set_camera(Some(own));
         assert_eq!(session.shape(), shape);
         edit(&mut session, "surface a\nsphere a 1, 0 0 0\n", 2.0);
         assert_eq!(session.shape(), shape + 1);
         session.set_camera(None);
         let broken = Camera {
             fov: f64::NAN,
-            ..chosen
+            ..own
         };
         session.set_camera(Some(broken));
-        assert_eq!(session.chosen_camera(), None);
+        assert_eq!(session.user_camera(), None);
     }
 
     #[test]
@@ -793,7 +803,7 @@ mod tests {
         let mut session = Session::of_text(TEXT);
         session.hold();
         for step in 1..20 {
-            let literal = session.compiled().hot[0].literal.clone().unwrap();
+            let literal = session.compilation().hot[0].literal.clone().unwrap();
             let value = format!("0.{step}");
             session
                 .edit(&[TextEdit::new(0, literal, value)], f64::from(step))

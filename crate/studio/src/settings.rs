@@ -28,7 +28,7 @@ pub struct Settings {
     pub size: size::Choice,
     /// Share of the width that the text has.
     pub split: f32,
-    /// Whether a line at the caret says how its command is written.
+    /// Whether there is a line at the caret that says how its command is written.
     pub hints: bool,
     /// Whether the user has turned a picture and needs no hint any more.
     pub turned: bool,

@@ -4,11 +4,11 @@ use rats::Project;
 use rats::link::{self, Shared};
 use scene::Camera;
 
-/// A link to a project seen from a camera. `page` is the page's address; a fragment it has is
+/// Makes a link to a project seen from a camera. `page` is the page's address; its fragment is
 /// replaced.
 ///
 /// # Errors
-/// Says what to do when the project is too large for a link.
+/// If the project is too large for a link.
 pub fn link(page: &str, project: &Project, camera: Option<Camera>) -> Result<String, String> {
     let shared = Shared {
         project: project.clone(),
@@ -22,7 +22,7 @@ pub fn link(page: &str, project: &Project, camera: Option<Camera>) -> Result<Str
 /// Reads the work in a fragment (with or without `#`); `None` if it is empty.
 ///
 /// # Errors
-/// Says what is wrong with it.
+/// If it is damaged, or the work is too large.
 pub fn open(fragment: &str) -> Option<Result<Shared, String>> {
     let fragment = fragment.strip_prefix('#').unwrap_or(fragment);
     if fragment.is_empty() {
@@ -38,7 +38,7 @@ pub fn open(fragment: &str) -> Option<Result<Shared, String>> {
     }))
 }
 
-/// The size of a link in words.
+/// Returns the size of a link in words.
 #[must_use]
 pub fn size(link: &str) -> String {
     let length = link.len();

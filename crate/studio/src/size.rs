@@ -1,4 +1,4 @@
-//! How many pixels the traced picture gets.
+//! The size of the traced picture in pixels.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,10 +16,10 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// All choices, in the order of the menu.
+    /// The choices in the order of the menu.
     pub const ALL: [Self; 3] = [Self::Fit, Self::Frame, Self::Double];
 
-    /// The text in the menu.
+    /// Returns the text in the menu.
     #[must_use]
     pub fn label(self) -> &'static str {
         match self {
@@ -35,8 +35,8 @@ pub const FIT_PIXELS: f64 = 1_000_000.0;
 /// Most pixels of any picture.
 pub const MAX_PIXELS: f64 = 16_000_000.0;
 
-/// The picture's size: the frame's proportions, `view` the size of its place in the window in
-/// device pixels, `max_side` the longest side a texture may have.
+/// Returns the picture's size, which has the frame's proportions. `view` is the size of its place
+/// in the window in device pixels, `max_side` the longest side of a texture.
 #[must_use]
 pub fn pixels(choice: Choice, frame: [u32; 2], view: [f32; 2], max_side: u32) -> [u32; 2] {
     let frame = frame.map(|side| f64::from(side.max(1)));
@@ -87,17 +87,15 @@ mod tests {
         assert_eq!(pixels(Choice::Fit, [0, 0], [0.0, 0.0], 2048), [1, 1]);
     }
 
-    /// Workers share first samples in every picture that fits the view.
+    /// Checks that workers share first samples in every picture that fits the view.
     #[test]
     fn workers_keep_the_samples_of_all_pictures_that_fit() {
         for aspect in 1..=16 {
             let aspect = f64::from(aspect);
             let high = (FIT_PIXELS / aspect).sqrt();
-            let tiles = |side: f64| (side as usize).div_ceil(pool::job::TILE as usize);
-            assert!(
-                tiles(high) * tiles(aspect * high) <= worker::engine::KEPT,
-                "{aspect}"
-            );
+            let [rows, columns] = [high, aspect * high]
+                .map(|side| (side as usize).div_ceil(pool::job::TILE as usize));
+            assert!(rows * columns <= worker::engine::KEPT, "{aspect}");
         }
     }
 }

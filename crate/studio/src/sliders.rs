@@ -1,15 +1,15 @@
 //! Sliders, colour pickers and drag pads for the variables marked `hot`. Moving one rewrites its
-//! literal in the text, so that the text stays the one truth and undo works as for typing.
+//! number in the text, so that the text stays the only truth and undo works as for typing.
 
 use crate::command::Command;
 use crate::pad::{self, Bounds};
-use crate::slider::{colours, counts, decimals, fitting_range, stepped};
+use crate::slider::{colours, counts, decimals, fitting_range, snap};
 use crate::{places, theme};
 use egui::{DragValue, RichText, Slider, SliderClamping, Ui};
 use rats::{HotValue, HotVariable, TextEdit, hot};
 use std::collections::HashMap;
 
-/// The ranges of the sliders. They stay put while a slider is dragged.
+/// The ranges of the sliders. They do not change while a slider is dragged.
 #[derive(Default)]
 pub struct Sliders {
     ranges: HashMap<(usize, String), (f64, f64)>,
@@ -17,12 +17,12 @@ pub struct Sliders {
 }
 
 impl Sliders {
-    /// Forgets the ranges: another text is open.
+    /// Forgets the ranges, when another work was opened.
     pub fn clear(&mut self) {
         self.ranges.clear();
     }
 
-    /// Shows one row for each variable.
+    /// Shows a row for each variable.
     pub fn show(&mut self, ui: &mut Ui, hot: &[HotVariable], commands: &mut Vec<Command>) {
         let mut dragging = false;
         let widest = hot
@@ -75,7 +75,7 @@ impl Sliders {
         }
     }
 
-    /// Returns whether a drag continues, and the number if it changed.
+    /// Shows a slider. Returns whether a drag continues, and the number if it changed.
     fn scalar(
         &mut self,
         ui: &mut Ui,
@@ -136,13 +136,10 @@ impl Sliders {
                 self.ranges.insert(key, fresh);
             }
         }
-        (
-            dragged,
-            changed.then(|| stepped(value, low, step, decimals)),
-        )
+        (dragged, changed.then(|| snap(value, low, step, decimals)))
     }
 
-    /// Returns whether a drag continues, and the vector if it changed.
+    /// Shows a pad. Returns whether a drag continues, and the vector if it changed.
     fn vector(
         &mut self,
         ui: &mut Ui,
@@ -166,7 +163,7 @@ impl Sliders {
     }
 }
 
-/// How high the rows of these variables are together.
+/// Returns the height of the rows of these variables together.
 #[must_use]
 pub fn height(ui: &Ui, hot: &[HotVariable]) -> f32 {
     let spacing = ui.spacing();
@@ -179,7 +176,7 @@ pub fn height(ui: &Ui, hot: &[HotVariable]) -> f32 {
         .sum()
 }
 
-/// The range and the step that the text gives the variable.
+/// Returns the range and the step that the text gives a variable.
 fn bounds(variable: &HotVariable) -> (Option<(f64, f64)>, Option<f64>) {
     let range = variable.range.filter(|[low, high]| low < high);
     (range.map(|[low, high]| (low, high)), variable.step)
@@ -199,7 +196,7 @@ fn name(ui: &mut Ui, name: &str, width: f32) {
     );
 }
 
-/// Returns whether a drag continues, and the colour if it changed.
+/// Shows a colour picker. Returns whether a drag continues, and the colour if it changed.
 fn colour_button(ui: &mut Ui, name: &str, colour: [f32; 3]) -> (bool, Option<[f32; 3]>) {
     // With gamma 1, the default, a colour's numbers go to the screen as they are.
     let mut bytes = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);

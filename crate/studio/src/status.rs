@@ -1,4 +1,4 @@
-//! The strip at the bottom: how far the picture is, and what works on it.
+//! The strip at the bottom: progress and facts of the picture.
 
 use crate::Backend;
 use crate::app::StandIn;
@@ -8,8 +8,8 @@ use crate::render::{Phase, Renderer, pass_label};
 use crate::theme;
 use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, vec2};
 
-/// The state of the work in a few words. `reading` is the mesh file that is being read, with the
-/// fraction done.
+/// Returns the state of the work in a few words. `reading` is the mesh file that is being read,
+/// with the fraction done.
 #[must_use]
 pub fn summary(renderer: &Renderer, enabled: bool, reading: Option<(&str, f32)>) -> String {
     let progress = renderer.progress();
@@ -41,7 +41,7 @@ pub fn summary(renderer: &Renderer, enabled: bool, reading: Option<(&str, f32)>)
     }
 }
 
-/// Shows the strip; with what the window is drawn, and what stands in for the traced picture.
+/// Shows the strip, with the backend of the window and the stand-in for the traced picture.
 pub fn show(
     ui: &mut Ui,
     renderer: &Renderer,
@@ -60,7 +60,7 @@ pub fn show(
         let bar = Rect::from_min_size(strip.min, vec2(width, 2.0));
         ui.painter().rect_filled(bar, 0.0, palette.accent);
     }
-    // Optional widgets always count: egui draws twice more where it finds a button at a new place.
+    // Places are kept for optional widgets: egui draws twice more if a button is at a new place.
     ui.horizontal_centered(|ui| {
         ui.add_space(12.0);
         ui.label(
@@ -124,7 +124,7 @@ pub fn show(
     });
 }
 
-/// Facts about the picture, from right to left.
+/// Returns facts about the picture with explanations, from right to left.
 fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, String)> {
     let progress = renderer.progress();
     let mut facts = vec![(

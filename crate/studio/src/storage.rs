@@ -1,13 +1,13 @@
 //! The user's work in the browser's local storage.
 //!
-//! Every piece of work is one record under its own key, so that a shared link or an example never
-//! overwrites what the user made: it becomes a record of its own, and only once it is edited. Two
-//! tabs that edit the same record do not overwrite each other either: the one that finds a record
-//! changed behind its back goes on under a new key. A record that cannot be read, because it is
-//! damaged or from a newer version, is left alone.
+//! Every work is a record under its own key, so that a shared link or an example never overwrites a
+//! work of the user's: it becomes a record of its own, and only once it is edited. Two tabs that
+//! edit the same record do not overwrite each other either: a tab whose record was changed by
+//! another goes on under a new key. A record that cannot be read, because it is damaged or from a
+//! newer version, is left alone.
 //!
 //! Images and meshes of a work are a record beside it, written only when they change. Local storage
-//! is small, so those beyond [`MAX_KEPT`] are remembered by name alone.
+//! is small, so only the names are kept of those beyond [`MAX_KEPT`].
 
 use crate::asset::{self, Asset};
 use crate::session::Kept;
@@ -33,16 +33,16 @@ const SETTINGS: &str = "sinew/settings";
 
 /// A place that keeps texts under keys.
 pub trait Store {
-    /// The text under a key.
+    /// Returns the text under a key.
     fn get(&self, key: &str) -> Option<String>;
     /// Keeps a text.
     ///
     /// # Errors
-    /// If there is no room or storing is not allowed.
+    /// If there is no space or storing is not allowed.
     fn set(&mut self, key: &str, value: &str) -> Result<(), String>;
     /// Forgets a key.
     fn remove(&mut self, key: &str);
-    /// All keys.
+    /// Returns the keys.
     fn keys(&self) -> Vec<String>;
 }
 
@@ -63,14 +63,14 @@ impl Store for std::collections::BTreeMap<String, String> {
     }
 }
 
-/// Entry in the list of saved works.
+/// An entry in the list of saved works.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// Key of the record.
     pub id: String,
     /// Name given by the user.
     pub name: String,
-    /// When it was written, milliseconds since 1970.
+    /// Time at which it was written, milliseconds since 1970.
     pub saved: f64,
 }
 
@@ -82,20 +82,20 @@ struct Record {
     kept: Kept,
 }
 
-/// An image or a mesh as it is written; without bytes if it was too large.
+/// An image or a mesh as it is stored; without bytes if it was too large.
 #[derive(Serialize, Deserialize)]
 struct KeptAsset {
     name: String,
     bytes: Option<String>,
 }
 
-/// All saved works, and the one that is open.
+/// The saved works, and the one that is open.
 pub struct Shelf {
     store: Box<dyn Store>,
-    /// Tells this tab's writes from those of other tabs.
+    /// A word that tells this tab's writes from those of other tabs.
     tab: String,
     writes: u64,
-    /// The open record and the stamp it had when this tab last read or wrote it.
+    /// Key of the open record, and its stamp when this tab last read or wrote it.
     open: Option<(String, String)>,
     pending: Option<(String, Kept)>,
     /// The images and meshes that were written last, and the record they belong to.
@@ -119,13 +119,13 @@ impl Shelf {
         }
     }
 
-    /// The id of the work that was open last.
+    /// Returns the id of the work that was open last.
     #[must_use]
     pub fn last(&self) -> Option<String> {
         self.store.get(CURRENT)
     }
 
-    /// All saved works, the youngest first.
+    /// Returns the saved works, the newest first.
     #[must_use]
     pub fn entries(&self) -> Vec<Entry> {
         let mut entries: Vec<Entry> = self
@@ -148,7 +148,7 @@ impl Shelf {
         entries
     }
 
-    /// Opens a saved work: from now on edits go there. Gives its name and what was kept.
+    /// Opens a saved work, to which later edits are written. Returns its name and content.
     pub fn open(&mut self, id: &str) -> Option<(String, Kept)> {
         let (stamp, mut record) = self.read(id)?;
         self.open = Some((id.to_owned(), stamp));
@@ -159,12 +159,12 @@ impl Shelf {
         Some((record.name, record.kept))
     }
 
-    /// Takes the warning about images and meshes that could not be kept.
+    /// Takes the warning about images and meshes that are not kept.
     pub fn take_warning(&mut self) -> Option<String> {
         self.warning.take()
     }
 
-    /// Reads the images and meshes of a work; says which were too large to be kept.
+    /// Reads the images and meshes of a work. Leaves a warning about those that were too large.
     fn read_assets(&mut self, id: &str) -> Vec<Asset> {
         let kept = self.store.get(&format!("{ASSETS}{id}"));
         let kept: Vec<KeptAsset> = kept
@@ -184,14 +184,16 @@ impl Shelf {
             self.assets = Some((id.to_owned(), assets.clone()));
         } else {
             self.warning = Some(format!(
-                "{} could not be kept in this browser. Add the file again to see the whole picture.",
+                "{} could not be kept in this browser. \
+                    Add the file again to see the whole picture.",
                 lost.join(", ")
             ));
         }
         assets
     }
 
-    /// Writes the images and meshes of a work if they changed.
+    /// Writes the images and meshes of a work if they changed. Leaves a warning about those that
+    /// are too large.
     fn write_assets(&mut self, id: &str, assets: &[Asset]) {
         let known = self.assets.as_ref();
         if known.is_some_and(|(of, known)| of == id && known == assets)
@@ -230,45 +232,46 @@ impl Shelf {
             for asset in &mut kept {
                 asset.bytes = None;
             }
-            // Their names alone: without them, too, the work itself is safe.
+            // Only their names are kept. If that fails, too, the texts are still safe.
             let _ = write(&mut *self.store, &kept);
         }
         if !lost.is_empty() {
             self.warning = Some(format!(
-                "{} cannot be kept: this browser keeps {} of images and meshes with a work. It stays until you close the page; the text is kept.",
+                "{} cannot be kept: this browser keeps {} of images and meshes with a work. \
+                    It stays until you close the page; the text is kept.",
                 lost.join(", "),
                 asset::size(MAX_KEPT)
             ));
         }
     }
 
-    /// The id of the open work, if it has been written.
+    /// Returns the id of the open work, once it has been written.
     #[must_use]
-    pub fn opened(&self) -> Option<&str> {
+    pub fn open_id(&self) -> Option<&str> {
         self.open.as_ref().map(|(id, _)| id.as_str())
     }
 
-    /// The next edit begins a new record.
+    /// Closes the record, so that the next edit begins a new one.
     pub fn begin(&mut self) {
         self.open = None;
         self.pending = None;
     }
 
-    /// Notes what is to be written by the next [`Shelf::flush`].
+    /// Takes a work, which the next [`Shelf::flush`] writes.
     pub fn put(&mut self, name: &str, kept: Kept) {
         self.pending = Some((name.to_owned(), kept));
     }
 
-    /// Whether something waits to be written.
+    /// Whether a work waits to be written.
     #[must_use]
     pub fn is_dirty(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// Writes what waits. `now` is milliseconds since 1970.
+    /// Writes the work that waits, at `now` in milliseconds since 1970.
     ///
     /// # Errors
-    /// If the browser stores nothing; the text then lives in the open page only.
+    /// If the browser refuses; the text is then in the open page only.
     pub fn flush(&mut self, now: f64) -> Result<(), String> {
         let Some((name, kept)) = self.pending.clone() else {
             return Ok(());
@@ -294,7 +297,7 @@ impl Shelf {
                 .map_err(|error| error.to_string())
         };
         let key = format!("{DOCUMENT}{id}");
-        // When room is short the text matters more than its undo steps.
+        // If space is short, the text matters more than its undo steps.
         self.store
             .set(&key, &record(HISTORY_BYTES)?)
             .or_else(|_| self.store.set(&key, &record(0)?))?;
@@ -305,15 +308,15 @@ impl Shelf {
         Ok(())
     }
 
-    /// Deletes a saved work. The open one cannot be deleted.
+    /// Deletes a saved work, unless it is open.
     pub fn delete(&mut self, id: &str) {
-        if self.opened() != Some(id) {
+        if self.open_id() != Some(id) {
             self.store.remove(&format!("{DOCUMENT}{id}"));
             self.store.remove(&format!("{ASSETS}{id}"));
         }
     }
 
-    /// Reads the page's settings; defaults where there are none or they cannot be read.
+    /// Reads the page's settings; the defaults if there are none or they cannot be read.
     #[must_use]
     pub fn settings<T: Default + for<'a> Deserialize<'a>>(&self) -> T {
         self.store
@@ -330,11 +333,13 @@ impl Shelf {
         }
     }
 
+    /// Returns the stamp of a record.
     fn stamp(&self, id: &str) -> Option<String> {
         let text = self.store.get(&format!("{DOCUMENT}{id}"))?;
         text.split_once('\n').map(|(stamp, _)| stamp.to_owned())
     }
 
+    /// Returns the stamp and the content of a record.
     fn read(&self, id: &str) -> Option<(String, Record)> {
         let text = self.store.get(&format!("{DOCUMENT}{id}"))?;
         let (stamp, json) = text.split_once('\n')?;
@@ -351,7 +356,8 @@ mod tests {
     use std::collections::BTreeMap;
     use std::rc::Rc;
 
-    /// One store behind several shelves, as local storage is behind several tabs.
+    /// A store that several shelves share, as several tabs share local storage, and perhaps the
+    /// most bytes of a value.
     #[derive(Clone, Default)]
     struct Common(Rc<RefCell<BTreeMap<String, String>>>, Option<usize>);
 
@@ -374,7 +380,7 @@ mod tests {
         }
     }
 
-    fn kept(text: &str) -> Kept {
+    fn work(text: &str) -> Kept {
         Kept {
             project: Project {
                 files: vec![File {
@@ -394,16 +400,16 @@ mod tests {
     fn work_undo_and_camera_survive_closing() {
         let store = Common::default();
         let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
-        let mut work = kept("new");
-        work.history.record(&kept("old").project, 0.0);
-        work.camera = Some(scene::Camera::default());
-        shelf.put("shell", work.clone());
+        let mut mine = work("new");
+        mine.history.record(&work("old").project, 0.0);
+        mine.camera = Some(scene::Camera::default());
+        shelf.put("shell", mine.clone());
         shelf.flush(1.0).unwrap();
 
         let mut shelf = Shelf::new(Box::new(store), String::from("b"));
         let last = shelf.last().unwrap();
         let (name, mut again) = shelf.open(&last).unwrap();
-        assert_eq!((name.as_str(), again.camera), ("shell", work.camera));
+        assert_eq!((name.as_str(), again.camera), ("shell", mine.camera));
         let undone = again.history.undo(&again.project).unwrap();
         assert_eq!(undone.files[0].text, "old");
     }
@@ -411,14 +417,14 @@ mod tests {
     #[test]
     fn beginning_something_else_keeps_the_own_work() {
         let mut shelf = Shelf::new(Box::<BTreeMap<_, _>>::default(), String::from("a"));
-        shelf.put("mine", kept("mine"));
+        shelf.put("mine", work("mine"));
         shelf.flush(1.0).unwrap();
         shelf.begin();
-        shelf.put("linked", kept("linked"));
+        shelf.put("linked", work("linked"));
         shelf.flush(2.0).unwrap();
         let names: Vec<_> = shelf.entries().into_iter().map(|e| e.name).collect();
         assert_eq!(names, ["linked", "mine"]);
-        let open = shelf.opened().unwrap().to_owned();
+        let open = shelf.open_id().unwrap().to_owned();
         shelf.delete(&open);
         assert_eq!(shelf.entries().len(), 2, "the open work is not deleted");
     }
@@ -427,14 +433,14 @@ mod tests {
     fn two_tabs_do_not_overwrite_each_other() {
         let store = Common::default();
         let mut first = Shelf::new(Box::new(store.clone()), String::from("a"));
-        first.put("shell", kept("one"));
+        first.put("shell", work("one"));
         first.flush(1.0).unwrap();
         let mut second = Shelf::new(Box::new(store), String::from("b"));
         let id = second.last().unwrap();
         second.open(&id).unwrap();
-        second.put("shell", kept("two"));
+        second.put("shell", work("two"));
         second.flush(2.0).unwrap();
-        first.put("shell", kept("three"));
+        first.put("shell", work("three"));
         first.flush(3.0).unwrap();
         let mut texts: Vec<_> = first
             .entries()
@@ -453,13 +459,14 @@ mod tests {
             "",
             "no stamp",
             "s\n{",
-            "s\n{\"version\":2,\"name\":\"\",\"saved\":0,\"kept\":{\"project\":{\"files\":[]},\"camera\":null}}",
+            "s\n{\"version\":2,\"name\":\"\",\"saved\":0,\
+                \"kept\":{\"project\":{\"files\":[]},\"camera\":null}}",
         ] {
             store.set(&key, strange).unwrap();
             store.set(CURRENT, "x").unwrap();
             let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
             assert!(shelf.open("x").is_none());
-            shelf.put("mine", kept("mine"));
+            shelf.put("mine", work("mine"));
             shelf.flush(1.0).unwrap();
             assert_eq!(store.get(&key).unwrap(), strange);
         }
@@ -472,7 +479,7 @@ mod tests {
         });
         Kept {
             assets: assets.collect(),
-            ..kept("text")
+            ..work("text")
         }
     }
 
@@ -483,7 +490,7 @@ mod tests {
         shelf.put("a", with_assets(&[3, 5]));
         shelf.flush(1.0).unwrap();
         assert_eq!(shelf.take_warning(), None);
-        let id = shelf.opened().unwrap().to_owned();
+        let id = shelf.open_id().unwrap().to_owned();
         let key = format!("{ASSETS}{id}");
         // Unchanged assets are not written again.
         let mut watched = store.clone();
@@ -515,7 +522,7 @@ mod tests {
             shelf.put("b", with_assets(sizes));
             shelf.flush(2.0).unwrap();
             assert_eq!(shelf.take_warning(), None, "said once");
-            let id = shelf.opened().unwrap().to_owned();
+            let id = shelf.open_id().unwrap().to_owned();
             let mut again = Shelf::new(Box::new(store), String::from("b"));
             let (name, kept) = again.open(&id).unwrap();
             assert_eq!((name.as_str(), text(&kept)), ("b", "text"));
@@ -528,18 +535,18 @@ mod tests {
     fn short_room_drops_undo_steps_before_the_text() {
         let store = Common(Rc::default(), Some(700));
         let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
-        let mut work = kept("text");
-        work.history.record(&kept(&"x".repeat(1000)).project, 0.0);
-        shelf.put("a", work);
+        let mut long = work("text");
+        long.history.record(&work(&"x".repeat(1000)).project, 0.0);
+        shelf.put("a", long);
         shelf.flush(1.0).unwrap();
-        shelf.put("a", kept(&"x".repeat(1000)));
+        shelf.put("a", work(&"x".repeat(1000)));
         assert!(shelf.flush(2.0).is_err());
         assert!(
             shelf.is_dirty(),
             "what could not be written is not forgotten"
         );
         assert_eq!(
-            text(&shelf.read(shelf.opened().unwrap()).unwrap().1.kept),
+            text(&shelf.read(shelf.open_id().unwrap()).unwrap().1.kept),
             "text"
         );
     }

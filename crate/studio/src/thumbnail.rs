@@ -8,11 +8,11 @@ use std::rc::Rc;
 
 /// A picture on its way.
 pub(crate) enum Thumbnail {
-    /// Asked for.
+    /// The file was asked for.
     Coming(Rc<RefCell<Option<Vec<u8>>>>),
-    /// Here.
+    /// The picture is here.
     Here(TextureHandle),
-    /// It came, but is no picture.
+    /// The file came, but is no picture.
     Broken,
 }
 
@@ -21,7 +21,7 @@ impl Thumbnail {
     pub fn fetch(ui: &Ui, path: &'static str) -> Self {
         let inbox = Rc::new(RefCell::new(None));
         let (letter, ctx) = (inbox.clone(), ui.ctx().clone());
-        // One that does not come leaves its place empty.
+        // A file that does not come leaves its place empty.
         platform::fetch(path, move |bytes| {
             *letter.borrow_mut() = bytes;
             ctx.request_repaint();
@@ -29,7 +29,7 @@ impl Thumbnail {
         Self::Coming(inbox)
     }
 
-    /// Makes a texture of it when it is here.
+    /// Makes a texture of the file when it is here.
     pub fn arrive(&mut self, ui: &Ui) {
         let Self::Coming(inbox) = self else { return };
         let Some(bytes) = inbox.borrow_mut().take() else {

@@ -1,5 +1,5 @@
 //! The strip under the picture of an animated work: play, go to a frame, save the film. While a
-//! film is saved it shows how far that is.
+//! film is saved the strip shows its progress.
 
 use crate::app::App;
 use crate::command::Command;
@@ -11,7 +11,7 @@ use egui::{
     Align, Button, DragValue, Layout, Popup, PopupCloseBehavior, ProgressBar, RichText, Slider, Ui,
 };
 
-/// Width of the strip in points above which all controls stand in it.
+/// Width of the strip in points above which it holds all controls.
 const WIDE: f32 = 520.0;
 
 /// Shows the strip in all of `ui`.
@@ -66,16 +66,16 @@ pub fn show(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     });
 }
 
-/// The slider of frames, as wide as there is room.
+/// Shows the slider of frames, as wide as there is room.
 fn scrub(ui: &mut Ui, player: &Player, frame: u32, commands: &mut Vec<Command>) {
-    let mut shown = frame;
+    let mut wanted = frame;
     let last = player.count.saturating_sub(1).max(1);
     let width = (ui.available_width() - 12.0).max(40.0);
     let slider = ui.scope(|ui| {
         slider::colours(ui);
         ui.spacing_mut().slider_width = width;
         ui.add(
-            Slider::new(&mut shown, 0..=last)
+            Slider::new(&mut wanted, 0..=last)
                 .clamping(egui::SliderClamping::Never)
                 .show_value(false),
         )
@@ -83,7 +83,7 @@ fn scrub(ui: &mut Ui, player: &Player, frame: u32, commands: &mut Vec<Command>) 
     let slider = slider.inner.accessible_name("Frame of the film");
     places::note(ui.ctx(), "slider frame", slider.rect);
     if slider.changed() {
-        commands.push(Command::SetFilmFrame(shown));
+        commands.push(Command::SetFilmFrame(wanted));
     }
 }
 
@@ -125,7 +125,7 @@ fn playback(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
         .on_hover_text("What comes after the last frame, played and saved");
 }
 
-/// What has no room in a narrow strip.
+/// Shows the menu of controls that have no room in a narrow strip.
 fn settings(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
     egui::Grid::new("film settings")
         .num_columns(2)
@@ -153,7 +153,7 @@ fn settings(ui: &mut Ui, player: &Player, commands: &mut Vec<Command>) {
     }
 }
 
-/// How far a film is, and a button that stops it.
+/// Shows the progress of a film, and a button that stops it.
 fn progress(ui: &mut Ui, recording: &Recording, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let now = platform::now(ui.ctx());

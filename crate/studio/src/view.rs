@@ -1,7 +1,7 @@
 //! The picture: draft and traced picture in one place, and the gestures that turn it.
 //!
-//! While the scene or the camera is ahead of the traced picture, the draft stands in; the traced
-//! picture fades in over it once all of it has come at least coarsely.
+//! While the scene or the camera is newer than the traced picture, the draft stands in; the traced
+//! picture fades in over it once the coarse picture is complete.
 
 use crate::command::Command;
 use crate::render::Renderer;
@@ -16,10 +16,10 @@ use egui::{
 use preview::orbit;
 use scene::Camera;
 
-/// Seconds to the coarse picture, beside which a processor's draft would take long.
+/// Seconds to the coarse picture up to which a draft by the processor is not worth its time.
 pub const SOON: f64 = 1.0;
 
-/// Pixels of the shorter side of a picture below which its place is not made to its measure.
+/// Pixels of the shorter side of a picture below which its place does not fit it exactly.
 const SHORT: f32 = 32.0;
 
 /// Inputs of the view.
@@ -34,29 +34,29 @@ pub struct Scenery<'a> {
     pub show: Show,
     /// Seconds on the app's clock.
     pub now: f64,
-    /// Whether to say how to turn the picture.
+    /// Whether to show a hint of how to turn the picture.
     pub hint: bool,
     /// Radius of the corners.
     pub round: f32,
-    /// What the pointer does beside moving the camera.
+    /// Gestures that do not move the camera.
     pub grasp: Grasp,
 }
 
-/// What the pointer does beside moving the camera.
+/// Gestures on the picture that do not move the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Grasp {
     /// The first button and a single finger draw; other buttons, the space bar and two fingers
     /// turn.
     pub draws: bool,
-    /// The wheel does something else.
+    /// The wheel does not zoom.
     pub wheel: bool,
-    /// Two fingers that spread do something else.
+    /// Pinching does not zoom.
     pub pinch: bool,
 }
 
-/// The largest rectangle of the frame's proportions in the middle of a place. It lies on whole
-/// pixels of the screen, and a picture made to fit it ([`crate::size::pixels`]) has as many, so
-/// that it is shown as sharp as it was traced.
+/// Returns the largest rectangle of the frame's proportions in the middle of a place. It lies on
+/// whole pixels of the screen, and a picture made to fit it ([`crate::size::pixels`]) has as many,
+/// so that it is shown as sharp as it was traced.
 #[must_use]
 pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
     let frame = vec2(frame[0].max(1) as f32, frame[1].max(1) as f32);
@@ -65,9 +65,8 @@ pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
         .max(0.0);
     let size = frame * (scale * pixels_per_point);
     let shorter = (size.min_elem() + 1e-3).floor();
-    // From the shorter side, which the longer one's rounding does not change when it is computed
-    // from that again. If that is very short then the other would be far from what there is room
-    // for.
+    // The longer side is computed from the rounded shorter one, which `size::pixels` gets back from
+    // it. If the shorter one is very short, the longer one would be far from the room for it.
     let size = if shorter >= SHORT {
         (frame * (shorter / frame.min_elem())).round()
     } else {
@@ -78,9 +77,9 @@ pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
     Rect::from_min_size(min.round_to_pixels(pixels_per_point), size)
 }
 
-/// Whether the draft is to be drawn at all. `slow`: the processor draws it, for which the workers
-/// have to wait. Then the last picture stands in for it where a coarse one comes [`SOON`], and none
-/// is faded out.
+/// Whether the draft must be drawn. `slow`: the processor draws it, which keeps the workers
+/// waiting. Then the last picture stands in for it if a coarse one comes [`SOON`], and the draft is
+/// not faded out.
 #[must_use]
 pub fn needs_draft(
     show: Show,
@@ -99,13 +98,13 @@ pub fn needs_draft(
             if slow {
                 !fresh && !renderer.is_near(SOON, now)
             } else {
-                !fresh || renderer.faded(now) < 1.0
+                !fresh || renderer.opacity(now) < 1.0
             }
         }
     }
 }
 
-/// Paints the picture into `rect` and takes the gestures made on it.
+/// Paints the picture into `rect`, and carries out gestures on it.
 pub fn show(
     ui: &mut Ui,
     rect: Rect,
@@ -139,13 +138,13 @@ pub fn show(
     match (traced, draft) {
         (Some((texture, _)), None) => image(texture.id(), 1.0),
         (Some((texture, _)), Some(_)) if fresh && show == Show::Auto => {
-            let faded = renderer.faded(now);
-            image(texture.id(), faded);
-            if faded < 1.0 {
+            let opacity = renderer.opacity(now);
+            image(texture.id(), opacity);
+            if opacity < 1.0 {
                 ui.ctx().request_repaint();
             }
         }
-        (None, None) if session.enabled() => {
+        (None, None) if session.is_enabled() => {
             let place = Rect::from_center_size(rect.center(), Vec2::splat(28.0));
             ui.place(place, egui::Spinner::new().color(palette.weak));
         }
@@ -188,7 +187,7 @@ fn background(session: &Session) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The camera after this frame's dragging, scrolling and pinching, if it moved.
+/// Returns the camera after this frame's dragging, scrolling and pinching, if it moved.
 fn gesture(
     ui: &Ui,
     response: &Response,
@@ -234,7 +233,7 @@ fn gesture(
     }
     if response.contains_pointer() && touch.is_none() {
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        // A notch of a wheel (100 or 120 points) comes nearer by an eighth.
+        // A notch of a wheel (100 or 120 points) zooms by an eighth.
         let factor = libm::exp(-f64::from(scroll) / 800.0) / f64::from(pinch);
         if factor != 1.0 && !grasp.wheel {
             new = orbit::zoom(new, factor);
@@ -286,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn the_picture_keeps_the_frame_s_proportions() {
+    fn the_picture_keeps_the_proportions_of_the_frame() {
         let place = Rect::from_min_size(Pos2::new(10.0, 0.0), vec2(100.0, 300.0));
         let wide = fit(place, [2, 1], 1.0);
         assert_eq!(

@@ -1,8 +1,8 @@
-//! The piece of work that is open, where it came from, and where it is kept.
+//! The open work, its origin, and its way to the storage.
 //!
-//! The user's own works live on the [`Shelf`]. An example or a shared link is only looked at until
-//! it is edited; then it becomes a work of its own. So nothing that is opened ever takes the place
-//! of what the user made.
+//! The user's own works are on the [`Shelf`]. An example or a shared link is only looked at until
+//! it is edited; then it becomes a work of its own. So opening one never replaces a work of the
+//! user's.
 
 use crate::asset::Asset;
 use crate::examples;
@@ -26,7 +26,7 @@ pub enum Origin {
     Example,
     /// A shared link, not edited yet.
     Link,
-    /// Begun empty or given by a script, not edited yet.
+    /// An empty page, or texts from a script, not edited yet.
     Fresh,
 }
 
@@ -34,23 +34,23 @@ pub enum Origin {
 pub struct Work {
     /// Text, undo steps and scene.
     pub session: Session,
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its origin.
+    /// The origin.
     pub origin: Origin,
     shelf: Rc<RefCell<Shelf>>,
-    /// The own work that was open before the link was.
+    /// The user's own work that was open before the link was.
     before: Option<String>,
-    /// When what is not yet written was changed.
+    /// Time of the first change that is not written yet, seconds.
     changed: Option<f64>,
     /// The session's revision and camera that were last put on the shelf.
     noted: (u64, Option<Camera>),
 }
 
 impl Work {
-    /// Opens what the page should begin with: the work a link carries, else the user's last work,
-    /// else the first example. With `compile` false nothing is compiled before the user asks. Gives
-    /// a message when the link cannot be opened.
+    /// Opens the work that the page begins with: that of a link, else the user's last work, else
+    /// the first example. With `compile` false nothing is compiled before the user asks. Returns
+    /// the work and a message if the link cannot be opened.
     #[must_use]
     pub fn start(shelf: Rc<RefCell<Shelf>>, hash: &str, compile: bool) -> (Self, Option<String>) {
         let mut work = Self {
@@ -77,18 +77,18 @@ impl Work {
         (work, trouble)
     }
 
-    /// Opens what a fragment carries and gives true; does nothing if it is empty or carries what is
-    /// open anyway.
+    /// Opens the work in a fragment, unless the fragment is empty or its work is open already.
+    /// Returns whether it did.
     ///
     /// # Errors
-    /// Says what is wrong with the link; then the open work stays.
+    /// If the link is damaged or the open work cannot be written; then that stays open.
     pub fn open_link(&mut self, hash: &str) -> Result<bool, String> {
         let Some(shared) = share::open(hash) else {
             return Ok(false);
         };
         let shared = shared?;
         let same = self.session.project() == &shared.project
-            && self.session.chosen_camera() == shared.camera;
+            && self.session.user_camera() == shared.camera;
         if same {
             return Ok(false);
         }
@@ -121,7 +121,7 @@ impl Work {
         Ok(())
     }
 
-    /// Opens a text made by the lab, as an example is opened.
+    /// Opens a text of the lab or the reference, like an example.
     ///
     /// # Errors
     /// If the open work cannot be written; then it stays open.
@@ -170,12 +170,11 @@ impl Work {
     /// Opens a work from the shelf.
     ///
     /// # Errors
-    /// If the open work cannot be written, or the other is not there any more; then the open one
-    /// stays open.
+    /// If the open work cannot be written, or the other one is gone; then the open one stays open.
     pub fn open_saved(&mut self, id: &str) -> Result<(), String> {
         self.leave()?;
-        let opened = self.shelf.borrow_mut().open(id);
-        let (name, kept) = opened.ok_or("This work was deleted or cannot be read.")?;
+        let saved = self.shelf.borrow_mut().open(id);
+        let (name, kept) = saved.ok_or("This work was deleted or cannot be read.")?;
         self.name = name;
         self.origin = Origin::Own;
         self.before = None;
@@ -184,7 +183,7 @@ impl Work {
         Ok(())
     }
 
-    /// Opens texts given by a script, as an example is opened.
+    /// Opens texts from a script, like an example.
     ///
     /// # Errors
     /// If they are too long, or the open work cannot be written; then it stays open.
@@ -199,37 +198,37 @@ impl Work {
     ///
     /// # Errors
     /// If they are too long or too large, or the open work cannot be written; then it stays open.
-    pub fn open_files(&mut self, given: project_file::Project) -> Result<(), String> {
-        let project = Project { files: given.texts };
+    pub fn open_files(&mut self, files: project_file::Project) -> Result<(), String> {
+        let project = Project { files: files.texts };
         check_size(&project)
-            .and_then(|()| check_assets(&given.assets))
+            .and_then(|()| check_assets(&files.assets))
             .map_err(|refused| refused.to_string())?;
         self.leave()?;
-        let name = if given.name.is_empty() {
+        let name = if files.name.is_empty() {
             title(&project)
         } else {
-            given.name
+            files.name
         };
         let kept = Kept {
             project,
-            assets: given.assets,
+            assets: files.assets,
             ..Kept::default()
         };
         self.begin(name, Origin::Fresh, kept);
-        // Refused with a number that is not finite.
-        self.session.set_camera(given.camera);
+        // The session checks that its numbers are finite.
+        self.session.set_camera(files.camera);
         self.note();
         Ok(())
     }
 
-    /// The own work to go back to, if a link took its place.
+    /// Returns the id of the user's own work to go back to, if a link has replaced it.
     #[must_use]
     pub fn before(&self) -> Option<&str> {
         self.before.as_deref()
     }
 
-    /// Notes changes and writes them when they have rested. Gives a message when they cannot be
-    /// written.
+    /// Notes changes, and writes them [`DELAY`] seconds after the first. Returns a message if they
+    /// cannot be written.
     pub fn tick(&mut self, now: f64) -> Option<String> {
         self.settle(now);
         if self.changed.is_some_and(|changed| now - changed >= DELAY)
@@ -240,14 +239,14 @@ impl Work {
         self.shelf.borrow_mut().take_warning()
     }
 
-    /// Puts what changed on the shelf, from where it is written even if the program stops, and then
-    /// compiles it.
+    /// Puts a changed work on the shelf, from where it is written even if the program stops, and
+    /// then compiles it.
     pub fn settle(&mut self, now: f64) {
-        let state = (self.session.revision(), self.session.chosen_camera());
+        let state = (self.session.revision(), self.session.user_camera());
         if state != self.noted {
             let edited = state.0 != self.noted.0;
             self.noted = state;
-            // An address that carries a link no longer says what is on the screen.
+            // The work in a link is not the one on the screen any more.
             if Lesson::of_hash(&platform::hash()).is_none() {
                 platform::set_hash("");
             }
@@ -259,7 +258,7 @@ impl Work {
         self.session.compile();
     }
 
-    /// Seconds until [`Work::tick`] has something to write.
+    /// Returns the seconds until [`Work::tick`] writes; `None` if there is no change.
     #[must_use]
     pub fn wait(&self, now: f64) -> Option<f64> {
         self.changed.map(|changed| (changed + DELAY - now).max(0.0))
@@ -273,24 +272,26 @@ impl Work {
         }
     }
 
-    /// Writes what waits at once.
+    /// Writes changes at once.
     ///
     /// # Errors
-    /// If the browser stores nothing.
+    /// If the browser refuses.
     pub fn flush(&mut self) -> Result<(), String> {
-        let written = self.shelf.borrow_mut().flush(platform::unix_time());
+        let result = self.shelf.borrow_mut().flush(platform::unix_time());
         // A refused write is tried again with the next edit.
         self.changed = None;
-        written
+        result
     }
 
-    /// The shelf.
+    /// Returns the shelf.
     #[must_use]
     pub fn shelf(&self) -> &Rc<RefCell<Shelf>> {
         &self.shelf
     }
 
+    /// Puts the work on the shelf as the user's own.
     fn keep(&mut self, now: f64) {
+        /// Most bytes of undo steps.
         const HISTORY: usize = 1 << 20;
         self.origin = Origin::Own;
         self.shelf
@@ -299,12 +300,12 @@ impl Work {
         self.changed.get_or_insert(now);
     }
 
-    /// Writes the open work before another takes its place. Gives its id if it is the user's own.
+    /// Writes the open work before another one is opened. Returns its id if it is the user's own.
     fn leave(&mut self) -> Result<Option<String>, String> {
         self.flush()?;
         let own = self.origin == Origin::Own;
         let shelf = self.shelf.borrow();
-        Ok(shelf.opened().filter(|_| own).map(str::to_owned))
+        Ok(shelf.open_id().filter(|_| own).map(str::to_owned))
     }
 
     fn begin_example(&mut self, index: usize, text: &str, assets: Vec<Asset>) {
@@ -337,11 +338,11 @@ impl Work {
     }
 
     fn note(&mut self) {
-        self.noted = (self.session.revision(), self.session.chosen_camera());
+        self.noted = (self.session.revision(), self.session.user_camera());
     }
 }
 
-/// File name for this work, without extension.
+/// Returns a file name for a work, without extension.
 #[must_use]
 pub fn file_stem(name: &str) -> String {
     let stem: String = name
@@ -355,7 +356,7 @@ pub fn file_stem(name: &str) -> String {
     }
 }
 
-/// A name for a project: that of its first file without the extension.
+/// Returns a name for a project: that of its first file, without the extension.
 fn title(project: &Project) -> String {
     let name = project.files.first().map_or("", |file| file.name.as_str());
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);

@@ -1,4 +1,4 @@
-//! The job of coating the skeletons of a scene: a first mesh of it, soon made.
+//! The job of coating the skeletons of a scene, which gives a first mesh of it quickly.
 
 use crate::job::{Job, Pace, Progress};
 use mesh::TriangleMesh;
@@ -14,7 +14,7 @@ pub struct CoatScene {
     pub scene: Arc<Scene>,
     /// Largest |f − T| in the middle of an edge.
     pub bound: f64,
-    /// What the last job gave, to start from; empty at first.
+    /// Coatings from the last job, to start from; empty at first.
     pub coatings: Vec<Coating>,
 }
 
@@ -23,7 +23,7 @@ pub struct CoatScene {
 pub struct Coated {
     /// A mesh for each body with its name, in units of the scene.
     pub parts: Vec<(String, TriangleMesh)>,
-    /// For the next job.
+    /// Coatings for the next job.
     pub coatings: Vec<Coating>,
 }
 
@@ -36,12 +36,11 @@ impl Job for CoatScene {
         if !is_sound {
             return Err("the bound must be a positive number".into());
         }
-        let mut report = |step: mesher::Step| progress.report(step.fraction);
         let bodies = mesher::coat_scene(
             &self.scene,
             self.bound,
             &mut self.coatings,
-            &mut mesher::Progress::new(&mut report),
+            &mut mesher::Progress::new(&mut |step| progress.report(step.fraction)),
         )
         .map_err(|error| error.to_string())?;
         let parts = bodies.into_iter().map(|body| (body.name, body.coat.mesh));
@@ -52,7 +51,7 @@ impl Job for CoatScene {
     }
 }
 
-/// Makes a scene of a soft ball in the origin.
+/// Returns a scene of a soft ball in the origin.
 #[cfg(test)]
 pub(crate) fn ball(radius: f64) -> Arc<Scene> {
     let mut scene = Scene::default();
@@ -86,8 +85,8 @@ mod tests {
         let second = coat(first.coatings, 1.01);
         for (coated, radius) in [(first.parts, 1.0), (second.parts, 1.01)] {
             assert_eq!(coated.len(), 1);
-            let far = |p: &glam::DVec3| (p.length() - radius).abs() < 0.01;
-            assert!(coated[0].1.positions.iter().all(far));
+            let mut lengths = coated[0].1.positions.iter().map(|p| p.length());
+            assert!(lengths.all(|length| (length - radius).abs() < 0.01));
         }
     }
 }

@@ -11,20 +11,20 @@ use serde::{Deserialize, Serialize};
 pub struct FitMesh {
     /// The mesh's vertices.
     pub positions: Vec<DVec3>,
-    /// Its triangles.
+    /// The mesh's triangles.
     pub triangles: Vec<[u32; 3]>,
-    /// Its control points.
+    /// The control points.
     pub controls: Controls,
-    /// What it is fitted to.
+    /// The measured points and outlines.
     pub observations: Observations,
-    /// How.
+    /// The settings of the fit.
     pub options: Options,
 }
 
 /// The control points of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Controls {
-    /// These, each with the move that the fit begins with.
+    /// The given points, each with the move that the fit begins with.
     Given(Vec<[DVec3; 2]>),
     /// About this number of points around the mesh.
     Around(u32),
@@ -35,11 +35,11 @@ pub enum Controls {
 pub struct FitStep {
     /// Iterations done.
     pub iteration: u32,
-    /// As [`fit::Progress::residual`].
+    /// The residual, [`fit::Progress::residual`].
     pub residual: f64,
-    /// As [`fit::Progress::outliers`].
+    /// The share of outliers, [`fit::Progress::outliers`].
     pub outliers: f64,
-    /// The lines of a text that carry the fit out.
+    /// The lines of a scene's text that deform the mesh like this.
     pub text: String,
 }
 
@@ -58,14 +58,14 @@ impl Job for FitMesh {
         let (frame, start) = match controls {
             Controls::Given(given) => {
                 let places: Vec<_> = given.iter().map(|[place, _]| *place).collect();
-                let ways = given.iter().map(|[_, way]| *way).collect();
+                let moves = given.iter().map(|[_, by]| *by).collect();
                 let between = web(&places);
-                (TriangleMesh::new(places, between), ways)
+                (TriangleMesh::new(places, between), moves)
             }
             Controls::Around(count) => {
-                let made = cage(&positions, &triangles, count as usize);
-                let still = vec![DVec3::ZERO; made.positions.len()];
-                (made, still)
+                let cage = cage(&positions, &triangles, count as usize);
+                let moves = vec![DVec3::ZERO; cage.positions.len()];
+                (cage, moves)
             }
         };
         let mesh = TriangleMesh::new(positions, triangles);

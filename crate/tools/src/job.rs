@@ -1,4 +1,4 @@
-//! Jobs, and how a worker carries them out.
+//! Jobs, and carrying them out in a worker.
 
 use crate::coating::CoatScene;
 use crate::fitting::FitMesh;
@@ -13,9 +13,9 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 ///
 /// A job depends on nothing but its own data, so that another worker can repeat it.
 pub trait Job: Into<Work> {
-    /// Its result, and what there is of that before the end.
+    /// The result, and the parts of it that are passed on before the end.
     type Output: Serialize + DeserializeOwned + 'static;
-    /// How long it takes, and so which worker does it.
+    /// The time it takes, and so the worker that does it.
     const PACE: Pace;
 
     /// Carries it out.
@@ -25,21 +25,21 @@ pub trait Job: Into<Work> {
     fn run(self, progress: &mut Progress<'_, Self::Output>) -> Result<Self::Output, String>;
 }
 
-/// How long a job takes. Each pace has a worker of its own, as none can be interrupted.
+/// The time a job takes. Each pace has a worker of its own, as no job can be interrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// Moments, for which a hand waits.
+    /// Moments, for which the user waits.
     Quick,
-    /// Up to minutes.
+    /// Seconds to minutes.
     Long,
 }
 
 impl Pace {
-    /// All of them, in the order of the declaration.
+    /// Every pace, in the order of the declaration.
     pub const ALL: [Self; 2] = [Self::Quick, Self::Long];
 }
 
-/// Writes the type of a message that any of these jobs can be.
+/// Declares the type of a message that can be any of these jobs.
 macro_rules! jobs {
     ($($job:ident),+) => {
         /// A job of any type, as it is sent to a worker.
@@ -60,7 +60,7 @@ macro_rules! jobs {
         )+
 
         impl Work {
-            /// Carries out the job, whose answers have this number.
+            /// Carries out the job. `id`: its number, which its answers have.
             fn run(self, id: u64, send: &mut Outlet<'_>) {
                 match self {
                     $(Self::$job(job) => run(*job, id, send),)+
@@ -88,22 +88,22 @@ type Outlet<'a> = dyn FnMut(Vec<u8>) -> ControlFlow<()> + 'a;
 pub enum News<T> {
     /// The fraction done, 0 … 1.
     Fraction(f32),
-    /// What there is of the result.
+    /// A part of the result, or what is known of it so far.
     Part(T),
 }
 
-/// Tells how far a running job is.
+/// Reporter of a running job's progress.
 pub struct Progress<'a, T> {
     tell: Option<&'a mut dyn FnMut(News<T>) -> ControlFlow<()>>,
 }
 
 impl<'a, T> Progress<'a, T> {
-    /// Makes one that tells all news to `tell`, which returns whether the job is to go on.
+    /// Creates one that tells all news to `tell`, which returns whether the job is to go on.
     pub fn new(tell: &'a mut dyn FnMut(News<T>) -> ControlFlow<()>) -> Self {
         Self { tell: Some(tell) }
     }
 
-    /// Makes one that tells nobody.
+    /// Creates one that tells nobody.
     #[must_use]
     pub fn silent() -> Self {
         Self { tell: None }

@@ -8,6 +8,9 @@ use scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// Share of meshing in the time of a [`MeshScene`]; the rest is writing the file.
+const MESHING: f32 = 0.95;
+
 /// Meshes a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeshScene {
@@ -106,7 +109,7 @@ pub struct MeshFacts {
 }
 
 impl MeshFacts {
-    /// Returns those of a model whose unit of length has this many millimetres in the file.
+    /// Returns the facts of a model whose unit of length is `millimetres` long in the file.
     fn of(model: &Model, millimetres: f64) -> Self {
         let mut facts = Self {
             sides: (model.bounds().size() * millimetres).to_array(),
@@ -149,12 +152,15 @@ impl Job for MeshScene {
             rig,
         } = self;
         check(size, format, rig.as_ref())?;
-        let mut report = |step: mesher::Step| progress.report(0.95 * step.fraction);
-        let model = mesher::mesh_scene(&scene, &wishes, &mut mesher::Progress::new(&mut report))
-            .map_err(|error| error.to_string())?;
+        let model = mesher::mesh_scene(
+            &scene,
+            &wishes,
+            &mut mesher::Progress::new(&mut |step| progress.report(MESHING * step.fraction)),
+        )
+        .map_err(|error| error.to_string())?;
         let millimetres = size / model.bounds().size().max_element();
         let facts = MeshFacts::of(&model, millimetres);
-        if progress.report(0.95).is_break() {
+        if progress.report(MESHING).is_break() {
             return Err(mesher::MeshError::Cancelled.to_string());
         }
         let parts = model.parts.into_iter().map(|part| (part.name, part.mesh));
@@ -164,7 +170,7 @@ impl Job for MeshScene {
             Some(format) => {
                 let export = Export {
                     name,
-                    parts: named(parts),
+                    parts: file_parts(parts),
                     millimetres,
                 };
                 let written = write_export(&export, format, rig.as_ref())?;
@@ -197,14 +203,14 @@ impl Job for WriteMesh {
         let bounds = bounds.fold(Aabb::EMPTY, |all, own| all.union(&own));
         let export = Export {
             name,
-            parts: named(parts),
+            parts: file_parts(parts),
             millimetres: size / bounds.size().max_element(),
         };
         write_export(&export, format, rig.as_ref())
     }
 }
 
-/// Tells what is wrong with the wishes for a file.
+/// Checks the wishes for a file.
 fn check(size: f64, format: Option<Format>, rig: Option<&Poses>) -> Result<(), String> {
     let is_sound = MILLIMETRES.contains(&size);
     if !is_sound {
@@ -220,17 +226,15 @@ fn check(size: f64, format: Option<Format>, rig: Option<&Poses>) -> Result<(), S
     Ok(())
 }
 
-fn named(parts: Vec<(String, TriangleMesh)>) -> Vec<Part> {
-    let part = |(name, mesh)| Part { name, mesh };
-    parts.into_iter().map(part).collect()
+/// Turns named meshes into the parts of a file.
+fn file_parts(parts: Vec<(String, TriangleMesh)>) -> Vec<Part> {
+    let parts = parts.into_iter();
+    parts.map(|(name, mesh)| Part { name, mesh }).collect()
 }
 
-fn write_export(
-    export: &Export,
-    format: Format,
-    wanted: Option<&Poses>,
-) -> Result<Written, String> {
-    let Some(Poses { scenes, rate }) = wanted else {
+/// Writes a file, with joints and their motion if there are `poses`.
+fn write_export(export: &Export, format: Format, poses: Option<&Poses>) -> Result<Written, String> {
+    let Some(Poses { scenes, rate }) = poses else {
         let files = export.write(format).map_err(|error| error.to_string())?;
         return Ok(Written {
             files,
@@ -264,7 +268,7 @@ mod tests {
     use crate::coating::ball;
     use core::ops::ControlFlow;
 
-    fn meshing_of_a_ball() -> MeshScene {
+    fn mesh_ball() -> MeshScene {
         MeshScene {
             scene: ball(3.0),
             wishes: Wishes::default(),
@@ -284,9 +288,7 @@ mod tests {
             }
             ControlFlow::Continue(())
         };
-        let meshed = meshing_of_a_ball()
-            .run(&mut Progress::new(&mut tell))
-            .unwrap();
+        let meshed = mesh_ball().run(&mut Progress::new(&mut tell)).unwrap();
         assert!(fractions.is_sorted() && fractions.len() > 20);
         let MeshFacts { volume, sides, .. } = meshed.facts;
         let whole = core::f64::consts::PI / 6.0 * 50.0 * 50.0 * 50.0;
@@ -302,8 +304,8 @@ mod tests {
     }
 
     #[test]
-    fn meshing_ends_when_it_is_told_to() {
-        let asked = |end: usize| {
+    fn meshing_ends_on_request() {
+        fn run(end: usize) -> (Result<Meshed, String>, usize) {
             let mut count = 0;
             let mut tell = |_| {
                 count += 1;
@@ -313,13 +315,13 @@ mod tests {
                     ControlFlow::Continue(())
                 }
             };
-            let result = meshing_of_a_ball().run(&mut Progress::new(&mut tell));
+            let result = mesh_ball().run(&mut Progress::new(&mut tell));
             (result, count)
-        };
-        let (whole, all) = asked(usize::MAX);
+        }
+        let (whole, all) = run(usize::MAX);
         assert!(whole.is_ok() && all > 20, "{all}");
         for end in [0, all / 3, all / 2, all - 1] {
-            let (result, count) = asked(end);
+            let (result, count) = run(end);
             assert_eq!(result, Err(String::from("cancelled")));
             assert_eq!(count, end + 1, "it goes on");
         }
@@ -327,14 +329,13 @@ mod tests {
 
     #[test]
     fn mesh_that_is_written_later_is_the_same_file() {
-        let meshed = |format| {
+        let [at_once, later] = [Some(Format::Stl), None].map(|format| {
             let job = MeshScene {
                 format,
-                ..meshing_of_a_ball()
+                ..mesh_ball()
             };
             job.run(&mut Progress::silent()).unwrap()
-        };
-        let (at_once, later) = (meshed(Some(Format::Stl)), meshed(None));
+        });
         assert_eq!(later.parts, at_once.parts);
         assert!(later.written.files.is_empty());
         let job = WriteMesh {
@@ -365,7 +366,7 @@ mod tests {
 
     #[test]
     fn scene_without_a_surface_gives_a_sentence() {
-        let mut job = meshing_of_a_ball();
+        let mut job = mesh_ball();
         Arc::make_mut(&mut job.scene).elements.clear();
         let message = job.run(&mut Progress::silent()).unwrap_err();
         assert!(message.contains("no surface"), "{message}");

@@ -21,7 +21,8 @@ pub struct Request {
 pub enum Answer {
     /// The worker runs and takes requests. Sent once.
     Started,
-    /// A job is being worked at. Also a sign of life: a worker that is silent for long is replaced.
+    /// A job is being carried out. Also a sign of life: a worker that is silent for long is
+    /// replaced.
     Progress {
         /// Number of the job.
         id: u64,
@@ -53,7 +54,7 @@ impl Answer {
     /// Packs an answer that nothing follows.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        // Of no bytes, as there are if memory runs out, the page says that it does not know them.
+        // It is empty if memory runs out; then the page says that it does not understand it.
         pack(self, &()).unwrap_or_default()
     }
 }

@@ -78,24 +78,25 @@ mod tests {
     }
 
     #[test]
-    fn measured_files_are_read_by_their_content() {
-        let read = |name: &str, text: &str| {
+    fn content_of_a_file_says_what_was_measured() {
+        fn read(name: &str, text: &str) -> Result<[usize; 2], String> {
             let job = ReadMeasured {
                 name: name.into(),
                 bytes: text.into(),
             };
             job.run(&mut Progress::silent())
                 .map(|found| [found.points.len(), found.sights.len()])
-        };
+        }
         assert_eq!(read("a.xyz", "0 0 1\n1 1 1\n"), Ok([2, 0]));
-        let outline = r#"[{"eye":[0,-5,0],"target":[0,0,0],"up":[0,0,1],"fov":40,"size":[9,9],"lines":[[[2,5]]]}]"#;
+        let outline = r#"[{"eye":[0,-5,0],"target":[0,0,0],"up":[0,0,1],"fov":40,"size":[9,9],
+            "lines":[[[2,5]]]}]"#;
         assert_eq!(read("a.json", outline), Ok([0, 1]));
         let message = read("a.xyz", "0 0\n").unwrap_err();
         assert!(message.contains("line 1"), "{message}");
     }
 
     #[test]
-    fn broken_file_gives_the_message_of_its_reader() {
+    fn message_of_a_broken_file_is_that_of_its_reader() {
         let message = read("a.ply", "no").unwrap_err();
         assert_eq!(message, mesh::read("a.ply", b"no").unwrap_err().to_string());
     }

@@ -1,5 +1,5 @@
-//! A quick mesh of a surface for the eye: it is followed from cell to cell of a grid, and in each
-//! cell it is taken to be flat between the edges that it crosses (marching tetrahedra); its
+//! A quick mesh of a surface for the eye: the surface is followed from cell to cell of a grid, and
+//! in each cell it is taken to be flat between the edges that it crosses (marching tetrahedra); the
 //! vertices are brought onto it by one step of Newton's method.
 //!
 //! Nothing is proved: parts thinner than a cell are missed, as are those that no seed lies on.
@@ -28,15 +28,13 @@ const ORDERS: [[IVec3; 4]; 6] = {
     ]
 };
 
-/// The coordinates of up to eight points; the last one fills the lanes behind it.
+/// Returns the coordinates of up to eight points; the last one fills the other lanes.
 pub(crate) fn eight(points: &[DVec3]) -> [f32x8; 3] {
-    [0, 1, 2].map(|axis| {
-        let lane = |i: usize| points[i.min(points.len() - 1)][axis] as f32;
-        f32x8::from(core::array::from_fn(lane))
-    })
+    let last = points.len() - 1;
+    [0, 1, 2].map(|axis| f32x8::from(core::array::from_fn(|i| points[i.min(last)][axis] as f32)))
 }
 
-/// Values and gradients at many points, eight at a time.
+/// Computes values and gradients at many points, eight at a time.
 pub(crate) fn jets(function: &dyn Implicit, points: &[DVec3]) -> Vec<Jet<f32>> {
     let mut all = Vec::with_capacity(points.len());
     for chunk in points.chunks(8) {
@@ -51,8 +49,8 @@ pub(crate) fn jets(function: &dyn Implicit, points: &[DVec3]) -> Vec<Jet<f32>> {
     all
 }
 
+/// Whether a value is that of a point inside the surface; NaN is not.
 fn is_inside(value: f32) -> bool {
-    // Not so for NaN.
     value > THRESHOLD as f32
 }
 
@@ -83,7 +81,7 @@ pub(crate) fn track(
         let mut missing = Vec::new();
         for cell in &cells {
             for corner in corners(*cell) {
-                // Taken for known until all are evaluated together.
+                // All are evaluated together below.
                 values.entry(corner).or_insert_with(|| {
                     missing.push(corner);
                     f32::NAN
@@ -120,12 +118,12 @@ pub(crate) fn track(
     Ok(march(function, &crossed, &values, &place, step))
 }
 
-/// The corners of a cell: bit 0 of their numbers is x, bit 1 y, bit 2 z.
+/// Returns the corners of a cell: bit 0 of their numbers is x, bit 1 y, bit 2 z.
 fn corners(cell: IVec3) -> [IVec3; 8] {
     core::array::from_fn(|i| cell + IVec3::new(i as i32 & 1, i as i32 >> 1 & 1, i as i32 >> 2 & 1))
 }
 
-/// The triangles in crossed cells.
+/// Returns the mesh in the cells that the surface crosses. `values`: those at the cells' corners.
 fn march(
     function: &dyn Implicit,
     cells: &[IVec3],
@@ -138,10 +136,9 @@ fn march(
     let mut triangles = Vec::new();
     let mut vertex = |inside: IVec3, outside: IVec3| {
         *numbers.entry([inside, outside]).or_insert_with(|| {
-            let excess = |at: IVec3| f64::from(values[&at]) - THRESHOLD;
-            let (high, low) = (excess(inside), excess(outside));
+            let [high, low] = [inside, outside].map(|at| f64::from(values[&at]) - THRESHOLD);
             let share = high / (high - low);
-            // A value that is none or endless says nothing of where.
+            // A value may be NaN or infinite.
             let is_between = (0.0..=1.0).contains(&share);
             let share = if is_between { share } else { 0.5 };
             positions.push(place(inside).lerp(place(outside), share));
@@ -209,15 +206,16 @@ mod tests {
             influence: 1e-3,
             taper: None,
         };
-        let primitive = |skeleton: &Skeleton| Primitive::new(skeleton.clone(), &shaping, None);
-        skeletons.iter().filter_map(primitive).collect()
+        skeletons
+            .iter()
+            .filter_map(|skeleton| Primitive::new(skeleton.clone(), &shaping, None))
+            .collect()
     }
 
     #[test]
     fn surface_is_followed_and_closed() {
         let far = DVec3::new(7.0, 0.0, 0.0);
-        let ball = |center| Skeleton::Point { center };
-        let two = sum(&[ball(DVec3::ZERO), ball(far)]);
+        let two = sum(&[DVec3::ZERO, far].map(|center| Skeleton::Point { center }));
         let whole = 4.0 / 3.0 * core::f64::consts::PI;
         // Of two apart, only the one with a seed is found.
         for (seeds, count) in [(vec![DVec3::X], 1.0), (vec![DVec3::X, far - DVec3::X], 2.0)] {
@@ -230,9 +228,9 @@ mod tests {
                 assert!((two.jet(*p).value - 1.0).abs() < 0.02);
             }
         }
-        let told = track(&two, &[DVec3::X], 0.2, 50).unwrap_err();
-        assert!(told.contains("too many"), "{told}");
-        // Seeds on nothing.
+        let error = track(&two, &[DVec3::X], 0.2, 50).unwrap_err();
+        assert!(error.contains("too many"), "{error}");
+        // Without a seed on the surface there is no mesh.
         assert!(
             track(&two, &[3.5 * DVec3::X], 0.2, 50)
                 .unwrap()

@@ -1,8 +1,8 @@
-//! The job of meshing a scene's soft surfaces for the eye: a picture of them for as long as a hand
-//! turns the model or drags a part of it.
+//! The job of meshing a scene's soft surfaces for the eye: a picture of them for as long as the
+//! user turns the model or drags a part of it.
 //!
 //! The surfaces are followed through a grid from where rays from the skeletons leave them. The
-//! result is bytes as a GPU takes them, so that the page has nothing to do with it in the frame in
+//! result is bytes as a GPU takes them, so that the page has nothing to convert in the frame in
 //! which it comes.
 
 use crate::job::{Job, Pace, Progress};
@@ -20,9 +20,9 @@ use wide::f32x8;
 
 /// Least and most side of the grid's cells, in diagonals of the skeletons' box with their flesh.
 const CELLS: [f64; 2] = [1.0 / 300.0, 1.0 / 70.0];
-/// The same in radii of the thinnest part.
+/// Side of the grid's cells in radii of the thinnest part, within the limits of [`CELLS`].
 const OF_RADIUS: f64 = 0.5;
-/// The size of cells for a fine mesh, in those of a coarse one.
+/// Side of the cells for a fine mesh relative to those for a coarse one.
 const FINER: f64 = 0.5;
 /// Most cells that a body's surface goes through.
 const MOST_CELLS: usize = 300_000;
@@ -32,19 +32,19 @@ const HALVINGS: usize = 5;
 /// The closeness of the mesh of a [`ViewScene`] to the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Detail {
-    /// As near as can be had while a hand moves.
+    /// Coarse enough to follow the user's hand.
     Coarse,
-    /// As near as the eye sees.
+    /// Too fine for the eye to see a difference.
     Fine,
 }
 
-/// Meshes the soft surfaces of a scene for the eye, while a hand moves.
+/// Meshes the soft surfaces of a scene for the eye while the user moves something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ViewScene {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// For each of its finishes the parameters that the view shows, 0 … 1, which are mixed by the
-    /// shares of the elements: ambient, diffuse and specular colours, and the shine.
+    /// Parameters of each finish that the view shows, 0 … 1, which are mixed by the shares of the
+    /// elements: ambient, diffuse and specular colours, and the shine.
     pub looks: Vec<[f32; 10]>,
     /// The closeness wanted.
     pub detail: Detail,
@@ -57,12 +57,12 @@ pub struct ViewMesh {
     pub origin: DVec3,
     /// Length of a unit of their positions.
     pub unit: f64,
-    /// [`ViewMesh::VERTEX`] bytes each: position (three `f32`), normal (four `i16`, parts of 32767,
-    /// the last one 0), then parts of 255: the ambient colour and the shine, the diffuse colour and
-    /// 1, the specular colour and 1.
+    /// Vertices of [`ViewMesh::VERTEX`] bytes each: position (three `f32`), normal (four `i16`,
+    /// parts of 32767, the last one 0), then parts of 255: the ambient colour and the shine, the
+    /// diffuse colour and 1, the specular colour and 1.
     #[serde(with = "serde_bytes")]
     pub vertices: Vec<u8>,
-    /// Three `u32` a triangle.
+    /// Numbers of the triangles' vertices, three `u32` each.
     #[serde(with = "serde_bytes")]
     pub triangles: Vec<u8>,
 }
@@ -87,14 +87,12 @@ impl Job for ViewScene {
             .iter()
             .map(|surface| Cage::of_surface(&scene, surface))
             .collect();
-        let spokes = || cages.iter().flatten().flat_map(|cage| &cage.spokes);
-        // A ray's reach is some radii; the flesh of one is less.
-        let room = |spoke: &Spoke| {
-            let reach = radius(spoke);
-            [spoke.origin - reach, spoke.origin + reach]
-        };
-        let bounds = Aabb::of_points(spokes().flat_map(room));
-        let thinnest = spokes().map(radius).fold(f64::INFINITY, f64::min);
+        let spokes = cages.iter().flatten().flat_map(|cage| &cage.spokes);
+        let thinnest = spokes.clone().map(radius).fold(f64::INFINITY, f64::min);
+        let bounds = Aabb::of_points(spokes.flat_map(|spoke| {
+            let radius = radius(spoke);
+            [spoke.origin - radius, spoke.origin + radius]
+        }));
         let size = bounds.size().length();
         let is_sound = size > 0.0 && size.is_finite() && thinnest > 0.0;
         if !is_sound {
@@ -128,7 +126,7 @@ impl Job for ViewScene {
     }
 }
 
-/// Tells that this many of the surfaces are done.
+/// Reports that `done` of the surfaces are meshed. Returns an error if the job is cancelled.
 fn report(progress: &mut Progress<'_, ViewMesh>, done: f32, surfaces: usize) -> Result<(), String> {
     match progress.report(done / surfaces as f32) {
         ControlFlow::Continue(()) => Ok(()),
@@ -136,25 +134,25 @@ fn report(progress: &mut Progress<'_, ViewMesh>, done: f32, surfaces: usize) -> 
     }
 }
 
-/// The radius of the flesh around the start of a ray, which is searched in steps of half of it.
+/// Returns the radius of the flesh around the start of a ray, which is searched in steps of half of
+/// it.
 fn radius(spoke: &Spoke) -> f64 {
     2.0 * spoke.step
 }
 
-/// Returns where rays first leave the inside of a function, as far as they begin inside and leave
-/// it.
+/// Returns the points where rays first leave the inside of a function, for those that begin inside
+/// and leave it.
 fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
-    /// Rays of a cage that are looked at: the surface is followed from each.
+    /// Number of a cage's rays that are searched.
     const RAYS: usize = 8;
     let stride = spokes.len().div_ceil(RAYS).max(1);
-    // Inside, and a step farther.
+    // Rays with a distance that is inside, and the next one.
     let mut searched: Vec<(&Spoke, f64, f64)> = spokes
         .iter()
         .step_by(stride)
         .map(|spoke| (spoke, 0.0, 0.0))
         .collect();
     let mut left = Vec::new();
-    let at = |spoke: &Spoke, along: f64| spoke.origin + spoke.direction * along;
     while !searched.is_empty() {
         let points: Vec<DVec3> = searched.iter().map(|(s, _, far)| at(s, *far)).collect();
         let found = jets(function, &points);
@@ -172,9 +170,10 @@ fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
         searched = going;
     }
     for _ in 0..HALVINGS {
-        let middle = |(spoke, near, far): &(&Spoke, f64, f64)| at(spoke, 0.5 * (near + far));
-        let points: Vec<DVec3> = left.iter().map(middle).collect();
-        for ((_, near, far), jet) in left.iter_mut().zip(jets(function, &points)) {
+        let middles = left.iter();
+        let middles = middles.map(|(spoke, near, far)| at(spoke, 0.5 * (near + far)));
+        let middles: Vec<DVec3> = middles.collect();
+        for ((_, near, far), jet) in left.iter_mut().zip(jets(function, &middles)) {
             let half = 0.5 * (*near + *far);
             if f64::from(jet.value) > THRESHOLD {
                 *near = half;
@@ -188,6 +187,11 @@ fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
         .collect()
 }
 
+/// Returns a point of a ray.
+fn at(spoke: &Spoke, along: f64) -> DVec3 {
+    spoke.origin + spoke.direction * along
+}
+
 /// Appends a surface's mesh.
 fn add(
     view: &mut ViewMesh,
@@ -197,10 +201,9 @@ fn add(
     mesh: &TriangleMesh,
 ) {
     let first = (view.vertices.len() / ViewMesh::VERTEX) as u32;
-    let mixed = mixed(scene, looks, surface, &mesh.positions);
-    let byte = |x: f32| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8;
+    let looks = mix_looks(scene, looks, surface, &mesh.positions);
     let normals = mesh.normals.as_deref().unwrap_or_default();
-    for (i, (position, look)) in mesh.positions.iter().zip(mixed).enumerate() {
+    for (i, (position, look)) in mesh.positions.iter().zip(looks).enumerate() {
         let own = (*position - view.origin) / view.unit;
         let normal = normals.get(i).copied().unwrap_or_default();
         let [x, y, z] = (normal.normalize_or_zero() * 32767.0).to_array();
@@ -213,32 +216,32 @@ fn add(
         }
         let [ar, ag, ab, dr, dg, db, sr, sg, sb, shine] = look;
         let colours = [ar, ag, ab, shine, dr, dg, db, 1.0, sr, sg, sb, 1.0];
-        bytes.extend(colours.map(byte));
+        bytes.extend(colours.map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8));
     }
     for corner in mesh.triangles.iter().flatten() {
         view.triangles.extend((first + corner).to_le_bytes());
     }
 }
 
-/// The looks at points of a surface: those of its elements, mixed by their shares.
-fn mixed(
+/// Returns the looks at points of a surface: those of its elements, mixed by their shares.
+fn mix_looks(
     scene: &Scene,
     looks: &[[f32; 10]],
     surface: &Surface,
     points: &[DVec3],
 ) -> Vec<[f32; 10]> {
-    // Of each finish that the surface has, once.
+    // The looks of the surface's finishes, each once, and their numbers by element.
     let mut numbers = BTreeMap::new();
     let mut own: Vec<[f32; 10]> = Vec::new();
-    let number = |element: &u32| {
+    let mut of: Vec<usize> = Vec::new();
+    for element in surface.element() {
         let element = scene.elements.get(*element as usize);
         let finish = element.map_or(0, |element| element.finish);
-        *numbers.entry(finish).or_insert_with(|| {
+        of.push(*numbers.entry(finish).or_insert_with(|| {
             own.push(looks.get(finish as usize).copied().unwrap_or([0.0; 10]));
             own.len() - 1
-        })
-    };
-    let of: Vec<usize> = surface.element().iter().map(number).collect();
+        }));
+    }
     if let [only] = own[..] {
         return vec![only; points.len()];
     }
@@ -292,7 +295,7 @@ mod tests {
     use super::*;
     use scene::{Element, Finish, Flesh, Shape};
 
-    /// Two soft balls that blend, of two finishes, and a hard one.
+    /// Returns a scene of two soft balls that blend, of two finishes, and a hard one.
     fn scene(x: f64) -> Scene {
         let mut scene = Scene {
             finishes: vec![Finish::default(), Finish::default()],
@@ -336,23 +339,21 @@ mod tests {
         job.run(&mut Progress::silent()).unwrap()
     }
 
-    /// Places, normals, and the twelve bytes of colours.
+    /// Returns the corners' places, normals, and twelve bytes of colours.
     fn corners(view: &ViewMesh) -> Vec<(DVec3, DVec3, [u8; 12])> {
-        let corner = |bytes: &[u8]| {
-            let place = |i: usize| f32::from_le_bytes(bytes[4 * i..4 * i + 4].try_into().unwrap());
-            let normal = |i: usize| {
-                let at = 12 + 2 * i;
+        let corners = view.vertices.chunks_exact(ViewMesh::VERTEX).map(|bytes| {
+            let place = [0, 4, 8]
+                .map(|at| f64::from(f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap())));
+            let normal = [12, 14, 16].map(|at| {
                 f64::from(i16::from_le_bytes(bytes[at..at + 2].try_into().unwrap())) / 32767.0
-            };
-            let place = DVec3::from_array([0, 1, 2].map(|i| f64::from(place(i))));
-            let place = view.origin + place * view.unit;
-            let normal = DVec3::from_array([0, 1, 2].map(normal));
-            (place, normal, bytes[20..32].try_into().unwrap())
-        };
-        view.vertices
-            .chunks_exact(ViewMesh::VERTEX)
-            .map(corner)
-            .collect()
+            });
+            (
+                view.origin + DVec3::from_array(place) * view.unit,
+                DVec3::from_array(normal),
+                bytes[20..32].try_into().unwrap(),
+            )
+        });
+        corners.collect()
     }
 
     #[test]
@@ -365,9 +366,8 @@ mod tests {
             let all = corners(&view);
             assert!(all.len() > 100, "{detail:?} {}", all.len());
             for (place, normal, colours) in &all {
-                // All but what a coating leaves out.
                 let jet = function.jet(*place);
-                // In a coating some corners stay inside, where another shell covers them.
+                // In a coarse mesh some corners stay inside.
                 let is_on = (jet.value - 1.0).abs() < 0.02;
                 assert!(
                     is_on || (detail == Detail::Coarse && jet.value > 1.0),
@@ -406,15 +406,15 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_see_is_told() {
+    fn nothing_to_see_is_an_error() {
         for detail in [Detail::Coarse, Detail::Fine] {
             let job = ViewScene {
                 scene: Arc::default(),
                 looks: Vec::new(),
                 detail,
             };
-            let told = job.run(&mut Progress::silent()).unwrap_err();
-            assert!(told.contains("no soft surface"), "{told}");
+            let error = job.run(&mut Progress::silent()).unwrap_err();
+            assert!(error.contains("no soft surface"), "{error}");
         }
     }
 }

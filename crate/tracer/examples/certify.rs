@@ -1,22 +1,22 @@
-//! Holds pictures against the true surface on very many rays, and prints a table.
+//! Compares pictures with the true surface on very many rays, and prints a table.
 //!
 //! `cargo run --release -p tracer --example certify -- [--exact] [--endless | --clouds] [RAYS
 //! [THREADS [FIRST | KERNEL KIND SEED]]]`
 //!
 //! Scenes have the seeds from FIRST (or 0) on. With a kernel, a kind and a seed only that scene is
-//! looked at. Faults go to standard error. With `--exact` before them the crossings that picking
-//! uses are judged instead of those of pictures. `--endless` takes kernels that never end alone,
-//! and `--clouds` of them scenes of very many points, which have a hierarchy of far fields.
+//! judged. Faults go to standard error. With `--exact` before the others the crossings that picking
+//! uses are judged instead of those of pictures. `--endless` takes only kernels that never end, and
+//! `--clouds` only their scenes of very many points, which have a hierarchy of far fields.
 
 use field::Kernel;
-use glam::DVec3;
 use oracle::rays::{Row, Trial, check, parameters};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tracer::Picture;
 use trials::scenes::{KINDS, Kind};
 
-/// Packets of eight rays in each scene; fewer where there are hundreds of primitives.
+/// Returns the number of packets of eight rays in each scene; fewer if there are hundreds of
+/// primitives.
 fn packets(kind: Kind) -> usize {
     if matches!(kind, Kind::Cluster | Kind::Cloud) {
         3
@@ -25,46 +25,48 @@ fn packets(kind: Kind) -> usize {
     }
 }
 
-fn as_pictures(trial: &Trial, picture: &Picture) -> Vec<Option<f64>> {
+/// Finds the first crossings of rays as pictures do.
+fn cast_pictures(trial: &Trial, picture: &Picture) -> Vec<Option<f64>> {
     parameters(&picture.cast(&trial.rays))
 }
 
-fn as_picking(trial: &Trial, picture: &Picture) -> Vec<Option<f64>> {
-    let first = |&(origin, direction): &(DVec3, DVec3)| {
-        picture.hits(origin, direction).first().map(|hit| hit.t)
-    };
-    trial.rays.iter().map(first).collect()
+/// Finds the first crossings of rays as picking does.
+fn cast_picking(trial: &Trial, picture: &Picture) -> Vec<Option<f64>> {
+    let rays = trial.rays.iter();
+    rays.map(|&(origin, direction)| picture.hits(origin, direction).first().map(|hit| hit.t))
+        .collect()
 }
 
 fn main() {
     let mut args: Vec<String> = std::env::args().skip(1).collect();
-    let mut option = |name: &str| {
+    let [exact, endless, clouds] = ["--exact", "--endless", "--clouds"].map(|name| {
         let is_given = args.first().is_some_and(|a| a == name);
         if is_given {
             args.remove(0);
         }
         is_given
-    };
-    let [exact, endless, clouds] = ["--exact", "--endless", "--clouds"].map(&mut option);
-    let cast = if exact { as_picking } else { as_pictures };
+    });
+    let cast = if exact { cast_picking } else { cast_pictures };
     let number =
         |i: usize, default: usize| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (rays, threads) = (number(0, 1_000_000), number(1, 1));
     if let (Some(kernel), Some(kind)) = (args.get(2), args.get(3)) {
         let kernel = Kernel::named(kernel).expect("a kernel");
-        let named = |k: &&Kind| format!("{k:?}").eq_ignore_ascii_case(kind);
-        let kind = *KINDS.iter().find(named).expect("a kind");
-        let mut told = String::new();
+        let kind = *KINDS
+            .iter()
+            .find(|k| format!("{k:?}").eq_ignore_ascii_case(kind))
+            .expect("a kind");
+        let mut faults = String::new();
         let seed = number(4, 0) as u64;
         let trial = Trial::new(kernel, kind, seed, packets(kind));
-        let row = check(trial, &cast, &mut told);
-        println!("{told}{row:?}");
+        let row = check(trial, &cast, &mut faults);
+        println!("{faults}{row:?}");
         return;
     }
     let first = number(2, 0);
-    let never_ends = |kernel: &Kernel| field::far_field::power(*kernel).is_some();
     let kernels = Kernel::ALL.into_iter();
-    let kernels = kernels.filter(|kernel| !(endless || clouds) || never_ends(kernel));
+    let kernels =
+        kernels.filter(|kernel| !(endless || clouds) || field::far_field::power(*kernel).is_some());
     let kinds = KINDS
         .into_iter()
         .filter(|kind| !clouds || matches!(kind, Kind::Cloud));
@@ -86,10 +88,10 @@ fn main() {
                     }
                     let seed = first + scene;
                     let (kernel, kind) = cells[cell];
-                    let mut told = String::new();
+                    let mut faults = String::new();
                     let trial = Trial::new(kernel, kind, seed as u64, packets(kind));
-                    let row = check(trial, &cast, &mut told);
-                    eprint!("{told}");
+                    let row = check(trial, &cast, &mut faults);
+                    eprint!("{faults}");
                     if let Ok(mut rows) = rows.lock() {
                         rows[cell].add(&row);
                     }
@@ -98,7 +100,8 @@ fn main() {
         }
     });
     println!(
-        "| kernel | primitives | rays | hits | missed | missed grazing | invented | worst distance ÷ tolerance | undecided |"
+        "| kernel | primitives | rays | hits | missed | missed grazing | invented | \
+         worst distance ÷ tolerance | undecided |"
     );
     println!("|---|---|--:|--:|--:|--:|--:|--:|--:|");
     let mut total = Row::default();

@@ -1,5 +1,5 @@
-//! What rays pass and see beside surfaces: background, sky, fog, clouds of light, and the plane of
-//! the ground.
+//! Air and surroundings, which rays pass and see beside surfaces: background, sky, fog, clouds of
+//! light, and the plane of the ground.
 //!
 //! Everything here is in the world's coordinates.
 use core::f64::consts::TAU;
@@ -8,10 +8,11 @@ use scene::{Background, Cloud, Fog, Ground, Scene, Sky};
 use std::sync::Arc;
 use texture::{Edge, Rgb8};
 
-/// Sine of the angle from the horizon between which and its negative a gradient changes.
+/// Sine of the height above the horizon at which a gradient reaches its first colour; as far below
+/// it reaches the last.
 const GRADIENT: f64 = 0.5;
-/// Where the ground begins and has ceased to be seen, in halves of the scene's size from its
-/// middle: it fades into the background between them.
+/// Distances from the scene's middle, in halves of its size, between which the ground fades into
+/// the background.
 const GROUND: [f64; 2] = [4.0, 16.0];
 
 /// Air and surroundings.
@@ -55,25 +56,26 @@ impl Air {
             Background::Image(index) => scene.images.get(index as usize).cloned(),
             _ => None,
         };
-        let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
-        let floor = |ground: Ground| Floor {
-            colour: Vec3::from(ground.colour),
-            height: finite(ground.height.unwrap_or(lowest)),
-            middle,
-            size,
-        };
         Self {
             background: scene.background.clone(),
             image,
             sky: scene.sky,
             fog: scene.fog.filter(|fog| fog.distance > 0.0),
             clouds: scene.clouds.clone(),
-            ground: scene.ground.map(floor),
+            ground: scene.ground.map(|Ground { colour, height }| {
+                let height = height.unwrap_or(lowest);
+                Floor {
+                    colour: Vec3::from(colour),
+                    height: if height.is_finite() { height } else { 0.0 },
+                    middle,
+                    size,
+                }
+            }),
             up: scene.up.normalize_or(DVec3::Y),
         }
     }
 
-    /// Whether every ray that meets nothing sees the same.
+    /// Whether every ray that meets no surface sees the same colour.
     pub fn is_plain(&self) -> bool {
         matches!(self.background, Background::Colour(_))
             && self.fog.is_none()
@@ -81,7 +83,7 @@ impl Air {
             && self.ground.is_none()
     }
 
-    /// Light from a direction in which there is nothing.
+    /// Returns the light from a direction in which there is nothing.
     pub fn background(&self, direction: DVec3) -> Vec3 {
         match &self.background {
             Background::Colour(colour) => Vec3::from(*colour),
@@ -111,7 +113,8 @@ impl Air {
         }
     }
 
-    /// Directions across `up`: the middle of an image around the scene, and to its right.
+    /// Returns two unit vectors across `up`: towards the middle of an image around the scene, and
+    /// to its right.
     fn around(&self) -> [DVec3; 2] {
         let across = DVec3::NEG_Z - self.up * DVec3::NEG_Z.dot(self.up);
         let front = across.try_normalize().unwrap_or_else(|| {
@@ -121,7 +124,7 @@ impl Air {
         [front, front.cross(self.up)]
     }
 
-    /// Light of the sky from a direction; 0 without one.
+    /// Returns the sky's light from a direction; 0 without a sky.
     pub fn sky_light(&self, direction: DVec3) -> Vec3 {
         let Some(sky) = &self.sky else {
             return Vec3::ZERO;
@@ -130,7 +133,7 @@ impl Air {
         Vec3::from(sky.horizon).lerp(Vec3::from(sky.colour), height)
     }
 
-    /// Where a ray from above meets the ground before a parameter.
+    /// Returns the point of the ground that a ray from above meets before the parameter `limit`.
     pub fn ground(&self, origin: DVec3, direction: DVec3, limit: f64) -> Option<GroundPoint> {
         let floor = self.ground?;
         let (height, fall) = (origin.dot(self.up) - floor.height, -direction.dot(self.up));
@@ -152,8 +155,8 @@ impl Air {
         })
     }
 
-    /// Share of light that is left of what a ray sees at a distance, and the light that the air
-    /// adds on the way. Clouds shine through the fog before them.
+    /// Returns the share of the light from the distance `length` that reaches a ray's origin, and
+    /// the light that the air adds on the way. Clouds shine through the fog before them.
     pub fn passes(&self, origin: DVec3, direction: DVec3, length: f64) -> (f32, Vec3) {
         let (mut share, mut glow) = (1.0, Vec3::ZERO);
         if let Some(fog) = &self.fog {
@@ -173,19 +176,19 @@ impl Air {
         (share, glow)
     }
 
-    /// Share of light that passes the fog.
+    /// Returns the share of light that passes the fog up to the distance `length`.
     fn clear(&self, fog: &Fog, origin: DVec3, direction: DVec3, length: f64) -> f32 {
-        let upright = |v: DVec3| DVec3::new(0.0, v.dot(self.up), 0.0);
+        let [origin, direction] = [origin, direction].map(|v| DVec3::new(0.0, v.dot(self.up), 0.0));
         let air = texture::fog::Fog {
             distance: fog.distance,
             height: fog.height,
         };
-        air.passes(upright(origin), upright(direction), length) as f32
+        air.passes(origin, direction, length) as f32
     }
 }
 
-/// The integral of a cloud's density along a ray up to a length, in units of the cloud's radius:
-/// `∫(c − u²)² du` with c = 1 − b², b the ray's distance from the middle.
+/// Integrates a cloud's density along a ray up to a length, in units of the cloud's radius:
+/// `∫(c − u²)² du` with c = 1 − b², where b is the ray's distance from the cloud's middle.
 fn through(cloud: &Cloud, origin: DVec3, direction: DVec3, length: f64) -> f64 {
     let radius = cloud.radius;
     if !(radius > 0.0 && radius.is_finite() && cloud.density > 0.0) {
@@ -200,8 +203,8 @@ fn through(cloud: &Cloud, origin: DVec3, direction: DVec3, length: f64) -> f64 {
     let half = c.sqrt();
     let from = (-along).clamp(-half, half);
     let to = (length / radius - along).clamp(-half, half);
-    let whole = |u: f64| u * (c * c + u * u * (u * u / 5.0 - 2.0 * c / 3.0));
-    (cloud.density * (whole(to) - whole(from))).max(0.0)
+    let [before, all] = [from, to].map(|u| u * (c * c + u * u * (u * u / 5.0 - 2.0 * c / 3.0)));
+    (cloud.density * (all - before)).max(0.0)
 }
 
 #[cfg(test)]
@@ -229,12 +232,12 @@ mod tests {
         ] {
             const STEPS: u32 = 100_000;
             let step = length.min(20.0) / f64::from(STEPS);
-            let density = |i: u32| {
+            let mut sum = 0.0;
+            for i in 0..STEPS {
                 let at = origin + direction * (f64::from(i) + 0.5) * step;
                 let r = at.distance(cloud.position) / cloud.radius;
-                cloud.density * (1.0 - r * r).max(0.0).powi(2)
-            };
-            let sum: f64 = (0..STEPS).map(density).sum();
+                sum += cloud.density * (1.0 - r * r).max(0.0).powi(2);
+            }
             let want = sum * step / cloud.radius;
             let got = through(&cloud, origin, direction, length);
             assert!((got - want).abs() < 1e-6, "{got} {want}");
@@ -263,8 +266,9 @@ mod tests {
             bytes,
         }));
         scene.background = Background::Image(0);
-        let see = |x: f64| air(&scene).background(DVec3::new(x, 0.3, -1.0).normalize());
-        assert_eq!([see(-1.0), see(1.0)], [Vec3::X, Vec3::Y]);
+        let seen =
+            [-1.0, 1.0].map(|x| air(&scene).background(DVec3::new(x, 0.3, -1.0).normalize()));
+        assert_eq!(seen, [Vec3::X, Vec3::Y]);
     }
 
     #[test]

@@ -36,7 +36,8 @@ impl From<Area> for Tile {
 }
 
 impl Area {
-    /// What lies in a column and a row of so many.
+    /// Returns the part in a column and a row, where the area is divided into equal ones. Their
+    /// numbers must divide the area's sides.
     pub fn cell(self, [column, row]: [u32; 2], [columns, rows]: [u32; 2]) -> Self {
         let width = (self.right - self.left) / columns;
         let height = (self.bottom - self.top) / rows;
@@ -53,7 +54,7 @@ impl Area {
         (self.left..self.right).contains(&x) && (self.top..self.bottom).contains(&y)
     }
 
-    /// The left and the right half, or the upper and the lower.
+    /// Returns the left and the right half if `across`, else the upper and the lower.
     pub fn halves(self, across: bool) -> [Self; 2] {
         let (x, y) = (
             self.left.midpoint(self.right),
@@ -81,7 +82,7 @@ impl Area {
         self.left >= self.right || self.top >= self.bottom
     }
 
-    /// The same rectangle in cells that are smaller by a factor.
+    /// Returns the rectangle in cells that are smaller by a factor.
     pub fn times(self, factor: u32) -> Self {
         Self {
             left: self.left * factor,
@@ -91,7 +92,8 @@ impl Area {
         }
     }
 
-    /// The whole blocks, laid out from the picture's corner, that touch the area.
+    /// Iterates over the blocks of a size that touch the area, whole; they are laid out from the
+    /// picture's corner.
     pub fn blocks(self, [width, height]: [u32; 2]) -> impl Iterator<Item = Self> {
         (self.top / height..self.bottom.div_ceil(height)).flat_map(move |j| {
             (self.left / width..self.right.div_ceil(width)).map(move |i| Self {
@@ -127,7 +129,7 @@ impl Area {
         }
     }
 
-    /// Row by row.
+    /// Iterates over the pixels, row by row.
     pub fn pixels(self) -> impl Iterator<Item = (u32, u32)> {
         (self.top..self.bottom).flat_map(move |y| (self.left..self.right).map(move |x| (x, y)))
     }
@@ -162,7 +164,7 @@ impl Samples {
         &self.cells[self.index(x, y)]
     }
 
-    /// Some of a row's samples.
+    /// Iterates over a row's samples in some columns.
     pub fn row(&self, y: u32, columns: impl Iterator<Item = u32>) -> impl Iterator<Item = &Sample> {
         let start = self.index(self.area.left, y);
         let end = self.index(self.area.right, y);
@@ -170,19 +172,19 @@ impl Samples {
         columns.map(move |x| &row[(x - self.area.left) as usize])
     }
 
-    /// Some of a row's samples.
+    /// Returns a row's samples in a range of columns.
     pub fn part(&self, y: u32, columns: Range<u32>) -> &[Sample] {
         let from = self.index(columns.start, y);
         &self.cells[from..from + columns.len()]
     }
 
-    /// Some of a row's samples, to be written.
+    /// Returns a row's samples in a range of columns, to be written.
     pub fn part_mut(&mut self, y: u32, columns: Range<u32>) -> &mut [Sample] {
         let from = self.index(columns.start, y);
         &mut self.cells[from..from + columns.len()]
     }
 
-    /// Cells outside the area are ignored.
+    /// Replaces a sample; nothing happens outside the area.
     pub fn set(&mut self, x: u32, y: u32, sample: Sample) {
         if self.area.holds(x, y) {
             let index = self.index(x, y);

@@ -24,7 +24,7 @@ const BOUND_SLACK: f64 = 1e-9;
 const SQUARES: f64 = 2e-15;
 
 impl Beam {
-    /// The beam around a single ray.
+    /// Returns the beam around a single ray.
     #[must_use]
     pub fn of_ray(axis: Ray) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl Beam {
         }
     }
 
-    /// The beam around some rays. `None` if there are none.
+    /// Returns the beam around some rays; `None` if there are none.
     #[must_use]
     pub fn around(rays: &[Ray]) -> Option<Self> {
         let n = rays.len() as f64;
@@ -55,13 +55,13 @@ impl Beam {
         })
     }
 
-    /// Largest distance of rays from the axis at a parameter.
+    /// Returns the largest distance of rays from the axis' point at a parameter.
     #[must_use]
     pub fn width(&self, t: f64) -> f64 {
         self.radius + self.spread * t
     }
 
-    /// Largest distance, along the axis, of rays from the axis' point at a parameter: the
+    /// Bounds the distance, along the axis, of rays from the axis' point at a parameter: the
     /// projection of a unit vector on another is shorter than 1 by half the square of their
     /// difference.
     #[must_use]
@@ -69,7 +69,7 @@ impl Beam {
         self.ahead + 0.5 * self.spread * self.spread * t
     }
 
-    /// The same beam with parameters counted from `base` on.
+    /// Returns the beam with parameters counted from `base` on.
     #[must_use]
     pub fn from(&self, base: f64) -> Self {
         Self {
@@ -108,9 +108,10 @@ impl Beam {
         let across = (square - along * along - SQUARES * square).at_least(0.0);
         let d = d.abs();
         let reach = (radius + self.radius) * (1.0 + BOUND_SLACK) + BOUND_SLACK * (d.x + d.y + d.z);
-        // The distance from the axis' point at t less the beam's growth, sqrt(across² + (along−t)²)
-        // − spread·t, is least where its derivative vanishes, at t = along + across·spread/slope,
-        // if that is ≥ 0. Squares avoid roots: trees call this often.
+        // The distance from the axis' point at t less the beam's growth,
+        // sqrt(across² + (along−t)²) − spread·t, is least where its derivative vanishes, at
+        // t = along + across·spread/slope, if that is ≥ 0. Squares avoid roots: trees call this
+        // often.
         let spread = self.spread * self.spread;
         let slope = 1.0 - spread;
         let (apart, reach) = if along > 0.0 || across * spread > along * along * slope {
@@ -121,8 +122,9 @@ impl Beam {
         reach >= 0.0 && apart <= reach * reach
     }
 
-    /// The parameters between which a ray of the beam may be inside a ball: t ≥ 0 is distance
-    /// from the ray's origin, so it differs from the ball's distance by no more than the radii.
+    /// Returns the parameters between which a ray of the beam may be inside a ball: t ≥ 0 is
+    /// distance from the ray's origin, so it differs from the ball's distance by no more than the
+    /// radii.
     #[must_use]
     pub fn reach(&self, center: DVec3, radius: f64) -> [f64; 2] {
         let distance = self.axis.origin.distance(center);
@@ -142,8 +144,8 @@ mod tests {
         let mut numbers = Random::new(12);
         let (mut met, mut missed, mut behind) = (0, 0, 0);
         for case in 0..count(1000) {
-            let mut place = || numbers.vector(1.0);
-            let (origin, direction, center) = (place(), place().normalize(), 0.7 * place());
+            let [origin, direction, center] = core::array::from_fn(|_| numbers.vector(1.0));
+            let (direction, center) = (direction.normalize(), 0.7 * center);
             let beam = Beam {
                 axis: Ray { origin, direction },
                 radius: if case % 3 == 0 {
@@ -155,12 +157,12 @@ mod tests {
                 ahead: 0.0,
             };
             let radius = 0.3 * numbers.unit();
-            // The distance less the beam's growth.
-            let apart = |i: u32| {
+            // The least distance less the beam's growth.
+            let mut least = f64::INFINITY;
+            for i in 0..6000 {
                 let t = f64::from(i) * STEP;
-                beam.axis.at(t).distance(center) - beam.spread * t
-            };
-            let least = (0..6000).map(apart).fold(f64::INFINITY, f64::min);
+                least = least.min(beam.axis.at(t).distance(center) - beam.spread * t);
+            }
             let reach = radius + beam.radius;
             let meets = beam.meets(center, radius);
             // Widest beams are nearest further away than this.

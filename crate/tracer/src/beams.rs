@@ -2,8 +2,8 @@
 use crate::beam::Beam;
 use core::cell::OnceCell;
 
-/// How a beam is divided: `narrow(n)` gives the n-th beam, where 0 is the whole and the halves of
-/// beam i are 2i+1 and 2i+2.
+/// A function that makes the n-th beam of a division, where 0 is the whole and the halves of beam i
+/// are 2i+1 and 2i+2.
 type Narrow<'a> = dyn Fn(usize) -> Beam + 'a;
 
 /// A binary tree of beams, the halves of beam i at 2i+1 and 2i+2, whose last level has one beam for
@@ -14,7 +14,7 @@ pub struct Beams<'a> {
 }
 
 impl<'a> Beams<'a> {
-    /// A beam that is not divided.
+    /// Returns a beam that is not divided.
     #[must_use]
     pub fn one(beam: Beam) -> Self {
         Self {
@@ -23,9 +23,9 @@ impl<'a> Beams<'a> {
         }
     }
 
-    /// A beam divided `levels` times.
+    /// Returns the tree of a beam that is halved `levels` times.
     #[must_use]
-    pub fn divided(levels: u32, narrow: impl Fn(usize) -> Beam + 'a) -> Self {
+    pub fn tree(levels: u32, narrow: impl Fn(usize) -> Beam + 'a) -> Self {
         Self {
             made: vec![OnceCell::new(); (2 << levels) - 1],
             narrow: Box::new(narrow),
@@ -39,7 +39,7 @@ impl<'a> Beams<'a> {
         self.made[index].get_or_init(|| (self.narrow)(index))
     }
 
-    /// Number of levels below a beam.
+    /// Returns the number of levels below a beam.
     #[must_use]
     pub fn levels_below(&self, beam: usize) -> u32 {
         (self.made.len() + 1).ilog2() - (beam + 1).ilog2() - 1

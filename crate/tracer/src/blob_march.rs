@@ -24,7 +24,7 @@ pub struct RayBlob {
     /// Field along the rays.
     pub on_ray: BlobOnRay<f32x8>,
     /// Squared distance, in kernel widths, up to which the blob is strong: a step that fails is cut
-    /// there ([`Sum::closer`]).
+    /// there ([`Sum::cut`]).
     pub strong: f32,
     /// Index in the list of nearby blobs.
     pub index: u32,
@@ -42,12 +42,12 @@ impl RayBlob {
     }
 }
 
-/// Range of ray parameters in which rays may meet a blob.
+/// Range of ray parameters in which any of a packet's rays may meet a blob.
 #[derive(Clone, Copy, Debug)]
 pub struct RayInterval {
-    /// Smallest parameter …
+    /// Smallest parameter.
     pub from: f32,
-    /// … and largest, over all rays.
+    /// Largest parameter.
     pub to: f32,
     /// Index of the blob in [`RayBlobs::blobs`].
     pub blob: u32,
@@ -59,7 +59,7 @@ pub struct RayInterval {
 pub struct RayBlobs<'a> {
     /// The blobs, in any order.
     pub blobs: &'a [RayBlob],
-    /// One interval for each blob, in order of `from`.
+    /// The blobs' intervals, in order of `from`.
     pub intervals: &'a [RayInterval],
     /// Whether all are Gaussian points, the most common case, for which the march is compiled
     /// separately.
@@ -85,10 +85,10 @@ pub struct MarchRays {
     pub from: f32x8,
     /// End of each ray.
     pub to: f32x8,
-    /// Estimate of the crossing; infinite without one …
+    /// Estimate of the crossing; infinite without one.
     pub guess: f32x8,
-    /// … and the end of the first step, at or before it, from which the rest up to the estimate can
-    /// be proved to hold at most one crossing.
+    /// End of the first step, at or before the estimate and so near to it that the rest can be
+    /// proved to hold at most one crossing.
     pub first: f32x8,
     /// The rays to follow, a bit each.
     pub alive: u32,
@@ -103,14 +103,14 @@ pub struct MarchRays {
 /// A smooth part of the field beside the blobs: a polynomial along each ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Backdrop {
-    /// Its coefficients in t over `half`, which is between −1 and 1 on the rays.
+    /// Coefficients of the polynomial in t over `half`, which is between −1 and 1 on the rays.
     pub coefficients: [f32x8; DEGREE + 1],
     /// Largest size of a parameter.
     pub half: f32,
 }
 
 impl Backdrop {
-    /// Value and slope at t.
+    /// Returns value and slope at t.
     #[inline(always)]
     pub fn at(&self, t: f32x8) -> (f32x8, f32x8) {
         let scale = f32x8::splat(1.0 / self.half);
@@ -124,7 +124,7 @@ impl Backdrop {
         (value, slope * scale)
     }
 
-    /// Upper bound on it, and on −f″.
+    /// Returns upper bounds on the polynomial and on −f″.
     #[inline(always)]
     pub fn limits(&self) -> (f32x8, f32x8) {
         let [a, b, c, d, e, f] = self.coefficients;
@@ -140,17 +140,17 @@ impl Backdrop {
     }
 }
 
-/// What is behind the blobs, compiled separately for each.
+/// A part of the field behind the blobs, or none; the march is compiled for each.
 pub trait Behind: Copy {
-    /// Whether there is anything.
+    /// Whether there is anything behind the blobs.
     const ANYTHING: bool;
-    /// Value and slope at t.
+    /// Returns value and slope at t.
     fn at(&self, t: f32x8) -> (f32x8, f32x8);
-    /// Upper bound on the value, and on −f″.
+    /// Returns upper bounds on the value and on −f″.
     fn limits(&self) -> (f32x8, f32x8);
 }
 
-/// Nothing.
+/// Nothing behind the blobs.
 impl Behind for () {
     const ANYTHING: bool = false;
 
@@ -173,7 +173,7 @@ pub struct Bounded<'a> {
 }
 
 impl<'a> Bounded<'a> {
-    /// Takes the limits of a backdrop.
+    /// Computes the limits of a backdrop.
     pub fn new(backdrop: &'a Backdrop) -> Self {
         Self {
             backdrop,
@@ -205,9 +205,10 @@ pub struct Marched {
     pub between: [f32x8; 2],
     /// Rays that cross, a bit each.
     pub met: u32,
-    /// Rays that passed so near to the surface that rounding may have hidden a crossing …
+    /// Rays that passed so near to the surface that rounding may have hidden a crossing, a bit
+    /// each.
     pub doubtful: u32,
-    /// … and the parameters between which that happened.
+    /// Parameters between which the doubtful rays did so.
     pub doubt: [f32x8; 2],
     /// Evaluations of blobs, for one ray each.
     pub evaluations: u64,
@@ -219,22 +220,22 @@ pub const LEVEL: f32 = 1.0 - 1e-6;
 /// Field from which a point counts as deep inside.
 const DEEP: f32 = 1.5;
 
-/// Where the field is larger than this and rises, a step is no longer than …
+/// Field above which, where it rises, [`TANGENT`] limits steps.
 const NEARLY: f32 = 0.15;
-/// … this multiple of the step along the tangent to T: Gaussians are convex where they rise, and
-/// reach T before.
+/// Longest step, over that along the tangent to T: Gaussians are convex where they rise, and reach
+/// T before.
 const TANGENT: f32 = 1.1;
 
 /// Length down to which intervals that rounding leaves in doubt are shortened.
 const DOUBTFUL: f32 = 1e-3;
 
-/// After a failed step of length h the next one is chosen for `N·h²` = this times T − F; the
-/// chord's proof needs at most 8 …
+/// Factor c in the length h of the step after a failed one, N·h² = c·(T − F), where −F″ ≤ N on the
+/// failed step. The chord's proof needs at most 8.
 const SERVES: f32 = 6.0;
-/// … or, where the field falls at the start, this times the length on which the bend can turn the
-/// slope; …
+/// Least length of the step after a failed one where the field falls at the start, over the length
+/// −F′/N on which the bend can turn the slope.
 const FALLS: f32 = 1.8;
-/// … but at least this fraction of the failed step, since N is smaller on a shorter one.
+/// Least ratio of the step after a failed one to that, since N is smaller on a shorter step.
 const LEAST: f32 = 0.1;
 
 /// Evaluations after which a packet is given up; packets of the published scenes need a few
@@ -343,7 +344,7 @@ fn march_blobs<const PLAIN: bool, B: Behind>(
             return Some(marched);
         }
         let at = next;
-        let sum = Sum::on::<PLAIN, B>(blobs, behind, low, at, going, tops, &mut evaluations);
+        let sum = Sum::add_up::<PLAIN, B>(blobs, behind, low, at, going, tops, &mut evaluations);
         let length = at - low;
         let short = length.simd_le(tolerance).to_bitmask();
         let above = level.simd_le(sum.value).to_bitmask() & going;
@@ -371,15 +372,15 @@ fn march_blobs<const PLAIN: bool, B: Behind>(
         low = mask.select(at, low);
         low_value = mask.select(sum.value, low_value);
         low_slope = mask.select(sum.slope, low_slope);
-        let longer = sum.longer(step, length, tolerance);
+        let longer = sum.lengthen(step, length, tolerance);
         step = self::mask(passed & moved).select(longer, step);
         let arrived = passed & rays.to.simd_le(low).to_bitmask();
         going &= !arrived;
         // Lanes that need a shorter step.
         if failed != 0 {
-            let served = sum.shorter(low_value, low_slope, length);
-            let closer = sum.closer(blobs, tops, failed, [low, at], low + served, tolerance) - low;
-            step = self::mask(failed).select(closer, step);
+            let shorter = sum.shorten(low_value, low_slope, length);
+            let end = sum.cut(blobs, tops, failed, [low, at], low + shorter, tolerance);
+            step = self::mask(failed).select(end - low, step);
         }
         let goal = low.simd_lt(rays.guess).select(rays.guess, rays.to);
         let goal = goal.fast_min(rays.to);
@@ -472,7 +473,7 @@ impl Sum {
     /// Adds up the blobs between two parameters. Each blob's contribution to
     /// `most` is written to `tops`.
     #[inline(always)]
-    fn on<const PLAIN: bool, B: Behind>(
+    fn add_up<const PLAIN: bool, B: Behind>(
         blobs: RayBlobs<'_>,
         behind: B,
         from: f32x8,
@@ -544,7 +545,7 @@ impl Sum {
     /// Returns the length of the step after one of some length that was proved: twice that, or,
     /// where the field rises towards T, along the tangent to a little beyond the crossing.
     #[inline(always)]
-    fn longer(&self, step: f32x8, length: f32x8, tolerance: f32x8) -> f32x8 {
+    fn lengthen(&self, step: f32x8, length: f32x8, tolerance: f32x8) -> f32x8 {
         let doubled = f32x8::splat(2.0) * step.fast_min(length.fast_max(tolerance));
         let room = f32x8::splat(TANGENT) * (f32x8::splat(LEVEL) - self.value);
         let rises =
@@ -556,7 +557,7 @@ impl Sum {
     /// Returns the length of the step after a failed one of some length, by the bend on it
     /// ([`SERVES`], [`FALLS`], [`LEAST`]).
     #[inline(always)]
-    fn shorter(&self, low_value: f32x8, low_slope: f32x8, length: f32x8) -> f32x8 {
+    fn shorten(&self, low_value: f32x8, low_slope: f32x8, length: f32x8) -> f32x8 {
         let room = f32x8::splat(LEVEL) - low_value.fast_max(self.value);
         let served = (f32x8::splat(SERVES) * room.fast_max(f32x8::splat(0.0)) / self.bend).sqrt();
         let down = f32x8::splat(FALLS) * -low_slope / self.bend;
@@ -566,16 +567,16 @@ impl Sum {
             .fast_max(f32x8::splat(LEAST) * length)
     }
 
-    /// Returns the end of a shorter step after a failed one: where the largest blob begins to be
-    /// strong, or where it ceases to be, or else `served`.
+    /// Returns the end of the step after a failed one: where the largest blob begins to be strong,
+    /// or where it ceases to be, or else `end`.
     #[inline(never)]
-    fn closer(
+    fn cut(
         &self,
         blobs: RayBlobs<'_>,
         tops: &[f32x8],
         lanes: u32,
         [from, to]: [f32x8; 2],
-        served: f32x8,
+        end: f32x8,
         tolerance: f32x8,
     ) -> f32x8 {
         let [first, last] = self.between;
@@ -595,7 +596,7 @@ impl Sum {
         let strong = near.simd_lt(far);
         let ends = strong & (from + tolerance).simd_lt(far) & far.simd_lt(to);
         let begins = strong & (from + tolerance).simd_lt(near) & near.simd_lt(to);
-        begins.select(near, ends.select(far, served))
+        begins.select(near, ends.select(far, end))
     }
 }
 
@@ -670,10 +671,11 @@ mod tests {
     use glam::DVec3;
     use trials::{Random, count};
 
-    /// Points and segments around the origin.
+    /// Returns points and segments around the origin.
     fn blobs(random: &mut Random, many: usize) -> Vec<Primitive> {
-        let mut place = || random.vector(0.8);
-        let places: Vec<_> = (0..many).map(|_| (place(), place())).collect();
+        let places: Vec<_> = (0..many)
+            .map(|_| (random.vector(0.8), random.vector(0.8)))
+            .collect();
         let kernels = [
             Kernel::Gauss,
             Kernel::Gauss,
@@ -705,8 +707,8 @@ mod tests {
             .collect()
     }
 
-    /// All rays of a packet, through all of it, without a guess.
-    fn way(noise: f32) -> MarchRays {
+    /// Returns the rays of a packet, from 0 to beyond all blobs and without a guess.
+    fn march_rays(noise: f32) -> MarchRays {
         MarchRays {
             from: f32x8::splat(0.0),
             to: f32x8::splat(3.9),
@@ -723,26 +725,27 @@ mod tests {
         blobs.iter().all(|blob| blob.on_ray.is_gaussian_point())
     }
 
-    /// All from the start on.
+    /// Returns intervals of the whole rays.
     fn intervals(blobs: &[RayBlob]) -> Vec<RayInterval> {
-        let interval = |blob| RayInterval {
-            from: 0.0,
-            to: 10.0,
-            blob,
-        };
-        (0..blobs.len() as u32).map(interval).collect()
+        (0..blobs.len() as u32)
+            .map(|blob| RayInterval {
+                from: 0.0,
+                to: 10.0,
+                blob,
+            })
+            .collect()
     }
 
-    /// The primitives as blobs on the rays.
+    /// Returns the primitives as blobs on the rays.
     fn ray_blobs(primitives: &[Primitive], rays: &[(DVec3, DVec3); 8]) -> Vec<RayBlob> {
-        let lane = |f: &dyn Fn(usize) -> f64| f32x8::from_lanes(f);
-        let direction: [f32x8; 3] = [0, 1, 2].map(|k| lane(&|i| rays[i].1[k]));
+        let direction = [0, 1, 2].map(|k| f32x8::from_lanes(|i| rays[i].1[k]));
         primitives
             .iter()
             .enumerate()
             .map(|(index, p)| {
                 let blob = p.blob::<f32>().expect("a blob");
-                let middle = [0, 1, 2].map(|k| lane(&|i| p.blob_middle()[k] - rays[i].0[k]));
+                let middle = p.blob_middle();
+                let middle = [0, 1, 2].map(|k| f32x8::from_lanes(|i| middle[k] - rays[i].0[k]));
                 let on_ray = blob.on_ray(middle, direction);
                 let square = blob.reach(1e-6);
                 let strong = blob.core(square, 1e-6) + 2.0;
@@ -755,8 +758,8 @@ mod tests {
             .collect()
     }
 
-    /// The first crossing of a ray, by very many samples in double precision, with how near the
-    /// field comes to T before.
+    /// Returns the first crossing of a ray, by very many samples in double precision, and the least
+    /// difference of T and the field before.
     fn scan(primitives: &[Primitive], origin: DVec3, direction: DVec3) -> (Option<f64>, f64) {
         let mut nearest = f64::INFINITY;
         for i in 0..20_000 {
@@ -785,7 +788,7 @@ mod tests {
                 (origin, (aim - origin).normalize())
             });
             let ray_blobs = ray_blobs(&primitives, &rays);
-            let way = way(0.0);
+            let way = march_rays(0.0);
             let intervals = intervals(&ray_blobs);
             let blobs = RayBlobs {
                 blobs: &ray_blobs,
@@ -817,8 +820,8 @@ mod tests {
         assert!(hits > count(40) && misses > count(40), "{hits} {misses}");
     }
 
-    /// Where the field comes nearer to T than it is known a ray that passes is in doubt, and
-    /// nowhere else.
+    /// A ray that passes is in doubt where the field comes nearer to T than its error, and nowhere
+    /// else.
     #[test]
     fn rays_that_noise_may_have_kept_outside_are_in_doubt() {
         // Kept, as it is between packets.
@@ -830,10 +833,9 @@ mod tests {
             let primitives = blobs(&mut random, 1 + case % 5);
             // Past the first blob, close to its surface.
             let target = primitives[0].blob_middle();
-            let alone = |x: f64| primitives[0].value((target + DVec3::X * x).to_array());
             let radius = (0..200)
                 .map(|i| f64::from(i) * 5e-3)
-                .find(|x| alone(*x) < 1.0);
+                .find(|x| primitives[0].value((target + DVec3::X * *x).to_array()) < 1.0);
             let radius = radius.unwrap_or(0.0);
             let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
                 let origin = random.vector(0.5).with_z(-4.0) * 0.5;
@@ -842,7 +844,7 @@ mod tests {
                 (origin, (aim - origin).normalize())
             });
             let ray_blobs = ray_blobs(&primitives, &rays);
-            let way = way(NOISE as f32);
+            let way = march_rays(NOISE as f32);
             let intervals = intervals(&ray_blobs);
             let blobs = RayBlobs {
                 blobs: &ray_blobs,
@@ -853,21 +855,22 @@ mod tests {
                 continue;
             };
             for (i, &(origin, direction)) in rays.iter().enumerate() {
-                let bit = |mask: u32| mask >> i & 1 != 0;
-                if bit(marched.met) {
+                if marched.met >> i & 1 != 0 {
                     continue;
                 }
-                let field = |t: f64| {
+                let (mut most, mut close): (f64, Vec<f64>) = (0.0, Vec::new());
+                for i in 0..3900 {
+                    let t = f64::from(i) * 1e-3;
                     let point = (origin + direction * t).to_array();
-                    primitives.iter().map(|p| p.value(point)).sum::<f64>()
-                };
-                let place = |i: i32| f64::from(i) * 1e-3;
-                let near = |t: &f64| field(*t) > 1.0 - 0.9 * NOISE;
-                let close: Vec<f64> = (0..3900).map(place).filter(near).collect();
+                    let field: f64 = primitives.iter().map(|p| p.value(point)).sum();
+                    most = most.max(field);
+                    if field > 1.0 - 0.9 * NOISE {
+                        close.push(t);
+                    }
+                }
                 let [from, to] = marched.doubt.map(|t| f64::from(t.to_array()[i]));
-                if bit(marched.doubtful) {
+                if marched.doubtful >> i & 1 != 0 {
                     doubted += 1;
-                    let most = (0..3900).map(place).map(field).fold(0.0, f64::max);
                     assert!(most > 1.0 - 1.5 * NOISE, "case {case}, ray {i}: {most}");
                 } else {
                     sure += 1;
@@ -891,10 +894,9 @@ mod tests {
         let mut hits = 0;
         for case in 0..count(60) {
             let mut primitives = blobs(&mut random, 4 + case % 20);
-            let gaussian = |p: &Primitive| {
+            primitives.retain(|p| {
                 matches!(p.skeleton, Skeleton::Point { .. }) && p.kernel == Kernel::Gauss
-            };
-            primitives.retain(gaussian);
+            });
             let rays: [(DVec3, DVec3); 8] = core::array::from_fn(|_| {
                 let origin = random.vector(0.5).with_z(-4.0) * 0.5;
                 let aim = random.vector(0.5).with_z(0.0);
@@ -909,7 +911,7 @@ mod tests {
                     intervals: &intervals,
                     plain,
                 };
-                let marched = march(blobs, &way(1e-3), &mut tops)?;
+                let marched = march(blobs, &march_rays(1e-3), &mut tops)?;
                 hits += marched.met.count_ones() as usize;
                 let places = [marched.t, marched.between[0], marched.between[1]];
                 let bits = places.map(|t| t.to_array().map(f32::to_bits));

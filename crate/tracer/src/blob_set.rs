@@ -6,7 +6,7 @@ use field::{Blob, ChainBlob, Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Largest sum of the fields that slabs leave out of their lists, in T: below the accuracy of root
+/// Largest sum, in T, of the fields that slabs leave out of their lists: below the accuracy of root
 /// isolation, which uses those lists.
 pub const NEXT_TO_NOTHING: f64 = 1e-10;
 
@@ -14,7 +14,7 @@ pub const NEXT_TO_NOTHING: f64 = 1e-10;
 const BLOBS_LEFT_OUT: f64 = 2e-6;
 
 /// [`NearBlob::lead`] in kernel widths. At a Gaussian's own surface −F″ ≤ 2T; with h = 0.6, `h²·2T`
-/// is about what the march's proof allows ([`climb`](mod@crate::blob_march)).
+/// is about what the march's proof allows ([`blob_march`](crate::blob_march)).
 const LEAD: f64 = 0.6;
 
 /// The blobs of each of a scene's primitives: itself, its blob chain, or none.
@@ -27,6 +27,7 @@ pub struct BlobSet {
     least: f64,
 }
 
+/// A blob with the place of its middle in the world, and its extent.
 struct Item {
     middle: DVec3,
     near: NearBlob,
@@ -36,7 +37,7 @@ struct Item {
 /// Most primitives in a list that are no blobs; with more of them nearly every packet meets one.
 const MOST_OTHERS: usize = 16;
 
-/// Number of points in blob chains in a scene after which no more chains are made.
+/// Number of points in a scene's blob chains after which no more chains are made.
 const MOST_CHAINED: usize = 1 << 17;
 
 impl BlobSet {
@@ -44,19 +45,20 @@ impl BlobSet {
     /// primitives.
     #[must_use]
     pub fn new(primitives: &[Primitive], finish: &[u32], bodies: &[Range<u32>]) -> Self {
-        let mut chain = 0;
-        let strings: Vec<(usize, Vec<ChainBlob>)> = primitives
-            .iter()
-            .enumerate()
-            .filter_map(|(i, p)| {
-                let own = (chain < MOST_CHAINED).then(|| p.blob_chain()).flatten()?;
-                chain += own.len();
-                Some((i, own))
-            })
-            .collect();
-        let left_out = BLOBS_LEFT_OUT * THRESHOLD / (primitives.len() + chain).max(1) as f64;
+        let mut chained = 0;
+        let mut chains: Vec<(usize, Vec<ChainBlob>)> = Vec::new();
+        for (i, p) in primitives.iter().enumerate() {
+            if chained >= MOST_CHAINED {
+                break;
+            }
+            if let Some(chain) = p.blob_chain() {
+                chained += chain.len();
+                chains.push((i, chain));
+            }
+        }
+        let left_out = BLOBS_LEFT_OUT * THRESHOLD / (primitives.len() + chained).max(1) as f64;
         let mut blob_set = Self {
-            items: Vec::with_capacity(primitives.len() + chain),
+            items: Vec::with_capacity(primitives.len() + chained),
             ends: Vec::with_capacity(primitives.len()),
             least: NEXT_TO_NOTHING / BLOBS_LEFT_OUT * left_out,
         };
@@ -88,24 +90,25 @@ impl BlobSet {
                 blob_set
                     .items
                     .push(item(blob, p.blob_middle(), square, core, false));
-            } else if let Ok(own) = strings.binary_search_by_key(&i, |own| own.0) {
-                let chain = &strings[own].1;
+            } else if let Ok(at) = chains.binary_search_by_key(&i, |chain| chain.0) {
+                let chain = &chains[at].1;
                 let blobs: Option<Vec<_>> = chain.iter().map(ChainBlob::blob).collect();
-                let own = blobs.into_iter().flatten().zip(chain).map(|(blob, point)| {
+                for (blob, point) in blobs.into_iter().flatten().zip(chain) {
                     // The bone's surface, as if its field at the point were that of a Gaussian.
                     let value = p.value(point.center.to_array());
                     let square = blob.reach(left_out);
                     let core = libm::log(value / THRESHOLD).min(square);
-                    item(blob, point.center, square, core, true)
-                });
-                blob_set.items.extend(own);
+                    blob_set
+                        .items
+                        .push(item(blob, point.center, square, core, true));
+                }
             }
             blob_set.ends.push(blob_set.items.len() as u32);
         }
         blob_set
     }
 
-    /// Blobs of a primitive.
+    /// Returns the blobs of a primitive.
     fn of(&self, primitive: usize) -> &[Item] {
         let start = primitive
             .checked_sub(1)
@@ -113,26 +116,27 @@ impl BlobSet {
         &self.items[start as usize..self.ends[primitive] as usize]
     }
 
-    /// Ball (middle, radius) that holds a primitive's reach; `None` if it has no blobs.
+    /// Returns a ball (middle, radius) that holds a primitive's reach; `None` if it has no blobs.
     #[must_use]
     pub fn ball(&self, primitive: usize) -> Option<(DVec3, f64)> {
         let items = self.of(primitive);
         let middle = items.iter().map(|item| item.middle).sum::<DVec3>() / items.len() as f64;
-        let reach = |item: &Item| item.middle.distance(middle) + f64::from(item.extent.radius);
-        let radius = items.iter().map(reach).reduce(f64::max)?;
-        Some((middle, radius))
+        let reaches = items
+            .iter()
+            .map(|item| item.middle.distance(middle) + f64::from(item.extent.radius));
+        Some((middle, reaches.reduce(f64::max)?))
     }
 
-    /// Enlarges the tree of the primitives' balls to those outside which each is negligible.
+    /// Returns the tree of the primitives' balls, enlarged to those outside which each is
+    /// negligible.
     #[must_use]
     pub fn reaches(&self, tree: &Hierarchy) -> Hierarchy {
-        tree.enlarged(|i, center, radius| {
-            let reach = |item: &Item| {
+        tree.enlarge(|i, center, radius| {
+            self.of(i as usize).iter().fold(radius, |radius, item| {
                 let blob = &item.near.blob;
-                item.middle.distance(center) + blob.radius(blob.reach(self.least))
-            };
-            let items = self.of(i as usize).iter();
-            items.map(reach).fold(radius, Cut::at_least)
+                let reach = item.middle.distance(center) + blob.radius(blob.reach(self.least));
+                radius.at_least(reach)
+            })
         })
     }
 
@@ -141,18 +145,19 @@ impl BlobSet {
     #[must_use]
     pub fn counts(&self, primitive: usize, center: DVec3, radius: f64, level: f64) -> bool {
         let items = self.of(primitive);
-        let more = |item: &Item| {
-            let (away, half) = (center - item.middle, item.near.blob.half());
-            let share = away.dot(half) / half.length_squared().max(f64::MIN_POSITIVE);
-            let apart = (away - half * share.clamp(-1.0, 1.0)).length();
-            item.near.blob.ceiling().at((apart - radius).max(0.0)) > level
-        };
-        items.is_empty() || items.iter().any(more)
+        items.is_empty()
+            || items.iter().any(|item| {
+                let (away, half) = (center - item.middle, item.near.blob.half());
+                let share = away.dot(half) / half.length_squared().max(f64::MIN_POSITIVE);
+                let apart = (away - half * share.clamp(-1.0, 1.0)).length();
+                item.near.blob.ceiling().at((apart - radius).max(0.0)) > level
+            })
     }
 
     /// Lists the blobs near a beam, up to a parameter, and the other primitives there. Returns
-    /// false if those are more than 16. `tree` holds the balls of all primitives; `reach` returns
-    /// the distance from its bone at which a primitive's reach ends, given its ball's radius.
+    /// false if those are more than [`MOST_OTHERS`]. `tree` holds the balls of all primitives;
+    /// `reach` returns the distance from its bone at which a primitive's reach ends, given its
+    /// ball's radius.
     pub fn list(
         &self,
         tree: &Hierarchy,
@@ -243,8 +248,7 @@ mod tests {
         let mut random = Random::new(4);
         let (mut counting, mut small) = (0, 0);
         for case in 0..count(60) {
-            let mut place = || random.vector(1.0);
-            let (a, b, c) = (place(), place(), place());
+            let [a, b, c] = core::array::from_fn(|_| random.vector(1.0));
             let skeleton = match case % 3 {
                 0 => Skeleton::Point { center: a },
                 1 => Skeleton::Segment { base: a, apex: b },
@@ -278,12 +282,12 @@ mod tests {
                 let radius = 0.4 * random.unit();
                 // The level counts for each of a chain's points.
                 let level = random.decades(-7.0, -1.0);
-                let value = |p: DVec3| primitive.value(p.to_array());
-                let within = (0..60).map(|_| {
-                    let aside = random.vector(1.0);
-                    center + aside.normalize_or_zero() * (radius * random.unit())
-                });
-                let most = within.map(value).fold(value(center), f64::max);
+                let mut most: f64 = primitive.value(center.to_array());
+                for _ in 0..60 {
+                    let aside = random.vector(1.0).normalize_or_zero();
+                    let point = center + aside * (radius * random.unit());
+                    most = most.max(primitive.value(point.to_array()));
+                }
                 let items = blob_set.of(0).len() as f64;
                 if blob_set.counts(0, center, radius, level) {
                     counting += 1;

@@ -1,5 +1,5 @@
-//! Single rays by the way that pictures are traced: for callers that ask what a picture would show,
-//! and for checking it.
+//! Single rays, traced as those of pictures: for callers that ask what a picture would show, and
+//! for checking it.
 //!
 //! In pictures the packets of a square share lists, or the slabs of one beam. Here each packet has
 //! its own, with the same result within the same tolerance.
@@ -14,28 +14,28 @@ use crate::world::{Owner, World};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Crossings this near to each other, in units of the scene's size, are at one place.
+/// Distance of two crossings, in units of the scene's size, up to which they are at one place.
 const SAME: f64 = 1e-10;
 
 /// A crossing in units of the scene's size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cast {
     pub t: f64,
-    /// Outward, of any length.
+    /// The outward normal, of any length.
     pub normal: DVec3,
     pub owner: Owner,
 }
 
 impl World {
-    /// The first crossing of each of some rays of the world at t > 0. Neighbouring rays of the list
-    /// make packets: the nearer together they are, the faster it goes.
+    /// Returns the first crossing, at t > 0, of each of some rays of the world. Neighbouring rays
+    /// of the list make packets: the nearer together they are, the faster it goes.
     pub fn cast(&self, rays: &[(DVec3, DVec3)]) -> Vec<Option<Cast>> {
         let mut scratch = Scratch::default();
         let mut crossings = Vec::new();
         let mut found = vec![None; rays.len()];
         let mut done = 0;
         while done < rays.len() {
-            let count = self.together(&rays[done..]);
+            let count = self.packet_length(&rays[done..]);
             let range = done..done + count;
             done += count;
             let unit: Vec<Option<Ray>> = rays[range.clone()].iter().map(|r| self.ray(r)).collect();
@@ -59,8 +59,10 @@ impl World {
             let rays = core::array::from_fn(|i| lane(i).unwrap_or(*any));
             let alive = (0..PACKET).fold(0, |m, i| m | u32::from(lane(i).is_some()) << i);
             for body in 0..self.soft.bodies.len() as u32 {
-                let limit = |i: usize| found.get(i).copied().flatten().map(|cast| cast.t);
-                let limits = core::array::from_fn(|i| limit(i).unwrap_or(f64::INFINITY));
+                let limits = core::array::from_fn(|i| {
+                    let cast = found.get(i).copied().flatten();
+                    cast.map_or(f64::INFINITY, |cast: Cast| cast.t)
+                });
                 let soft = self.soft.first(body, &rays, &limits, alive, &mut scratch);
                 for ((found, t), ray) in found.iter_mut().zip(soft).zip(&rays) {
                     if let Some(t) = t {
@@ -85,25 +87,28 @@ impl World {
         found
     }
 
-    /// All crossings of a ray at t > 0, in order, found exactly: with nothing cut off and nothing
-    /// shared.
+    /// Returns all crossings of a ray at t > 0, in order, found exactly: no primitive is cut off,
+    /// no interpolant shared.
     pub fn crossings(&self, ray: &Ray) -> Vec<Cast> {
-        let solid = |(number, crossing): (u32, crate::hard::Crossing)| Cast {
-            t: crossing.t,
-            normal: crossing.normal,
-            owner: Owner::Solid(number),
-        };
-        let mut found: Vec<Cast> = self.solids.all(ray).into_iter().map(solid).collect();
+        let mut found = Vec::new();
+        for (number, crossing) in self.solids.all(ray) {
+            found.push(Cast {
+                t: crossing.t,
+                normal: crossing.normal,
+                owner: Owner::Solid(number),
+            });
+        }
         for body in 0..self.soft.bodies.len() as u32 {
-            let all = self.soft.crossings(body, ray).into_iter();
-            let ahead = all.filter(|(t, _)| *t > 0.0);
-            found.extend(ahead.map(|(t, gradient)| cast(ray, t, gradient, Owner::Soft(body))));
+            for (t, gradient) in self.soft.crossings(body, ray) {
+                found.push(cast(ray, t, gradient, Owner::Soft(body)));
+            }
         }
         for (number, body) in self.others.iter().enumerate() {
-            let all = body.all(ray).into_iter();
-            let ahead = all.filter(|(t, _)| *t > 0.0);
-            found.extend(ahead.map(|(t, gradient)| cast(ray, t, gradient, Owner::Other(number))));
+            for (t, gradient) in body.all(ray) {
+                found.push(cast(ray, t, gradient, Owner::Other(number)));
+            }
         }
+        found.retain(|cast| cast.t > 0.0);
         found.sort_by(|a, b| a.t.total_cmp(&b.t));
         // Where two bodies touch a ray leaves the one before it enters the other.
         for i in 1..found.len() {
@@ -116,16 +121,21 @@ impl World {
         found
     }
 
-    /// How many of the first rays make a packet: as in pictures, a beam around them is narrow.
-    fn together(&self, rays: &[(DVec3, DVec3)]) -> usize {
+    /// Returns the number of rays at the start of a list that make a packet: as in pictures, a beam
+    /// around them is narrow.
+    fn packet_length(&self, rays: &[(DVec3, DVec3)]) -> usize {
         let Some(first) = rays.first().and_then(|r| self.ray(r)) else {
             return 1;
         };
-        let near = |r: &&(DVec3, DVec3)| self.ray(r).is_some_and(|ray| first.runs_with(&ray));
-        rays.iter().take(PACKET).take_while(near).count().max(1)
+        rays.iter()
+            .take(PACKET)
+            .take_while(|r| self.ray(r).is_some_and(|ray| first.runs_with(&ray)))
+            .count()
+            .max(1)
     }
 
-    /// A ray of the world in the unit scene; `None` if it is not finite or has no direction.
+    /// Converts a ray of the world to the unit scene; `None` if it is not finite or has no
+    /// direction.
     pub fn ray(&self, (origin, direction): &(DVec3, DVec3)) -> Option<Ray> {
         let ray = Ray {
             origin: self.unit.map(*origin),
@@ -134,8 +144,8 @@ impl World {
         ray.origin.is_finite().then_some(ray)
     }
 
-    /// The number of the scene's body and the scene's element that a crossing belongs to. On a
-    /// convolution surface it is the element that adds most to the field there.
+    /// Returns the numbers of the scene's body and of the scene's element that a crossing belongs
+    /// to. On a convolution surface it is the element that adds most to the field there.
     pub fn owner(&self, cast: &Cast, ray: &Ray) -> (Option<u32>, Option<u32>) {
         match cast.owner {
             Owner::Solid(number) => (None, Some(self.solids.element(number))),
@@ -143,11 +153,9 @@ impl World {
                 let body = &self.others[number];
                 let mut shares = Vec::new();
                 body.shares(ray.at(cast.t), &mut shares);
-                let parts = shares
-                    .into_iter()
-                    .map(|(element, _, share)| (element, share));
-                let element = strongest(parts).filter(|element| *element != u32::MAX);
-                (Some(body.number()), element)
+                let shares = shares.into_iter();
+                let element = strongest(shares.map(|(element, _, share)| (element, share)));
+                (Some(body.number()), element.filter(|e| *e != u32::MAX))
             }
             Owner::Soft(body) => {
                 let point = ray.at(cast.t).to_array();
@@ -178,12 +186,12 @@ impl Soft {
         if let Some((looked, base)) =
             self.quick_alone(body, rays, limits, alive, Quest::First, quick)
         {
-            let t = scratch.quick.flesh.t;
+            let t = scratch.quick.samples.t;
             return core::array::from_fn(|i| (looked.met >> i & 1 != 0).then_some(base + t[i]));
         }
         let far = &mut scratch.far;
         if let Some(met) = self.far_first(body, rays, limits, alive, Quest::First, far) {
-            let t = scratch.far.flesh.t;
+            let t = scratch.far.samples.t;
             return core::array::from_fn(|i| (met >> i & 1 != 0).then_some(t[i]));
         }
         let lives = |lane: usize| alive >> lane & 1 != 0;
@@ -191,8 +199,13 @@ impl Soft {
         let furthest = lanes.clone().map(|i| limits[i]).fold(0.0, f64::max);
         let present: Vec<Ray> = lanes.map(|i| rays[i]).collect();
         let slabs = Beam::around(&present).and_then(|beam| {
-            let whole = |base: f64| Beams::one(beam.from(base));
-            self.slabs(body, beam, whole, furthest, &mut scratch.spaces)
+            self.slabs(
+                body,
+                beam,
+                |base| Beams::one(beam.from(base)),
+                furthest,
+                &mut scratch.spaces,
+            )
         });
         let mut crossings = [None; PACKET];
         let Some((mut slabs, base)) = slabs else {
@@ -215,9 +228,9 @@ impl Soft {
         let found = self.walk(body, &mut slabs, bundle, Quest::First, scratch);
         if !found.is_empty() {
             // Refined on the surface, as in pictures.
-            self.flesh(&slabs, &based, base, &found, scratch);
+            self.sample_hits(&slabs, &based, base, &found, scratch);
             for hit in &found {
-                crossings[hit.lane] = Some(base + scratch.flesh.t[hit.lane]);
+                crossings[hit.lane] = Some(base + scratch.samples.t[hit.lane]);
             }
         }
         crossings

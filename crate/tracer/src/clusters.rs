@@ -8,18 +8,19 @@ use field::Cut;
 use field::bound::{Bound, Nearness, SpanLength};
 use glam::DVec3;
 
-/// Entries in an octave of distances.
+/// Entries of a table in an octave of distances.
 const STEPS: usize = 4;
-/// The first entry stands for distances from 0 on, the second for those from 2 to the power of this
-/// on …
+/// Exponent of the second entry's distance, 2 to this power. The first entry is for distance 0.
 const FIRST: i32 = -10;
-/// … and the number of octaves: the scene's size is between 2 and 4.
+/// Number of octaves from there on; they end at distance 4, and the scene's size is between 2 and
+/// 4.
 const OCTAVES: usize = 12;
-/// Farther entries, each for twice the distance of the one before: kernels that fall slowly have
-/// surfaces far from all elements.
+/// Number of entries beyond the octaves, each for twice the distance of the one before: kernels
+/// that fall slowly have surfaces far from all elements.
 const FAR_ENTRIES: usize = 12;
-/// The entry for the distance at which these octaves end.
+/// Index of the entry for the distance at which the octaves end.
 const LAST: usize = 1 + OCTAVES * STEPS;
+/// Number of entries of a table.
 const ENTRIES: usize = LAST + 1 + FAR_ENTRIES;
 
 /// Most members of a leaf group.
@@ -36,9 +37,9 @@ pub struct Clusters {
 struct Facts {
     /// Bounds on the sums of the members' fields and of their fourth derivatives, by distance.
     table: [[f32; 2]; ENTRIES],
-    /// Largest slope of a member over its size, where that is not negligible …
+    /// Largest relative slope, |slope|/field, of a member where its field is not negligible.
     steep: f32,
-    /// … or, for kernels that fall as a power of the distance, that slope times the distance.
+    /// Largest [`Bound::power`] of a member: no relative slope exceeds that over the distance.
     power: f32,
     /// Sum of the members' [`Bound::cancels`].
     cancels: f32,
@@ -67,16 +68,16 @@ pub struct GroupView {
 
 /// Parts of a group.
 pub enum Members<'a> {
-    /// Two groups.
+    /// Numbers of two groups.
     Groups([u32; 2]),
-    /// Primitives.
+    /// Numbers of primitives.
     Primitives(&'a [u32]),
 }
 
-/// Ratio of distance to radius below which a group is near, unless the ball that it is seen from is
-/// much larger than the group.
+/// Ratio of distance to radius up to which a group is near.
 const NEAR: f64 = 2.0;
-/// See [`NEAR`].
+/// Ratio of a group's radius to that of the ball it is seen from below which the group is not near:
+/// its parts look no different from there.
 const WIDE_VIEW: f64 = 0.3;
 
 impl Clusters {
@@ -97,7 +98,7 @@ impl Clusters {
         Self { tree, facts }
     }
 
-    /// The group of all primitives; `None` without primitives.
+    /// Returns the group of all primitives; `None` without primitives.
     #[must_use]
     pub fn root(&self) -> Option<u32> {
         (self.tree.len() > 0).then_some(0)
@@ -123,14 +124,14 @@ impl Clusters {
         }
     }
 
-    /// Estimate of a group's largest slope over its size, at a distance.
+    /// Estimates the largest relative slope, |slope|/field, of a group's members at a distance.
     #[must_use]
     pub fn relative_slope(&self, cluster: u32, distance: f64) -> f64 {
         let facts = &self.facts[cluster as usize];
         f64::from(facts.steep).at_most(f64::from(facts.power) / distance)
     }
 
-    /// Sum of the members' [`Bound::cancels`].
+    /// Returns the sum of the members' [`Bound::cancels`].
     #[must_use]
     pub fn cancels(&self, cluster: u32) -> f64 {
         f64::from(self.facts[cluster as usize].cancels)
@@ -145,14 +146,14 @@ impl Clusters {
         }
     }
 
-    /// All primitives of a group.
+    /// Returns the numbers of all primitives of a group.
     #[must_use]
     pub fn all(&self, cluster: u32) -> &[u32] {
         self.tree.items(cluster as usize)
     }
 }
 
-/// Table entry of the largest listed distance that is at most `distance`.
+/// Returns the table entry of the largest listed distance that is at most `distance`.
 #[inline]
 fn entry(distance: f64) -> usize {
     // From the exponent and the first bits of the mantissa.
@@ -165,7 +166,7 @@ fn entry(distance: f64) -> usize {
     (last + (place + 1 - last) / STEPS as i64).min(ENTRIES as i64 - 1) as usize
 }
 
-/// Distance of a table entry.
+/// Returns the distance that a table entry is for.
 fn place(entry: usize) -> f64 {
     match entry.checked_sub(1) {
         None => 0.0,
@@ -250,11 +251,14 @@ mod tests {
             })
             .collect();
         let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
-        let ball = |(i, p): (usize, &Primitive)| {
-            let (center, around) = p.bounding_sphere().expect("a point");
-            (i as u32, center, around - p.influence)
-        };
-        let balls = primitives.iter().enumerate().map(ball).collect();
+        let balls = primitives
+            .iter()
+            .enumerate()
+            .map(|(i, p)| {
+                let (center, around) = p.bounding_sphere().expect("a point");
+                (i as u32, center, around - p.influence)
+            })
+            .collect();
         let clusters = Clusters::new(balls, &bounds);
         let mut seen = 0;
         let mut groups = vec![clusters.root().expect("a group")];

@@ -21,7 +21,7 @@ use scene::Scene;
 use texture::disc;
 use texture::sequence::{Purpose, sample};
 
-/// The mean of a pixel's samples, times their number: the pixel, the colour and the cost.
+/// The sum of a pixel's samples: the pixel's column and row, the colour and the cost.
 pub(crate) type Sum = (u32, u32, Vec3, f32);
 
 /// Lens and shutter of a scene's camera.
@@ -41,43 +41,37 @@ struct Moment {
 /// A lens that is a disc around the eye, in units of the scene's size.
 #[derive(Clone, Copy)]
 struct ThinLens {
-    /// Its radius; 0 is a pinhole.
+    /// The disc's radius; 0 is a pinhole.
     aperture: f64,
     /// Distance of what is sharp.
     focus: f64,
 }
 
-/// A ray and whose it is.
+/// A ray of a pixel.
 struct Shot {
     ray: Ray,
-    /// Number of its pixel.
+    /// Number of the pixel in the packet.
     owner: usize,
     draw: Draw,
 }
 
 impl Exposure {
-    /// Prepares a scene's; `None` if it has a pinhole and nothing moves. `unit` is that of the
-    /// scene.
+    /// Prepares a scene's lens and shutter; `None` if it has a pinhole and nothing moves. `unit`
+    /// converts the scene to units of its size.
     pub fn of(scene: &Scene, unit: &Unit, size: [u32; 2]) -> Option<Self> {
         let lens = ThinLens::of(scene, unit);
         if lens.aperture == 0.0 && scene.moments.is_empty() {
             return None;
         }
-        let moment = |scene: &Scene| {
-            let mut world = World::lit(scene, true);
+        let mut moments = Vec::new();
+        for scene in scene.moments.iter().take(Scene::MAX_MOMENTS) {
+            let mut world = World::prepare(scene, true);
             let view = View::of(scene, &world.unit, size);
             world.soft.pixel = view.pixel();
-            Moment {
-                view,
-                lens: ThinLens::of(scene, &world.unit),
-                world,
-            }
-        };
-        let moments = scene.moments.iter().take(Scene::MAX_MOMENTS);
-        Some(Self {
-            lens,
-            moments: moments.map(moment).collect(),
-        })
+            let lens = ThinLens::of(scene, &world.unit);
+            moments.push(Moment { view, lens, world });
+        }
+        Some(Self { lens, moments })
     }
 }
 
@@ -98,7 +92,7 @@ impl ThinLens {
         }
     }
 
-    /// The ray of a view through a place in pixels and a point of the lens.
+    /// Returns the ray of a view through a place in pixels and a point of the lens.
     fn ray(&self, view: &View, [x, y]: [f64; 2], point: [f64; 2]) -> Ray {
         let through = view.ray(x, y);
         let axes = view.projection.world_from_view;
@@ -111,7 +105,7 @@ impl ThinLens {
 }
 
 impl Sampler {
-    /// Sends all rays of the pixels of a packet that lie in the picture.
+    /// Traces all rays of those pixels of a packet that lie in the picture, and adds them up.
     pub fn expose(
         &self,
         exposure: &Exposure,
@@ -140,8 +134,8 @@ impl Sampler {
         sums
     }
 
-    /// Which of so many moments each of a pixel's rays is at: all equally often, in an order of the
-    /// pixel's own.
+    /// Deals moments out to a pixel's rays: returns the moment, below `count`, of each. All occur
+    /// equally often, give or take one, in an order of the pixel's own.
     fn turns(&self, pixel: [u32; 2], count: usize) -> Vec<usize> {
         let all = (self.samples * self.samples) as usize;
         let times: Vec<f64> = (0..all)
@@ -158,6 +152,7 @@ impl Sampler {
         turns
     }
 
+    /// Makes a ray of a pixel, given its number among the pixel's rays.
     fn shot(
         &self,
         view: &View,
@@ -166,11 +161,8 @@ impl Sampler {
         number: u32,
     ) -> Shot {
         let n = self.samples;
-        let part = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
-        let place = [
-            f64::from(pixel[0]) + part(number % n),
-            f64::from(pixel[1]) + part(number / n),
-        ];
+        let [across, down] = [number % n, number / n].map(|k| (f64::from(k) + 0.5) / f64::from(n));
+        let place = [f64::from(pixel[0]) + across, f64::from(pixel[1]) + down];
         Shot {
             ray: lens.ray(view, place, sample(pixel, number, Purpose::Lens)),
             owner,
@@ -179,7 +171,7 @@ impl Sampler {
     }
 }
 
-/// Adds what some rays see at a moment to their pixels.
+/// Adds the light that some rays see at a moment to their pixels' sums.
 fn follow(
     world: &World,
     shots: &[Shot],
@@ -188,11 +180,13 @@ fn follow(
     stats: &mut Stats,
 ) {
     let Some(rich) = &world.rich else { return };
-    let free = |shot: &Shot| FreeRay {
-        ray: shot.ray,
-        front_only: world.one_sided,
-    };
-    let rays: Vec<FreeRay> = shots.iter().map(free).collect();
+    let rays: Vec<FreeRay> = shots
+        .iter()
+        .map(|shot| FreeRay {
+            ray: shot.ray,
+            front_only: world.one_sided,
+        })
+        .collect();
     stats.primary_rays += rays.len() as u64;
     let hits = world.meet_free(&rays, work, stats);
     let mut seen = Vec::new();
@@ -207,11 +201,13 @@ fn follow(
         packet.hits[..hits.len()].copy_from_slice(hits);
         seen.push(packet);
     }
-    let draw = |packet: usize, lane: usize| {
-        let number = (packet * PACKET + lane).min(shots.len() - 1);
-        shots[number].draw
-    };
-    world.illuminate(rich, &seen, &draw, work, stats);
+    world.illuminate(
+        rich,
+        &seen,
+        &|packet, lane| shots[(packet * PACKET + lane).min(shots.len() - 1)].draw,
+        work,
+        stats,
+    );
     for (shot, sample) in shots.iter().zip(work.samples.iter().flatten()) {
         let (_, _, colour, cost) = &mut sums[shot.owner];
         *colour += sample.colour;

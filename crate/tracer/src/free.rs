@@ -1,4 +1,4 @@
-//! First hits of rays that run in any directions, as secondary ones do: those that run together are
+//! First hits of rays that run in any direction, as secondary ones do: those that run together are
 //! followed as a packet.
 use crate::beam::Beam;
 use crate::beams::Beams;
@@ -19,7 +19,7 @@ pub(crate) struct FreeRay {
 }
 
 impl World {
-    /// Returns what each of some rays meets first.
+    /// Returns the point that each of some rays meets first.
     pub fn meet_free(
         &self,
         rays: &[FreeRay],
@@ -66,8 +66,8 @@ impl World {
 
     /// Replaces what the rays of some lanes meet by points on convolution surfaces that are nearer.
     fn meet_soft_free(&self, alive: u32, seen: &mut Seen, work: &mut Workspace) {
-        let live = |lane: &usize| alive >> lane & 1 != 0;
-        let rays: Vec<Ray> = (0..PACKET).filter(live).map(|i| seen.rays[i]).collect();
+        let lanes = (0..PACKET).filter(|lane| alive >> lane & 1 != 0);
+        let rays: Vec<Ray> = lanes.clone().map(|i| seen.rays[i]).collect();
         let beam = match rays[..] {
             [ray] => Beam::of_ray(ray),
             _ => match Beam::around(&rays) {
@@ -76,26 +76,29 @@ impl World {
             },
         };
         let limits = seen.limits();
-        let furthest = (0..PACKET).filter(live).map(|i| limits[i]);
-        let furthest = furthest.fold(0.0, f64::max);
+        let furthest = lanes.map(|i| limits[i]).fold(0.0, f64::max);
         let mut near = core::mem::take(&mut work.around);
         let mut general = core::mem::take(&mut work.general);
-        let lumps = self.general_from_a_patch(&beam, furthest, &mut near, &mut general);
+        let near_blobs = self.general_from_a_patch(&beam, furthest, &mut near, &mut general);
         let mut bodies: Vec<u32> = general.iter().map(|&(_, body)| body).collect();
-        if lumps {
+        if near_blobs {
             let lanes = Rays::new(&seen.rays, &near);
             let wide = seen.rays;
-            bodies.extend(self.meet_lumps_by(&near, &general, &lanes, &|| wide, alive, seen, work));
+            bodies.extend(self.meet_blobs_by(&near, &general, &lanes, &|| wide, alive, seen, work));
         }
         let scratch = &mut work.scratch;
         for body in bodies {
             if self.meet_far(body, alive, seen, scratch) {
                 continue;
             }
-            let whole = |base: f64| Beams::one(beam.from(base));
-            let spaces = &mut scratch.spaces;
-            let made = self.soft.slabs(body, beam, whole, furthest, spaces);
-            if let Some((mut slabs, base)) = made {
+            let slabs = self.soft.slabs(
+                body,
+                beam,
+                |base| Beams::one(beam.from(base)),
+                furthest,
+                &mut scratch.spaces,
+            );
+            if let Some((mut slabs, base)) = slabs {
                 self.meet_slabs(body, &mut slabs, base, (0, alive), seen, scratch);
                 scratch.evaluations += slabs.evaluations();
                 scratch.spaces.push(slabs.into_space());

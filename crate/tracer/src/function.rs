@@ -9,7 +9,7 @@
 //! halved, down to a resolution.
 use crate::body::Body;
 use crate::ray::Ray;
-use crate::roots::bracketed;
+use crate::roots::refine_root;
 use crate::unit::Unit;
 use crate::walk::Quest;
 use field::{Ball, Implicit, THRESHOLD};
@@ -19,9 +19,9 @@ use std::sync::Arc;
 
 /// Length below which pieces of rays are not halved, in units of the scene's size.
 const RESOLUTION: f64 = 5e-7;
-/// Surfaces without a support are followed this far, in units of the scene's size.
+/// Distance up to which surfaces without a support are followed, in units of the scene's size.
 const FURTHEST: f64 = 1e4;
-/// Offset of rays to the lights above a hit, for each unit of distance more than 0.
+/// Offset of rays to the lights above a hit at t, over 1 + t.
 const LIFT: f64 = 1e-6;
 /// Most halvings of pieces of one ray; on the rest the signs at the ends decide.
 const MOST_HALVED: u32 = 1 << 16;
@@ -45,7 +45,7 @@ pub(crate) struct FunctionBody {
     pub element: Vec<u32>,
     /// Ball outside which there is no surface, in the function's coordinates.
     pub support: Option<Ball>,
-    /// From the function's coordinates to those of the unit scene.
+    /// The map from the function's coordinates to those of the unit scene.
     pub unit: Unit,
 }
 
@@ -62,19 +62,21 @@ pub(crate) struct RayQuery {
 impl FunctionBody {
     /// Returns the function of a body of the unit scene.
     pub fn of(surface: ComposedSurface, scene: &Scene) -> Self {
-        let finish = |&e: &u32| scene.elements[e as usize].finish;
+        let elements = surface.element.iter();
         Self {
             number: surface.body,
             support: surface.function.support(),
-            finish: surface.element.iter().map(finish).collect(),
+            finish: elements
+                .map(|&e| scene.elements[e as usize].finish)
+                .collect(),
             function: surface.function,
             element: surface.element,
             unit: Unit::IDENTITY,
         }
     }
 
-    /// Calls `tell` with each crossing of a ray of the unit scene, and whether it enters, until it
-    /// says `false`; gives the number of evaluations.
+    /// Calls `tell` with each crossing of a ray of the unit scene, and whether the ray enters
+    /// there, until `tell` returns false. Returns the number of evaluations.
     fn crossings(&self, ray: &Ray, limit: f64, mut tell: impl FnMut(f64, bool) -> bool) -> u64 {
         let scale = self.unit.length(1.0);
         let ray = Ray {
@@ -165,8 +167,8 @@ pub(crate) fn range(
     (near < far).then_some([near, far])
 }
 
-/// The next piece of a ray, up to `end`, in which there may be crossings, and the number of
-/// evaluations that finding it took. Where the function knows balls without crossings the ray goes
+/// Returns the next piece of a ray, up to `end`, in which there may be crossings, and the number of
+/// evaluations that finding it took. If the function knows balls without crossings the ray goes
 /// from one to the next; the piece after them is as long as the function's scale. `None` if there
 /// is no crossing up to the end.
 fn next_piece(function: &dyn Implicit, ray: &Ray, from: f64, end: f64) -> (Option<[f64; 2]>, u64) {
@@ -262,13 +264,17 @@ fn isolate(
         if inside[0] == inside[1] {
             continue;
         }
-        let excess = |t: f64| {
-            *evaluations += 1;
-            let jet = function.jet(ray.at(t));
-            let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
-            (jet.value - THRESHOLD, slope)
-        };
-        let t = bracketed(excess, a, b, 1e-14 * (1.0 + b));
+        let t = refine_root(
+            |t| {
+                *evaluations += 1;
+                let jet = function.jet(ray.at(t));
+                let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
+                (jet.value - THRESHOLD, slope)
+            },
+            a,
+            b,
+            1e-14 * (1.0 + b),
+        );
         if !tell(t, inside[1]) {
             return false;
         }

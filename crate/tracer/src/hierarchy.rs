@@ -35,7 +35,7 @@ impl Hierarchy {
         Self::with_leaves(items, LEAF)
     }
 
-    /// The same with up to `leaf` items in a leaf.
+    /// Builds the tree with up to `leaf` items in a leaf.
     #[must_use]
     pub fn with_leaves(mut items: Vec<(u32, DVec3, f64)>, leaf: usize) -> Self {
         let mut nodes = Vec::new();
@@ -49,11 +49,11 @@ impl Hierarchy {
         }
     }
 
-    /// Returns the same tree with enlarged balls. The function returns the new radius of an item,
-    /// at least the old one, from its number, centre and radius. A node's ball grows as much as the
-    /// one below it that grows most.
+    /// Returns the tree with larger balls. `radius` returns the new radius of an item, at least the
+    /// old one, from its number, centre and radius. A node's ball grows as much as the one below it
+    /// that grows most.
     #[must_use]
-    pub fn enlarged(&self, radius: impl Fn(u32, DVec3, f64) -> f64) -> Self {
+    pub fn enlarge(&self, radius: impl Fn(u32, DVec3, f64) -> f64) -> Self {
         let mut tree = self.clone();
         let mut growth = vec![0.0f64; tree.nodes.len()];
         // Children come after their parents.
@@ -62,13 +62,13 @@ impl Hierarchy {
             growth[index] = if node.right == 0 {
                 let below = node.first as usize..(node.first + node.count) as usize;
                 let items = tree.items[below.clone()].iter();
-                items
-                    .zip(&mut tree.balls[below])
-                    .fold(0.0, |most: f64, (&i, (center, r))| {
-                        let before = *r;
-                        *r = radius(i, *center, before);
-                        most.at_least(*r - before)
-                    })
+                let mut most: f64 = 0.0;
+                for (&i, (center, r)) in items.zip(&mut tree.balls[below]) {
+                    let before = *r;
+                    *r = radius(i, *center, before);
+                    most = most.at_least(*r - before);
+                }
+                most
             } else {
                 growth[index + 1].at_least(growth[node.right as usize])
             };
@@ -77,13 +77,13 @@ impl Hierarchy {
         tree
     }
 
-    /// Number of nodes; 0 is the root.
+    /// Returns the number of nodes; node 0 is the root.
     #[must_use]
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Ball of a node.
+    /// Returns the ball of a node.
     #[inline]
     #[must_use]
     pub fn ball(&self, node: usize) -> (DVec3, f64) {
@@ -91,14 +91,14 @@ impl Hierarchy {
         (node.center, node.radius)
     }
 
-    /// Numbers of the items below a node.
+    /// Returns the numbers of the items below a node.
     #[must_use]
     pub fn items(&self, node: usize) -> &[u32] {
         let node = &self.nodes[node];
         &self.items[node.first as usize..(node.first + node.count) as usize]
     }
 
-    /// Children of a node; `None` for a leaf.
+    /// Returns the children of a node; `None` for a leaf.
     #[must_use]
     pub fn children(&self, node: usize) -> Option<[usize; 2]> {
         let right = self.nodes[node].right;
@@ -112,13 +112,17 @@ impl Hierarchy {
 
     /// Calls `found` with the number and ball of each item whose ball meets a ball.
     pub fn around(&self, middle: DVec3, reach: f64, found: impl FnMut(u32, DVec3, f64)) {
-        let meets = |center: DVec3, radius: f64| {
-            let both = radius + reach;
-            center.distance_squared(middle) <= both * both * (1.0 + 1e-9)
-        };
-        self.select(meets, found);
+        self.select(
+            |center, radius| {
+                let both = radius + reach;
+                center.distance_squared(middle) <= both * both * (1.0 + 1e-9)
+            },
+            found,
+        );
     }
 
+    /// Calls `found` with the number and ball of each item for whose ball, and those of the nodes
+    /// above it, `meets` is true.
     fn select(&self, meets: impl Fn(DVec3, f64) -> bool, mut found: impl FnMut(u32, DVec3, f64)) {
         // The tree halves its items at each level, so 32 levels hold 2³² of them.
         let mut stack = [0u32; 64];
@@ -181,6 +185,8 @@ fn around(items: &[(u32, DVec3, f64)]) -> (DVec3, f64, DVec3) {
     (center, radius, vector(middles[1] - middles[0]))
 }
 
+/// Appends the nodes of a tree over items, of which the first has the number `first` in the whole
+/// tree, and puts the items in the tree's order.
 fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut Vec<Node>) {
     let (center, radius, extent) = around(items);
     let index = nodes.len();
@@ -261,31 +267,38 @@ mod tests {
     #[test]
     fn balls_of_nodes_hold_all_below_also_with_other_radii() {
         let mut numbers = Random::new(5);
-        let mut ball = |i| (i, numbers.vector(1.0), 0.1 * numbers.unit());
-        let items: Vec<_> = (0..300).map(&mut ball).collect();
-        let larger = |i: u32, r: f64| r * f64::from(1 + i % 5);
+        let items: Vec<_> = (0..300)
+            .map(|i| (i, numbers.vector(1.0), 0.1 * numbers.unit()))
+            .collect();
+        let mut larger = items.clone();
+        for (i, _, radius) in &mut larger {
+            *radius *= f64::from(1 + *i % 5);
+        }
         let tree = Hierarchy::new(items.clone());
-        let other = tree.enlarged(|i, center, radius| {
-            assert_eq!((center, radius), (items[i as usize].1, items[i as usize].2));
-            larger(i, radius)
+        let other = tree.enlarge(|i, center, radius| {
+            assert_eq!((i, center, radius), items[i as usize]);
+            larger[i as usize].2
         });
-        // How much larger than they need be the nodes' balls are.
-        let whole = |tree: &Hierarchy, radius: &dyn Fn(u32) -> f64| {
-            let mut loosest = 0.0f64;
-            for node in 0..tree.len() {
-                let (center, around) = tree.ball(node);
-                let below = tree.items(node).iter();
-                let most = below.map(|&i| items[i as usize].1.distance(center) + radius(i));
-                let most = most.fold(0.0, f64::max);
-                assert!(most < around + 1e-12, "{node}: {around} {most}");
-                loosest = loosest.max(around - most);
-            }
-            loosest
-        };
-        assert!(whole(&tree, &|i| items[i as usize].2) < 1e-12);
-        let loosest = whole(&other, &|i| larger(i, items[i as usize].2));
+        // How much larger than it need be the loosest ball of a node is.
+        let [loosest, loosest_of_larger] =
+            [(&tree, &items), (&other, &larger)].map(|(tree, items)| {
+                let mut loosest = 0.0f64;
+                for node in 0..tree.len() {
+                    let (center, around) = tree.ball(node);
+                    let below = tree.items(node).iter().map(|&i| items[i as usize]);
+                    let most = below.map(|(_, place, radius)| place.distance(center) + radius);
+                    let most = most.fold(0.0, f64::max);
+                    assert!(most < around + 1e-12, "{node}: {around} {most}");
+                    loosest = loosest.max(around - most);
+                }
+                loosest
+            });
+        assert!(loosest < 1e-12);
         // The largest is 5 times its ball.
-        assert!((1e-3..0.4).contains(&loosest), "{loosest}");
+        assert!(
+            (1e-3..0.4).contains(&loosest_of_larger),
+            "{loosest_of_larger}"
+        );
         assert_eq!(tree.items(0), other.items(0));
     }
 
@@ -308,9 +321,8 @@ mod tests {
                 found.push(i);
             });
             found.sort_unstable();
-            let meets = |i: &&(u32, DVec3, f64)| i.1.distance(middle) <= i.2 + reach;
-            let scanned: Vec<u32> = items.iter().filter(meets).map(|i| i.0).collect();
-            assert_eq!(found, scanned);
+            let scanned = items.iter().filter(|i| i.1.distance(middle) <= i.2 + reach);
+            assert!(scanned.map(|i| i.0).eq(found.iter().copied()), "{found:?}");
             all += found.len();
         }
         assert!(all > trials::count(500), "{all}");

@@ -15,17 +15,17 @@ pub struct InnerBall {
     radius: f64,
 }
 
-/// How far above T the field is there, relative to T, for rounding.
+/// Least excess of the field over T in the ball, relative to T, for rounding.
 const MARGIN: f64 = 1e-6;
 /// Halvings of the step that finds the radius.
 const STEPS: u32 = 24;
-/// Largest radius.
+/// Radius from which the search doubles it no more.
 const LARGEST: f64 = 1e12;
 
 impl InnerBall {
-    /// The ball around a body's skeletons, enlarged, given the bounds of its terms and a ball that
-    /// holds their skeletons. `None` if the field is not known to be above T even there, or if some
-    /// term carves: near its pole nothing is inside.
+    /// Finds the largest ball around the middle of a ball that holds a body's skeletons, given the
+    /// bounds of its terms. `None` if the field is not known to be above T even in the given ball,
+    /// or if some term carves: near its pole nothing is inside.
     #[must_use]
     pub fn new(bounds: &[Bound], (center, skeletons): (DVec3, f64)) -> Option<Self> {
         let is_inside = |radius: f64| {
@@ -53,7 +53,7 @@ impl InnerBall {
     /// Returns a parameter up to which all rays of a beam are in the ball; 0 if not all start
     /// there.
     #[must_use]
-    pub fn left_at(&self, beam: &Beam) -> f64 {
+    pub fn exit(&self, beam: &Beam) -> f64 {
         let away = beam.axis.origin - self.center;
         let along = away.dot(beam.axis.direction);
         let end = |radius: f64| {
@@ -79,9 +79,10 @@ mod tests {
     use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton};
     use trials::{Random, count};
 
-    /// Points and segments in a cube, of which some carve.
+    /// Returns points and segments in a cube, of which some carve if `carving` is negative.
     fn body(kernel: Kernel, carving: f64, numbers: &mut Random) -> Vec<Primitive> {
-        let primitive = |i: u32| {
+        let mut primitives = Vec::new();
+        for i in 0..300_u32 {
             let base = numbers.vector(1.0);
             let skeleton = if i.is_multiple_of(3) {
                 let apex = base + numbers.vector(0.2);
@@ -98,9 +99,9 @@ mod tests {
                 influence: 1e-3,
                 taper: None,
             };
-            Primitive::new(skeleton, &shaping, None).expect("flesh")
-        };
-        (0..300).map(primitive).collect()
+            primitives.push(Primitive::new(skeleton, &shaping, None).expect("flesh"));
+        }
+        primitives
     }
 
     /// The field is above T everywhere in the ball, whose radius is near that of the surface.
@@ -127,7 +128,7 @@ mod tests {
         }
     }
 
-    /// All rays of a beam are in the ball until the beam leaves it, which is not much later.
+    /// A beam's rays are all in the ball until the beam leaves it, which is not much later.
     #[test]
     fn a_beam_is_in_the_ball_until_it_leaves_it() {
         let mut numbers = Random::new(8);
@@ -146,7 +147,7 @@ mod tests {
                 })
                 .collect();
             let beam = Beam::around(&rays).expect("a beam");
-            let t = ball.left_at(&beam);
+            let t = ball.exit(&beam);
             if t == 0.0 {
                 outside += 1;
                 continue;

@@ -15,14 +15,15 @@ impl Kinks {
         if primitives.len() > MOST_PRIMITIVES {
             return Self::default();
         }
-        let own = |(i, p): (u32, &'a Primitive)| {
-            p.profile.as_ref()?;
-            Some((i, field::kinks::of(p)))
-        };
-        Self(primitives.filter_map(own).collect())
+        Self(
+            primitives
+                .filter(|(_, p)| p.profile.is_some())
+                .map(|(i, p)| (i, field::kinks::of(p)))
+                .collect(),
+        )
     }
 
-    /// Kinks of a primitive.
+    /// Returns the kinks of a primitive.
     #[must_use]
     pub fn of(&self, primitive: u32) -> &[Kink] {
         let own = self.0.binary_search_by_key(&primitive, |own| own.0);

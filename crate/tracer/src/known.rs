@@ -1,6 +1,6 @@
 //! First samples in a form that workers exchange, so that none is traced twice.
 //!
-//! Which pixels get more rays depends on the samples around them: the smooth pass of a tile needs
+//! Whether a pixel gets more rays depends on the samples around it: the smooth pass of a tile needs
 //! those at its neighbours' edges, and all of its own if another worker traced it before. Samples
 //! are the same wherever they are traced.
 use crate::Tile;
@@ -30,16 +30,16 @@ impl Known {
         let rows = || (area.top..area.bottom).map(|y| samples.part(y, area.left..area.right));
         let first = samples.get(area.left, area.top);
         let bytes = if rows().flatten().all(|sample| sample == first) {
-            written(first).to_vec()
+            encode(first).to_vec()
         } else {
             let mut bytes = Vec::with_capacity(BYTES * tile.width as usize * tile.height as usize);
-            rows().for_each(|row| bytes.extend(row.iter().flat_map(written)));
+            rows().for_each(|row| bytes.extend(row.iter().flat_map(encode)));
             bytes
         };
         Self { tile, bytes }
     }
 
-    /// The rectangle of pixels.
+    /// Returns the rectangle of pixels.
     #[must_use]
     pub fn tile(&self) -> Tile {
         self.tile
@@ -85,7 +85,7 @@ impl Known {
         small && inside && !area.is_empty() && self.is_whole()
     }
 
-    /// Whether there are one sample or as many as pixels.
+    /// Whether there is one sample, or one for each pixel.
     fn is_whole(&self) -> bool {
         let pixels = u64::from(self.tile.width) * u64::from(self.tile.height);
         let (one, all) = (BYTES as u64, pixels.checked_mul(BYTES as u64));
@@ -99,7 +99,7 @@ impl Known {
         }
         let area = Area::from(self.tile);
         let (read, _) = self.bytes.as_chunks::<BYTES>();
-        let mut read = read.iter().map(sample).cycle();
+        let mut read = read.iter().map(decode).cycle();
         let mut samples = Samples::new(area);
         for y in area.top..area.bottom {
             let row = samples.part_mut(y, area.left..area.right);
@@ -111,14 +111,16 @@ impl Known {
     }
 }
 
-fn written(sample: &Sample) -> [u8; BYTES] {
+/// Encodes a sample as colour, key, depth and cost, little-endian.
+fn encode(sample: &Sample) -> [u8; BYTES] {
     let Vec3 { x, y, z } = sample.colour;
     let [x, y, z, depth, cost] = [x, y, z, sample.depth, sample.cost].map(f32::to_le_bytes);
     let words = [x, y, z, sample.key.to_le_bytes(), depth, cost];
     core::array::from_fn(|i| words[i / 4][i % 4])
 }
 
-fn sample(bytes: &[u8; BYTES]) -> Sample {
+/// Decodes a sample.
+fn decode(bytes: &[u8; BYTES]) -> Sample {
     let (words, _) = bytes.as_chunks::<4>();
     let number = |i: usize| f32::from_le_bytes(words[i]);
     Sample {

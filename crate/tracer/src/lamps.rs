@@ -11,10 +11,10 @@ use scene::{Light, LightKind, Sky};
 use texture::disc;
 use texture::sequence::{Purpose, sample};
 
-/// Directions of the sky for samples that all have the same ones.
+/// Fewest directions of the sky for samples that all have the same ones.
 const FEWEST_DIRECTIONS: u32 = 4;
 
-/// Which of a pixel's samples a path belongs to: where on lights its rays end depends on it.
+/// The sample of a pixel that a path belongs to, on which it depends where on lights its rays end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Draw {
     /// The middles of all lights, and the same directions of the sky for all pixels.
@@ -26,9 +26,11 @@ pub(crate) enum Draw {
 /// A point from where rays to the lights start.
 pub(crate) struct Receiver {
     pub position: DVec3,
-    /// Unit normals on the side that is seen: the surface's own, and with bumps.
+    /// The surface's own unit normal on the side that is seen.
     pub flat: DVec3,
+    /// The unit normal with bumps, on that side.
     pub normal: DVec3,
+    /// Distance along `flat` at which the rays start.
     pub lift: f64,
     /// Direction of the ray that sees it.
     pub view: DVec3,
@@ -36,24 +38,24 @@ pub(crate) struct Receiver {
     pub branch: u32,
     /// Whether it is seen from inside a body.
     pub inside: bool,
-    /// Colours of a surface; of the ground white.
+    /// Colours of the surface; white for the ground.
     pub finish: Finish,
 }
 
-/// What becomes of a receiver's light.
+/// The light of a receiver.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Received {
     /// Light that it sends to the eye.
     pub light: Vec3,
-    /// The same if nothing were in the way.
+    /// Light that it would send to the eye if nothing were in the way of the lights.
     pub free: Vec3,
     /// Lights that reach it, a bit each.
     pub lit: u32,
 }
 
 impl Received {
-    /// The share of its light that the ground shows: that which nothing shadows, all where no light
-    /// reaches at all.
+    /// Returns the share of its colour that the ground shows: the part of its light that nothing
+    /// shadows; 1 where no light shines on it at all.
     pub fn of_ground(&self) -> Vec3 {
         let share = self.light / self.free.max(Vec3::splat(1e-6));
         Vec3::select(self.free.cmpgt(Vec3::ZERO), share, Vec3::ONE)
@@ -61,7 +63,7 @@ impl Received {
 }
 
 impl Draw {
-    /// Two numbers in [0, 1) for a purpose; `None` for the middle.
+    /// Returns two numbers in [0, 1) for a purpose; `None` for the middle.
     fn numbers(self, branch: u32, purpose: Purpose) -> Option<[f64; 2]> {
         match self {
             Self::Middle => None,
@@ -78,7 +80,7 @@ impl Draw {
 }
 
 impl World {
-    /// The light that each of some points gets and sends on to the eye.
+    /// Returns the light that each of some points gets and sends on to the eye.
     pub fn receive(
         &self,
         rich: &Rich,
@@ -118,9 +120,8 @@ impl World {
                 None
             };
             let (direction, limit) = lamp(light, receiver.position, spread);
-            let faces = |normal: DVec3| normal.dot(direction) > 0.0;
-            if faces(receiver.normal)
-                && faces(receiver.flat)
+            let mut normals = [receiver.normal, receiver.flat].into_iter();
+            if normals.all(|normal| normal.dot(direction) > 0.0)
                 && light.share(receiver.position) > 0.0
             {
                 rays.push(receiver.ray(number, direction, limit));
@@ -135,7 +136,7 @@ impl World {
             let number = ray.hit.0;
             let receiver = &receivers[number];
             let colour = Vec3::from(light.colour) * light.share(receiver.position) as f32;
-            let free = receiver.finish.lit(
+            let free = receiver.finish.shade(
                 colour,
                 receiver.normal.as_vec3(),
                 ray.ray.direction.as_vec3(),
@@ -193,7 +194,7 @@ impl World {
         work.shadows = rays;
     }
 
-    /// The share of light that passes along rays to lights.
+    /// Returns the share of light that passes along each of some rays to lights.
     fn passing(
         &self,
         rich: &Rich,
@@ -213,14 +214,14 @@ impl World {
             .collect();
         if rich.see_through {
             // Rays from inside a body leave it: that is not looked for.
-            let doubtful =
-                |&i: &usize| rays[i].state == State::Dark || receivers[rays[i].hit.0].inside;
-            let doubtful: Vec<usize> = (0..rays.len()).filter(doubtful).collect();
+            let doubtful: Vec<usize> = (0..rays.len())
+                .filter(|&i| rays[i].state == State::Dark || receivers[rays[i].hit.0].inside)
+                .collect();
             for some in doubtful.chunks(PACKET * PACKET) {
                 let ends: Vec<(Ray, f64)> =
                     some.iter().map(|&i| (rays[i].ray, rays[i].limit)).collect();
-                let coloured = self.coloured(rich, &ends, work, stats);
-                for (&i, light) in some.iter().zip(coloured) {
+                let light = self.transmission(rich, &ends, work, stats);
+                for (&i, light) in some.iter().zip(light) {
                     passing[i] = light;
                 }
             }
@@ -230,6 +231,7 @@ impl World {
 }
 
 impl Receiver {
+    /// Returns the ray from the receiver of a number in a direction, up to a limit.
     fn ray(&self, number: usize, direction: DVec3, limit: f64) -> Shadow {
         Shadow {
             hit: (number, 0),
@@ -245,7 +247,7 @@ impl Receiver {
     }
 }
 
-/// How many directions of the sky the points get light from.
+/// Returns the number of directions of the sky from which points get light.
 fn directions(sky: &Sky, receivers: &[Receiver]) -> u32 {
     let count = sky.samples.clamp(1, Sky::MAX_SAMPLES);
     match receivers.first() {
@@ -256,7 +258,8 @@ fn directions(sky: &Sky, receivers: &[Receiver]) -> u32 {
     }
 }
 
-/// The direction and distance from a point to a light, or to the place on it that two numbers say.
+/// Returns the direction and distance from a point to a light, or to the place on it that is given
+/// by two numbers in [0, 1).
 fn lamp(light: &Light, point: DVec3, numbers: Option<[f64; 2]>) -> (DVec3, f64) {
     let Some(numbers) = numbers else {
         return towards(light, point);

@@ -8,9 +8,9 @@ use wide::{f32x4, f32x8};
 
 /// Numbers of several rays, side by side, with comparisons as bit masks.
 pub trait Lanes: Evaluate {
-    /// One bit a lane: whether the number is less than the other. Never set for NaN.
+    /// Returns one bit for each lane: whether the number is less than the other. NaN never is.
     fn less(self, other: Self) -> u32;
-    /// A number of single precision, in all lanes.
+    /// Returns a number of single precision, in all lanes.
     fn single(value: f32) -> Self;
 }
 

@@ -3,7 +3,7 @@
 //! Squares and packets are laid out from the picture's corner, whatever the tiles, and a packet is
 //! always traced whole: so a pixel's value does not depend on how the picture is cut into tiles.
 
-/// Rays of one packet.
+/// Number of rays in a packet.
 pub const PACKET: usize = 8;
 /// Pixels of a packet, across and down.
 pub(crate) const PACKET_SIZE: [u32; 2] = [4, 2];
@@ -17,8 +17,8 @@ pub(crate) fn halves_across([columns, rows]: [u32; 2]) -> bool {
     columns * PACKET_SIZE[0] >= rows * PACKET_SIZE[1] && columns > 1
 }
 
-/// The number of a packet, given its column and row in a rectangle of packets, in the last level of
-/// the binary tree of the rectangle's halves.
+/// Returns the number of a packet, given its column and row in a rectangle of packets, in the last
+/// level of the binary tree of the rectangle's halves.
 pub(crate) fn packet_number([mut column, mut row]: [u32; 2], mut packets: [u32; 2]) -> usize {
     let mut number = 0;
     while packets != [1, 1] {

@@ -1,10 +1,10 @@
 //! The rays of a square's pixels in single precision, eight at a time.
 //!
-//! The direction through a pixel is that through the square's middle and a small deviation from it.
-//! Of a view `w = w₀ + δ`, where δ is across the view's plane, `w/|w| − w₀/|w₀| = a·g + ε(1+g)`
-//! with the axis a = w₀/|w₀|, ε = δ/|w₀|, e = |w|²/|w₀|² − 1 = 2a·ε + ε·ε and
-//! `g = 1/√(1+e) − 1 = −e/(√(1+e)·(1 + √(1+e)))`: nothing cancels, so single precision gives the
-//! deviation to its own last digits, wherever the eye is.
+//! The direction through a pixel is that through the square's middle plus a small deviation. For a
+//! view `w = w₀ + δ`, where δ lies in the plane of the picture, the deviation is
+//! `w/|w| − w₀/|w₀| = a·g + ε(1+g)` with the axis a = w₀/|w₀|, ε = δ/|w₀|,
+//! e = |w|²/|w₀|² − 1 = 2a·ε + ε·ε and `g = 1/√(1+e) − 1 = −e/(√(1+e)·(1 + √(1+e)))`: nothing
+//! cancels, so single precision gives the deviation to its own last digits, wherever the eye is.
 use crate::area::Area;
 use crate::beam::Beam;
 use crate::lanes::least;
@@ -20,7 +20,7 @@ use wide::f32x8;
 /// Largest spread of a square's beam for which there is a lens.
 const WIDEST_LENS: f64 = 0.25;
 
-/// Maps positions in a square to rays.
+/// A map from positions in a square to rays.
 pub(crate) struct Lens {
     axis: Ray,
     /// Change of ε from a pixel to the next one, to the right and down.
@@ -55,7 +55,8 @@ impl Lens {
         })
     }
 
-    /// The rays through places given in pixels from the square's middle, and through one amid them.
+    /// Returns the rays through places given in pixels from the square's middle, around the ray
+    /// through one in their midst.
     pub fn fan(&self, places: [f32x8; 2], middle: [f64; 2]) -> Fan {
         let deviation = self.deviation(places);
         let middle = self.deviation(middle);
@@ -70,6 +71,8 @@ impl Lens {
         }
     }
 
+    /// Returns the deviation of a ray's direction from the axis', given its place in pixels from
+    /// the square's middle.
     #[inline(always)]
     fn deviation<R: Real>(&self, [x, y]: [R; 2]) -> [R; 3] {
         let one = R::splat(1.0);
@@ -89,7 +92,8 @@ impl Lens {
         })
     }
 
-    /// A fan's rays, counted from the base of a list of the blobs near the square.
+    /// Returns a fan's rays, with parameters counted from the base of a list of the blobs near the
+    /// square.
     pub fn rays(&self, fan: &Fan, near: &Nearby) -> Rays {
         let base = f32x8::splat(near.base as f32);
         let axis = self.axis.direction;
@@ -110,7 +114,7 @@ impl Lens {
         }
     }
 
-    /// The rays in double precision.
+    /// Returns a fan's rays in double precision.
     pub fn wide(&self, fan: &Fan) -> [Ray; PACKET] {
         let [x, y, z] = fan.deviation.map(f32x8::to_array);
         core::array::from_fn(|i| Ray {

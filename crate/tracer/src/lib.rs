@@ -14,10 +14,12 @@
 //! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
 //! for x in [-0.6, 0.6] {
 //!     let center = DVec3::X * x;
-//!     scene.elements.push(Element { flesh: Some(0), ..Element::new(Shape::Sphere { center, radius: 0.5 }) });
+//!     let shape = Shape::Sphere { center, radius: 0.5 };
+//!     scene.elements.push(Element { flesh: Some(0), ..Element::new(shape) });
 //! }
 //! let picture = Picture::new(&scene, [64, 64]);
-//! // A ray towards the first ball: the hit is nearer than the ball's own surface, which the other one inflates.
+//! // A ray towards the first ball: the hit is nearer than the ball's own surface, which the other
+//! // one inflates.
 //! let ray = (DVec3::new(-0.6, 0.0, 4.0), DVec3::NEG_Z);
 //! let hit = picture.cast(&[ray])[0].expect("a hit");
 //! assert!(hit.t < 3.5 && hit.enters(ray.1));
@@ -35,8 +37,8 @@
 //!
 //! Scenes that have more than Phong's model on one background colour
 //! (`rich`) are shaded in waves of rays instead (`paths`): each surface point adds its own light
-//! (`lamps`, `coloured`), with the material of its elements and their textures (`material`), and
-//! asks for reflected and refracted rays, which `free` follows; `air` is what they pass and see
+//! (`lamps`, `transmission`), with the material of its elements and their textures (`material`),
+//! and asks for reflected and refracted rays, which `free` follows; `air` is what they pass and see
 //! beside surfaces.
 //!
 //! Crossings with the soft surface are found in one of three certified ways.
@@ -56,9 +58,9 @@
 //!   is cut off: primitives so far away that they are smooth across the beam are interpolated once
 //!   for all its rays (`shared`), and distant primitives are bounded in groups (`clusters`); rays
 //!   that start deep inside of many poles are followed from where they leave a ball that is wholly
-//!   inside (`inner_ball`). `flesh` samples the surface at the hits. This way takes packets near
-//!   anything but blobs, or with a ray that starts inside, and all packets of a square whose beam
-//!   meets more than 16 other primitives.
+//!   inside (`inner_ball`). `refine_hits` samples the surface at the hits. This way takes packets
+//!   near anything but blobs, or with a ray that starts inside, and all packets of a square whose
+//!   beam meets more than 16 other primitives.
 //!
 //! Bodies that are met ray by ray ([`body`]) are those of other functions ([`function`]), and all
 //! if a picture is to be drawn by another root finder ([`root_finder`]); those of the literature
@@ -114,10 +116,8 @@ mod blob_set;
 mod body;
 mod cast;
 mod clusters;
-mod coloured;
 mod exposure;
 mod far_march;
-mod flesh;
 mod free;
 mod function;
 pub mod hard;
@@ -142,6 +142,7 @@ mod plain;
 mod quick;
 mod ray;
 mod refine;
+mod refine_hits;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod render;
 mod rich;
@@ -165,6 +166,7 @@ mod surface_samples;
 #[cfg(test)]
 mod tests;
 pub mod tile;
+mod transmission;
 mod unit;
 mod view;
 mod walk;

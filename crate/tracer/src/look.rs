@@ -1,4 +1,4 @@
-//! The material of surface points: of which elements it is mixed, and which medium is behind.
+//! The materials of surface points, mixed from those of elements, and the media behind them.
 use crate::material::Look;
 use crate::material::join_pieces;
 use crate::media::Way;
@@ -8,7 +8,7 @@ use crate::world::{Owner, SurfacePoint, World};
 use glam::DVec3;
 
 impl World {
-    /// The material of a surface point.
+    /// Returns the material of a surface point.
     pub fn look(&self, rich: &Rich, hit: &SurfacePoint) -> Look {
         let materials = &rich.materials;
         let mut shares = Vec::new();
@@ -43,11 +43,12 @@ impl World {
                 first
             }
         };
-        let mixed = materials.mixed(&shares, hit.position, hit.normal);
+        let mixed = materials.mix(&shares, hit.position, hit.normal);
         mixed.unwrap_or_else(|| materials.plain(first, hit.normal))
     }
 
-    /// The key of the medium behind or before a surface point, and how a ray crosses there.
+    /// Returns the key of the medium behind or before a surface point, and the way a ray crosses
+    /// there.
     pub fn medium(&self, rich: &Rich, hit: &SurfacePoint, direction: DVec3) -> (u32, Way) {
         if let Owner::Solid(number) = self.owner_of(hit.surface)
             && let Some(key) = rich.sheets[number as usize]

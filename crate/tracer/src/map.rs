@@ -31,7 +31,7 @@ pub(crate) struct Map {
 }
 
 impl Map {
-    /// Costs as shares of the largest, raised to 1/gamma.
+    /// Returns the conversion that raises costs, as shares of the largest, to 1/gamma.
     pub fn new(gamma: f32) -> Self {
         Self {
             power: if gamma > 0.0 { 1.0 / gamma } else { 1.0 },

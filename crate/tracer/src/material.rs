@@ -33,15 +33,15 @@ struct Material {
 
 /// Coordinates of an object.
 struct Object {
-    /// From the unit scene.
+    /// Maps points of the unit scene to the object.
     to_object: DAffine3,
-    /// Brings normals of the object to the unit scene: the transpose of `to_object`'s linear part.
+    /// Maps normals of the object to the unit scene: the transpose of `to_object`'s linear part.
     normals: DMat3,
-    /// Brings normals of the unit scene to the object.
+    /// Maps normals of the unit scene to the object.
     from_world: DMat3,
 }
 
-/// Where a textured or painted element is.
+/// The place of a textured or painted element.
 struct Charted {
     object: u32,
     chart: Chart,
@@ -56,8 +56,8 @@ struct Painted {
 }
 
 impl Painted {
-    /// The colour at a point of the triangle: the corners' mixed by barycentric shares, which are
-    /// cut to the triangle.
+    /// Returns the colour at a point of the triangle: the corners' mixed by barycentric shares,
+    /// which are cut to the triangle.
     fn color(&self, uv: &Uv) -> Vec3 {
         let [second, third] = uv.at.as_vec2().to_array();
         let shares = [(1.0 - second - third).max(0.0), second, third];
@@ -97,35 +97,32 @@ impl Materials {
                 finish.is_painted = true;
             }
         }
-        let mut places = Vec::new();
-        let textured = |element: &Element| {
+        let frames: Vec<Object> = scene.frames.iter().map(|f| object(f.to_world)).collect();
+        let (mut place_of, mut places) = (Vec::new(), Vec::new());
+        let is_charted = |element: &Element| {
             let finish = finishes.get(element.finish as usize);
             element.paint.is_some() || finish.is_some_and(|finish| !finish.layers.is_empty())
         };
-        let painted = |element: &Element| {
-            let paint = element.paint.as_ref();
-            let paint = paint.filter(|paint| (paint.finish as usize) < finishes.len())?;
-            Some(Painted {
-                finish: paint.finish,
-                corners: paint.corners.map(Vec3::from),
-            })
-        };
-        let frames: Vec<Object> = scene.frames.iter().map(|f| object(f.to_world)).collect();
-        let place_of = if scene.elements.iter().any(textured) {
-            let mut place = |element: &Element| {
-                let object = frames.get(element.frame as usize)?;
-                let chart = textured(element).then(|| chart(&element.shape, &object.to_object))?;
+        if scene.elements.iter().any(is_charted) {
+            for element in &scene.elements {
+                let frame = frames.get(element.frame as usize);
+                let Some(frame) = frame.filter(|_| is_charted(element)) else {
+                    place_of.push(None);
+                    continue;
+                };
+                place_of.push(Some(places.len() as u32));
+                let paint = element.paint.as_ref();
+                let paint = paint.filter(|paint| (paint.finish as usize) < finishes.len());
                 places.push(Charted {
                     object: element.frame,
-                    chart,
-                    paint: painted(element),
+                    chart: chart(&element.shape, &frame.to_object),
+                    paint: paint.map(|paint| Painted {
+                        finish: paint.finish,
+                        corners: paint.corners.map(Vec3::from),
+                    }),
                 });
-                Some(places.len() as u32 - 1)
-            };
-            scene.elements.iter().map(&mut place).collect()
-        } else {
-            Vec::new()
-        };
+            }
+        }
         Self {
             finishes,
             place_of,
@@ -141,7 +138,8 @@ impl Materials {
         finish.layers.is_empty() && !finish.is_painted
     }
 
-    /// The material of a finish without its textures and paint, at a point with an outward normal.
+    /// Returns the material of a finish without its textures and paint, at a point with an outward
+    /// normal.
     pub fn plain(&self, finish: u32, normal: DVec3) -> Look {
         let material = &self.finishes[finish as usize];
         Look {
@@ -154,7 +152,7 @@ impl Materials {
         }
     }
 
-    /// The material of an element at a point of the unit scene with an outward normal.
+    /// Returns the material of an element at a point of the unit scene with an outward normal.
     fn of_element(&self, finish: u32, element: u32, point: DVec3, normal: DVec3) -> Look {
         let mut look = self.plain(finish, normal);
         let place = self.place_of.get(element as usize).copied().flatten();
@@ -195,18 +193,20 @@ impl Materials {
         look
     }
 
-    /// The material where some elements, each given with its finish and its share, make a surface;
-    /// shares need not sum to
-    /// 1. Rays pass by as the element with the largest share says.
-    pub fn mixed(&self, shares: &[(u32, u32, f64)], point: DVec3, normal: DVec3) -> Option<Look> {
+    /// Mixes the materials of the elements that make a surface, each given with its finish and its
+    /// share; the sum of the shares need not be 1. The kinds of rays that pass by are those of the
+    /// element with the largest share. `None` without elements.
+    pub fn mix(&self, shares: &[(u32, u32, f64)], point: DVec3, normal: DVec3) -> Option<Look> {
         let most = shares.iter().map(|s| s.2).fold(0.0, f64::max);
-        let counts = |s: &&(u32, u32, f64)| s.2 > NEGLIGIBLE * most || shares.len() == 1;
         let mut parts: Vec<(f64, Surface)> = Vec::new();
         // The finishes of those parts that stand for all elements of an even finish.
         let mut even: Vec<(u32, usize)> = Vec::new();
         let mut strongest: Option<(f64, Skip)> = None;
         let (mut total, mut dispersion) = (0.0, 0.0);
-        for &(element, finish, share) in shares.iter().filter(counts) {
+        for &(element, finish, share) in shares {
+            if shares.len() > 1 && (share <= NEGLIGIBLE * most || share.is_nan()) {
+                continue;
+            }
             let material = &self.finishes[finish as usize];
             total += share;
             dispersion += share * f64::from(material.dispersion);
@@ -262,17 +262,19 @@ pub(crate) fn is_plain(finish: &Finish) -> bool {
 
 /// Whether light to other surfaces may pass a surface of this finish.
 pub(crate) fn lets_light_through(finish: &Finish) -> bool {
-    let replaced = |t: &Texture| t.target == Target::Transparent;
-    finish.skip.shadow || finish.transparent != [0.0; 3] || finish.layers.iter().any(replaced)
+    let mut layers = finish.layers.iter();
+    finish.skip.shadow
+        || finish.transparent != [0.0; 3]
+        || layers.any(|layer| layer.target == Target::Transparent)
 }
 
-/// What is no number becomes 0, as negative shares do.
+/// Replaces channels that are negative or not finite by 0.
 fn share(colour: scene::Rgb) -> Vec3 {
     Vec3::from_array(colour.map(|c| if c > 0.0 && c.is_finite() { c } else { 0.0 }))
 }
 
+/// Prepares a finish. Numbers without sense get harmless values.
 fn material(finish: &Finish) -> Material {
-    let positive = |x: f32, other: f32| if x > 0.0 && x.is_finite() { x } else { other };
     let layers = finish
         .layers
         .iter()
@@ -284,7 +286,11 @@ fn material(finish: &Finish) -> Material {
             specular: Vec3::from(finish.specular),
             reflective: share(finish.reflective),
             transparent: share(finish.transparent),
-            index: positive(finish.index, 1.0),
+            index: if finish.index > 0.0 && finish.index.is_finite() {
+                finish.index
+            } else {
+                1.0
+            },
             shine: finish.shine.max(0.0),
             normal: DVec3::Z,
         },
@@ -299,7 +305,7 @@ fn material(finish: &Finish) -> Material {
     }
 }
 
-/// A frame that squeezes everything flat counts as the world's own.
+/// Prepares a frame. One that squeezes everything flat counts as the world's own.
 fn object(to_world: DAffine3) -> Object {
     let inverse = to_world.inverse();
     let to_object = if inverse.is_finite() {
@@ -319,7 +325,7 @@ fn object(to_world: DAffine3) -> Object {
     }
 }
 
-/// The texture coordinates of a shape of the unit scene.
+/// Returns the texture coordinates of a shape of the unit scene, given its object's coordinates.
 fn chart(shape: &Shape, to: &DAffine3) -> Chart {
     let point = |p: DVec3| to.transform_point3(p);
     let vector = |v: DVec3| to.transform_vector3(v);
@@ -362,9 +368,9 @@ fn chart(shape: &Shape, to: &DAffine3) -> Chart {
         Shape::Polygon { ref rings, .. } => {
             let corners: Vec<DVec3> = rings.iter().flatten().map(|&p| point(p)).collect();
             let first = corners.first().copied().unwrap_or_default();
-            let turn = |w: &[DVec3]| (w[0] - first).cross(w[1] - first);
             let outer = rings.first().map_or(0, Vec::len);
-            let normal = corners[..outer].windows(2).map(turn).sum::<DVec3>();
+            let edges = corners[..outer].windows(2);
+            let normal: DVec3 = edges.map(|w| (w[0] - first).cross(w[1] - first)).sum();
             let normal = normal.normalize_or(DVec3::Y);
             match Sheet::around(&corners, normal) {
                 Some(sheet) => Chart::Sheet(sheet),
@@ -378,6 +384,7 @@ fn chart(shape: &Shape, to: &DAffine3) -> Chart {
 }
 
 impl Chart {
+    /// Returns the texture coordinates of a point.
     fn uv(&self, point: DVec3) -> Uv {
         match self {
             Self::Sphere(center) => uv::sphere(*center, point),
@@ -392,8 +399,8 @@ impl Chart {
     }
 }
 
-/// Coordinates along and around a Bézier curve: those of the nearest of straight pieces between
-/// evenly spaced parameters.
+/// Returns coordinates along and around a Bézier curve: those of the nearest of straight pieces
+/// between evenly spaced parameters.
 fn along_curve([a, b, c, d]: &[DVec3; 4], point: DVec3) -> Uv {
     let parameter = |i: u32| f64::from(i) / f64::from(CURVE_PIECES);
     let at = |i: u32| {

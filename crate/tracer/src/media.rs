@@ -1,7 +1,7 @@
 //! The media that a ray is in, one within the other, by the order of its crossings.
 use texture::refraction::dispersed;
 
-/// Most media in each other; further ones change nothing.
+/// Most media that lie within each other; further ones change nothing.
 const MOST: usize = 8;
 
 /// Air and the bodies around a point of a ray, the innermost last.
@@ -11,7 +11,7 @@ pub(crate) struct Media {
     count: usize,
 }
 
-/// What a body is filled with.
+/// The substance that fills a body.
 #[derive(Clone, Copy, Debug, Default)]
 struct Medium {
     key: u32,
@@ -19,17 +19,18 @@ struct Medium {
     index: [f64; 3],
 }
 
-/// How a ray crosses a surface.
+/// The way a ray crosses a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Way {
-    /// From outside to inside.
+    /// Inward.
     In,
+    /// Outward.
     Out,
-    /// As the order of crossings says: inward if the ray is not yet inside.
+    /// Inward if the ray is not yet inside, else outward.
     Turn,
 }
 
-/// The two sides of a surface that a ray crosses.
+/// Media and indices on both sides of a surface that a ray crosses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sides {
     /// The media behind it.
@@ -77,7 +78,7 @@ impl Media {
         }
     }
 
-    /// Indices of the innermost medium.
+    /// Returns the indices of the innermost medium, for red, green and blue.
     fn index(&self) -> [f64; 3] {
         match self.count {
             0 => [1.0; 3],

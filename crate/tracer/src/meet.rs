@@ -1,4 +1,4 @@
-//! From rays to the surface points that they meet first.
+//! The surface points that rays meet first.
 //!
 //! The nearest crossing wins, whatever it belongs to: hard elements, the convolution surface of
 //! each body, and the surfaces of bodies that are met ray by ray are asked one after the other,
@@ -23,13 +23,13 @@ use crate::world::{SurfacePoint, World};
 use field::Cut;
 use glam::DVec3;
 
-/// Rays of a packet, and what they meet.
+/// Rays of a packet, and their hits.
 pub(crate) struct Seen {
     pub rays: [Ray; PACKET],
     pub hits: [Option<SurfacePoint>; PACKET],
-    /// What finding them cost.
+    /// Cost of finding each hit.
     pub costs: [f32; PACKET],
-    /// The first of them count, so many; the others repeat some ray.
+    /// Number of rays in use, the first ones; the others repeat one of them.
     pub used: usize,
 }
 
@@ -49,31 +49,31 @@ impl Default for Seen {
 }
 
 impl Seen {
-    /// Whether any of the rays hit something.
-    pub fn something(&self) -> bool {
+    /// Whether any of the rays has a hit.
+    pub fn has_hit(&self) -> bool {
         self.hits.iter().any(Option::is_some)
     }
 
-    /// How far each ray goes: to what it is known to meet.
+    /// Returns the end of each ray: the parameter of its hit, else infinity.
     pub fn limits(&self) -> [f64; PACKET] {
         self.hits.map(|hit| hit.map_or(f64::INFINITY, |hit| hit.t))
     }
 }
 
-/// The two ways to make a packet's rays.
+/// Functions that make a packet's rays.
 pub(crate) struct PacketRays<'r> {
-    /// In single precision, for lumps.
+    /// Makes them in single precision, for blobs.
     pub fan: &'r dyn Fn(&Lens) -> Fan,
-    /// In double precision.
+    /// Makes them in double precision.
     pub exact: &'r dyn Fn() -> [Ray; PACKET],
 }
 
-/// All lanes of a packet.
+/// Bits of all lanes of a packet.
 pub(crate) const ALL: u32 = (1 << PACKET) - 1;
 
 impl World {
-    /// Finds what the rays of the packet in a column and row of a square meet first, and says so in
-    /// `seen`, with the rays if they meet anything.
+    /// Finds the first hits of the rays of the packet in a column and row of a square; they go into
+    /// `seen`, with the rays if there is a hit.
     pub fn meet(
         &self,
         square: &mut Square<'_>,
@@ -103,7 +103,7 @@ impl World {
         seen.costs = work.costs(PACKET);
     }
 
-    /// Replaces what rays meet by points on convolution surfaces that are nearer.
+    /// Replaces hits by points on convolution surfaces that are nearer.
     fn meet_soft(
         &self,
         square: &mut Square<'_>,
@@ -115,13 +115,13 @@ impl World {
     ) {
         let mut general = core::mem::take(&mut work.general);
         square.general(place, &mut general);
-        // One body that is not all lumps takes the general way with all it has.
-        let lumps = self.soft.bodies.len() > 1 || general.is_empty();
+        // One body that is not all blobs takes the general way with all it has.
+        let by_blobs = self.soft.bodies.len() > 1 || general.is_empty();
         if let Some((near, lens)) = square
             .blobs(place)
-            .filter(|(near, _)| lumps && near.len() > 0)
+            .filter(|(near, _)| by_blobs && near.len() > 0)
         {
-            self.meet_lumps(near, lens, &general, rays, seen, exact, work);
+            self.meet_blobs(near, lens, &general, rays, seen, exact, work);
         }
         for &(from, body) in &general {
             if seen.limits().iter().all(|&limit| limit <= from) {
@@ -134,20 +134,17 @@ impl World {
                 }
             }
             if let Some((slabs, base, number)) = square.slabs(body, place, &mut work.scratch) {
-                if !*exact {
-                    seen.rays = (rays.exact)();
-                    *exact = true;
-                }
+                self.make_exact(rays, seen, exact);
                 self.meet_slabs(body, slabs, base, (number, ALL), seen, &mut work.scratch);
             }
         }
         work.general = general;
     }
 
-    /// The points on bodies near which a packet meets nothing but lumps; those bodies that take the
-    /// general way are passed over.
-    #[expect(clippy::too_many_arguments, reason = "each is something else")]
-    fn meet_lumps(
+    /// Replaces hits by nearer points on bodies near which a packet meets nothing but blobs,
+    /// passing over those bodies that take the general way.
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
+    fn meet_blobs(
         &self,
         near: &Nearby,
         lens: Option<&Lens>,
@@ -162,8 +159,8 @@ impl World {
                 let fan = (rays.fan)(lens);
                 let lanes = lens.rays(&fan, near);
                 let wide = || lens.wide(&fan);
-                let left = self.meet_lumps_by(near, general, &lanes, &wide, ALL, seen, work);
-                if seen.something() {
+                let left = self.meet_blobs_by(near, general, &lanes, &wide, ALL, seen, work);
+                if seen.has_hit() {
                     seen.rays = wide();
                 }
                 left
@@ -172,24 +169,28 @@ impl World {
                 self.make_exact(rays, seen, exact);
                 let lanes = Rays::new(&seen.rays, near);
                 let wide = seen.rays;
-                self.meet_lumps_by(near, general, &lanes, &|| wide, ALL, seen, work)
+                self.meet_blobs_by(near, general, &lanes, &|| wide, ALL, seen, work)
             }
         };
         if !left.is_empty() && !*exact {
-            // Rays in double precision may do.
+            // The march may succeed with rays in double precision.
             self.make_exact(rays, seen, exact);
             let lanes = Rays::new(&seen.rays, near);
             let wide = seen.rays;
             let others = (0..self.soft.bodies.len() as u32).filter(|body| !left.contains(body));
             let others: Vec<(f64, u32)> = others.map(|body| (0.0, body)).collect();
-            left = self.meet_lumps_by(near, &others, &lanes, &|| wide, ALL, seen, work);
+            left = self.meet_blobs_by(near, &others, &lanes, &|| wide, ALL, seen, work);
         }
         for body in left {
             let scratch = &mut work.scratch;
             let slabs = Beam::around(&seen.rays).and_then(|beam| {
-                let whole = |base: f64| Beams::one(beam.from(base));
-                let spaces = &mut scratch.spaces;
-                self.soft.slabs(body, beam, whole, f64::INFINITY, spaces)
+                self.soft.slabs(
+                    body,
+                    beam,
+                    |base| Beams::one(beam.from(base)),
+                    f64::INFINITY,
+                    &mut scratch.spaces,
+                )
             });
             if let Some((mut slabs, base)) = slabs {
                 self.meet_slabs(body, &mut slabs, base, (0, ALL), seen, scratch);
@@ -199,6 +200,7 @@ impl World {
         }
     }
 
+    /// Makes the rays in double precision, unless that is done.
     fn make_exact(&self, rays: &PacketRays<'_>, seen: &mut Seen, exact: &mut bool) {
         if !*exact {
             seen.rays = (rays.exact)();
@@ -206,10 +208,11 @@ impl World {
         }
     }
 
-    /// The same for rays that are made, of some lanes. Gives the bodies for which this is not the
-    /// way.
-    #[expect(clippy::too_many_arguments, reason = "each is something else")]
-    pub fn meet_lumps_by(
+    /// Replaces hits of some lanes by nearer points on bodies near which a packet meets nothing but
+    /// blobs, given its rays in single precision; `wide` returns them in double precision. Returns
+    /// the bodies whose march gave up.
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
+    pub fn meet_blobs_by(
         &self,
         near: &Nearby,
         general: &[(f64, u32)],
@@ -223,13 +226,13 @@ impl World {
         let Scratch {
             quick, evaluations, ..
         } = &mut work.scratch;
-        let mut tell = |looked: Looked, flesh: &SurfaceSamples| {
+        let mut tell = |looked: Looked, samples: &SurfaceSamples| {
             *evaluations += looked.evaluations;
             if looked.met != 0 {
                 self.soft_points(
                     looked.body,
                     &wide(),
-                    flesh,
+                    samples,
                     near.base,
                     looked.met,
                     &mut seen.hits,
@@ -243,7 +246,7 @@ impl World {
                 .quick(near, lanes, wide, Asked::first(&limits, alive), quick);
             return match looked {
                 Some(looked) => {
-                    tell(looked, &quick.flesh);
+                    tell(looked, &quick.samples);
                     Vec::new()
                 }
                 None => vec![0],
@@ -255,8 +258,8 @@ impl World {
             .quick_each(near, &general, lanes, wide, asked, quick, tell)
     }
 
-    /// Replaces what the rays of some lanes meet by nearer points on the surface of a body of very
-    /// many points that never end. Returns false if this is not the way.
+    /// Replaces hits of some lanes by nearer points on the surface of a body of very many points
+    /// that never end. Returns false if the rays must be followed in another way.
     pub fn meet_far(&self, body: u32, alive: u32, seen: &mut Seen, scratch: &mut Scratch) -> bool {
         let limits = seen.limits();
         let met = self.soft.far_first(
@@ -270,14 +273,14 @@ impl World {
         scratch.evaluations += core::mem::take(&mut scratch.far.evaluations);
         let Some(met) = met else { return false };
         if met != 0 {
-            let flesh = &scratch.far.flesh;
-            self.soft_points(body, &seen.rays, flesh, 0.0, met, &mut seen.hits);
+            let samples = &scratch.far.samples;
+            self.soft_points(body, &seen.rays, samples, 0.0, met, &mut seen.hits);
         }
         true
     }
 
-    /// The points where the rays of some lanes meet the surface of a body, by the slabs of a beam
-    /// around the rays, which start at parameter `base`.
+    /// Replaces hits of some lanes by nearer points on the surface of a body, found by the slabs of
+    /// a beam around the rays, which start at parameter `base`.
     pub fn meet_slabs(
         &self,
         body: u32,
@@ -301,12 +304,19 @@ impl World {
         if found.is_empty() {
             return;
         }
-        self.soft.flesh(slabs, &based, base, &found, scratch);
+        self.soft.sample_hits(slabs, &based, base, &found, scratch);
         let met = found.iter().fold(0, |m, hit| m | 1u32 << hit.lane);
-        self.soft_points(body, &seen.rays, &scratch.flesh, base, met, &mut seen.hits);
+        self.soft_points(
+            body,
+            &seen.rays,
+            &scratch.samples,
+            base,
+            met,
+            &mut seen.hits,
+        );
     }
 
-    /// What a ray meets first among the hard elements, or their front faces.
+    /// Returns the point of hard elements, or of their front faces only, that a ray meets first.
     pub fn hard_point(
         &self,
         ray: &Ray,
@@ -326,18 +336,18 @@ impl World {
         })
     }
 
-    /// Makes surface points of what is known of a convolution surface where rays meet it.
+    /// Makes surface points of a convolution surface's samples where rays meet it.
     fn soft_points(
         &self,
         body: u32,
         rays: &[Ray; PACKET],
-        flesh: &SurfaceSamples,
+        samples: &SurfaceSamples,
         base: f64,
         met: u32,
         hits: &mut [Option<SurfacePoint>; PACKET],
     ) {
         let surface = self.surface_of_body(self.soft.bodies[body as usize].number);
-        let gradients = flesh.gradients();
+        let gradients = samples.gradients();
         for lane in (0..PACKET).filter(|lane| met >> lane & 1 != 0) {
             let ray = &rays[lane];
             let gradient = gradients[lane];
@@ -345,8 +355,8 @@ impl World {
             let Some(normal) = (-gradient).try_normalize() else {
                 continue;
             };
-            let t = base + flesh.t[lane];
-            let finish = match &flesh.weights[..] {
+            let t = base + samples.t[lane];
+            let finish = match &samples.weights[..] {
                 [(only, _)] => self.finishes[*only as usize],
                 several => {
                     let mut finish = Finish::default();
@@ -371,8 +381,7 @@ impl World {
         }
     }
 
-    /// Replaces what rays meet by points on the surfaces of bodies that are met ray by ray and are
-    /// nearer.
+    /// Replaces hits by nearer points on the surfaces of bodies that are met ray by ray.
     pub fn meet_others(&self, seen: &mut Seen, alive: u32, scratch: &mut Scratch) {
         for body in &self.others {
             for (lane, (ray, hit)) in seen.rays.iter().zip(&mut seen.hits).enumerate() {
@@ -395,7 +404,7 @@ impl World {
                     position,
                     normal,
                     lift: body.lift(t),
-                    finish: self.mixed(shares.iter().map(|&(_, finish, share)| (finish, share))),
+                    finish: self.mix(shares.iter().map(|&(_, finish, share)| (finish, share))),
                     surface: self.surface_of_body(body.number()),
                 });
             }

@@ -12,15 +12,15 @@ use wide::f32x8;
 /// A list of blobs near a beam, each within a ball.
 #[derive(Clone, Debug, Default)]
 pub struct Nearby {
-    /// Origin of the blobs' positions …
+    /// Origin of the blobs' positions.
     pub middle: DVec3,
-    /// … and of ray parameters.
+    /// Origin of ray parameters.
     pub base: f64,
     blobs: Vec<NearBlob>,
     /// Primitives near the beam that are no blobs.
     pub others: Vec<Other>,
     blocks: Vec<Block>,
-    /// Whether any of them is a segment.
+    /// Whether any of the blobs is a segment.
     has_segments: bool,
 }
 
@@ -33,30 +33,32 @@ pub struct Other {
     pub center: DVec3,
     /// Radius of the ball.
     pub radius: f64,
-    /// Distance from its bone at which its reach ends.
+    /// Distance from the bone at which the primitive's reach ends.
     pub reach: f64,
 }
 
 /// A blob in a list.
 #[derive(Clone, Copy, Debug)]
 pub struct NearBlob {
-    /// Its field.
+    /// The blob's field.
     pub blob: Blob<f32>,
-    /// Position of its middle.
+    /// Position of the blob's middle.
     pub middle: [f32; 3],
-    /// Squared distance from its bone, in kernel widths, at which its reach ends.
+    /// Squared distance from the bone, in kernel widths, at which the blob's reach ends.
     pub square: f32,
-    /// Squared distance of the surface that it would have alone …
+    /// Squared distance, in kernel widths, of the surface that the blob would have alone, or for a
+    /// point of a chain, that the chain's bone would have.
     pub core: f32,
-    /// … or, if this is true, that its bone would have: it is a point of a chain.
+    /// Whether the blob is a point of a chain.
     pub part: bool,
-    /// Distance before its own surface from which a ray is well outside of it.
+    /// Distance before the blob's own surface from which a ray is well outside of it.
     pub lead: f32,
-    /// Largest slope of its field where the whole field is T, about, in T per unit of length.
+    /// Largest slope, about, of the blob's field where the whole field is T, in T per unit of
+    /// length.
     pub steep: f32,
-    /// Its finish.
+    /// Number of the blob's finish.
     pub finish: u32,
-    /// Its body, numbered among the soft ones.
+    /// The blob's body, numbered among the soft ones.
     pub body: u32,
     /// Least parameter at which a ray of the list's beam may meet it.
     pub from: f32,
@@ -95,7 +97,7 @@ const ALONG: f32 = 1e-4;
 const BELOW: f32 = 0.999;
 
 impl Extent<f32> {
-    /// Bounds on a blob, given the radius of its ball.
+    /// Returns the bounds on a blob, given the radius of its ball.
     #[must_use]
     pub fn of(blob: &Blob<f32>, radius: f64) -> Self {
         let Ceiling {
@@ -158,7 +160,7 @@ impl Block {
 pub type Marks = Vec<u8>;
 
 /// Iterates over the marked indices, in order.
-pub fn marked(marks: &Marks) -> impl Iterator<Item = usize> {
+pub fn indices_of(marks: &Marks) -> impl Iterator<Item = usize> {
     marks.iter().enumerate().flat_map(|(block, &bits)| {
         let mut bits = bits;
         core::iter::from_fn(move || {
@@ -195,7 +197,7 @@ impl Nearby {
         self.blobs.push(near);
     }
 
-    /// Number of blobs.
+    /// Returns the number of blobs.
     #[must_use]
     pub fn len(&self) -> usize {
         self.blobs.len()
@@ -215,7 +217,7 @@ impl Nearby {
         into.begin(self.middle, self.base);
         let mut marks = Marks::new();
         if self.mark(beam, left_out, &mut marks) {
-            for index in marked(&marks) {
+            for index in indices_of(&marks) {
                 into.push(*self.get(index), &self.blocks[index / 8].extent(index % 8));
             }
         }
@@ -312,7 +314,7 @@ mod tests {
     /// Field of an infinite kernel at the edge of its ball.
     const BEYOND: f64 = 1e-9;
 
-    /// Small blobs around a place.
+    /// Returns small blobs around a place.
     fn primitives(
         random: &mut Random,
         middle: DVec3,
@@ -405,8 +407,7 @@ mod tests {
                 for i in 0..300 {
                     let t = 0.03 * f64::from(i);
                     let point = (origin + direction * t).to_array();
-                    let left = |i: &usize| !found.contains(&(*i as u32));
-                    let lost = (0..primitives.len()).filter(left);
+                    let lost = (0..primitives.len()).filter(|i| !found.contains(&(*i as u32)));
                     let lost: f64 = lost.map(|i| primitives[i].value(point)).sum();
                     if nowhere {
                         assert!(lost < 1.0, "{beam:?} {t}: {lost}");

@@ -1,9 +1,9 @@
-//! Shading where rays are reflected, refracted, textured, fogged: waves of paths.
+//! Shading by waves of paths, for scenes with reflection, refraction, textures or fog.
 //!
 //! A path is a ray with the share of its light that reaches the eye. [`World::illuminate`] follows
 //! the paths of some packets in waves: each surface point adds its own light to its sample, and
-//! asks for further rays, which make the next wave. What a point adds depends on nothing but the
-//! path and the point.
+//! asks for further rays, which make the next wave. The light that a point adds depends on nothing
+//! but the path and the point.
 use crate::air::GroundPoint;
 use crate::free::FreeRay;
 use crate::lamps::{Draw, Receiver};
@@ -14,7 +14,7 @@ use crate::meet::Seen;
 use crate::ray::Ray;
 use crate::rich::Rich;
 use crate::sample::Sample;
-use crate::shade::{Finish, clamped};
+use crate::shade::{Finish, clamp};
 use crate::stats::Stats;
 use crate::workspace::Workspace;
 use crate::world::{SurfacePoint, World};
@@ -24,9 +24,10 @@ use texture::refraction::{reflect, refract};
 
 /// Most surfaces that a ray passes as if they were not there.
 const MOST_SKIPPED: u32 = 64;
-/// Most rays of a wave for each ray from the eye; what would be more is not sent.
+/// Most rays of a wave for each ray from the eye; further ones are not sent.
 const MOST_RAYS: usize = 512;
-/// Most rays of all waves together, likewise: glass inside glass may ask for 2ⁿ rays at depth n.
+/// Most rays of all waves together for each ray from the eye: glass inside glass may ask for 2ⁿ
+/// rays at depth n.
 const MOST_RAYS_IN_ALL: usize = 2048;
 
 /// Key of samples that see the ground.
@@ -41,6 +42,7 @@ enum Kind {
 }
 
 impl Kind {
+    /// Whether a ray of this kind passes surfaces that rays skip so.
     fn passes(self, skip: Skip) -> bool {
         match self {
             Self::Pixel => skip.pixel,
@@ -77,8 +79,9 @@ struct Stop {
 }
 
 impl World {
-    /// What the rays of some packets see, with everything that a rich scene has. The samples are
-    /// left in the working space.
+    /// Takes samples with the rays of some packets in a rich scene, and leaves them in the working
+    /// space. `draw` returns the sample of a pixel that a ray, given by packet and lane, belongs
+    /// to.
     pub fn illuminate(
         &self,
         rich: &Rich,
@@ -121,23 +124,25 @@ impl World {
                 paths.truncate(most.min(left));
                 left -= paths.len();
                 stats.secondary_rays += paths.len() as u64;
-                let free = |path: &Path| FreeRay {
-                    ray: path.ray,
-                    front_only: self.one_sided && path.media.is_air(),
-                };
-                let rays: Vec<FreeRay> = paths.iter().map(free).collect();
+                let rays: Vec<FreeRay> = paths
+                    .iter()
+                    .map(|path| FreeRay {
+                        ray: path.ray,
+                        front_only: self.one_sided && path.media.is_air(),
+                    })
+                    .collect();
                 let hits = self.meet_free(&rays, work, stats);
                 wave.extend(paths.into_iter().zip(hits));
             }
         }
         for sample in samples.iter_mut().flatten() {
-            sample.colour = clamped(rich.toned(sample.colour));
+            sample.colour = clamp(rich.tone(sample.colour));
         }
         work.samples = samples;
     }
 
-    /// Adds to the samples what the paths of a wave see where they end; returns the reflected paths
-    /// and those that go on.
+    /// Adds to the samples the light that the paths of a wave bring from where they end. Returns
+    /// the reflected paths and those that go on.
     fn shade(
         &self,
         rich: &Rich,
@@ -213,9 +218,9 @@ impl World {
         [mirrored, passed]
     }
 
-    /// Adds what a ray sees on its way, and behind it if it meets nothing, times a share, which the
-    /// ray loses light from up to the ground. Returns the ground where that is nearer than its hit,
-    /// and the share of the hit's light that is left.
+    /// Adds the light of the air on a ray's way, and of the background if it meets nothing, times
+    /// `weight`; up to the ground, the air takes its part of `weight`. Returns the point of the
+    /// ground if that is nearer than the ray's hit, and the share of light that the air lets pass.
     pub fn through_air(
         &self,
         rich: &Rich,
@@ -250,7 +255,7 @@ impl World {
         (ground, clear)
     }
 
-    /// A path that passes a surface as if it were not there.
+    /// Returns the path beyond a surface that it passes as if it were not there.
     fn beyond(&self, path: &Path, hit: &SurfacePoint) -> Path {
         Path {
             ray: Ray {
@@ -262,6 +267,7 @@ impl World {
         }
     }
 
+    /// Returns the receiver at a point of the ground.
     fn on_ground(&self, path: &Path, ground: &GroundPoint) -> Receiver {
         let position = self.unit.map(ground.position);
         Receiver {
@@ -277,6 +283,7 @@ impl World {
         }
     }
 
+    /// Returns the receiver at a surface point.
     fn on_surface(&self, path: &Path, hit: &SurfacePoint, look: &Look) -> Receiver {
         let direction = path.ray.direction;
         let flat = hit.facing(direction);
@@ -303,7 +310,7 @@ impl World {
         }
     }
 
-    /// Adds the paths that a surface mirrors and lets pass.
+    /// Adds the paths that a surface reflects and those that it lets pass.
     fn scatter(
         &self,
         rich: &Rich,

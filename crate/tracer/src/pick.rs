@@ -1,4 +1,4 @@
-//! Picking: which element is seen in a direction.
+//! Picking of the element that is seen in a direction.
 use crate::function::{RayQuery, crossings, range};
 use crate::picture::Hit;
 use crate::ray::Ray;
@@ -8,7 +8,7 @@ use field::Ball;
 use glam::DVec3;
 use scene::{Scene, Surface, surface};
 
-/// A scene made ready for single rays.
+/// A scene prepared for single rays.
 ///
 /// It takes much less time and room to prepare than a [`Picture`](crate::Picture), and more for
 /// each ray.
@@ -33,7 +33,7 @@ pub struct Picker {
 
 /// Length, relative to the scene, below which intervals of rays are not subdivided.
 const PICK_RESOLUTION: f64 = 1e-5;
-/// Surfaces without a support are followed this far, in units of the scene's size.
+/// Distance up to which surfaces without a support are followed, in units of the scene's size.
 const FURTHEST: f64 = 1e4;
 
 impl Picker {
@@ -41,20 +41,21 @@ impl Picker {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let (unit, scene) = Unit::fit(scene);
-        let with_support = |surface: Surface| {
+        let mut soft = Vec::new();
+        for surface in scene.surfaces() {
             let support = surface.function().support();
-            (surface, support)
-        };
+            soft.push((surface, support));
+        }
         Self {
             unit,
             solids: Solids::new(&scene),
-            soft: scene.surfaces().into_iter().map(with_support).collect(),
+            soft,
         }
     }
 
-    /// The first crossing of a ray at t > 0. On a convolution surface the element is the one that
-    /// adds most to the field there. `None` where the ray meets nothing, is not finite or has no
-    /// direction.
+    /// Returns the first crossing of a ray at t > 0. On a convolution surface the element is the
+    /// one that adds most to the field there. `None` if the ray meets nothing, is not finite or has
+    /// no direction.
     #[must_use]
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let ray = Ray {

@@ -1,4 +1,4 @@
-//! A scene made ready for tracing: passes and tiles.
+//! A scene prepared for tracing, in passes and tiles.
 use crate::area::{Area, Samples};
 use crate::cast::Cast;
 use crate::exposure::Exposure;
@@ -44,7 +44,7 @@ impl Hit {
     }
 }
 
-/// A scene made ready for tracing at one size.
+/// A scene prepared for tracing at one size.
 ///
 /// ```
 /// use glam::DVec3;
@@ -62,7 +62,7 @@ impl Hit {
 pub struct Picture {
     pub(crate) sampler: Sampler,
     gamma: f32,
-    /// Whether and how costs are shown instead of colours.
+    /// The map of costs, if they are shown instead of colours.
     map: Option<Map>,
 }
 
@@ -107,27 +107,27 @@ impl Picture {
     }
 
     /// Adds a body whose surface is that of any implicit function, in the world's coordinates, and
-    /// gives its number among the scene's bodies. `finish` tells the finish, an index into
+    /// returns its number among the scene's bodies. `finish` holds the finish, an index into
     /// [`Scene::finishes`], of each of the function's elements.
     pub fn add_function(&mut self, function: Arc<dyn Implicit>, finish: Vec<u32>) -> u32 {
         self.sampler.world.add(function, finish)
     }
 
-    /// Has the convolution surfaces found by another root finder from now on, ray by ray and hit
-    /// for hit as it says, errors and all.
+    /// Lets another root finder find the convolution surfaces from now on, ray by ray. Its hits are
+    /// taken as they are, errors and all.
     pub fn find_with(&mut self, finder: &Arc<dyn RootFinder>) {
         self.sampler.world.find_with(finder);
     }
 
-    /// From now on each soft primitive is followed by itself wherever it counts, without groups and
-    /// without interpolants that rays share: slower, for comparison.
+    /// Follows each soft primitive by itself from now on, without groups and without interpolants
+    /// that rays share: slower, for comparison.
     pub fn forgo_hierarchy(&mut self) {
         self.sampler.world.soft.precision.shared = 0.0;
     }
 
     /// Traces one tile and writes RGBA bytes (`4·width·height`, rows from the top, alpha 255).
     ///
-    /// `stop` is asked now and then; when it says true the tile is given up and `None` comes back.
+    /// Returns `None` soon after `stop`, which is called now and then, has returned true.
     #[must_use]
     pub fn trace(
         &self,
@@ -139,9 +139,9 @@ impl Picture {
         self.trace_with(tile, pass, &mut SampleCache::default(), stop, stats)
     }
 
-    /// The same with a cache of this picture's first samples ([`Picture::cache`]): those that it
-    /// has are not taken again, others are kept in it. Nothing is done with one for another size,
-    /// or for a tile that reaches beyond the picture.
+    /// Traces one tile ([`Picture::trace`]) with a cache of this picture's first samples
+    /// ([`Picture::cache`]): those that it has are not taken again, others are kept in it. A cache
+    /// for another size, or for a tile that reaches beyond the picture, is not used.
     #[must_use]
     pub fn trace_with(
         &self,
@@ -160,7 +160,7 @@ impl Picture {
         self.trace_in(tile, pass, cache, stop, &mut work, stats)
     }
 
-    /// The same in a given working space.
+    /// Traces one tile ([`Picture::trace_with`]) in a given working space.
     pub(crate) fn trace_in(
         &self,
         tile: Tile,
@@ -203,16 +203,16 @@ impl Picture {
         Some(pixels.rgba)
     }
 
-    /// A cache for this picture's first samples that keeps at most `room` squares of 64×64 pixels,
-    /// 100 kB each; none if no pass needs samples of an earlier one.
+    /// Returns a cache for this picture's first samples that keeps at most `room` squares of 64×64
+    /// pixels, 100 kB each; none if no pass needs samples of an earlier one.
     #[must_use]
     pub fn cache(&self, room: usize) -> SampleCache {
         let room = if self.sampler.samples > 1 { room } else { 0 };
         SampleCache::new(self.sampler.view.size, room)
     }
 
-    /// Takes more samples where the first ones, of an area and of what is around it, differ, and
-    /// writes the area's RGBA bytes.
+    /// Takes more samples where the first ones of an area and its surroundings differ, and writes
+    /// the area's RGBA bytes.
     pub(crate) fn smooth(
         &self,
         area: Area,
@@ -229,8 +229,8 @@ impl Picture {
         Some(pixels.rgba)
     }
 
-    /// All crossings of a ray with surfaces, soft and hard, in order of t > 0, found exactly: with
-    /// nothing cut off and nothing shared.
+    /// Returns all crossings, at t > 0 and in order, of a ray with surfaces, soft and hard, found
+    /// exactly: no primitive is cut off, no interpolant shared.
     #[must_use]
     pub fn hits(&self, origin: DVec3, direction: DVec3) -> Vec<Hit> {
         let world = &self.sampler.world;
@@ -238,13 +238,13 @@ impl Picture {
             return Vec::new();
         };
         let crossings = world.crossings(&ray);
-        let hit = |cast| self.hit(origin, &ray, cast);
-        crossings.iter().map(hit).collect()
+        let hits = crossings.iter().map(|cast| self.hit(origin, &ray, cast));
+        hits.collect()
     }
 
-    /// What each ray (origin, direction) hits first at t > 0, with the arithmetic and the tolerance
-    /// of pictures. Neighbouring rays of the list make packets: the nearer together they are, the
-    /// faster it goes.
+    /// Returns the first hit of each ray (origin, direction) at t > 0, with the arithmetic and the
+    /// tolerance of pictures. Neighbouring rays of the list make packets: the nearer together they
+    /// are, the faster it goes.
     #[must_use]
     pub fn cast(&self, rays: &[(DVec3, DVec3)]) -> Vec<Option<Hit>> {
         let world = &self.sampler.world;
@@ -254,7 +254,7 @@ impl Picture {
             .collect()
     }
 
-    /// A crossing in the world's coordinates.
+    /// Converts a crossing to the world's coordinates.
     fn hit(&self, origin: DVec3, ray: &Ray, cast: &Cast) -> Hit {
         let world = &self.sampler.world;
         let t = world.unit.length(cast.t);
@@ -268,10 +268,10 @@ impl Picture {
         }
     }
 
-    /// The largest distance that a hit at `t` is meant to have from the true surface, and the
-    /// greatest thickness, along the ray, of what may go unseen (for what is not so yet, see the
-    /// limits of this crate): the smaller of 10⁻⁴ of the scene's size and a fifth of the width of a
-    /// pixel there; but never less than 10⁻⁶ of the scene's size.
+    /// Returns the largest distance that a hit at `t` is meant to have from the true surface, which
+    /// is also the greatest thickness, along the ray, of parts that may go unseen (for exceptions
+    /// see the limits of this crate): the smaller of 10⁻⁴ of the scene's size and a fifth of the
+    /// width of a pixel there; but never less than 10⁻⁶ of the scene's size.
     #[must_use]
     pub fn tolerance(&self, t: f64) -> f64 {
         // The unit scene is between 2 and 4 large.
@@ -284,13 +284,13 @@ impl Picture {
 struct Pixels<'a> {
     picture: &'a Picture,
     area: Area,
-    /// What white stands for in a map of costs.
+    /// Cost that is white in a map of costs.
     dearest: f32,
     rgba: Vec<u8>,
 }
 
 impl<'a> Pixels<'a> {
-    /// `None` if `stop` gave up.
+    /// Returns white bytes; `None` if `stop` returned true.
     fn new(picture: &'a Picture, area: Area, stop: &dyn Fn() -> bool) -> Option<Self> {
         let [width, height] = [area.right - area.left, area.bottom - area.top];
         let dearest = match &picture.map {
@@ -305,7 +305,7 @@ impl<'a> Pixels<'a> {
         })
     }
 
-    /// Shows samples in a part of the tile, each in a block of so many pixels across and down.
+    /// Shows samples in a part of the tile, each in a block of `BLOCK` pixels across and down.
     fn show<const BLOCK: u32>(&mut self, part: Area, samples: &Samples) {
         let width = (self.area.right - self.area.left) as usize;
         // Neighbours often have the same colour, that of the background.

@@ -1,6 +1,6 @@
-//! Shading where a scene has surroundings (a background of several colours, ground, fog, clouds, a
-//! tone) but no ray leaves a surface except straight to the lights: packets keep their beams, as in
-//! [`shadows`](crate::shadows), and no paths are followed.
+//! Shading of scenes that have surroundings (a background of several colours, ground, fog, clouds,
+//! a tone) but in which no ray leaves a surface except straight to the lights: packets keep their
+//! beams, as in [`shadows`](crate::shadows), and no paths are followed.
 //!
 //! Colours are those of [`World::illuminate`], in the same order of operations.
 use crate::lamps::Received;
@@ -8,7 +8,7 @@ use crate::layout::PACKET;
 use crate::meet::Seen;
 use crate::rich::Rich;
 use crate::sample::Sample;
-use crate::shade::{Finish, clamped, towards};
+use crate::shade::{Finish, clamp, towards};
 use crate::soft::MakeUp;
 use crate::stats::Stats;
 use crate::workspace::{Shadow, State, Workspace};
@@ -19,7 +19,7 @@ use scene::LightKind;
 
 /// A surface point, or one of the ground, that light falls on.
 struct LitPoint {
-    /// Its packet and lane.
+    /// Packet and lane of the ray that sees it.
     hit: (usize, usize),
     position: DVec3,
     normal: DVec3,
@@ -29,16 +29,16 @@ struct LitPoint {
     finish: Finish,
     /// Distance from the eye.
     depth: f64,
-    /// Share of its light that reaches the eye; of the ground times the ground's colour.
+    /// Share of its light that reaches the eye; for the ground, times the ground's colour.
     share: Vec3,
     is_ground: bool,
     received: Received,
 }
 
 impl World {
-    /// What the rays of some packets see, in a scene whose light needs no paths
-    /// ([`Rich::is_direct`]), lit from the middles of lights. `across` is as in [`World::shine`].
-    /// The samples are left in the working space.
+    /// Takes samples with the rays of some packets in a scene whose light needs no paths
+    /// ([`Rich::is_direct`]), lit from the middles of lights, and leaves them in the working space.
+    /// `across` is as in [`World::shine`].
     pub fn shine_in_air(
         &self,
         rich: &Rich,
@@ -60,7 +60,7 @@ impl World {
         }
         let mut shadows = core::mem::take(&mut work.shadows);
         for (which, light) in self.lights.iter().enumerate() {
-            // From a distant light it is the same everywhere.
+            // The direction to a distant light is the same everywhere.
             let same = towards(light, DVec3::ZERO);
             let distant = matches!(light.kind, LightKind::Distant { .. });
             shadows.clear();
@@ -91,7 +91,7 @@ impl World {
             }
             for shadow in &shadows {
                 let point = &mut points[shadow.hit.0];
-                let free = point.finish.lit(
+                let free = point.finish.shade(
                     Vec3::from(light.colour) * light.share(point.position) as f32,
                     point.normal.as_vec3(),
                     shadow.ray.direction.as_vec3(),
@@ -114,13 +114,14 @@ impl World {
             sample.key ^= point.received.lit;
         }
         for sample in samples.iter_mut().flatten() {
-            sample.colour = clamped(rich.toned(sample.colour));
+            sample.colour = clamp(rich.tone(sample.colour));
         }
         work.shadows = shadows;
         work.samples = samples;
     }
 
-    /// Adds to a sample what its ray sees without any light; returns the point that light falls on.
+    /// Adds to a sample the light that its ray sees without any source. Returns the point that
+    /// light falls on.
     fn see_in_air(
         &self,
         rich: &Rich,
@@ -167,9 +168,9 @@ impl World {
         })
     }
 
-    /// The colours of a surface point of a scene without textures. Where materials blend they are
-    /// mixed as paths mix them, so that a scene does not change its colours as soon as one thing in
-    /// it is a mirror.
+    /// Returns the colours of a surface point of a scene without textures. Where materials blend
+    /// they are mixed as paths mix them, so that a scene does not change its colours as soon as one
+    /// element of it is a mirror.
     fn direct_finish(&self, rich: &Rich, hit: &SurfacePoint) -> Finish {
         let is_even = match self.owner_of(hit.surface) {
             Owner::Solid(number) => rich.materials.is_even(self.solids.finish(number) as u32),

@@ -8,7 +8,7 @@ use crate::beam::Beam;
 use crate::blob_march::{MarchRays, Marched, RayBlob, RayBlobs, RayInterval, extremes, march};
 use crate::lanes::least;
 use crate::layout::PACKET;
-use crate::nearby::{Marks, Nearby, Other, marked};
+use crate::nearby::{Marks, Nearby, indices_of};
 use crate::ray::Ray;
 use crate::soft::Soft;
 use crate::surface_samples::{COARSEST_OF_BLOBS, FINEST, NEAR_ENOUGH, SurfaceSamples};
@@ -17,13 +17,13 @@ use field::{Cut, Real};
 use glam::DVec3;
 use wide::f32x8;
 
-/// Part of the field, in units of T, that the lists of a square's parts may leave out …
+/// Largest part of the field, in T, that the lists of a square's parts leave out.
 pub const LEFT_OUT_OF_PARTS: f32 = 3e-6;
-/// … and that a packet's list may leave out.
+/// Largest part of the field, in T, that a packet's list leaves out of its part's.
 const LEFT_OUT_OF_PACKETS: f32 = 5e-6;
 
-/// A blob is strong up to this fraction of the way from its own surface to the end of its reach, in
-/// squared distances.
+/// Fraction of the way from a blob's own surface to the end of its reach, in squared distances, up
+/// to which it is strong.
 const STRONG: f32 = 0.15;
 
 /// Working space of one thread.
@@ -41,17 +41,18 @@ pub struct Quick {
     /// orders them so.
     members: Vec<u64>,
     /// Surface samples at the hits of the last packet; parameters are counted from its list's base.
-    pub flesh: SurfaceSamples,
+    pub samples: SurfaceSamples,
 }
 
-/// Where the rays of a packet are within the reach of blobs.
+/// The parts of a packet's rays within the reach of blobs.
 struct Reached {
-    /// First and last parameter of each ray, infinite and minus infinite without blobs.
+    /// First parameter of each ray; infinite without blobs.
     from: f32x8,
+    /// Last parameter of each ray; minus infinite without blobs.
     to: f32x8,
-    /// See [`MarchRays::guess`].
+    /// Estimate of the crossing ([`MarchRays::guess`]).
     guess: f32x8,
-    /// See [`MarchRays::first`].
+    /// End of the first step ([`MarchRays::first`]).
     first: f32x8,
     /// Largest [`NearBlob::steep`](crate::nearby::NearBlob::steep).
     steepest: f32,
@@ -177,17 +178,16 @@ const LOST: f32 = 2.5e-5;
 const NOISIEST: f32 = 2e-3;
 /// Length, in units of the scene, of the parts in which doubtful intervals are isolated.
 const DOUBT_PART: f64 = 1.0 / 16.0;
+/// Most parts in which a doubtful interval is isolated.
+const MOST_DOUBT_PARTS: f64 = 256.0;
 /// Rounding of positions, relative to the scene's size plus the distance.
 const MISPLACED: f32 = 3e-7;
 /// Most blobs near a packet; beyond that it takes the general way, which needs less space for each.
 const MOST_NEAR_BLOBS: usize = 1 << 16;
 
-/// See [`DOUBT_PART`].
-const MOST_DOUBT_PARTS: f64 = 256.0;
-
-/// Rays of a packet, counted from a list's base.
+/// Rays of a packet, with parameters counted from a list's base.
 pub struct Rays {
-    /// Where they start, counted from the list's middle.
+    /// Starts of the rays, relative to the list's middle.
     pub origin: [f32x8; 3],
     /// Unit directions.
     pub direction: [f32x8; 3],
@@ -196,7 +196,7 @@ pub struct Rays {
 }
 
 impl Rays {
-    /// Rays in double precision.
+    /// Converts rays from double precision.
     #[must_use]
     pub fn new(rays: &[Ray; PACKET], near: &Nearby) -> Self {
         let start = rays.map(|ray| ray.at(near.base) - near.middle);
@@ -236,7 +236,7 @@ pub struct Asked<'l> {
 }
 
 impl<'l> Asked<'l> {
-    /// Query for the first crossing of each ray of some lanes.
+    /// Returns the query for the first crossing of each ray of some lanes.
     pub fn first(limits: &'l [f64; PACKET], alive: u32) -> Self {
         Self {
             limits,
@@ -244,6 +244,16 @@ impl<'l> Asked<'l> {
             quest: Quest::First,
         }
     }
+}
+
+/// Returns the body of a member of [`Quick::members`].
+fn body_of(member: &u64) -> u32 {
+    (member >> 32) as u32
+}
+
+/// Returns the index in the list of a member of [`Quick::members`].
+fn index_of(member: &u64) -> usize {
+    (member & u64::from(u32::MAX)) as usize
 }
 
 /// Returns the mean of eight points and their largest distance from it.
@@ -272,17 +282,18 @@ impl Soft {
         quest: Quest,
         work: &mut Quick,
     ) -> Option<(Looked, f64)> {
-        let lanes = |i: &usize| alive >> i & 1 != 0;
-        let followed: Vec<Ray> = (0..PACKET).filter(lanes).map(|i| rays[i]).collect();
-        let furthest = (0..PACKET).filter(lanes).map(|i| limits[i]);
-        let furthest = furthest.fold(0.0, f64::max);
+        let lanes = (0..PACKET).filter(|i| alive >> i & 1 != 0);
+        let followed: Vec<Ray> = lanes.clone().map(|i| rays[i]).collect();
+        let furthest = lanes.map(|i| limits[i]).fold(0.0, f64::max);
         let beam = Beam::around(&followed)?;
         let mut list = core::mem::take(&mut work.list);
-        let own = |other: &&Other| self.body_of(other.primitive) == body;
-        let looked = if !self.is_everywhere(body)
-            && self.list_blobs(&beam, furthest, &mut list)
-            && !self.meets_any(list.others.iter().filter(own), &beam, furthest)
-        {
+        let by_blobs =
+            !self.is_everywhere(body) && self.list_blobs(&beam, furthest, &mut list) && {
+                let own = list.others.iter();
+                let own = own.filter(|other| self.body_of(other.primitive) == body);
+                !self.meets_any(own, &beam, furthest)
+            };
+        let looked = if by_blobs {
             let lanes = Rays::new(rays, &list);
             let asked = Asked {
                 limits,
@@ -318,7 +329,7 @@ impl Soft {
             return Some(Looked::default());
         }
         let marks = core::mem::take(&mut work.marks);
-        let looked = self.follow(near, 0, marked(&marks), rays, exact, asked, work);
+        let looked = self.follow(near, 0, indices_of(&marks), rays, exact, asked, work);
         work.marks = marks;
         looked
     }
@@ -337,7 +348,7 @@ impl Soft {
             return Some(Looked::default());
         }
         let marks = core::mem::take(&mut work.marks);
-        let own = marked(&marks).filter(|&index| near.get(index).body == body);
+        let own = indices_of(&marks).filter(|&index| near.get(index).body == body);
         let looked = self.follow(near, body, own, rays, exact, asked, work);
         work.marks = marks;
         looked
@@ -346,7 +357,7 @@ impl Soft {
     /// [`Soft::quick`] for several bodies except those in `pass_over`, the nearest first as far as
     /// the list tells. Calls `tell` with each result; it returns the rays' new limits and the rays
     /// to follow from then on. Returns the bodies that need the general way.
-    #[expect(clippy::too_many_arguments, reason = "each is something else")]
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
     pub fn quick_each(
         &self,
         near: &Nearby,
@@ -363,23 +374,19 @@ impl Soft {
         }
         let mut members = core::mem::take(&mut work.members);
         members.clear();
-        let own = |index: usize| u64::from(near.get(index).body) << 32 | index as u64;
-        let body = |member: &u64| (member >> 32) as u32;
-        let index = |member: &u64| (member & u64::from(u32::MAX)) as usize;
         members.extend(
-            marked(&work.marks)
-                .map(own)
-                .filter(|member| !pass_over.contains(&body(member))),
+            indices_of(&work.marks)
+                .map(|index| u64::from(near.get(index).body) << 32 | index as u64)
+                .filter(|member| !pass_over.contains(&body_of(member))),
         );
         // Lists are in order of the parameter at which a blob may be met.
         members.sort_unstable();
-        let mut groups: Vec<&[u64]> = members.chunk_by(|a, b| body(a) == body(b)).collect();
-        field::heap_sort(&mut groups, |a, b| index(&a[0]) < index(&b[0]));
+        let mut groups: Vec<&[u64]> = members.chunk_by(|a, b| body_of(a) == body_of(b)).collect();
+        field::heap_sort(&mut groups, |a, b| index_of(&a[0]) < index_of(&b[0]));
         let (mut limits, mut alive) = (*asked.limits, asked.alive);
         for group in groups {
-            let from = f64::from(near.get(index(&group[0])).from) + near.base;
-            let reached = |lane: usize| alive >> lane & 1 != 0 && limits[lane] > from;
-            if !(0..PACKET).any(reached) {
+            let from = f64::from(near.get(index_of(&group[0])).from) + near.base;
+            if !(0..PACKET).any(|lane| alive >> lane & 1 != 0 && limits[lane] > from) {
                 continue;
             }
             let asked = Asked {
@@ -387,9 +394,9 @@ impl Soft {
                 alive,
                 quest: asked.quest,
             };
-            let (body, indices) = (body(&group[0]), group.iter().map(index));
+            let (body, indices) = (body_of(&group[0]), group.iter().map(index_of));
             match self.follow(near, body, indices, rays, exact, asked, work) {
-                Some(looked) => (limits, alive) = tell(looked, &work.flesh),
+                Some(looked) => (limits, alive) = tell(looked, &work.samples),
                 None => left.push(body),
             }
         }
@@ -398,7 +405,7 @@ impl Soft {
     }
 
     /// Follows rays among some blobs of a list, all of one body, given in the list's order.
-    #[expect(clippy::too_many_arguments, reason = "each is something else")]
+    #[expect(clippy::too_many_arguments, reason = "they form no group")]
     #[inline(always)]
     fn follow(
         &self,
@@ -430,9 +437,8 @@ impl Soft {
         if work.blobs.len() > MOST_NEAR_BLOBS {
             return None;
         }
-        let order =
-            |a: &RayInterval, b: &RayInterval| a.from.total_cmp(&b.from).then(a.blob.cmp(&b.blob));
-        work.intervals.sort_unstable_by(order);
+        work.intervals
+            .sort_unstable_by(|a, b| a.from.total_cmp(&b.from).then(a.blob.cmp(&b.blob)));
         let alive = alive & from.simd_le(to).to_bitmask();
         let furthest = extremes(to, to, alive).1.at_least(0.0);
         // Shadow rays need no such accuracy, and start where the field is nearly T.
@@ -497,9 +503,10 @@ impl Soft {
             let parts = ((end - start) / DOUBT_PART)
                 .ceil()
                 .clamp(1.0, MOST_DOUBT_PARTS);
-            let place = |part: u32| start + (end - start) * f64::from(part) / parts;
             for part in 0..parts as u32 {
-                let (found, evaluations) = self.entry(body, based, [place(part), place(part + 1)]);
+                let ends =
+                    [part, part + 1].map(|part| start + (end - start) * f64::from(part) / parts);
+                let (found, evaluations) = self.entry(body, based, ends);
                 marched.evaluations += evaluations;
                 if let Some(found) = found {
                     t[i] = found as f32;
@@ -514,8 +521,8 @@ impl Soft {
         marched.between = between.map(f32x8::new);
     }
 
-    /// Tolerance for the blobs of a list, none of which is nearer to the rays' origins than the
-    /// list's base.
+    /// Returns half the tolerance of pictures for the blobs of a list, none of which is nearer to
+    /// the rays' origins than the list's base.
     fn tolerance(&self, list: &Nearby) -> f64 {
         (0.1 * self.pixel * list.base).clamp(FINEST, COARSEST_OF_BLOBS)
     }
@@ -533,8 +540,8 @@ impl Soft {
         let tolerance = self.tolerance(near) as f32;
         let mut evaluations = evaluations + marched.evaluations;
         let mut at = marched.t;
-        let mut flesh = core::mem::take(&mut work.flesh);
-        let weights = &mut flesh.weights;
+        let mut samples = core::mem::take(&mut work.samples);
+        let weights = &mut samples.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
         let (first, last) = extremes(at, at, met);
         let [mut low, mut high] = marched.between;
@@ -581,9 +588,9 @@ impl Soft {
             }
         }
         field::heap_sort(weights, |a, b| a.0 < b.0);
-        flesh.gradient = gradient;
-        flesh.t = at.to_array().map(f64::from);
-        work.flesh = flesh;
+        samples.gradient = gradient;
+        samples.t = at.to_array().map(f64::from);
+        work.samples = samples;
         Looked {
             body: 0,
             met,
@@ -600,7 +607,8 @@ mod tests {
     use scene::{Element, Shape};
     use trials::scenes::{clothe, element, empty, soft};
 
-    /// Tiny balls on the rays themselves, also in packets as wide as those of `Picture::cast`.
+    /// The beam meets tiny balls on the rays themselves, also in packets as wide as those of
+    /// `Picture::cast`.
     #[test]
     fn the_beam_of_a_packet_holds_its_outer_rays() {
         for wide in [1e-4, 2e-3, 0.05, 0.14] {
@@ -615,9 +623,9 @@ mod tests {
             });
             let list = Nearby::default();
             let beam = Rays::new(&rays, &list).beam;
-            let ball = |i: usize, t: f64| (i as u32, rays[i].direction * t, 1e-6);
             for t in [0.3, 3.0, 30.0] {
-                let tree = Hierarchy::new((0..PACKET).map(|i| ball(i, t)).collect());
+                let balls = (0..PACKET).map(|i| (i as u32, rays[i].direction * t, 1e-6));
+                let tree = Hierarchy::new(balls.collect());
                 let mut found = 0;
                 tree.search(&beam, |_, _, _| found += 1);
                 assert_eq!(found, PACKET, "{wide} {t}");
@@ -630,7 +638,7 @@ mod tests {
         }
     }
 
-    /// A ball of radius ¼ around (0, 0, 2), in the scene's own places.
+    /// Returns a ball of radius ¼ around (0, 0, 2), in the scene's own places.
     fn ball() -> Soft {
         let mut scene = empty();
         clothe(&mut scene, vec![soft(-2.0, 1.0)]);
@@ -644,21 +652,22 @@ mod tests {
         Soft::new(scene, surfaces)
     }
 
-    /// Rays along z at growing distances from the ball's middle, of which the first four meet it.
-    fn past_the_ball() -> ([Ray; PACKET], [Option<f64>; PACKET]) {
+    /// Returns rays along z at growing distances from the ball's middle, of which the first four
+    /// meet it, and the parameters where they enter it.
+    fn rays_past_the_ball() -> ([Ray; PACKET], [Option<f64>; PACKET]) {
         let aside = [0.0, 0.1, 0.2, 0.249_999, 0.250_001, 0.26, 0.4, 2.0];
-        let ray = |x: f64| Ray {
+        let rays = aside.map(|x| Ray {
             origin: DVec3::new(x, 0.0, 0.0),
             direction: DVec3::Z,
-        };
-        let enters = |x: f64| (x < 0.25).then(|| 2.0 - (0.0625 - x * x).sqrt());
-        (aside.map(ray), aside.map(enters))
+        });
+        let enters = aside.map(|x| (x < 0.25).then(|| 2.0 - (0.0625 - x * x).sqrt()));
+        (rays, enters)
     }
 
     #[test]
     fn an_entry_is_found_on_a_stretch() {
         let soft = ball();
-        let (rays, enters) = past_the_ball();
+        let (rays, enters) = rays_past_the_ball();
         for (ray, enters) in rays.into_iter().zip(enters) {
             let [found, before, behind] =
                 [[1.5, 2.5], [0.5, 1.5], [2.3, 9.0]].map(|s| soft.entry(0, ray, s).0);
@@ -675,7 +684,7 @@ mod tests {
     #[test]
     fn doubts_are_isolated_where_they_are() {
         let soft = ball();
-        let (rays, enters) = past_the_ball();
+        let (rays, enters) = rays_past_the_ball();
         let mut near = Nearby::default();
         near.begin(DVec3::Z * 0.5, 0.5);
         let far = f32x8::splat(9.0);

@@ -1,14 +1,14 @@
 //! Rays.
 use glam::DVec3;
 
-/// Rays whose directions differ by more than this, or whose origins by more than this part of half
-/// the scene's size, are not followed together.
+/// Largest difference of the directions of two rays that are followed together, and of their
+/// origins in units of half the scene's size.
 const WIDEST: f64 = 0.15;
 
 /// The points `origin + t·direction`, t > 0, in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// The point at t = 0.
     pub origin: DVec3,
     /// A unit vector, so that t is a distance.
     pub direction: DVec3,
@@ -22,7 +22,7 @@ impl Ray {
             && self.origin.distance(other.origin) <= WIDEST
     }
 
-    /// The point at parameter t.
+    /// Returns the point at parameter t.
     #[must_use]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t

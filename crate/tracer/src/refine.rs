@@ -1,10 +1,10 @@
 //! Anti-aliasing: more rays for the pixels that need them.
 //!
 //! Every pixel has had one ray. A pixel that differs from a neighbour is sampled again on a regular
-//! grid of n×n, whose mean replaces the single sample. Which pixels those are depends on the first
-//! samples only, so it does not matter in which order, or in which tile, pixels are treated. Where
-//! lights have a size, or there is a sky, all pixels that see a surface get them; behind a lens or
-//! an open shutter all do (`exposure`).
+//! grid of n×n, whose mean replaces the single sample. That depends on the first samples only, so
+//! it does not matter in which order, or in which tile, pixels are treated. If lights have a size,
+//! or there is a sky, all pixels that see a surface get more rays; behind a lens or an open shutter
+//! all do (`exposure`).
 use crate::area::{Area, Samples};
 use crate::lamps::Draw;
 use crate::layout::{PACKET, PACKET_SIZE, SQUARE};
@@ -19,23 +19,23 @@ use field::{Cut, Real};
 use glam::Vec3;
 use wide::f32x8;
 
-/// Packets of a square.
+/// Numbers of packets across and down a square.
 const PACKETS: [u32; 2] = [SQUARE / PACKET_SIZE[0], SQUARE / PACKET_SIZE[1]];
 
-/// What the rays of one packet's pixels hit.
+/// The hits of the rays of one packet's pixels.
 #[derive(Default)]
 struct Closer {
-    /// The first of these are in use: as many as there are owners.
+    /// Packets of rays, of which the first are in use, as many as there are owners.
     seen: Vec<Seen>,
-    /// The number of each one's pixel, the first ray's number in it, and how many of the rays
-    /// count.
+    /// Numbers of each packet in use: of its pixel, of its first ray in the pixel, and of its rays
+    /// in use.
     owners: Vec<(usize, u32, usize)>,
 }
 
 impl Sampler {
     /// Replaces the samples of an area's pixels that differ from a neighbour by the mean of n×n.
     /// The area consists of whole packets, and `samples` must hold the pixels around it too. `None`
-    /// when asked to stop.
+    /// if `stop` returned true.
     pub fn refine(
         &self,
         area: Area,
@@ -74,21 +74,26 @@ impl Sampler {
                 if owners.is_empty() {
                     continue;
                 }
-                let corner = |x, y| self.view.ray(f64::from(x), f64::from(y)).direction;
-                let across =
-                    corner(packet.left, packet.top).distance(corner(packet.right, packet.bottom));
+                let [start, end] = [[packet.left, packet.top], [packet.right, packet.bottom]]
+                    .map(|[x, y]| self.view.ray(f64::from(x), f64::from(y)).direction);
+                let across = start.distance(end);
                 let seen = &seen[..owners.len()];
                 match &self.world.rich {
                     Some(rich) if rich.is_direct && !self.soft_light => {
                         self.world.shine_in_air(rich, seen, across, work, stats);
                     }
                     Some(rich) => {
-                        let draw = |packet: usize, lane: usize| {
-                            let (owner, first, _) = owners[packet];
-                            let (x, y, ..) = means[owner];
-                            self.draw([x, y], first + lane as u32)
-                        };
-                        self.world.illuminate(rich, seen, &draw, work, stats);
+                        self.world.illuminate(
+                            rich,
+                            seen,
+                            &|packet, lane| {
+                                let (owner, first, _) = owners[packet];
+                                let (x, y, ..) = means[owner];
+                                self.draw([x, y], first + lane as u32)
+                            },
+                            work,
+                            stats,
+                        );
                     }
                     None => self.world.shine(seen, across, work, stats),
                 }
@@ -115,8 +120,8 @@ impl Sampler {
         Some(())
     }
 
-    /// Sends a pixel's n×n rays, eight by eight. Those that hit something are added to `closer`; of
-    /// the others the sum of what they see, and of what they cost.
+    /// Sends a pixel's n×n rays, eight by eight. Packets with a hit are added to `closer`; for the
+    /// others the sums of their rays' colours and costs are returned.
     fn look_closer<'a>(
         &'a self,
         block: Area,
@@ -132,7 +137,7 @@ impl Sampler {
         let n = self.samples;
         for first in (0..n * n).step_by(PACKET) {
             let count = (n * n - first).min(PACKET as u32);
-            // Where in the pixel; the last one again where there are no more.
+            // The place of a ray in the pixel; lanes not in use repeat the last ray.
             let part = |i: usize| {
                 let i = first + (i as u32).min(count - 1);
                 [i % n, i / n].map(|k| (f64::from(k) + 0.5) / f64::from(n))
@@ -143,13 +148,6 @@ impl Sampler {
                 seen.push(Seen::default());
             }
             let seen = &mut seen[owners.len()];
-            let fan = |lens: &Lens| {
-                let half = 0.5 * f64::from(SQUARE);
-                let at = [x - block.left, y - block.top].map(|c| f64::from(c) - half);
-                let place = |k: usize| f32x8::from_lanes(|lane| at[k] + part(lane)[k]);
-                let middle = |k: usize| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]);
-                lens.fan([place(0), place(1)], [middle(0), middle(1)])
-            };
             let exact = || {
                 core::array::from_fn(|i| {
                     let [across, down] = part(i);
@@ -157,18 +155,24 @@ impl Sampler {
                 })
             };
             let rays = PacketRays {
-                fan: &fan,
+                fan: &|lens: &Lens| {
+                    let half = 0.5 * f64::from(SQUARE);
+                    let at = [x - block.left, y - block.top].map(|c| f64::from(c) - half);
+                    let places = [0, 1].map(|k| f32x8::from_lanes(|lane| at[k] + part(lane)[k]));
+                    let middle = [0, 1].map(|k| at[k] + 0.5 * (part(0)[k] + part(PACKET - 1)[k]));
+                    lens.fan(places, middle)
+                },
                 exact: &exact,
             };
             self.world
                 .meet(square, [column, row], &rays, seen, work, stats);
             let count = count as usize;
             let rich = self.needs_more_light(seen).is_some();
-            if rich && !seen.something() {
+            if rich && !seen.has_hit() {
                 seen.rays = exact();
             }
-            if rich || seen.something() {
-                // The last ones are repeated.
+            if rich || seen.has_hit() {
+                // Lanes not in use have no hits.
                 seen.hits[count..].fill(None);
                 seen.used = count;
                 owners.push((owner, first, count));
@@ -180,6 +184,7 @@ impl Sampler {
         sum
     }
 
+    /// Whether a pixel needs more rays than one.
     fn needs_more(&self, samples: &Samples, x: u32, y: u32) -> bool {
         if x >= self.view.size[0] || y >= self.view.size[1] {
             return false;
@@ -213,12 +218,13 @@ impl Sampler {
         false
     }
 
-    /// Whether a pixel of this first sample is a mean of many whatever its neighbours are.
+    /// Whether a pixel with this first sample needs more rays whatever its neighbours are.
     fn is_spread(&self, sample: &Sample) -> bool {
         self.exposure.is_some() || self.soft_light && sample.key != 0
     }
 
-    /// Where rays from what a ray of a pixel sees end on lights.
+    /// Returns the sample that a ray of a pixel belongs to, for the places on lights where rays
+    /// end.
     fn draw(&self, pixel: [u32; 2], number: u32) -> Draw {
         if self.soft_light {
             Draw::Sample { pixel, number }
@@ -227,9 +233,9 @@ impl Sampler {
         }
     }
 
-    /// How many pixels of an area differ from the next one on the right or below: about half of
-    /// those that [`Sampler::refine`] will take more rays for, at a quarter of the cost of asking
-    /// for each.
+    /// Counts the pixels of an area that differ from the next one on the right or below: about half
+    /// of those for which [`Sampler::refine`] will take more rays, at a quarter of the cost of
+    /// counting those.
     pub fn edges(&self, samples: &Samples) -> u64 {
         let area = samples.area();
         let slope = self.slope();
@@ -238,21 +244,23 @@ impl Sampler {
             let row = samples.part(y, area.left..area.right);
             let below = samples.part((y + 1).min(area.bottom - 1), area.left..area.right);
             for (x, here) in row.iter().enumerate() {
-                let others = [row.get(x + 1).unwrap_or(here), &below[x]];
-                let differ = |other: &Sample| self.differ(here, other, slope);
-                count += u64::from(self.is_spread(here) || others.into_iter().any(differ));
+                let mut others = [row.get(x + 1).unwrap_or(here), &below[x]].into_iter();
+                let is_edge =
+                    self.is_spread(here) || others.any(|other| self.differ(here, other, slope));
+                count += u64::from(is_edge);
             }
         }
         count
     }
 
-    /// The slope, difference of distance by distance, that neighbours on one surface stay below: on
-    /// a plane seen at 80° from its normal, neighbouring pixels' distances differ by tan 80° times
-    /// the pixel's size.
+    /// Returns the bound on the slope, difference of distance by distance, of neighbours on one
+    /// surface: on a plane seen at 80° from its normal, neighbouring pixels' distances differ by
+    /// tan 80° times the pixel's size.
     fn slope(&self) -> f32 {
         5.7 * self.view.pixel() as f32
     }
 
+    /// Whether two neighbouring pixels need more rays, given [`Sampler::slope`].
     fn differ(&self, here: &Sample, other: &Sample, slope: f32) -> bool {
         let jump = slope * here.depth.at_most(other.depth);
         differ(here, other, self.contrast, jump)

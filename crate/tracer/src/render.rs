@@ -1,4 +1,4 @@
-//! A whole picture at once, on several threads.
+//! Rendering of a whole picture on several threads.
 use crate::area::Area;
 use crate::layout::SQUARE;
 use crate::picture::Picture;
@@ -42,35 +42,47 @@ pub fn render(
     for sheet in tiles(width, height, SHEET) {
         let tiles = parts(sheet);
         if !smooth {
-            let trace = |tile, work: &mut Workspace, stats: &mut Stats| {
-                let mut none = SampleCache::default();
-                picture.trace_in(tile, pass, &mut none, &|| false, work, stats)
-            };
-            stats += shared_out(&tiles, threads, trace, &mut show, &step);
+            stats += share_out(
+                &tiles,
+                threads,
+                |tile, work, stats| {
+                    let mut none = SampleCache::default();
+                    picture.trace_in(tile, pass, &mut none, &|| false, work, stats)
+                },
+                &mut show,
+                &step,
+            );
             continue;
         }
         // The first samples of all pixels come first, so that only those at the borders of sheets
         // are traced twice, whatever the number of threads.
         let mut cache = picture.cache(tiles.len());
         let none = SampleCache::default();
-        let sample = |tile, work: &mut Workspace, stats: &mut Stats| {
-            sampler.sample(Area::from(tile), 1, &none, &|| false, work, stats)
-        };
-        let keep = |tile, samples| cache.keep(&samples, Area::from(tile));
-        stats += shared_out(&tiles, threads, sample, keep, &step);
-        let refine = |tile, work: &mut Workspace, stats: &mut Stats| {
-            let area = Area::from(tile);
-            let around = area.around(sampler.view.size);
-            let samples = sampler.sample(around, 1, &cache, &|| false, work, stats)?;
-            picture.smooth(area, samples, &|| false, work, stats)
-        };
-        stats += shared_out(&tiles, threads, refine, &mut show, &step);
+        stats += share_out(
+            &tiles,
+            threads,
+            |tile, work, stats| sampler.sample(Area::from(tile), 1, &none, &|| false, work, stats),
+            |tile, samples| cache.keep(&samples, Area::from(tile)),
+            &step,
+        );
+        stats += share_out(
+            &tiles,
+            threads,
+            |tile, work, stats| {
+                let area = Area::from(tile);
+                let around = area.around(sampler.view.size);
+                let samples = sampler.sample(around, 1, &cache, &|| false, work, stats)?;
+                picture.smooth(area, samples, &|| false, work, stats)
+            },
+            &mut show,
+            &step,
+        );
     }
     (rgba, stats)
 }
 
 /// Runs a job for each tile on several threads, and consumes the results.
-fn shared_out<T: Send>(
+fn share_out<T: Send>(
     tiles: &[Tile],
     threads: usize,
     work: impl Fn(Tile, &mut Workspace, &mut Stats) -> Option<T> + Sync,
@@ -99,7 +111,7 @@ fn shared_out<T: Send>(
     whole.into_inner().unwrap_or_else(|e| e.into_inner()).1
 }
 
-/// The squares of a sheet, those nearest to its centre first.
+/// Returns the squares of a sheet, those nearest to its centre first.
 fn parts(sheet: Tile) -> Vec<Tile> {
     let mut parts = tiles(sheet.width, sheet.height, SQUARE);
     for part in &mut parts {

@@ -1,5 +1,5 @@
-//! What pictures need beyond Phong's model on a background of one colour; scenes that do without
-//! are drawn without.
+//! Data of scenes that need more than Phong's model on a background of one colour; others are drawn
+//! without.
 use crate::air::Air;
 use crate::material::{Materials, is_plain, lets_light_through};
 use crate::soft::{MakeUp, Soft};
@@ -16,7 +16,7 @@ const SHEETS: u32 = 1 << 31;
 pub(crate) struct Rich {
     pub materials: Materials,
     pub air: Air,
-    /// Whether light may pass some surface.
+    /// Whether light may pass through some surface.
     pub see_through: bool,
     /// Whether no ray leaves a surface except straight to lights, and no surface has textures.
     pub is_direct: bool,
@@ -27,10 +27,10 @@ pub(crate) struct Rich {
     /// Whether lights have a size.
     pub penumbra: bool,
     tone: Tone,
-    /// For each soft body what its materials are made of.
+    /// The make-up of each soft body's materials.
     pub make_up: Vec<MakeUp>,
-    /// For each solid that encloses no space, its medium's key: the same for all with one finish in
-    /// one object.
+    /// Keys of the media of the solids that enclose no space, `None` for other solids: the same for
+    /// all with one finish in one object.
     pub sheets: Vec<Option<u32>>,
 }
 
@@ -41,7 +41,7 @@ fn is_direct(scene: &Scene) -> bool {
 }
 
 /// Whether a scene needs nothing beyond Phong's model.
-fn does_without(scene: &Scene) -> bool {
+fn is_simple(scene: &Scene) -> bool {
     let sized = scene.settings.penumbra && scene.lights.iter().any(|light| light.size > 0.0);
     is_direct(scene)
         && !sized
@@ -55,22 +55,23 @@ fn does_without(scene: &Scene) -> bool {
 }
 
 impl Rich {
-    /// Whether a scene needs it.
+    /// Whether a scene needs more than Phong's model.
     pub fn is_needed(scene: &Scene) -> bool {
-        !does_without(scene)
+        !is_simple(scene)
     }
 
     /// Prepares a scene, given as it is and in units of its size.
     pub fn new(world: &Scene, unit: Unit, scene: &Scene, solids: &Solids) -> Self {
         let settings = &world.settings;
         let middle = unit.world(DVec3::ZERO);
-        let used = |finish: usize| scene.elements.iter().any(|e| e.finish as usize == finish);
-        let passed = |(i, finish)| lets_light_through(finish) && used(i);
+        let mut finishes = scene.finishes.iter().enumerate();
         Self {
             materials: Materials::new(scene),
             air: Air::new(world, lowest(world), middle, unit.length(1.0)),
             is_direct: is_direct(world),
-            see_through: scene.finishes.iter().enumerate().any(passed),
+            see_through: finishes.any(|(i, finish)| {
+                lets_light_through(finish) && scene.elements.iter().any(|e| e.finish as usize == i)
+            }),
             max_depth: settings.max_depth.min(Settings::MAX_DEPTH),
             vanish: if settings.vanish >= 0.0 {
                 settings.vanish
@@ -84,19 +85,19 @@ impl Rich {
         }
     }
 
-    /// Completes it by what is known of the convolution surfaces.
-    pub fn with(mut self, soft: &Soft) -> Self {
+    /// Completes it with the make-ups of the convolution surfaces.
+    pub fn complete(mut self, soft: &Soft) -> Self {
         self.make_up = soft.make_ups();
         self
     }
 
-    /// Whether what a surface point gets from lights and sky is a mean over many directions.
+    /// Whether the light of lights and sky at a surface point is a mean over many directions.
     pub fn has_soft_light(&self, lights: &[Light]) -> bool {
         self.air.sky.is_some() || self.penumbra && lights.iter().any(|light| light.size > 0.0)
     }
 
-    /// The colour on the screen of light.
-    pub fn toned(&self, light: Vec3) -> Vec3 {
+    /// Maps light to a colour on the screen.
+    pub fn tone(&self, light: Vec3) -> Vec3 {
         match self.tone {
             Tone::None => light,
             Tone::Filmic => texture::tone::filmic(light),
@@ -104,10 +105,10 @@ impl Rich {
     }
 }
 
-/// The keys of those hard elements that enclose no space.
+/// Returns the keys of the media of those solids that enclose no space ([`Rich::sheets`]).
 fn sheets(scene: &Scene, solids: &Solids) -> Vec<Option<u32>> {
-    let mut keys = BTreeMap::new();
-    let mut key = |solid: u32| {
+    let (mut keys, mut sheets) = (BTreeMap::new(), Vec::new());
+    for solid in 0..solids.len() {
         let element = &scene.elements[solids.element(solid) as usize];
         let is_sheet = match element.shape {
             Shape::Triangle { .. } | Shape::Polygon { .. } | Shape::Patch { .. } => {
@@ -118,8 +119,8 @@ fn sheets(scene: &Scene, solids: &Solids) -> Vec<Option<u32>> {
         let next = SHEETS + keys.len() as u32;
         let paint = element.paint.as_ref();
         let finish = paint.map_or(element.finish, |paint| paint.finish);
-        let own = (finish, element.body, element.frame);
-        is_sheet.then(|| *keys.entry(own).or_insert(next))
-    };
-    (0..solids.len()).map(&mut key).collect()
+        let object = (finish, element.body, element.frame);
+        sheets.push(is_sheet.then(|| *keys.entry(object).or_insert(next)));
+    }
+    sheets
 }

@@ -1,4 +1,4 @@
-//! Convolution surfaces that another root finder finds than the tracer's own.
+//! Convolution surfaces that are found by another root finder than the tracer's own.
 use crate::body::Body;
 use crate::ray::Ray;
 use crate::soft::Soft;
@@ -21,7 +21,7 @@ pub trait RootFinder: Send + Sync {
     ) -> (Option<f64>, u64);
 }
 
-/// A body whose convolution surface is found by a [`RootFinder`], hit for hit as it says.
+/// A body whose convolution surface is found by a [`RootFinder`], whose hits are taken as they are.
 pub(crate) struct FoundBody {
     /// The convolution surfaces of all bodies.
     pub soft: Arc<Soft>,

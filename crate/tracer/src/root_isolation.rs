@@ -12,7 +12,7 @@
 //! primitives ([`KnownPart`]).
 use crate::kinks::Kinks;
 use crate::ray::Ray;
-use crate::roots::bracketed;
+use crate::roots::refine_root;
 use crate::slabs::LARGE_TERM;
 use crate::spans::{KnownPart, Node, Span};
 use core::ops::Range;
@@ -21,13 +21,12 @@ use field::{Bound, Cut, Primitive, THRESHOLD};
 
 /// Most pieces of all rays of a packet; on the rest the signs at the ends decide.
 const MOST_PIECES: u32 = 1 << 16;
-/// An interval may use the remaining pieces over this: a ray that runs along the surface would use
-/// up any number, and later intervals need some.
+/// Ratio of the remaining pieces to those that an interval may use: a ray that runs along the
+/// surface would use up any number, and later intervals need some.
 const AT_ONCE: u32 = 4;
-/// Of an interval's pieces, one over this is kept for the parts after the next one (from kink to
-/// kink, or the near half of a piece). A larger reserve would starve small parts of long intervals,
-/// as each halving takes its share; pieces that a part does not use go to those after it in any
-/// case.
+/// Ratio of an interval's pieces to those kept for the parts after the next one (from kink to kink,
+/// or the near half of a piece). A larger reserve would starve small parts of long intervals, as
+/// each halving takes its share; pieces that a part does not use go to those after it in any case.
 const KEPT: u32 = 8;
 /// Fewest pieces for a part, if there are as many left: enough to isolate a few crossings.
 const FEWEST_PIECES: u32 = 256;
@@ -39,21 +38,22 @@ const PRIMITIVES_A_PIECE: u32 = 64;
 const RESOLVED: f64 = 1e-9;
 /// Rounding of a field in double precision, relative to the sizes of its terms.
 const SUM_ROUNDING: f64 = 1e-12;
-/// The slope of a Hermite cubic is off by at most four times its error bound over its length (for
-/// bounds by the second derivative; for the fourth it is 3.08), and the slope's own Bernstein
-/// coefficients are 3/length times the differences of the cubic's. So the field is monotone where
-/// those are larger than the bound times this.
+/// Ratio to a Hermite cubic's error bound from which differences of its Bernstein coefficients
+/// prove that the field is monotone. The cubic's slope is off by at most four times the bound over
+/// the length (for bounds by the second derivative; for the fourth it is 3.08), and the slope's own
+/// Bernstein coefficients are 3/length times those differences: 4/3 and a little.
 pub const STEEP: f64 = 1.34;
 
 /// Error of the [`KnownPart`]; 0 without one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Off {
+    /// Error of the value.
     value: f64,
-    /// Over the length of a piece.
+    /// Error of the value over the length of the interval.
     steep: f64,
 }
 
-/// Isolates crossings of the rays of one packet.
+/// Isolator of the crossings of one packet's rays.
 #[derive(Debug)]
 pub struct RootIsolator {
     /// Primitives that count on the interval.
@@ -83,33 +83,33 @@ impl Default for RootIsolator {
 struct Subinterval {
     from: f64,
     to: f64,
-    /// How many times halved.
+    /// Number of halvings.
     depth: u32,
     /// Number of pieces that it may be cut into.
     most: u32,
     /// Sum of the resolved terms and the known part, less T.
     resolved: Span<f64>,
-    /// The other primitives: a range of the list.
+    /// Range of the list that holds the other primitives.
     rest: Range<usize>,
-    /// Sum of their fields at both ends.
+    /// Sum of the other primitives' fields at both ends.
     ends: [Node<f64>; 2],
 }
 
 /// Primitives with their bounds and kinks.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedTerms<'a> {
-    /// All primitives.
+    /// The primitives.
     pub primitives: &'a [Primitive],
-    /// Their bounds.
+    /// Bounds of the primitives.
     pub bounds: &'a [Bound],
-    /// Kinks of their profiles.
+    /// Kinks of the primitives' profiles.
     pub kinks: &'a Kinks,
 }
 
 /// The field along a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Along<'a> {
-    /// Its primitives.
+    /// The field's primitives.
     pub sight: BoundedTerms<'a>,
     /// The ray, its direction of unit length.
     pub ray: Ray,
@@ -130,8 +130,9 @@ impl RootIsolator {
         self.follow(along, interval, &|_| Node::zero(), tell);
     }
 
-    /// Crossings of the sum of a known part and the listed primitives, as of
-    /// [`RootIsolator::crossings`]. `None` if the known part's error leaves one in doubt.
+    /// Returns the crossings of the sum of a known part and the listed primitives, after the start
+    /// of the interval, as [`RootIsolator::crossings`] gives them. `None` if the known part's error
+    /// leaves one in doubt.
     pub fn crossings_with(
         &mut self,
         along: &Along<'_>,
@@ -144,9 +145,9 @@ impl RootIsolator {
         };
         self.unsure = false;
         let pieces = self.pieces;
-        let mut told = Vec::new();
+        let mut crossings = Vec::new();
         self.follow(along, interval, known.node, |t, inside| {
-            told.push((t, inside));
+            crossings.push((t, inside));
             true
         });
         if self.unsure {
@@ -154,9 +155,11 @@ impl RootIsolator {
             self.pieces = pieces;
             return None;
         }
-        Some(told)
+        Some(crossings)
     }
 
+    /// Follows a ray through an interval, cut at kinks, like [`RootIsolator::crossings`]; `known`
+    /// returns the known part.
     fn follow(
         &mut self,
         along: &Along<'_>,
@@ -230,7 +233,7 @@ impl RootIsolator {
         found
     }
 
-    /// Sum of some primitives of the list at t.
+    /// Adds up some primitives of the list at t.
     fn sum(&mut self, along: &Along<'_>, range: &Range<usize>, t: f64) -> Node<f64> {
         let point = along.ray.at(t).to_array();
         let sum = self.list[range.clone()]
@@ -394,23 +397,27 @@ impl RootIsolator {
         if (resolved.0[0] + piece.ends[0].value >= 0.0) == enters {
             return true;
         }
-        let excess = |t: f64| {
-            let rest = self.sum(along, &piece.rest, t);
-            let (value, slope) = resolved.value_and_slope((t - from) / (to - from));
-            (rest.value + value, rest.slope + slope / (to - from))
-        };
-        let within = 1e-3 * along.resolution;
-        tell(bracketed(excess, from, to, within), enters)
+        let t = refine_root(
+            |t| {
+                let rest = self.sum(along, &piece.rest, t);
+                let (value, slope) = resolved.value_and_slope((t - from) / (to - from));
+                (rest.value + value, rest.slope + slope / (to - from))
+            },
+            from,
+            to,
+            1e-3 * along.resolution,
+        );
+        tell(t, enters)
     }
 }
 
-/// Number of pieces for the next part, of those for it and the parts after it.
+/// Returns the number of pieces for the next part, of those for it and the parts after it.
 fn next_share(pieces: u32) -> u32 {
     (pieces - pieces / KEPT).max(FEWEST_PIECES).min(pieces)
 }
 
 impl Along<'_> {
-    /// Field of a primitive and its slope along the ray, at a point on it.
+    /// Returns the field of a primitive and its slope along the ray, at a point on it.
     fn node(&self, primitive: u32, place: [f64; 3]) -> Node<f64> {
         let jet = self.sight.primitives[primitive as usize].jet(place);
         let [gx, gy, gz] = jet.gradient;
@@ -443,17 +450,16 @@ mod tests {
             influence: 1e-3,
             taper: None,
         };
-        let ball = |center: DVec3| {
+        let primitives = [DVec3::Z * 0.7, DVec3::new(0.1, 0.0, 1.2)].map(|center| {
             Primitive::new(Skeleton::Point { center }, &shaping, None).expect("flesh")
-        };
-        let primitives = [ball(DVec3::Z * 0.7), ball(DVec3::new(0.1, 0.0, 1.2))];
+        });
         let bounds = primitives.each_ref().map(Bound::new);
         let sight = BoundedTerms {
             primitives: &primitives,
             bounds: &bounds,
             kinks: &Kinks::default(),
         };
-        let (mut told_of, mut unsure) = (0, 0);
+        let (mut count, mut unsure) = (0, 0);
         for i in 0..300 {
             let along = Along {
                 sight,
@@ -473,14 +479,14 @@ mod tests {
             };
             let mut isolator = RootIsolator::default();
             isolator.list.extend([0, 1]);
-            let Some(told) = isolator.crossings_with(&along, [0.0, LENGTH], &known) else {
+            let Some(found) = isolator.crossings_with(&along, [0.0, LENGTH], &known) else {
                 unsure += 1;
                 continue;
             };
-            told_of += told.len() - 1;
+            count += found.len() - 1;
             for phase in [0, 2, 3, 5] {
-                // The slope's error is at most four times that over the length.
-                let really = |t: f64| {
+                // The field with an error whose slope is at most four times it over the length.
+                let excess = |t: f64| {
                     let wave = libm::cos(f64::from(phase) + 4.0 * t / LENGTH);
                     let point = along.ray.at(t).to_array();
                     let field: f64 = primitives.iter().map(|p| p.value(point)).sum();
@@ -490,23 +496,20 @@ mod tests {
                 let places: Vec<f64> = places.collect();
                 let crossed = places
                     .windows(2)
-                    .filter(|w| (really(w[0]) >= 0.0) != (really(w[1]) >= 0.0));
+                    .filter(|w| (excess(w[0]) >= 0.0) != (excess(w[1]) >= 0.0));
                 let crossed: Vec<f64> = crossed.map(|w| w[0]).collect();
-                assert_eq!(crossed.len() + 1, told.len(), "{i} {phase}: {told:?}");
-                for (t, (found, _)) in crossed.iter().zip(&told[1..]) {
-                    let slope = (really(found + 1e-4) - really(found - 1e-4)).abs() / 2e-4;
+                assert_eq!(crossed.len() + 1, found.len(), "{i} {phase}: {found:?}");
+                for (t, (found, _)) in crossed.iter().zip(&found[1..]) {
+                    let slope = (excess(found + 1e-4) - excess(found - 1e-4)).abs() / 2e-4;
                     let apart = (t - found).abs();
                     assert!(apart < 1e-3 + 3.0 * OFF / slope, "{i} {phase}: {t} {found}");
                 }
             }
         }
-        assert!(
-            told_of > 300 && (1..30).contains(&unsure),
-            "{told_of} {unsure}"
-        );
+        assert!(count > 300 && (1..30).contains(&unsure), "{count} {unsure}");
     }
 
-    /// Where the known part's error may change the sign of the slope, one crossing may be three.
+    /// The known part's error may make three crossings of one if it may change the slope's sign.
     #[test]
     fn slopes_of_unknown_sign_are_not_decided() {
         let sight = BoundedTerms {
@@ -524,7 +527,7 @@ mod tests {
         };
         // `slope·u − off·sin 2u`, u = t − 1, crosses T three times where the slope is less than
         // 2·off.
-        for (slope, told) in [(0.015, None), (0.03, Some(2)), (1.0, Some(2))] {
+        for (slope, want) in [(0.015, None), (0.03, Some(2)), (1.0, Some(2))] {
             let known = KnownPart {
                 node: &|t| Node {
                     value: THRESHOLD + slope * (t - 1.0),
@@ -534,9 +537,9 @@ mod tests {
             };
             let mut isolator = RootIsolator::default();
             let crossings = isolator.crossings_with(&along, [0.0, 2.0], &known);
-            assert_eq!(crossings.map(|told| told.len()), told, "{slope}");
+            assert_eq!(crossings.map(|crossings| crossings.len()), want, "{slope}");
             // A search without an answer uses up no pieces.
-            assert_eq!(isolator.pieces == MOST_PIECES, told.is_none(), "{slope}");
+            assert_eq!(isolator.pieces == MOST_PIECES, want.is_none(), "{slope}");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Real roots of polynomials of low degree inside an interval.
 //!
 //! Between two neighbouring roots of its derivative a polynomial is monotone, so it has at most one
-//! root there, and a sign change tells whether it has. Going down the derivatives therefore finds
-//! every crossing, with no closed formula to lose digits in and no case that fails. A root where
+//! root there, which a change of sign shows. Going down the derivatives therefore finds every
+//! crossing, with no closed formula that could lose digits and no case that fails. A root where
 //! the polynomial touches zero without changing sign is not a crossing and is not reported.
 
 /// Largest degree that [`roots`] takes.
@@ -16,15 +16,15 @@ pub struct Roots {
 }
 
 impl Roots {
-    /// A single one.
+    /// Returns a single root.
     #[must_use]
     pub fn one(value: f64) -> Self {
-        let mut own = Self::default();
-        own.push(value);
-        own
+        let mut roots = Self::default();
+        roots.push(value);
+        roots
     }
 
-    /// The roots as a slice.
+    /// Returns the roots as a slice.
     #[must_use]
     pub fn as_slice(&self) -> &[f64] {
         &self.values[..self.count]
@@ -38,7 +38,7 @@ impl Roots {
     }
 }
 
-/// The values of x in `from..=to` where `Σ coefficients[i]·xⁱ` changes sign, ascending.
+/// Returns the values of x in `from..=to` where `Σ coefficients[i]·xⁱ` changes sign, ascending.
 ///
 /// At most [`MAX_DEGREE`]` + 1` coefficients are read. An end of the interval counts when the
 /// polynomial is exactly zero there, with or without a sign change: roots on the border of two
@@ -75,7 +75,7 @@ pub fn roots(coefficients: &[f64], from: f64, to: f64) -> Roots {
                 found.push(right);
             }
         } else if (at_left < 0.0 && at_right > 0.0) || (at_left > 0.0 && at_right < 0.0) {
-            found.push(bracketed(
+            found.push(refine_root(
                 |x| (value(c, x), value(&derivative[..n - 1], x)),
                 left,
                 right,
@@ -88,21 +88,21 @@ pub fn roots(coefficients: &[f64], from: f64, to: f64) -> Roots {
     found
 }
 
-/// The polynomial's value (Horner).
+/// Computes a polynomial's value by Horner's rule.
 fn value(c: &[f64], x: f64) -> f64 {
     c.iter().rev().fold(0.0, |sum, &a| sum * x + a)
 }
 
-/// The root of a function (given with its derivative) that changes sign between `a` and `b`:
-/// Newton's steps, kept inside a bracket that shrinks, so it always converges.
+/// Finds the root between `a` and `b` of a function that changes sign there; `f` returns its value
+/// and derivative. Newton's steps are kept inside a bracket that shrinks, so they always converge.
 ///
 /// Stops when the bracket is narrower than `tolerance` or cannot shrink.
-pub fn bracketed(f: impl FnMut(f64) -> (f64, f64), a: f64, b: f64, tolerance: f64) -> f64 {
-    bracketed_from(f, [a, b], 0.5 * (a + b), tolerance)
+pub fn refine_root(f: impl FnMut(f64) -> (f64, f64), a: f64, b: f64, tolerance: f64) -> f64 {
+    refine_root_from(f, [a, b], 0.5 * (a + b), tolerance)
 }
 
-/// [`bracketed`] with a first guess between.
-pub fn bracketed_from(
+/// [`refine_root`] with a first guess between.
+pub fn refine_root_from(
     mut f: impl FnMut(f64) -> (f64, f64),
     [mut low, mut high]: [f64; 2],
     start: f64,

@@ -1,12 +1,13 @@
-//! Which pixels need more than one ray.
+//! Samples of pixels, and the test whether a pixel needs more than one.
 use glam::Vec3;
 
-/// What one ray saw.
+/// The result of one ray of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// The colour, each channel within 0 … 1.
     pub colour: Vec3,
-    /// What was hit and which lights reach it: differs across silhouettes and edges of shadows.
+    /// Key of the surface and of the lights that reach it: differs across silhouettes and edges of
+    /// shadows.
     pub key: u32,
     /// Distance of the hit; infinite for the background.
     pub depth: f32,
@@ -15,7 +16,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Black, far away: what stands where no sample was taken yet.
+    /// A black sample, far away, in the place of one that has not been taken yet.
     pub const BLANK: Self = Self {
         colour: Vec3::ZERO,
         key: 0,
@@ -24,7 +25,7 @@ impl Sample {
     };
 }
 
-/// A difference of this much of the full brightness is about where steps become visible.
+/// Difference of colours, as a part of full brightness, from which steps are visible, about.
 const VISIBLE: f32 = 4.0 / 255.0;
 
 /// Whether the pixels of two neighbouring samples need further rays between them.

@@ -1,6 +1,6 @@
 //! Cache of the first samples of a picture's pixels, so that none is traced twice.
 //!
-//! Which pixels get more rays depends on the samples around them ([`refine`](crate::refine)), so
+//! Whether a pixel gets more rays depends on the samples around it ([`refine`](crate::refine)), so
 //! the smooth pass of a tile needs those at its neighbours' edges; and the pass with one ray a
 //! pixel comes first. Without a cache all of these would be traced again. Cached samples have the
 //! bits of traced ones, as packets are always traced whole.
@@ -11,14 +11,15 @@ use crate::layout::{PACKET_SIZE, SQUARE};
 use crate::sample::Sample;
 use std::ops::Range;
 
-/// Packets across and down a square.
+/// Number of packets across a square.
 const COLUMNS: u32 = SQUARE / PACKET_SIZE[0];
+/// Number of packets down a square.
 const ROWS: u32 = SQUARE / PACKET_SIZE[1];
 
 /// First samples of packets traced so far.
 #[derive(Debug, Default)]
 pub struct SampleCache {
-    /// Pixels of the picture.
+    /// Size of the picture in pixels.
     size: [u32; 2],
     /// Squares from the picture's corner, row by row; `None` without samples.
     squares: Vec<Option<Box<Kept>>>,
@@ -31,15 +32,15 @@ pub struct SampleCache {
 pub(crate) struct Kept {
     /// Samples row by row.
     samples: Vec<Sample>,
-    /// For each row of packets a bit for each packet that is present.
+    /// Bits of the packets that are present, a number for each row of packets.
     known: [u16; ROWS as usize],
 }
 
 const _: () = assert!(COLUMNS == u16::BITS);
 
 impl SampleCache {
-    /// An empty cache for a picture of `size` pixels that keeps at most `room` squares; samples of
-    /// further squares are not kept.
+    /// Returns an empty cache for a picture of `size` pixels that keeps at most `room` squares;
+    /// samples of further squares are not kept.
     #[must_use]
     pub(crate) fn new(size: [u32; 2], room: usize) -> Self {
         let [across, down] = size.map(|n| n.div_ceil(SQUARE) as usize);
@@ -52,23 +53,24 @@ impl SampleCache {
         }
     }
 
-    /// Number of squares with samples.
+    /// Returns the number of squares with samples.
     #[must_use]
     pub fn squares(&self) -> usize {
         self.squares.iter().flatten().count()
     }
 
+    /// Returns the index of a square, given by its pixels.
     fn index(&self, square: Area) -> usize {
         let across = self.size[0].div_ceil(SQUARE) as usize;
         (square.top / SQUARE) as usize * across + (square.left / SQUARE) as usize
     }
 
-    /// Samples of a square, given by its pixels; `None` if there are none.
+    /// Returns the samples of a square, given by its pixels; `None` if there are none.
     pub(crate) fn square(&self, square: Area) -> Option<&Kept> {
         self.squares.get(self.index(square))?.as_deref()
     }
 
-    /// Size of its picture in pixels.
+    /// Returns the size of the picture in pixels.
     pub(crate) fn size(&self) -> [u32; 2] {
         self.size
     }
@@ -204,6 +206,7 @@ impl Kept {
     }
 }
 
+/// Returns the index of a pixel among those of a square.
 fn index(square: Area, x: u32, y: u32) -> usize {
     ((y - square.top) * SQUARE + (x - square.left)) as usize
 }
@@ -221,7 +224,7 @@ fn whole(pixels: Range<u32>, start: u32, end: u32, size: u32) -> Range<u32> {
     first..last.max(first)
 }
 
-/// Bits of some columns.
+/// Returns the bits of some columns.
 fn bits(columns: &Range<u32>) -> u16 {
     ((1_u32 << columns.end) - (1 << columns.start)) as u16
 }

@@ -18,10 +18,10 @@ use field::Real;
 use glam::Vec3;
 use wide::f32x8;
 
-/// Rays a block apart hit so far from each other that a beam from all their hits to a light would
-/// be wide all along: only hits within this part of the packet's width share one. Measured: the
-/// coarse pass takes 0.6 of the time that it took with 1 for hermite-crab and coral-crab, 0.8 for
-/// generators; 1.1 for shell-3.
+/// Part of a packet's width within which hits share a beam to a light in the coarse pass: a beam
+/// from all hits of rays a block apart would be wide all along. Measured: the coarse pass takes 0.6
+/// of the time that it took with 1 for hermite-crab and coral-crab, 0.8 for generators; 1.1 for
+/// shell-3.
 const SPARSE: f64 = 0.25;
 
 /// A scene seen by a camera.
@@ -33,15 +33,16 @@ pub(crate) struct Sampler {
     /// Whether lights have a size or there is a sky: all pixels that see a surface need many
     /// samples.
     pub soft_light: bool,
-    /// Samples of a pixel where there is contrast: this many across and down.
+    /// Number of samples across and down a pixel that needs more than one.
     pub samples: u32,
-    /// The contrast, a channel each, from which a pixel gets them.
+    /// Contrast with a neighbour, by channel, from which a pixel needs more samples.
     pub contrast: Vec3,
 }
 
 impl Sampler {
-    /// One sample at the centre of each cell of an area, in units of cells of `scale` pixels. The
-    /// cache, which is of single pixels, is asked first.
+    /// Takes one sample at the centre of each cell of an area, in units of cells of `scale` pixels.
+    /// Those of the cache, which is of single pixels, are not taken again. `None` if `stop`
+    /// returned true.
     pub fn sample(
         &self,
         area: Area,
@@ -65,14 +66,13 @@ impl Sampler {
             }
             let mut square = None;
             for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
-                let cell = |lane: usize| {
+                let pixels: [(u32, u32); PACKET] = core::array::from_fn(|lane| {
                     let lane = lane as u32;
                     (
                         block.left + i * PACKET_SIZE[0] + lane % PACKET_SIZE[0],
                         block.top + j * PACKET_SIZE[1] + lane / PACKET_SIZE[0],
                     )
-                };
-                let pixels: [(u32, u32); PACKET] = core::array::from_fn(cell);
+                });
                 let wanted = pixels.iter().filter(|&&(x, y)| area.holds(x, y)).count();
                 if wanted == 0 || known.is_some_and(|known| known.tell([i, j], block, &mut samples))
                 {
@@ -81,27 +81,23 @@ impl Sampler {
                 stats.primary_rays += wanted as u64;
                 let square =
                     square.get_or_insert_with(|| self.square(block.times(scale), [columns, rows]));
-                // Places in pixels from the square's middle.
-                let middle = |c: f64| (c - 0.5 * f64::from(side)) * f64::from(scale);
-                let [left, top] = [i * PACKET_SIZE[0], j * PACKET_SIZE[1]].map(f64::from);
-                let [wide, high] = PACKET_SIZE.map(|n| 0.5 * f64::from(n));
-                let fan = |lens: &Lens| {
-                    let x = |lane: usize| left + (lane % PACKET_SIZE[0] as usize) as f64 + 0.5;
-                    let y = |lane: usize| top + (lane / PACKET_SIZE[0] as usize) as f64 + 0.5;
-                    let places = [
-                        f32x8::from_lanes(|lane| middle(x(lane))),
-                        f32x8::from_lanes(|lane| middle(y(lane))),
-                    ];
-                    lens.fan(places, [middle(left + wide), middle(top + high)])
-                };
                 let exact = || {
                     pixels.map(|(x, y)| {
-                        let middle = |c: u32| (f64::from(c) + 0.5) * f64::from(scale);
-                        self.view.ray(middle(x), middle(y))
+                        let [x, y] = [x, y].map(|c| (f64::from(c) + 0.5) * f64::from(scale));
+                        self.view.ray(x, y)
                     })
                 };
                 let rays = PacketRays {
-                    fan: &fan,
+                    fan: &|lens: &Lens| {
+                        // Pixels from the square's middle.
+                        let place = |c: f64| (c - 0.5 * f64::from(side)) * f64::from(scale);
+                        let [left, top] = [i * PACKET_SIZE[0], j * PACKET_SIZE[1]].map(f64::from);
+                        let [wide, high] = PACKET_SIZE.map(|n| 0.5 * f64::from(n));
+                        let width = PACKET_SIZE[0] as usize;
+                        let x = f32x8::from_lanes(|lane| place(left + (lane % width) as f64 + 0.5));
+                        let y = f32x8::from_lanes(|lane| place(top + (lane / width) as f64 + 0.5));
+                        lens.fan([x, y], [place(left + wide), place(top + high)])
+                    },
                     exact: &exact,
                 };
                 self.world
@@ -112,7 +108,7 @@ impl Sampler {
                     if scale > 1 { SPARSE * across } else { across }
                 };
                 if let Some(rich) = self.needs_more_light(&seen) {
-                    if !seen.something() {
+                    if !seen.has_hit() {
                         seen.rays = exact();
                     }
                     let across = across(&seen);
@@ -120,13 +116,13 @@ impl Sampler {
                     if rich.is_direct {
                         self.world.shine_in_air(rich, seen, across, work, stats);
                     } else {
-                        let draw = |_, _| Draw::Middle;
-                        self.world.illuminate(rich, seen, &draw, work, stats);
+                        self.world
+                            .illuminate(rich, seen, &|_, _| Draw::Middle, work, stats);
                     }
                     for ((x, y), sample) in pixels.into_iter().zip(&work.samples[0]) {
                         samples.set(x, y, *sample);
                     }
-                } else if seen.something() {
+                } else if seen.has_hit() {
                     let across = across(&seen);
                     let seen = core::slice::from_ref(&seen);
                     self.world.shine(seen, across, work, stats);
@@ -150,18 +146,18 @@ impl Sampler {
         Some(samples)
     }
 
-    /// What a scene has beyond Phong's model, where a packet sees any of it.
+    /// Returns the scene's data beyond Phong's model, if a packet sees any of it.
     pub fn needs_more_light(&self, seen: &Seen) -> Option<&Rich> {
         let rich = self.world.rich.as_ref();
-        rich.filter(|rich| seen.something() || !rich.air.is_plain())
+        rich.filter(|rich| seen.has_hit() || !rich.air.is_plain())
     }
 
-    /// The sample of a ray that meets nothing, where all such rays see the same.
+    /// Returns the sample of a ray that meets nothing, if all such rays see the same.
     pub fn nothing(&self) -> Sample {
         Sample {
             colour: match &self.world.rich {
-                Some(rich) => shade::clamped(rich.toned(self.world.background)),
-                None => shade::clamped(self.world.background),
+                Some(rich) => shade::clamp(rich.tone(self.world.background)),
+                None => shade::clamp(self.world.background),
             },
             key: 0,
             depth: f32::INFINITY,
@@ -169,7 +165,7 @@ impl Sampler {
         }
     }
 
-    /// The surroundings of a square of pixels, divided into columns and rows (powers of two) of
+    /// Returns the data of a square of pixels, divided into columns and rows (powers of two) of
     /// packets.
     pub fn square(&self, area: Area, packets: [u32; 2]) -> Square<'_> {
         Square::new(&self.world, &self.view, area, packets)

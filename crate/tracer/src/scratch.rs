@@ -14,7 +14,7 @@ pub struct Scratch {
     /// Allocations of slabs that are no longer needed.
     pub(crate) spaces: Vec<Space>,
     pub(crate) active: ActivePrimitives,
-    pub(crate) flesh: SurfaceSamples,
+    pub(crate) samples: SurfaceSamples,
     pub(crate) quick: Quick,
     pub(crate) far: FarWork,
     /// Evaluations of one primitive's field at one point, so far.

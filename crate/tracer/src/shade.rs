@@ -17,7 +17,7 @@ pub struct Finish {
 }
 
 impl Finish {
-    /// A finish of the scene, made ready.
+    /// Prepares a finish of the scene.
     #[must_use]
     pub fn of(finish: &scene::Finish) -> Self {
         Self {
@@ -28,7 +28,7 @@ impl Finish {
         }
     }
 
-    /// The part of a material that Phong's model needs.
+    /// Returns the part of a material that Phong's model needs.
     #[must_use]
     pub fn of_surface(surface: &Surface) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Finish {
         }
     }
 
-    /// A surface that only scatters light.
+    /// Returns the finish of a surface that only scatters light.
     #[must_use]
     pub fn dull(diffuse: Vec3) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl Finish {
         }
     }
 
-    /// Share of light that is scattered evenly.
+    /// Returns the share of light that is scattered evenly.
     #[must_use]
     pub fn diffuse(&self) -> Vec3 {
         self.diffuse
@@ -62,16 +62,16 @@ impl Finish {
         self.shine += other.shine * share;
     }
 
-    /// The light given off whatever the sources do.
+    /// Returns the ambient light, which does not depend on sources.
     #[must_use]
     pub fn glow(&self) -> Vec3 {
         self.ambient
     }
 
-    /// The light that a source (unit vector `towards` it) sends to the eye (unit vector `view`
-    /// from the eye) by way of a surface with unit `normal`.
+    /// Returns the light of a source (unit vector `towards` it) that a surface with unit `normal`
+    /// sends to the eye (unit vector `view` from the eye).
     #[must_use]
-    pub fn lit(&self, colour: Vec3, normal: Vec3, towards: Vec3, view: Vec3) -> Vec3 {
+    pub fn shade(&self, colour: Vec3, normal: Vec3, towards: Vec3, view: Vec3) -> Vec3 {
         let cosine = normal.dot(towards);
         if cosine.is_nan() || cosine <= 0.0 {
             return Vec3::ZERO;
@@ -88,7 +88,7 @@ impl Finish {
     }
 }
 
-/// The direction and distance from a point to a light source.
+/// Returns the direction and distance from a point to a light source.
 #[must_use]
 pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
     match light.kind {
@@ -102,11 +102,11 @@ pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
     }
 }
 
-/// A colour for the screen: gamma-corrected (`value^(1/gamma)`), 8 bits a channel.
+/// Converts a colour for the screen: gamma-corrected (`value^(1/gamma)`), 8 bits a channel.
 #[must_use]
 pub fn bytes(colour: Vec3, gamma: f32) -> [u8; 3] {
     let power = if gamma > 0.0 { 1.0 / gamma } else { 1.0 };
-    let mut colour = clamped(colour).to_array();
+    let mut colour = clamp(colour).to_array();
     if power != 1.0 {
         colour = colour.map(|v| libm::powf(v, power));
     }
@@ -114,10 +114,10 @@ pub fn bytes(colour: Vec3, gamma: f32) -> [u8; 3] {
     [red, green, blue]
 }
 
-/// Each channel between 0 and 1; 0 for what is no number. By lanes: as wasm, a choice between two
-/// single numbers is a jump, and these cannot be foreseen.
+/// Clamps each channel between 0 and 1; NaN becomes 0. By lanes: in wasm a choice between two
+/// single numbers is a branch, and these cannot be predicted.
 #[must_use]
-pub fn clamped(colour: Vec3) -> Vec3 {
+pub fn clamp(colour: Vec3) -> Vec3 {
     let [zero, one] = [0.0, 1.0].map(f32x4::splat);
     let colour = f32x4::new([colour.x, colour.y, colour.z, 0.0]);
     let colour = zero.simd_lt(colour).select(colour, zero);
@@ -137,7 +137,7 @@ mod tests {
             ([-0.0, -1.0, 2.0], [0.0, 0.0, 1.0]),
             ([-far, far, none], [0.0, 1.0, 0.0]),
         ] {
-            assert_eq!(clamped(Vec3::from(colour)), Vec3::from(want), "{colour:?}");
+            assert_eq!(clamp(Vec3::from(colour)), Vec3::from(want), "{colour:?}");
         }
     }
 

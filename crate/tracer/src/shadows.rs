@@ -1,35 +1,34 @@
-//! Light and shadow on what packets of rays hit.
+//! Light and shadow on the hits of packets of rays.
 //!
-//! The hits of several packets are looked at together, so that their rays to a light can share what
-//! is known of the way: the rays from one patch of the surface have one list of lumps, or the slabs
-//! of one beam.
+//! The hits of several packets are looked at together, so that their rays to a light can share
+//! data: the rays from one patch of the surface have one list of blobs, or the slabs of one beam.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::layout::PACKET;
 use crate::meet::Seen;
 use crate::nearby::Nearby;
-use crate::quick::{Asked, Looked, Rays};
+use crate::quick::{Asked, Rays};
 use crate::ray::Ray;
 use crate::sample::Sample;
 use crate::scratch::Scratch;
-use crate::shade::{clamped, towards};
+use crate::shade::{clamp, towards};
 use crate::slabs::{Slabs, Space};
 use crate::stats::Stats;
-use crate::surface_samples::SurfaceSamples;
 use crate::walk::{Bundle, Quest};
 use crate::workspace::{Shadow, State, Workspace};
 use crate::world::World;
 use glam::{DVec3, Vec3};
 use scene::LightKind;
 
-/// Hits further apart than this times the width of what is seen together are on different patches.
+/// Largest distance of a hit from a patch's first one, over the width of the rays that are seen
+/// together.
 const PATCH: f64 = 3.0;
 
 impl World {
-    /// What the rays of some packets see. Their hits may share beams to the lights: they must be
-    /// the same packets whatever the tiles. `across` is how wide they are together, per unit of
-    /// distance, or less, if only nearer hits are to share. The samples are left in the working
-    /// space.
+    /// Takes samples with the rays of some packets, and leaves them in the working space. Their
+    /// hits may share beams to the lights: they must be the same packets whatever the tiles.
+    /// `across` is their width together, per unit of distance, or less, if only nearer hits are to
+    /// share.
     pub fn shine(&self, seen: &[Seen], across: f64, work: &mut Workspace, stats: &mut Stats) {
         let mut samples = core::mem::take(&mut work.samples);
         samples.clear();
@@ -46,7 +45,7 @@ impl World {
         }));
         let mut shadows = core::mem::take(&mut work.shadows);
         for (which, light) in self.lights.iter().enumerate() {
-            // From a distant light it is the same everywhere.
+            // The direction to a distant light is the same everywhere.
             let same = towards(light, DVec3::ZERO);
             let distant = matches!(light.kind, LightKind::Distant { .. });
             shadows.clear();
@@ -86,7 +85,7 @@ impl World {
                     continue;
                 };
                 let view = seen[k].rays[i].direction;
-                sample.colour += hit.finish.lit(
+                sample.colour += hit.finish.shade(
                     Vec3::from(light.colour) * light.share(hit.position) as f32,
                     hit.facing(view).as_vec3(),
                     shadow.ray.direction.as_vec3(),
@@ -97,12 +96,12 @@ impl World {
         }
         work.shadows = shadows;
         for sample in samples.iter_mut().flatten() {
-            sample.colour = clamped(sample.colour);
+            sample.colour = clamp(sample.colour);
         }
         work.samples = samples;
     }
 
-    /// Finds out which rays to a light have something between them and the light.
+    /// Decides which rays to a light meet a surface before it.
     pub fn look_for_shadows(
         &self,
         shadows: &mut [Shadow],
@@ -128,8 +127,8 @@ impl World {
         }
     }
 
-    /// Finds out which rays, in any directions, have something between them and their ends: those
-    /// that run together share a beam.
+    /// Decides which rays, in any directions, meet a surface before their ends: those that run
+    /// together share a beam.
     pub fn look_for_shadows_apart(
         &self,
         shadows: &mut [Shadow],
@@ -215,26 +214,27 @@ impl World {
         let furthest = patch.iter().map(|shadow| shadow.limit).fold(0.0, f64::max);
         let mut near = core::mem::take(&mut work.around);
         let mut general = core::mem::take(&mut work.general);
-        let lumps = self.general_from_a_patch(&beam, furthest, &mut near, &mut general);
+        let near_blobs = self.general_from_a_patch(&beam, furthest, &mut near, &mut general);
         let mut slabs: Vec<(u32, Option<(Slabs<'_>, f64)>)> = Vec::new();
         for (number, packet) in patch.chunks_mut(PACKET).enumerate() {
             work.begin();
             let mut alive = (1u32 << packet.len()) - 1;
             // Lanes not in use repeat the first ray.
-            let lane = |i: usize| if i < packet.len() { i } else { 0 };
-            let rays: [Ray; PACKET] = core::array::from_fn(|i| packet[lane(i)].ray);
-            let limits: [f64; PACKET] = core::array::from_fn(|i| packet[lane(i)].limit);
+            let lanes: [usize; PACKET] =
+                core::array::from_fn(|i| if i < packet.len() { i } else { 0 });
+            let rays = lanes.map(|i| packet[i].ray);
+            let limits = lanes.map(|i| packet[i].limit);
             let scratch = &mut work.scratch;
             let mut bodies: Vec<u32> = general.iter().map(|&(_, body)| body).collect();
             let mut dark = 0;
-            if lumps {
+            if near_blobs {
                 let asked = Asked {
                     limits: &limits,
                     alive,
                     quest: Quest::Entry,
                 };
                 let left;
-                (dark, left) = self.darkened_by_lumps(&near, &bodies, &rays, asked, scratch);
+                (dark, left) = self.enter_blobs(&near, &bodies, &rays, asked, scratch);
                 bodies.extend(left);
                 alive &= !dark;
             }
@@ -286,8 +286,8 @@ impl World {
         work.general = general;
     }
 
-    /// Lists the lumps near the rays of a patch, and the bodies that take the general way; whether
-    /// any body is left to the lumps.
+    /// Lists the blobs near the rays of a patch, and the bodies that take the general way. Returns
+    /// whether there may be other bodies, which are all blobs.
     pub fn general_from_a_patch(
         &self,
         beam: &Beam,
@@ -312,7 +312,7 @@ impl World {
         !one || general.is_empty()
     }
 
-    /// The slabs of a body along the rays of a patch.
+    /// Returns the slabs of a body along the rays of a patch.
     fn slabs_from_a_patch<'a>(
         &'a self,
         body: u32,
@@ -322,22 +322,27 @@ impl World {
         spaces: &mut Vec<Space>,
     ) -> Option<(Slabs<'a>, f64)> {
         let levels = starts.len().div_ceil(PACKET).next_power_of_two().ilog2();
-        let divided = |base: f64| {
-            Beams::divided(levels, move |number| {
-                let path = number + 1;
-                let count = PACKET << (levels - path.ilog2());
-                let first = count * (path - (1 << path.ilog2()));
-                let part = first..starts.len().min(first + count);
-                let part = starts.get(part).and_then(Beam::around);
-                part.unwrap_or(beam).from(base)
-            })
-        };
-        self.soft.slabs(body, beam, divided, furthest, spaces)
+        self.soft.slabs(
+            body,
+            beam,
+            |base| {
+                Beams::tree(levels, move |number| {
+                    let path = number + 1;
+                    let count = PACKET << (levels - path.ilog2());
+                    let first = count * (path - (1 << path.ilog2()));
+                    let part = first..starts.len().min(first + count);
+                    let part = starts.get(part).and_then(Beam::around);
+                    part.unwrap_or(beam).from(base)
+                })
+            },
+            furthest,
+            spaces,
+        )
     }
 
-    /// The rays of a packet that enter the surface of a body near which they meet nothing but
-    /// lumps, a bit each, and the bodies for which this is not the way to tell.
-    fn darkened_by_lumps(
+    /// Returns the rays of a packet that enter the surface of a body near which they meet nothing
+    /// but blobs, a bit each, and the bodies whose march gave up.
+    fn enter_blobs(
         &self,
         near: &Nearby,
         general: &[u32],
@@ -359,19 +364,24 @@ impl World {
             };
         }
         let (limits, mut dark) = (*asked.limits, 0);
-        let tell = |looked: Looked, _: &SurfaceSamples| {
-            *evaluations += looked.evaluations;
-            dark |= looked.met;
-            (limits, asked.alive & !dark)
-        };
-        let left = self
-            .soft
-            .quick_each(near, general, &lanes, &|| *rays, asked, quick, tell);
+        let left = self.soft.quick_each(
+            near,
+            general,
+            &lanes,
+            &|| *rays,
+            asked,
+            quick,
+            |looked, _| {
+                *evaluations += looked.evaluations;
+                dark |= looked.met;
+                (limits, asked.alive & !dark)
+            },
+        );
         (dark, left)
     }
 }
 
-/// Notes which rays of a packet are dark, and what finding out cost.
+/// Sets the states of the rays of a packet, given the dark ones, a bit each, and their costs.
 fn darken(packet: &mut [&mut Shadow], dark: u32, work: &Workspace, stats: &mut Stats) {
     stats.field_evaluations += work.scratch.evaluations;
     let costs = work.costs(packet.len());

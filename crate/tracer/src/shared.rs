@@ -23,7 +23,7 @@ pub struct Cell {
     axes: [DVec3; 3],
     /// Extent of the box along each axis.
     size: [f64; 3],
-    /// Each axis divided by the extent along it.
+    /// Axes divided by the extents along them.
     scaled: [DVec3; 3],
     /// Largest change of a ray's distance from the axis over the piece.
     travel: f64,
@@ -33,7 +33,7 @@ pub struct Cell {
 const THINNEST: f64 = 1.0 / 64.0;
 
 impl Cell {
-    /// The box around all rays of a beam between two parameters.
+    /// Returns the box around all rays of a beam between two parameters.
     #[must_use]
     pub fn around(beam: &Beam, from: f64, to: f64) -> Self {
         // Rays lag behind the axis, or are ahead of it, by a little.
@@ -53,14 +53,14 @@ impl Cell {
         }
     }
 
-    /// The radius of the ball around the box.
+    /// Returns the radius of the ball around the box.
     #[must_use]
     pub fn radius(&self) -> f64 {
         0.5 * DVec3::from_array(self.size).length() * (1.0 + 1e-9)
     }
 
-    /// Factor from a bound on the fourth derivative along any line in the box to the error of the
-    /// cubic Hermite span of the interpolant along a ray.
+    /// Returns the factor from a bound on the fourth derivative along any line in the box to the
+    /// error of the cubic Hermite span of the interpolant along a ray.
     ///
     /// With A = 1 − L and C = 1 − H the errors of linear and cubic interpolation along an axis, the
     /// interpolant's error is `ΣC₁L₂L₃ + ΣA₁A₂L₃ + A₁A₂A₃`, where |C| ≤ h⁴/384, |A| ≤ h²/8 times a
@@ -78,14 +78,14 @@ impl Cell {
         inside + along
     }
 
-    /// The [`CORNERS`] corners; bits 0, 1, 2 of the lane's number are the steps along the axes.
+    /// Returns the [`CORNERS`] corners; bits 0, 1, 2 of the lane's number are the steps along the
+    /// axes.
     fn corners(&self) -> [f32x8; 3] {
-        let place = |lane: usize| {
+        let places: [DVec3; 8] = core::array::from_fn(|lane| {
             (0..3).fold(self.corner, |p, i| {
                 p + self.axes[i] * (self.size[i] * (lane >> i & 1) as f64)
             })
-        };
-        let places: [DVec3; 8] = core::array::from_fn(place);
+        });
         core::array::from_fn(|k| f32x8::new(places.map(|p| p[k] as f32)))
     }
 
@@ -119,9 +119,9 @@ impl Cell {
 pub struct Shared {
     /// The edges along x, at y, z = 00, 10, 01, 11.
     rows: [Row; 4],
-    /// For the two faces across z: the sum of the changes of [`Row::y`] with x …
+    /// Sums of the changes with x of [`Row::y`], for the two faces across z.
     bends: [f32; 2],
-    /// … and the change with x of the difference of [`Row::z`] between the rows.
+    /// Changes with x of the difference of [`Row::z`] between the rows, for the two faces across z.
     twists: [f32; 2],
     /// Upper bound in the box.
     top: f32,
@@ -130,12 +130,12 @@ pub struct Shared {
 /// Coefficients along an edge.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
-    /// The value, as a polynomial.
+    /// Coefficients of the value, a polynomial.
     value: [f32; 4],
     /// Slope along y less that of the straight line, times the edge's length: at the start, and its
     /// change.
     y: [f32; 2],
-    /// The same for the slope along z.
+    /// Slope along z less that of the straight line, likewise.
     z: [f32; 2],
 }
 
@@ -158,7 +158,8 @@ const PARTIAL_SUM: usize = 32;
 pub struct Sums<'c> {
     cell: &'c Cell,
     corners: [f32x8; 3],
-    /// For each finish: the sum so far, the present partial sum, and its number of terms.
+    /// Sums of the finishes: the finish, the sum so far, the present partial sum and its number of
+    /// terms.
     sums: Vec<(u32, Corners, Corners, usize)>,
     last: usize,
 }
@@ -218,15 +219,15 @@ impl<'c> Sums<'c> {
 }
 
 impl Shared {
+    /// Returns the interpolant of a sum at a cell's corners.
     fn new(cell: &Cell, sum: &Corners) -> Self {
         let [values, x, y, z] = sum.0.map(f32x8::to_array);
-        let gradient =
-            |lane: usize| DVec3::new(f64::from(x[lane]), f64::from(y[lane]), f64::from(z[lane]));
         // Slopes along each axis at the corners less those of the straight edges, times the edges'
         // lengths.
         let excess: [[f32; 8]; 3] = core::array::from_fn(|axis| {
             core::array::from_fn(|lane| {
-                let slope = gradient(lane).dot(cell.axes[axis]) * cell.size[axis];
+                let gradient = DVec3::from_array([x, y, z].map(|g| f64::from(g[lane])));
+                let slope = gradient.dot(cell.axes[axis]) * cell.size[axis];
                 let bit = 1 << axis;
                 let straight = f64::from(values[lane | bit]) - f64::from(values[lane & !bit]);
                 (slope - straight) as f32
@@ -237,11 +238,10 @@ impl Shared {
             let numbers = nothing.simd_lt(all).select(all, nothing);
             -least(-numbers)
         };
-        let largest = |all: &[f32; 8]| greatest(f32x8::new(*all).abs(), f32x8::ZERO);
         let value = greatest(sum.0[0], f32x8::splat(f32::NEG_INFINITY));
+        let bends = excess.map(|all| greatest(f32x8::new(all).abs(), f32x8::ZERO));
         // |x(1−x)²| + |x²(1−x)| ≤ ¼.
-        let bends: f32 = excess.iter().map(largest).sum();
-        let bends = 0.25 * bends;
+        let bends = 0.25 * bends.iter().sum::<f32>();
         let top = value + bends + 1e-6 * (value.abs() + bends);
         let rows: [Row; 4] = core::array::from_fn(|i| {
             let ends = |of: &[f32; 8]| (of[2 * i], of[2 * i + 1]);
@@ -262,13 +262,13 @@ impl Shared {
         }
     }
 
-    /// Upper bound on the interpolant in the box.
+    /// Returns an upper bound on the interpolant in the box.
     #[must_use]
     pub fn top(&self) -> f64 {
         f64::from(self.top)
     }
 
-    /// Value and gradient at positions in the box, both in its coordinates.
+    /// Returns value and gradient at positions in the box, both in its coordinates.
     #[inline(always)]
     #[must_use]
     pub fn jet<L: Lanes>(&self, [x, y, z]: [L; 3]) -> (L, [L; 3]) {
@@ -315,9 +315,9 @@ impl Shared {
 #[derive(Clone, Copy)]
 struct Bend<L> {
     x: L,
-    /// x(1−x) …
+    /// x(1−x).
     bulge: L,
-    /// … and its derivative.
+    /// 1−2x, the derivative of x(1−x).
     tilt: L,
 }
 
@@ -332,14 +332,14 @@ impl<L: Lanes> Bend<L> {
         }
     }
 
-    /// The cubic with the values f and g at the ends and the excess slopes a and b:
-    /// `f + (g−f)x + x(1−x)(a − (a+b)x)`, given a+b.
+    /// Returns the value of the cubic with the values f and g at the ends and the excess slopes a
+    /// and b, `f + (g−f)x + x(1−x)(a − (a+b)x)`, given a and a+b.
     #[inline(always)]
     fn value(&self, f: L, g: L, a: L, both: L) -> L {
         f + (g - f) * self.x + (a - both * self.x) * self.bulge
     }
 
-    /// That cubic and its derivative.
+    /// Returns value and derivative of the cubic of [`Bend::value`].
     #[inline(always)]
     fn jet(&self, f: L, g: L, a: L, both: L) -> (L, L) {
         let rise = g - f;
@@ -361,8 +361,7 @@ mod tests {
     use trials::{Random, count};
 
     fn primitive(kernel: Kernel, random: &mut Random) -> Primitive {
-        let mut place = || random.vector(1.0);
-        let (a, b) = (place(), place());
+        let [a, b] = core::array::from_fn(|_| random.vector(1.0));
         let skeleton = if random.unit() < 0.5 {
             Skeleton::Point { center: a }
         } else {
@@ -392,8 +391,10 @@ mod tests {
         let beam = Beam::around(&[axis]).expect("a beam");
         for _ in 0..count(100) {
             let cell = Cell::around(&beam, 0.0, 1.0);
-            let mut eight = || f32x8::new(core::array::from_fn(|_| (random.unit() - 0.5) as f32));
-            let sum = Corners([eight(), eight(), eight(), eight()]);
+            let sum = Corners(
+                [(); 4]
+                    .map(|()| f32x8::new(core::array::from_fn(|_| (random.unit() - 0.5) as f32))),
+            );
             let shared = Shared::new(&cell, &sum);
             let value = |p: DVec3| shared.jet(p.to_array()).0;
             let place = random.vector(0.5) + 0.5;
@@ -416,8 +417,8 @@ mod tests {
         }
     }
 
-    /// Along rays of a beam, the error of the cubic between the interpolant's ends is within its
-    /// bound.
+    /// The error of the cubic between the interpolant's ends is within its bound along rays of a
+    /// beam.
     #[test]
     fn no_ray_is_further_off_than_the_bound() {
         let mut random = Random::new(3);
@@ -425,12 +426,11 @@ mod tests {
         for case in 0..count(400) {
             let kernel = [Kernel::Cauchy, Kernel::Gauss, Kernel::Squared][case % 3];
             let primitive = primitive(kernel, &mut random);
-            let mut unit = || random.direction();
             let axis = Ray {
-                origin: unit() * 2.0,
-                direction: unit(),
+                origin: random.direction() * 2.0,
+                direction: random.direction(),
             };
-            let (offset, turn) = (unit(), unit());
+            let (offset, turn) = (random.direction(), random.direction());
             let (radius, spread) = (0.05 * random.unit(), 0.05 * random.unit() * random.unit());
             let direction = (axis.direction + turn * spread * 0.9).normalize();
             let ray = Ray {

@@ -30,12 +30,12 @@ use std::collections::BTreeMap;
 /// Accuracy of spans.
 #[derive(Clone, Copy, Debug)]
 pub struct Precision {
-    /// Largest error of the sum of spans at first …
+    /// Largest error of the sum of spans at first.
     pub first: f64,
-    /// … and in a slab whose crossings are decided.
+    /// Largest error of the sum of spans in a slab whose crossings are decided.
     pub last: f64,
-    /// Largest additional error of all shared interpolants, which are never refined. 0: no shared
-    /// interpolants and no groups.
+    /// Largest additional error of all shared interpolants, which are never refined. 0 stands for
+    /// no shared interpolants and no groups.
     pub shared: f64,
     /// Rounding of coordinates, and of values relative to a primitive's field.
     pub rounding: f64,
@@ -44,7 +44,7 @@ pub struct Precision {
 }
 
 impl Precision {
-    /// Precision of pictures: near the surface the field changes by about T over a radius, so the
+    /// Precision of pictures. Near the surface the field changes by about T over a radius, so the
     /// surface of the spans is within about 1/2000 of a radius of the true one.
     pub const PICTURE: Self = Self {
         first: 3.2e-2,
@@ -102,14 +102,14 @@ pub struct Space {
 pub struct Terms<'a> {
     /// The primitives.
     pub primitives: &'a [Primitive],
-    /// Bounds of each.
+    /// Bounds of the primitives.
     pub bounds: &'a [Bound],
-    /// Finish of each.
+    /// Finishes of the primitives.
     pub finishes: &'a [u32],
-    /// Kinks of their profiles.
+    /// Kinks of the primitives' profiles.
     pub kinks: &'a Kinks,
-    /// The bounded primitives in groups; a beam's list then consists of groups. `None`: of single
-    /// primitives.
+    /// The bounded primitives in groups, if a beam's list is to consist of groups; else it consists
+    /// of single primitives.
     pub clusters: Option<&'a Clusters>,
     /// Field at which a primitive is left out.
     pub left_out: f64,
@@ -118,7 +118,7 @@ pub struct Terms<'a> {
 /// Interpolants of the primitives that are far from a slab.
 pub struct Afar {
     blocks: Vec<(Cell, Shared)>,
-    /// Bound on their error, together with that of the terms left out.
+    /// Bound on the interpolants' error, together with that of the terms left out.
     off: f64,
 }
 
@@ -131,7 +131,7 @@ impl Afar {
         })
     }
 
-    /// Value and slope along a ray at t.
+    /// Returns value and slope along a ray at t.
     fn node(&self, ray: &Ray, t: f64) -> Node<f64> {
         let place = ray.at(t).to_array();
         let direction = ray.direction.to_array();
@@ -151,11 +151,11 @@ const GROUP: u32 = 1 << 31;
 
 /// Interpolant of a slab's shared or joined primitives.
 pub struct Interpolant {
-    /// Box in which it holds.
+    /// Box in which the interpolant holds.
     pub cell: Cell,
-    /// Sum over all of them.
+    /// Interpolant of all primitives.
     pub total: Shared,
-    /// Sum over the primitives of each finish.
+    /// Interpolants of the primitives of each finish.
     pub of_each: Vec<(u32, Shared)>,
     /// Upper bound on the total.
     pub top: f64,
@@ -166,20 +166,21 @@ pub struct Interpolant {
 struct Candidate {
     id: u32,
     magnitude: f64,
-    /// Error bound of its span …
+    /// Error bound of its span.
     span: f64,
-    /// … and of its part of a shared interpolant.
+    /// Error bound of its part of a shared interpolant.
     shared: f64,
     /// Distance from the slab, or less.
     distance: f64,
     adds: bool,
     carves: bool,
-    /// Whether it has a kink here, so that spans have no error bound.
+    /// Whether it has a kink in the slab, so that spans have no error bound.
     kinked: bool,
     /// The slab's list that it goes to.
     fate: Fate,
 }
 
+/// A list of a slab, in the order in which lists are stored.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Fate {
     Shared,
@@ -189,25 +190,25 @@ enum Fate {
     Dropped,
 }
 
-/// The two kinds of common interpolants of a slab.
+/// Kind of a common interpolant of a slab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
-    /// The one that is never refined.
+    /// Interpolant that is never refined.
     Shared,
-    /// The one in place of spans.
+    /// Interpolant in place of spans.
     Joined,
 }
 
 /// Children of a slab.
 #[derive(Clone, Copy, Debug)]
 pub enum Parts {
-    /// Its two halves, front to back.
+    /// Numbers of the slab's two halves, front to back.
     Halves(u32, u32),
-    /// The same interval of a narrower beam.
+    /// Number of the slab over the same interval of a narrower beam.
     Narrower(u32),
 }
 
-/// One slab of a beam.
+/// A part of a beam between two parameters, with lists of its primitives.
 #[derive(Clone, Debug)]
 pub struct Slab {
     /// Ray parameter of the near end.
@@ -224,25 +225,26 @@ pub struct Slab {
     pub pending: Range<u32>,
     /// List of the dropped entries, whose fields count as error.
     dropped: Range<u32>,
-    /// Upper bound on the sum of this slab's terms (shared, joined, resolved and pending) …
+    /// Upper bound on the sum of this slab's terms (shared, joined, resolved and pending).
     pub above: f64,
-    /// … and minus a lower bound.
+    /// Minus a lower bound on the sum of this slab's terms.
     pub below: f64,
-    /// Upper bound on the sum of the pending terms …
+    /// Upper bound on the sum of the pending terms.
     pub pending_above: f64,
-    /// … and minus a lower bound.
+    /// Minus a lower bound on the sum of the pending terms.
     pub pending_below: f64,
     /// Bound on the error of all spans over this slab: its own, and those of the slabs that contain
     /// it, with rounding.
     pub error: f64,
     /// Parts of `error`.
     pub spent: Spent,
-    /// Bound on the rounding error of its shared interpolant.
+    /// Bound on the rounding error of the shared interpolant.
     noise_of_shared: f64,
     /// Largest error allowed for spans.
     budget: f64,
     parent: u32,
-    /// Whether it starts again: what its parents resolved is included in its own lists.
+    /// Whether the slab starts again: its own lists include the primitives that its parents
+    /// resolved.
     anew: bool,
     /// Whether all pending primitives have kinks here.
     pub kinked: bool,
@@ -250,12 +252,13 @@ pub struct Slab {
     blurring: bool,
     /// Whether a pending primitive's pole is so near that bounds say nothing.
     polar: bool,
-    /// Shared and joined interpolant. [`NONE`]: not yet made.
+    /// Numbers of the shared and the joined interpolant; [`NONE`] until one is made.
     blocks: [u32; 2],
     beam: usize,
-    /// Its halves, or the same interval of the beam's quarters. 0: not yet made.
+    /// Numbers of the slab's halves, or of slabs over its interval of the beam's quarters; 0 until
+    /// one is made.
     children: [u32; 4],
-    /// The same slab with finer spans. 0: not yet made.
+    /// Number of the slab with finer spans in its place; 0 until that is made.
     finer: u32,
     /// Number of halvings.
     pub depth: u32,
@@ -278,9 +281,10 @@ pub struct Spent {
 struct Rounding {
     /// Sum of the terms' roundings.
     sum: f64,
-    /// Largest rounding of a term relative to it …
+    /// Largest rounding of a term relative to it.
     part: f64,
-    /// … apart from the loss of formulas that subtract larger numbers, added up.
+    /// Sum of the losses of formulas that subtract larger numbers, which `sum` and `part` leave
+    /// out.
     cancelled: f64,
     /// Bound on the sum of negative terms.
     carved: f64,
@@ -295,13 +299,13 @@ impl Rounding {
         self.cancelled += cancelled;
     }
 
-    /// Bound on the total where the field is T: there positive terms are at most T plus the
-    /// negative ones.
+    /// Bounds the total where the field is T: there positive terms are at most T plus the negative
+    /// ones.
     fn most(&self) -> f64 {
         self.cancelled + self.sum.at_most(self.largest() * self.part)
     }
 
-    /// Bound on a term, and on the sum of the terms' sizes, where the field is T.
+    /// Returns a bound on a term, and on the sum of the terms' sizes, where the field is T.
     fn largest(&self) -> f64 {
         LARGE_TERM + 2.0 * self.carved
     }
@@ -321,11 +325,13 @@ struct Heritage {
 struct SlabGeometry {
     from: f64,
     to: f64,
-    /// Ball around the slab.
+    /// Centre of a ball around the slab.
     center: DVec3,
+    /// Radius of that ball.
     radius: f64,
-    /// The beam's axis and spread.
+    /// Direction of the beam's axis.
     direction: DVec3,
+    /// The beam's spread.
     spread: f64,
     /// Levels of division below the beam.
     levels_below: u32,
@@ -340,15 +346,16 @@ struct SlabGeometry {
 /// Sums of bounds over a new slab's candidates.
 #[derive(Default)]
 struct Sizes {
-    /// Of those that may be positive.
+    /// Sum over the candidates that may be positive.
     above: f64,
-    /// Of those that may be negative.
+    /// Sum over the candidates that may be negative.
     below: f64,
+    /// Sum over all candidates.
     total: f64,
 }
 
-/// The part of the error budget that is left to a candidate: half of the rest is shared out evenly,
-/// half by size. The shares add up to no more than the rest.
+/// The part of the error budget that a candidate may use: half of the rest is divided evenly, half
+/// by size. The shares add up to no more than the rest.
 #[derive(Clone, Copy)]
 struct Share {
     even: f64,
@@ -356,6 +363,8 @@ struct Share {
 }
 
 impl Share {
+    /// Returns the shares of `count` candidates of the size `total` in all, given the part of the
+    /// budget that is spent.
     fn of(budget: f64, spent: f64, count: usize, total: f64) -> Self {
         let left = (budget - spent).at_least(0.0);
         Self {
@@ -364,6 +373,7 @@ impl Share {
         }
     }
 
+    /// Returns the share of a candidate.
     #[inline(always)]
     fn at(self, magnitude: f64) -> f64 {
         self.even + self.by_size * magnitude
@@ -398,8 +408,9 @@ impl Plan {
 struct Sorted {
     pending_above: f64,
     pending_below: f64,
-    /// Whether a pending candidate has no kink here, and whether one has.
+    /// Whether a pending candidate has no kink in the slab.
     smooth: bool,
+    /// Whether a pending candidate has a kink in the slab.
     kinked: bool,
     blurring: bool,
     polar: bool,
@@ -407,6 +418,7 @@ struct Sorted {
     of_shared: Rounding,
 }
 
+/// Number in place of a slab or an interpolant that there is not.
 const NONE: u32 = u32::MAX;
 
 /// Fraction of its share of the shared interpolants' error up to which a primitive is dropped.
@@ -419,9 +431,10 @@ const FEWEST: u32 = 3;
 /// digits; only infinitely wide primitives have such slabs.
 const REMOTE: f64 = 16.0;
 
-/// Ratio of a beam's width to a slab's length from which narrower beams take over …
+/// Ratio of a beam's width to a slab's length from which narrower beams take over.
 const NARROW_BEAM: f64 = 0.5;
-/// … and for beams wider than a block.
+/// Ratio of a beam's width to a slab's length from which narrower beams take over, for beams wider
+/// than a block.
 const WIDE_BEAM: f64 = 0.4;
 /// Levels of division below a block, which is a beam of four packets.
 const BLOCK_LEVELS: u32 = 2;
@@ -442,7 +455,7 @@ const MOST_BLURRED: usize = 32;
 /// Largest rounding error of an interpolant that root isolation uses in place of its primitives.
 const SHARP_INTERPOLANT: f64 = 2e-5;
 
-/// Bound on a field with a pole from which on its pole is near.
+/// Bound on a field with a pole from which the pole counts as near.
 const POLAR: f64 = 64.0 * THRESHOLD;
 
 /// Numbers of slabs and of list entries above which a tree is discarded between two packets.
@@ -463,7 +476,7 @@ impl Slab {
         self.blocks[which as usize] != NONE
     }
 
-    /// List of the entries of an interpolant.
+    /// Returns the list of the entries of an interpolant.
     #[must_use]
     pub fn together(&self, which: Which) -> &Range<u32> {
         match which {
@@ -543,7 +556,7 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// The first slab, over the whole range.
+    /// Returns the number of the first slab, over the whole range.
     #[must_use]
     pub fn root(&self) -> u32 {
         0
@@ -555,19 +568,19 @@ impl<'a> Slabs<'a> {
         &self.nodes[index as usize]
     }
 
-    /// Entries of a slab's list.
+    /// Returns the entries of a slab's list.
     #[must_use]
     pub fn locals(&self, range: &Range<u32>) -> &[u32] {
         &self.ids[range.start as usize..range.end as usize]
     }
 
-    /// Number of local numbers so far.
+    /// Returns the number of local numbers so far.
     #[must_use]
     pub fn len(&self) -> usize {
         self.list.len()
     }
 
-    /// Primitive number of a local number.
+    /// Returns the primitive of a local number.
     #[must_use]
     pub fn primitive(&self, local: u32) -> u32 {
         self.list[local as usize]
@@ -659,7 +672,8 @@ impl<'a> Slabs<'a> {
         self.blocks.get(block as usize)
     }
 
-    /// Number of evaluations of one primitive's field at one point for interpolants of the beam.
+    /// Returns the number of evaluations of one primitive's field at one point for interpolants of
+    /// the beam.
     #[must_use]
     pub fn evaluations(&self) -> u64 {
         self.evaluations
@@ -667,7 +681,7 @@ impl<'a> Slabs<'a> {
 
     /// Calls `f` with the shared interpolants of a slab and of those above it that have been made.
     pub fn each_block(&self, index: u32, mut f: impl FnMut(&Interpolant)) {
-        self.up(index, |s, _| {
+        self.climb(index, |s, _| {
             if let Some(block) = self.blocks.get(s.blocks[0] as usize) {
                 f(block);
             }
@@ -676,7 +690,7 @@ impl<'a> Slabs<'a> {
 
     /// Calls `f` with a slab and those above it, and whether all of its terms count, or only the
     /// shared and dropped ones.
-    fn up(&self, index: u32, mut f: impl FnMut(&Slab, bool)) {
+    fn climb(&self, index: u32, mut f: impl FnMut(&Slab, bool)) {
         let (mut at, mut whole) = (index, true);
         while at != NONE {
             let s = self.slab(at);
@@ -694,7 +708,7 @@ impl<'a> Slabs<'a> {
             && self.beams.get(s.beam).width(to) > self.narrow(s.beam) * (to - from)
         {
             if s.children[quarter] == 0 {
-                let child = self.inner(index, from, to, beam, s.depth);
+                let child = self.add_child(index, from, to, beam, s.depth);
                 self.nodes[index as usize].children[quarter] = child;
             }
             return Parts::Narrower(self.nodes[index as usize].children[quarter]);
@@ -702,15 +716,15 @@ impl<'a> Slabs<'a> {
         if s.children == [0; 4] {
             let (beam, depth) = (s.beam, s.depth + 1);
             let middle = 0.5 * (from + to);
-            let left = self.inner(index, from, middle, beam, depth);
-            let right = self.inner(index, middle, to, beam, depth);
+            let left = self.add_child(index, from, middle, beam, depth);
+            let right = self.add_child(index, middle, to, beam, depth);
             self.nodes[index as usize].children = [left, right, 0, 0];
         }
         let [left, right, ..] = self.nodes[index as usize].children;
         Parts::Halves(left, right)
     }
 
-    /// Ratio of a beam's width to a slab's length from which narrower beams take over.
+    /// Returns the ratio of a beam's width to a slab's length from which narrower beams take over.
     fn narrow(&self, beam: usize) -> f64 {
         if self.beams.levels_below(beam) > BLOCK_LEVELS {
             WIDE_BEAM
@@ -719,7 +733,8 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    fn inner(&mut self, parent: u32, from: f64, to: f64, beam: usize, depth: u32) -> u32 {
+    /// Makes a child of a slab between two parameters; returns its number.
+    fn add_child(&mut self, parent: u32, from: f64, to: f64, beam: usize, depth: u32) -> u32 {
         let s = &self.nodes[parent as usize];
         let pending = s.pending.clone();
         let heritage = Heritage {
@@ -770,15 +785,15 @@ impl<'a> Slabs<'a> {
         slab.spent.spans <= last || slab.budget <= last
     }
 
-    /// Length below which intervals of rays are not subdivided.
+    /// Returns the length below which intervals of rays are not subdivided.
     #[must_use]
     pub fn resolution(&self) -> f64 {
         self.precision.resolution
     }
 
-    /// Returns the same slab with a smaller error, made again from all its primitives but the
-    /// shared ones.
-    pub fn finer(&mut self, index: u32) -> u32 {
+    /// Returns the number of a slab in place of another, with a smaller error, made again from all
+    /// its primitives but the shared ones.
+    pub fn refine(&mut self, index: u32) -> u32 {
         if self.nodes[index as usize].finer == 0 {
             let start = self.ids.len() as u32;
             // The slab's pending entries, and the resolved and joined ones of the path to it.
@@ -824,7 +839,7 @@ impl<'a> Slabs<'a> {
             }
         };
         each(&self.slab(index).pending);
-        self.up(index, |s, whole| {
+        self.climb(index, |s, whole| {
             if whole {
                 each(&s.joined);
                 each(&s.resolved);
@@ -836,7 +851,7 @@ impl<'a> Slabs<'a> {
         });
     }
 
-    /// Number of primitives that count in a slab, with the shared and dropped ones.
+    /// Returns the number of primitives that count in a slab, with the shared and dropped ones.
     #[must_use]
     pub fn count(&self, index: u32) -> usize {
         let mut count = 0;
@@ -849,7 +864,7 @@ impl<'a> Slabs<'a> {
             }
         };
         all(&self.slab(index).pending);
-        self.up(index, |s, whole| {
+        self.climb(index, |s, whole| {
             if whole {
                 all(&s.joined);
                 all(&s.resolved);
@@ -862,11 +877,11 @@ impl<'a> Slabs<'a> {
 
     /// Lists the primitives that count in a slab, without the dropped ones and those in accurate
     /// shared interpolants; returns these interpolants.
-    pub fn near(&self, index: u32, list: &mut Vec<u32>) -> Afar {
+    pub fn list_near(&self, index: u32, list: &mut Vec<u32>) -> Afar {
         self.each(index, false, |p| list.push(p));
         let mut blocks = Vec::new();
         let mut off = self.slab(index).spent.shared;
-        self.up(index, |s, _| {
+        self.climb(index, |s, _| {
             if let Some(block) = self.blocks.get(s.blocks[Which::Shared as usize] as usize)
                 && s.noise_of_shared <= SHARP_INTERPOLANT
             {
@@ -891,7 +906,8 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Size of the terms that cancel in the formulas of a list entry ([`Bound::cancels`]).
+    /// Returns the size of the terms that cancel in the formulas of a list entry
+    /// ([`Bound::cancels`]).
     fn cancels(&self, id: u32) -> f64 {
         match self.terms.clusters {
             Some(clusters) if id & GROUP != 0 => clusters.cancels(id & !GROUP),
@@ -899,17 +915,16 @@ impl<'a> Slabs<'a> {
         }
     }
 
-    /// Whether a primitive of the list has a pole, and it is near. Faces of the inverse kernel have
-    /// a small field and none; those of the squared one grow by a logarithm alone, so that their
-    /// field does not tell.
+    /// Whether a primitive of the list has a pole that is near. Faces of the inverse kernel have a
+    /// small field and no pole; those of the squared one grow only like a logarithm, so that their
+    /// field does not show it.
     fn is_at_pole(&self, id: u32, magnitude: f64, touches: bool) -> bool {
         let primitive = self.list[id as usize] as usize;
         let kernel = self.terms.primitives[primitive].kernel;
         kernel.has_pole() && (magnitude >= POLAR || touches && kernel.is_finite_over(1))
     }
 
-    /// Estimate of a list entry's largest slope over its size, at a distance
-    /// ([`Bound::relative_slope`]).
+    /// Estimates a list entry's largest relative slope at a distance ([`Bound::relative_slope`]).
     fn relative_slope(&self, id: u32, distance: f64) -> f64 {
         match self.terms.clusters {
             Some(clusters) if id & GROUP != 0 => clusters.relative_slope(id & !GROUP, distance),
@@ -952,7 +967,7 @@ impl<'a> Slabs<'a> {
 
     /// Makes the slab between two parameters from a parent's entries.
     fn add(&mut self, candidates: Range<u32>, from: f64, to: f64, heritage: Heritage) {
-        let place = self.place(heritage.beam, from, to);
+        let place = self.geometry(heritage.beam, from, to);
         let sizes = self.gather(candidates, &place);
         let plan = self.plan(&place, &sizes, &heritage);
         let mut spent = heritage.spent;
@@ -988,7 +1003,8 @@ impl<'a> Slabs<'a> {
         });
     }
 
-    fn place(&self, number: usize, from: f64, to: f64) -> SlabGeometry {
+    /// Returns the geometry of a beam's part between two parameters.
+    fn geometry(&self, number: usize, from: f64, to: f64) -> SlabGeometry {
         let beam = self.beams.get(number);
         let (center, mut radius) = beam.ball(from, to);
         let mut roughness = f64::INFINITY;
@@ -1135,9 +1151,10 @@ impl<'a> Slabs<'a> {
             // less.
             remote: is_remote(place.from, place.to),
         };
-        let joinable = || self.scratch.iter().filter(|c| plan.is_joinable(c)).count();
-        let joins = plan.joins && joinable() >= FEWEST as usize;
-        plan.joins = joins;
+        if plan.joins {
+            let joinable = self.scratch.iter().filter(|c| plan.is_joinable(c));
+            plan.joins = joinable.count() >= FEWEST as usize;
+        }
         plan
     }
 
@@ -1230,8 +1247,7 @@ impl<'a> Slabs<'a> {
                         if id & GROUP == 0 {
                             self.ids.push(id);
                         } else {
-                            let push = |own: &mut Self, id: u32| own.ids.push(id);
-                            self.open_all(clusters, id & !GROUP, push);
+                            self.open_all(clusters, id & !GROUP, |slabs, id| slabs.ids.push(id));
                         }
                     }
                 }
@@ -1255,7 +1271,8 @@ mod tests {
     use trials::Random;
     use trials::scenes::{clothe, element, empty, soft};
 
-    /// Balls in a cloud, of which every twentieth carves; `strength` of the others.
+    /// Returns a cloud of balls of a strength, of which every twentieth has the strength `carving`
+    /// unless that is 0.
     fn cloud(radius: f64, strength: f64, carving: f64) -> Soft {
         let mut numbers = Random::new(3);
         let mut scene = empty();
@@ -1297,8 +1314,8 @@ mod tests {
         }
     }
 
-    /// The listed primitives and the interpolants of the rest add up to the field within the bound
-    /// told, on all rays of the beam.
+    /// The listed primitives and the interpolants of the rest add up to the field within their
+    /// bound, on all rays of the beam.
     #[test]
     fn near_primitives_and_interpolants_add_up_to_the_field() {
         let (mut seen, mut shared, mut noisy, mut largest) = (0, 0, 0, 0.0f64);
@@ -1316,9 +1333,14 @@ mod tests {
                 spread: 1e-3,
                 ahead: 0.0,
             };
-            let one = |base: f64| Beams::one(beam.from(base));
             let (mut slabs, base) = soft
-                .slabs(0, beam, one, f64::INFINITY, &mut Vec::new())
+                .slabs(
+                    0,
+                    beam,
+                    |base| Beams::one(beam.from(base)),
+                    f64::INFINITY,
+                    &mut Vec::new(),
+                )
                 .expect("flesh");
             let mut stack = vec![slabs.root()];
             while let Some(index) = stack.pop() {
@@ -1328,17 +1350,15 @@ mod tests {
                     (slab.from, slab.to, slab.depth)
                 };
                 let mut list = Vec::new();
-                let afar = slabs.near(index, &mut list);
-                let told = afar.blocks.len();
-                if told > 0 {
+                let afar = slabs.list_near(index, &mut list);
+                let count = afar.blocks.len();
+                if count > 0 {
                     // Rounding of the interpolants is part of the bound. It is far below its own
                     // bound here: a larger one is set.
                     let noise = slabs.nodes[index as usize].noise_of_shared;
                     slabs.nodes[index as usize].noise_of_shared = SHARP_INTERPOLANT;
-                    let louder = slabs.near(index, &mut Vec::new());
-                    let of_own =
-                        louder.blocks.len() == told && !slabs.slab(index).shared.is_empty();
-                    if of_own {
+                    let louder = slabs.list_near(index, &mut Vec::new());
+                    if louder.blocks.len() == count && !slabs.slab(index).shared.is_empty() {
                         let more = louder.off - afar.off;
                         let added = SHARP_INTERPOLANT - noise;
                         assert!((more - added).abs() < 1e-12, "{index}: {more} {added}");
@@ -1360,15 +1380,15 @@ mod tests {
                     for i in 0..=8 {
                         let x = f64::from(i) / 8.0;
                         let place = ray.at(from + x * (to - from)).to_array();
-                        let value = |p: &Primitive| p.value(place);
-                        let all: f64 = slabs.terms.primitives.iter().map(value).sum();
-                        let near = list
+                        let primitives = slabs.terms.primitives;
+                        let all: f64 = primitives.iter().map(|p| p.value(place)).sum();
+                        let near: f64 = list
                             .iter()
-                            .map(|&p| value(&slabs.terms.primitives[p as usize]));
-                        let told = near.sum::<f64>() + span.value_and_slope(x).0;
+                            .map(|&p| primitives[p as usize].value(place))
+                            .sum();
                         // Rounding is bounded where the field is about T.
                         if (all - THRESHOLD).abs() < 1.0 {
-                            let apart = (told - all).abs();
+                            let apart = (near + span.value_and_slope(x).0 - all).abs();
                             let most = off + 1e-8;
                             assert!(apart <= most, "{index}: {apart} > {most}");
                             largest = largest.max(apart / most);

@@ -1,5 +1,5 @@
-//! The convolution surfaces of all bodies, prepared: finds the primitives near a beam, and where
-//! its rays cross a body's surface.
+//! The convolution surfaces of all bodies, prepared for finding the primitives near a beam, and the
+//! places where its rays cross a body's surface.
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::blob_set::{BlobSet, NEXT_TO_NOTHING};
@@ -12,7 +12,7 @@ use crate::layout::PACKET;
 use crate::nearby::{Nearby, Other};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator};
-use crate::roots::bracketed;
+use crate::roots::refine_root;
 use crate::slabs::{Precision, Slabs, Space, Terms};
 use crate::walk::{Bundle, Memories, Quest, Walk};
 use field::{Bound, Cut, Primitive, THRESHOLD};
@@ -33,9 +33,9 @@ pub struct Soft {
     pub(crate) element: Vec<u32>,
     /// The bodies that have a surface.
     pub(crate) bodies: Vec<SoftBody>,
-    /// Balls around bodies, in the order of `bodies`; those without a ball are not in it.
+    /// Balls around bodies, by their index in `bodies`; those without a ball are not in it.
     body_tree: Hierarchy,
-    /// See [`Soft::bounds`].
+    /// The primitives' bounds, once they are needed.
     bounds: OnceLock<Vec<Bound>>,
     /// Ball of each primitive outside which it is left out.
     tree: Hierarchy,
@@ -52,34 +52,34 @@ pub struct Soft {
 
 /// The convolution surface of one body.
 pub(crate) struct SoftBody {
-    /// Its number in the scene.
+    /// The body's number in the scene.
     pub number: u32,
-    /// Range of its primitives.
+    /// Range of the body's primitives.
     range: Range<u32>,
     /// Primitives without a bounding ball.
     everywhere: Vec<u32>,
     /// Whether all primitives have kernels that end or fall as the Gaussian, so that a lone ray has
     /// few near it.
     is_local: bool,
-    /// Ball outside which none of them counts; `None` if some count everywhere.
+    /// Ball outside which no primitive counts; `None` if some count everywhere.
     pub ball: Option<(DVec3, f64)>,
     /// Data that only slabs need.
     groups: OnceLock<Groups>,
-    /// The hierarchy of its far field, if it is of many points that never end.
+    /// The hierarchy of the far field, if the body is of many points that never end.
     far: OnceLock<Option<Box<FarBody>>>,
-    /// The one of the scene before, which helps to make `far`.
+    /// The hierarchy of the far field in the scene before, which helps to make `far`.
     earlier: Mutex<Option<Box<FarBody>>>,
 }
 
 #[cfg(test)]
 impl SoftBody {
-    /// The hierarchy of its far field, if it was made.
+    /// Returns the hierarchy of the far field, if it was made.
     pub fn far_body(&self) -> Option<&FarBody> {
         self.far.get()?.as_deref()
     }
 }
 
-/// What the material of a body's surface is made of.
+/// The composition of the material of a body's surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MakeUp {
     /// Whether all primitives have one finish.
@@ -94,7 +94,7 @@ pub(crate) struct MakeUp {
 struct Groups {
     /// Balls such that the field is below T outside all of them.
     strong: Hierarchy,
-    /// A ball that holds these balls; `None` if there are none.
+    /// A ball that holds the balls of `strong`; `None` if there are none.
     surface: Option<(DVec3, f64)>,
     /// A ball in which the field is above T; `None` if none is known.
     inside: Option<InnerBall>,
@@ -102,15 +102,15 @@ struct Groups {
     kinks: Kinks,
 }
 
-/// Largest sum of the fields left out, of all primitives that are no blobs, in T.
+/// Largest sum, in T, of the fields that are left out of all primitives that are no blobs.
 const OTHERS_LEFT_OUT: f64 = 1e-5;
 
 /// End of rays along infinitely wide primitives, in units of the scene's size.
 const FAR: f64 = 1e4;
 
-/// Steps along a beam after which it counts as near a primitive …
+/// Steps along a beam after which it counts as near a primitive.
 const MOST_STRIDES: usize = 32;
-/// … and the distance that counts as near, beyond the primitive's reach and relative to it.
+/// Distance of a beam from a primitive's reach that counts as near, over the reach.
 const CLOSE_BEAM: f64 = 0.05;
 
 impl Soft {
@@ -169,8 +169,10 @@ impl Soft {
                 }
             }
             let own = body.range.start as usize..body.range.end as usize;
-            let never_ends = |p: &Primitive| field::far_field::power(p.kernel).is_some();
-            body.is_local = body.everywhere.is_empty() && !primitives[own].iter().any(never_ends);
+            body.is_local = body.everywhere.is_empty()
+                && primitives[own]
+                    .iter()
+                    .all(|p| field::far_field::power(p.kernel).is_none());
             if body.everywhere.is_empty() {
                 let (center, radius) = around(&balls[first..]);
                 body.ball = Some((center, radius));
@@ -193,7 +195,7 @@ impl Soft {
         }
     }
 
-    /// Body of a primitive, numbered among those with a surface.
+    /// Returns the body of a primitive, numbered among those with a surface.
     pub fn body_of(&self, primitive: u32) -> u32 {
         let after = self
             .bodies
@@ -224,26 +226,27 @@ impl Soft {
         !self.bodies[body as usize].everywhere.is_empty()
     }
 
-    /// The primitives' bounds, made at first use: the fast path does not need them.
+    /// Returns the primitives' bounds, made at first use: the fast path does not need them.
     pub(crate) fn bounds(&self) -> &[Bound] {
         self.bounds
             .get_or_init(|| self.primitives.iter().map(Bound::new).collect())
     }
 
-    /// What the materials of each body's surface are made of.
+    /// Returns the composition of the material of each body's surface.
     pub fn make_ups(&self) -> Vec<MakeUp> {
-        let make_up = |body: &SoftBody| {
+        let mut make_ups = Vec::with_capacity(self.bodies.len());
+        for body in &self.bodies {
             let range = body.range.start as usize..body.range.end as usize;
-            let own = &self.finish[range.clone()];
+            let finishes = &self.finish[range.clone()];
             let mut elements = self.element[range].to_vec();
             field::heap_sort(&mut elements, |a, b| a < b);
-            MakeUp {
-                is_even: own.iter().all(|finish| *finish == own[0]),
-                first: own[0],
+            make_ups.push(MakeUp {
+                is_even: finishes.iter().all(|finish| *finish == finishes[0]),
+                first: finishes[0],
                 is_pieced: elements.windows(2).any(|pair| pair[0] == pair[1]),
-            }
-        };
-        self.bodies.iter().map(make_up).collect()
+            });
+        }
+        make_ups
     }
 
     /// Appends the elements that add to a body's field at a point: element, finish and field.
@@ -331,7 +334,7 @@ impl Soft {
             range = [range[0].at_most(near), range[1].at_least(far)];
         });
         if let Some(ball) = &groups.inside {
-            range[0] = range[0].at_least(ball.left_at(&beam));
+            range[0] = range[0].at_least(ball.exit(&beam));
         }
         let [from, to] = [range[0], range[1].min(limit)];
         if from.is_nan() || to.is_nan() || from >= to {
@@ -361,27 +364,29 @@ impl Soft {
         None
     }
 
+    /// Returns the hierarchy of a body's far field, made at first use; `None` if it has none.
     fn far<'a>(&self, body: &'a SoftBody) -> Option<&'a FarBody> {
-        let make = || {
-            let own = body.range.start as usize..body.range.end as usize;
-            let kernel = self.primitives.get(own.start)?.kernel;
-            if self.precision.shared == 0.0 || !body.everywhere.is_empty() {
-                return None;
-            }
-            field::far_field::power(kernel)?;
-            let ball = self.groups(body).surface?;
-            let primitives = &self.primitives[own.clone()];
-            let earlier = body.earlier.lock().ok()?.take();
-            FarBody::new(
-                primitives,
-                &self.finish[own.clone()],
-                own.start,
-                ball,
-                earlier.as_deref(),
-            )
-            .map(Box::new)
-        };
-        body.far.get_or_init(make).as_deref()
+        body.far
+            .get_or_init(|| {
+                let own = body.range.start as usize..body.range.end as usize;
+                let kernel = self.primitives.get(own.start)?.kernel;
+                if self.precision.shared == 0.0 || !body.everywhere.is_empty() {
+                    return None;
+                }
+                field::far_field::power(kernel)?;
+                let ball = self.groups(body).surface?;
+                let primitives = &self.primitives[own.clone()];
+                let earlier = body.earlier.lock().ok()?.take();
+                FarBody::new(
+                    primitives,
+                    &self.finish[own.clone()],
+                    own.start,
+                    ball,
+                    earlier.as_deref(),
+                )
+                .map(Box::new)
+            })
+            .as_deref()
     }
 
     /// Whether far fields were made, which a later scene may take over.
@@ -391,15 +396,15 @@ impl Soft {
             .any(|body| matches!(body.far.get(), Some(Some(_))))
     }
 
-    /// Moves the far fields of an earlier scene into this one, whose own are made sooner with their
-    /// help and are the same.
+    /// Moves the far fields of an earlier scene into this one: with their help its own are made
+    /// sooner, with the same result.
     pub fn take_over(&mut self, before: &mut Self) {
         for (body, old) in self.bodies.iter_mut().zip(&mut before.bodies) {
             body.earlier = Mutex::new(old.far.take().flatten());
         }
     }
 
-    /// Whether a body is one for [`Soft::far_first`].
+    /// Whether a body has a far field, for [`Soft::far_first`].
     pub fn is_far(&self, body: u32) -> bool {
         self.far(&self.bodies[body as usize]).is_some()
     }
@@ -407,7 +412,7 @@ impl Soft {
     /// Finds the first crossings of rays with the surface of a body of very many points that never
     /// end; for [`Quest::Entry`] only whether there is one. Returns the rays that cross, a bit
     /// each, with the surface there in `work`, whose parameters are the rays' own. `None` if the
-    /// body is no such one, or this is not the way for these rays.
+    /// body is of another kind, or the rays must be followed in another way.
     pub fn far_first(
         &self,
         body: u32,
@@ -431,10 +436,12 @@ impl Soft {
         far.first(&query, work)
     }
 
+    /// Returns the data of a body that only slabs need, made at first use.
     fn groups<'a>(&self, body: &'a SoftBody) -> &'a Groups {
         body.groups.get_or_init(|| self.group(body))
     }
 
+    /// Makes the data of a body that only slabs need.
     fn group(&self, body: &SoftBody) -> Groups {
         let share = THRESHOLD / body.range.len().max(1) as f64;
         let (mut strong, mut skeletons) = (Vec::new(), Vec::new());
@@ -449,8 +456,8 @@ impl Soft {
                 strong.push((i, center, skeleton + bound.distance_of(share)));
             }
         }
-        let own = |i: u32| (i, &self.primitives[i as usize]);
-        let all = body.range.start as usize..body.range.end as usize;
+        let range = body.range.clone();
+        let all = range.start as usize..range.end as usize;
         Groups {
             surface: (!strong.is_empty()).then(|| around(&strong)),
             inside: (!skeletons.is_empty())
@@ -458,10 +465,11 @@ impl Soft {
                 .flatten(),
             strong: Hierarchy::new(strong),
             clusters: Clusters::new(skeletons, self.bounds()),
-            kinks: Kinks::new(body.range.clone().map(own)),
+            kinks: Kinks::new(range.map(|i| (i, &self.primitives[i as usize]))),
         }
     }
 
+    /// Returns the primitives with the kinks of a body's.
     pub fn sight<'a>(&'a self, body: &'a SoftBody) -> BoundedTerms<'a> {
         BoundedTerms {
             primitives: &self.primitives,
@@ -494,13 +502,18 @@ impl Soft {
         if everywhere || !finite {
             return false;
         }
-        // The tree's balls are the skeletons' bounding balls enlarged by the reach.
-        let reach = |i: u32, radius: f64| {
-            let p = &self.primitives[i as usize];
-            let around = p.bounding_sphere().map_or(0.0, |(_, around)| around);
-            radius - (around - p.influence)
-        };
-        self.blob_set.list(&self.tree, beam, limit, reach, list)
+        self.blob_set.list(
+            &self.tree,
+            beam,
+            limit,
+            |i, radius| {
+                // The tree's balls are the skeletons' bounding balls enlarged by the reach.
+                let p = &self.primitives[i as usize];
+                let around = p.bounding_sphere().map_or(0.0, |(_, around)| around);
+                radius - (around - p.influence)
+            },
+            list,
+        )
     }
 
     /// Whether a ray of a beam may come within the reach of one of some primitives, up to a
@@ -547,9 +560,9 @@ impl Soft {
         }
     }
 
-    /// Returns where a ray first enters a body's surface on a short interval, in double precision,
-    /// and the number of evaluations. The interval's start, if it is inside; `None` if there is no
-    /// entry. Primitives without blobs count within their reach.
+    /// Returns the parameter at which a ray first enters a body's surface on a short interval, in
+    /// double precision, and the number of evaluations: the interval's start, if it is inside;
+    /// `None` if there is no entry. Primitives without blobs count within their reach.
     pub fn entry(&self, body: u32, ray: Ray, [from, to]: [f64; 2]) -> (Option<f64>, u64) {
         let (center, radius) = (ray.at(0.5 * (from + to)), 0.5 * (to - from));
         let body = &self.bodies[body as usize];
@@ -563,14 +576,15 @@ impl Soft {
         });
         field::heap_sort(&mut near, |a, b| a < b);
         // Bounds of all primitives would take too much room where there are very many.
-        let of = |&i: &u32| self.primitives[i as usize].clone();
-        let primitives: Vec<Primitive> = near.iter().map(of).collect();
+        let near = near.into_iter();
+        let primitives: Vec<Primitive> =
+            near.map(|i| self.primitives[i as usize].clone()).collect();
         let bounds: Vec<Bound> = primitives.iter().map(Bound::new).collect();
         let along = Along {
             sight: BoundedTerms {
                 primitives: &primitives,
                 bounds: &bounds,
-                kinks: &Kinks::new(numbered(&primitives)),
+                kinks: &Kinks::new(primitives.iter().enumerate().map(|(i, p)| (i as u32, p))),
             },
             ray,
             resolution: self.precision.resolution,
@@ -654,7 +668,7 @@ impl Soft {
         for w in places.windows(2) {
             let after = excess(w[1]).0;
             if (before < 0.0) != (after < 0.0) {
-                let t = bracketed(
+                let t = refine_root(
                     |t| {
                         let (value, gradient) = excess(t);
                         (value, gradient.dot(ray.direction))
@@ -669,11 +683,6 @@ impl Soft {
         }
         crossings
     }
-}
-
-/// Iterates over primitives with their numbers.
-fn numbered(primitives: &[Primitive]) -> impl ExactSizeIterator<Item = (u32, &Primitive)> {
-    primitives.iter().enumerate().map(|(i, p)| (i as u32, p))
 }
 
 /// Returns a ball that holds some balls.

@@ -1,4 +1,4 @@
-//! All hard elements of a scene.
+//! The hard elements of a scene.
 use crate::beam::Beam;
 use crate::hard::{Crossing, Solid};
 use crate::hierarchy::Hierarchy;
@@ -8,7 +8,7 @@ use scene::{Scene, Shape};
 /// The hard elements, in a hierarchy.
 pub struct Solids {
     solids: Vec<Solid>,
-    /// For each solid its finish, and the scene's element that it came from.
+    /// Finishes of the solids, with the scene's elements that they came from.
     of: Vec<[u32; 2]>,
     tree: Hierarchy,
     /// Solids without a bounding ball.
@@ -59,26 +59,26 @@ impl Solids {
         self.solids.is_empty()
     }
 
-    /// How many solids there are.
+    /// Returns the number of solids.
     #[must_use]
     pub fn len(&self) -> u32 {
         self.solids.len() as u32
     }
 
-    /// The finish of a solid.
+    /// Returns the finish of a solid.
     #[must_use]
     pub fn finish(&self, number: u32) -> usize {
         self.of[number as usize][0] as usize
     }
 
-    /// The scene's element that a solid came from.
+    /// Returns the scene's element that a solid came from.
     #[must_use]
     pub fn element(&self, number: u32) -> u32 {
         self.of[number as usize][1]
     }
 
-    /// Returns the nearest crossing with 0 < t < limit, and its solid; of front faces only, if
-    /// asked for; `None` without one.
+    /// Returns the solid of the nearest crossing with 0 < t < limit, and the crossing; `None` if
+    /// there is none. If `front_only`, back faces do not count.
     pub fn first(
         &self,
         ray: &Ray,
@@ -104,7 +104,7 @@ impl Solids {
         nearest
     }
 
-    /// All crossings with t > 0, each with its solid, in no order.
+    /// Returns all crossings with t > 0, each with its solid, in no order.
     #[must_use]
     pub fn all(&self, ray: &Ray) -> Vec<(u32, Crossing)> {
         let (mut all, mut own) = (Vec::new(), Vec::new());
@@ -117,6 +117,7 @@ impl Solids {
         all
     }
 
+    /// Calls `f` with each solid that a ray may meet, and its number.
     fn each(&self, ray: &Ray, mut f: impl FnMut(u32, &Solid)) {
         if self.solids.is_empty() {
             return;

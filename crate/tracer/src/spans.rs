@@ -4,7 +4,7 @@
 //! both. Its four Bernstein coefficients bound it from both sides, halving it is exact, and the sum
 //! of spans over the same interval is a span.
 use crate::lanes::Lanes;
-use crate::roots::{Roots, bracketed_from, roots};
+use crate::roots::{Roots, refine_root_from, roots};
 
 /// A cubic on an interval, by its Bernstein coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -15,12 +15,12 @@ pub struct Span<L>(pub [L; 4]);
 pub struct Node<L> {
     /// The function's value.
     pub value: L,
-    /// Its derivative along the ray.
+    /// The function's derivative along the ray.
     pub slope: L,
 }
 
 impl<L: Lanes> Node<L> {
-    /// Zero with slope zero.
+    /// Returns zero with slope zero.
     #[must_use]
     pub fn zero() -> Self {
         Self {
@@ -29,7 +29,7 @@ impl<L: Lanes> Node<L> {
         }
     }
 
-    /// The sum of two functions' nodes at one place.
+    /// Returns the sum of two functions' nodes at one place.
     #[inline]
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
@@ -41,13 +41,13 @@ impl<L: Lanes> Node<L> {
 }
 
 impl<L: Lanes> Span<L> {
-    /// The cubic that is zero.
+    /// Returns the cubic that is zero.
     #[must_use]
     pub fn zero() -> Self {
         Self([L::splat(0.0); 4])
     }
 
-    /// The Hermite interpolant over an interval of the given length.
+    /// Returns the Hermite interpolant over an interval of the given length.
     #[inline]
     #[must_use]
     pub fn hermite(left: Node<L>, right: Node<L>, length: f64) -> Self {
@@ -60,14 +60,14 @@ impl<L: Lanes> Span<L> {
         ])
     }
 
-    /// The sum of two cubics on the same interval.
+    /// Returns the sum of two cubics on the same interval.
     #[inline]
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
     }
 
-    /// The same cubic on the left and on the right half of its interval (de Casteljau).
+    /// Returns the cubic on the left and on the right half of its interval (de Casteljau).
     #[inline]
     #[must_use]
     pub fn halves(self) -> [Self; 2] {
@@ -80,7 +80,7 @@ impl<L: Lanes> Span<L> {
         [Self([a, ab, abc, m]), Self([m, bcd, cd, d])]
     }
 
-    /// Upper bound on the cubic.
+    /// Returns an upper bound on the cubic.
     #[inline]
     #[must_use]
     pub fn max(self) -> L {
@@ -88,7 +88,7 @@ impl<L: Lanes> Span<L> {
         a.max(b).max(c.max(d))
     }
 
-    /// Lower bound on the cubic.
+    /// Returns a lower bound on the cubic.
     #[inline]
     #[must_use]
     pub fn min(self) -> L {
@@ -96,7 +96,7 @@ impl<L: Lanes> Span<L> {
         a.min(b).min(c.min(d))
     }
 
-    /// One lane's cubic on its own.
+    /// Returns the cubic of one lane.
     #[must_use]
     pub fn lane(self, index: usize) -> Span<f64> {
         Span(self.0.map(|c| c.lane(index)))
@@ -114,16 +114,19 @@ impl Span<f64> {
         let [a, b, c, d] = self.0;
         let sides = self.0.map(|x| x < level);
         let changes = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
-        let known = |x: &f64| x.is_finite() && *x != level;
-        if changes == 1 && self.0.iter().all(known) {
+        if changes == 1 && self.0.iter().all(|x| x.is_finite() && *x != level) {
             // One sign change of the coefficients: one root (variation diminishing).
-            let over = |x| {
-                let (value, slope) = self.value_and_slope(x);
-                (value - level, slope)
-            };
-            // The secant's root is near.
-            let start = (level - a) / (d - a);
-            return Roots::one(bracketed_from(over, [0.0, 1.0], start, ROOT_ACCURACY));
+            let root = refine_root_from(
+                |x| {
+                    let (value, slope) = self.value_and_slope(x);
+                    (value - level, slope)
+                },
+                [0.0, 1.0],
+                // The secant's root is near.
+                (level - a) / (d - a),
+                ROOT_ACCURACY,
+            );
+            return Roots::one(root);
         }
         roots(
             &[
@@ -137,7 +140,7 @@ impl Span<f64> {
         )
     }
 
-    /// The cubic's value at x in 0..=1, and its derivative by x.
+    /// Returns the cubic's value at x in 0..=1, and its derivative by x.
     #[must_use]
     pub fn value_and_slope(self, x: f64) -> (f64, f64) {
         let [a, b, c, d] = self.0;
@@ -153,8 +156,8 @@ pub struct KnownPart<'a> {
     /// Value and slope at a parameter.
     pub node: &'a dyn Fn(f64) -> Node<f64>,
     /// Bound on the error of the cubic between the interval's ends, and so, times about four over
-    /// the length, on that of its slope. Left out terms may have a larger slope: where the field is
-    /// within `off` of T, it may cross T three times instead of once.
+    /// the length, on the error of its slope. Terms that are left out may have a larger slope:
+    /// where the field is within `off` of T, it may cross T three times instead of once.
     pub off: f64,
 }
 
@@ -166,13 +169,12 @@ mod tests {
     #[test]
     fn a_span_reproduces_cubics_and_bounds_them() {
         let f = |t: f64| 2.0 - 3.0 * t + 0.5 * t * t + t * t * t;
-        let slope = |t: f64| -3.0 + t + 3.0 * t * t;
         let (a, b) = (-1.5, 2.0);
-        let node = |t| Node {
+        let [start, end] = [a, b].map(|t| Node {
             value: f(t),
-            slope: slope(t),
-        };
-        let span = Span::hermite(node(a), node(b), b - a);
+            slope: -3.0 + t + 3.0 * t * t,
+        });
+        let span = Span::hermite(start, end, b - a);
         let [left, right] = span.halves();
         let value = |span: Span<f64>, x| span.value_and_slope(x).0;
         for i in 0..=10 {
@@ -204,7 +206,7 @@ mod tests {
             for i in 0..512 {
                 sampled += usize::from(value(i) * value(i + 1) < 0.0);
             }
-            // Samples may miss two that are near to one another.
+            // Samples may miss two crossings that are near to one another.
             let found = found.as_slice();
             assert!(found.len() >= sampled, "{span:?} {found:?}");
             assert!(found.is_sorted_by(|a, b| a < b), "{span:?} {found:?}");

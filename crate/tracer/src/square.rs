@@ -1,10 +1,9 @@
 //! Convolution surfaces near a square of pixels: data that its packets share.
 use crate::area::Area;
-use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::layout::packet_number;
 use crate::lens::Lens;
-use crate::nearby::{Nearby, Other};
+use crate::nearby::Nearby;
 use crate::quick::LEFT_OUT_OF_PARTS;
 use crate::scratch::Scratch;
 use crate::slabs::Slabs;
@@ -13,7 +12,7 @@ use crate::stats::Stats;
 use crate::view::{View, division};
 use crate::world::World;
 
-/// Parts of a square in each direction.
+/// Number of parts of a square in each direction.
 const PARTS: u32 = 4;
 
 /// Length of a list from which the parts get no lists of their own, which would need much space
@@ -31,7 +30,7 @@ pub(crate) struct Square<'a> {
     /// Bodies that take the general way in every packet, each with the least parameter at which a
     /// ray may meet it.
     general: Vec<(f64, u32)>,
-    /// Slabs of each body, with the parameter at which they start; made at the first use.
+    /// Slabs of bodies, with the parameter at which they start; made at the first use.
     slabs: Vec<(u32, Option<(Slabs<'a>, f64)>)>,
 }
 
@@ -86,11 +85,10 @@ impl<'a> Square<'a> {
         let beam = |square: &Self| square.view.beam(square.area.cell(place, square.packets));
         if several && !self.general.is_empty() {
             let beam = beam(self);
-            let meets = |&&(_, body): &&(f64, u32)| {
+            bodies.extend(self.general.iter().filter(|&&(_, body)| {
                 let ball = self.soft.bodies[body as usize].ball;
                 ball.is_none_or(|(center, radius)| beam.meets(center, radius))
-            };
-            bodies.extend(self.general.iter().filter(meets));
+            }));
         } else {
             bodies.extend(&self.general);
         }
@@ -133,8 +131,9 @@ impl<'a> Square<'a> {
             let mut near = Nearby::default();
             let beam = view.beam(area.cell([i, j], [PARTS; 2]));
             all.narrow(&beam.from(all.base), LEFT_OUT_OF_PARTS, &mut near);
-            let met = |other: &&Other| beam.meets(other.center, other.radius);
-            near.others.extend(all.others.iter().filter(met));
+            let others = all.others.iter();
+            near.others
+                .extend(others.filter(|other| beam.meets(other.center, other.radius)));
             near
         });
         Some((part, lens.as_ref()))
@@ -162,17 +161,21 @@ impl<'a> Square<'a> {
         (!slabs.is_empty_for(number)).then_some((slabs, *base, number))
     }
 
+    /// Makes the slabs of a body along the square's beam; `None` if no ray can meet the body.
     fn make_slabs(&self, body: u32, scratch: &mut Scratch) -> Option<(Slabs<'a>, f64)> {
         let (view, area, packets) = (self.view, self.area, self.packets);
         let levels = packets[0].ilog2() + packets[1].ilog2();
-        let beams = move |base: f64| {
-            Beams::divided(levels, move |number| {
-                view.beam(division(area, packets, number)).from(base)
-            })
-        };
-        let beam: Beam = view.beam(area);
-        let spaces = &mut scratch.spaces;
-        self.soft.slabs(body, beam, beams, f64::INFINITY, spaces)
+        self.soft.slabs(
+            body,
+            view.beam(area),
+            |base| {
+                Beams::tree(levels, move |number| {
+                    view.beam(division(area, packets, number)).from(base)
+                })
+            },
+            f64::INFINITY,
+            &mut scratch.spaces,
+        )
     }
 
     /// Returns the square's working space to `scratch`, and adds its evaluations to `stats`.

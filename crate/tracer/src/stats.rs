@@ -1,7 +1,7 @@
-//! Counts of work done.
+//! Counts of the work of tracing.
 use serde::{Deserialize, Serialize};
 
-/// Counts of work done.
+/// Counts of the work of tracing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stats {
     /// Rays from the eye.

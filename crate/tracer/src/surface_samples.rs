@@ -1,5 +1,5 @@
 //! Data of the surface samples at a packet's hits;
-//! [`flesh`](crate::flesh) and [`quick`](crate::quick) fill them.
+//! [`refine_hits`](crate::refine_hits) and [`quick`](crate::quick) fill them.
 use crate::layout::PACKET;
 use crate::slabs::Slabs;
 use glam::DVec3;
@@ -26,7 +26,7 @@ pub struct SurfaceSamples {
 }
 
 impl SurfaceSamples {
-    /// The gradients of the field, hit by hit.
+    /// Returns the gradients of the field, hit by hit.
     pub fn gradients(&self) -> [DVec3; PACKET] {
         let gradient = self.gradient.map(f32x8::to_array);
         core::array::from_fn(|i| DVec3::from_array([0, 1, 2].map(|k| f64::from(gradient[k][i]))))
@@ -38,7 +38,7 @@ impl SurfaceSamples {
 pub(crate) struct ActivePrimitives {
     /// Primitive and lanes, a bit each.
     pub list: Vec<(u32, u32)>,
-    /// For each primitive the packet in which it was last listed, and its index there.
+    /// Packets in which the primitives were last listed, and their indices there.
     stamps: Vec<(u32, u32)>,
     stamp: u32,
 }

@@ -1,4 +1,4 @@
-//! Pictures against themselves at a far higher precision, with nothing cut off.
+//! Tests of pictures against themselves at a far higher precision, with nothing cut off.
 use crate::picture::Picture;
 use crate::slabs::Precision;
 use crate::stats::Stats;
@@ -10,11 +10,7 @@ use trials::scenes;
 
 const SIZE: u32 = 72;
 
-fn trace(picture: &Picture) -> Vec<u8> {
-    trace_counting(picture).0
-}
-
-fn trace_counting(picture: &Picture) -> (Vec<u8>, Stats) {
+fn trace(picture: &Picture, pass: Pass) -> (Vec<u8>, Stats) {
     let whole = Tile {
         x: 0,
         y: 0,
@@ -22,21 +18,21 @@ fn trace_counting(picture: &Picture) -> (Vec<u8>, Stats) {
         height: SIZE,
     };
     let mut stats = Stats::default();
-    let pixels = picture.trace(whole, Pass::Full, &|| false, &mut stats);
+    let pixels = picture.trace(whole, pass, &|| false, &mut stats);
     (pixels.expect("nobody asked to stop"), stats)
 }
 
-/// Shares of channels that differ by more than 1/255 and by more than 8/255.
+/// Returns the shares of channels that differ by more than 1/255 and by more than 8/255.
 fn difference(scene: &Scene) -> [f64; 2] {
     let mut picture = Picture::new(scene, [SIZE, SIZE]);
-    let quick = trace(&picture);
+    let (quick, _) = trace(&picture, Pass::Full);
     picture.sampler.world.soft.precision = Precision {
         first: 1e-4,
         last: 2e-6,
         shared: 1e-6,
         ..Precision::PICTURE
     };
-    let exact = trace(&picture);
+    let (exact, _) = trace(&picture, Pass::Full);
     [1, 8].map(|bar| {
         let off = quick
             .iter()
@@ -83,9 +79,9 @@ fn pictures_with_profiles_show_the_exact_surface() {
     assert!(worst[0] < 0.03 && worst[1] < 0.02, "{worst:?}");
 }
 
-/// Where rounding leaves rays among very many primitives in doubt, root isolation uses the
-/// interpolants of the far ones: the picture is the same, with far fewer evaluations than with all
-/// primitives for each ray.
+/// Root isolation uses the interpolants of far primitives for rays that rounding leaves in doubt
+/// among very many: the picture is the same, with far fewer evaluations than with all primitives
+/// for each ray.
 #[test]
 fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     let mut numbers = trials::Random::new(9);
@@ -115,14 +111,14 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
         ball(DVec3::new(2.0 * x, 2.0 * y, 0.0), 0.5, 1);
     }
     let mut picture = Picture::new(&scene, [SIZE; 2]);
-    let (shown, plain) = trace_counting(&picture);
-    // Some see balls.
+    let (shown, plain) = trace(&picture, Pass::Full);
+    // Some rays see balls.
     assert!((100..4000).contains(&plain.shadow_rays), "{plain:?}");
     // A larger bound on rounding leaves more rays in doubt.
     picture.sampler.world.soft.precision.rounding *= 4.0;
-    let (isolated, doubted) = trace_counting(&picture);
-    let off = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;
-    assert_eq!(shown.iter().zip(&isolated).filter(|&x| off(x)).count(), 0);
+    let (isolated, doubted) = trace(&picture, Pass::Full);
+    let mut pairs = shown.iter().zip(&isolated);
+    assert!(pairs.all(|(a, b)| a.abs_diff(*b) <= 1));
     // With all primitives at once it would be 7 times as many.
     let [plain, doubted] = [plain, doubted].map(|stats| stats.field_evaluations);
     assert!(
@@ -168,20 +164,9 @@ fn light_without_paths_is_the_same_as_with_them() {
                 [0.3, 0.3, 0.4],
             )
         });
-        // Seen from above.
+        // The camera looks from above.
         scene.camera.eye = DVec3::new(0.0, 2.0, 4.0);
         let mut picture = Picture::new(&scene, [SIZE; 2]);
-        let whole = Tile {
-            x: 0,
-            y: 0,
-            width: SIZE,
-            height: SIZE,
-        };
-        let trace = |picture: &Picture, pass| {
-            let mut stats = Stats::default();
-            let pixels = picture.trace(whole, pass, &|| false, &mut stats);
-            (pixels.expect("nobody asked to stop"), stats)
-        };
         let passes = [Pass::Coarse, Pass::Full, Pass::Smooth];
         let direct = passes.map(|pass| trace(&picture, pass));
         let rich = picture.sampler.world.rich.as_mut().expect("it has a tone");

@@ -1,4 +1,4 @@
-//! Cutting a picture into tiles.
+//! Tiles of a picture, and passes over them.
 use serde::{Deserialize, Serialize};
 
 /// A rectangle of pixels.
@@ -14,19 +14,19 @@ pub struct Tile {
     pub height: u32,
 }
 
-/// How finely a tile is traced.
+/// Fineness with which a tile is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Pass {
-    /// One ray for every block of 8×8 pixels.
+    /// A single ray for every block of 8×8 pixels.
     Coarse,
-    /// One ray a pixel.
+    /// A single ray for every pixel.
     Full,
-    /// One ray a pixel, and up to n×n where neighbouring pixels differ by more than the contrast.
+    /// A ray for every pixel, and n×n where neighbouring pixels differ by more than the contrast.
     Smooth,
 }
 
-/// The tiles of a picture, those nearest to its centre first. Their sides are at most `side`
-/// (a side of 0 is read as 1), and together they cover every pixel exactly once.
+/// Returns the tiles of a picture, those nearest to its centre first. Their sides are at most
+/// `side` (a side of 0 is read as 1), and together they cover every pixel exactly once.
 #[must_use]
 pub fn tiles(width: u32, height: u32, side: u32) -> Vec<Tile> {
     let side = side.max(1);

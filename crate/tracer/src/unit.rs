@@ -1,4 +1,4 @@
-//! Bringing a scene to unit size around the origin.
+//! The map that brings a scene to unit size around the origin.
 //!
 //! Single precision is used where rays meet the soft surface, so a scene far from the origin, very
 //! large or very small would lose digits. Before tracing it is moved to the origin and scaled by a
@@ -40,9 +40,9 @@ impl Unit {
         scale: 1.0,
     };
 
-    /// The map that fits a scene, and the scene mapped. Elements with coordinates that are not
-    /// finite, which no ray can meet, are made hard balls of radius 0, which have no surface: so
-    /// all keep their numbers.
+    /// Returns the map that fits a scene, and the scene mapped. Elements with coordinates that are
+    /// not finite, which no ray can meet, become hard balls of radius 0, which have no surface, so
+    /// that all elements keep their numbers.
     #[must_use]
     pub fn fit(scene: &Scene) -> (Self, Scene) {
         let mut mapped = scene.clone();
@@ -76,6 +76,7 @@ impl Unit {
         (unit, mapped)
     }
 
+    /// Maps a scene.
     fn apply(&self, scene: &mut Scene) {
         let k = self.scale;
         for element in &mut scene.elements {
@@ -157,7 +158,7 @@ impl Unit {
         scene.camera.target = self.map(scene.camera.target);
     }
 
-    /// From the world to the unit scene.
+    /// Returns the map from the world to the unit scene.
     fn to_unit(self) -> DAffine3 {
         DAffine3::from_scale_rotation_translation(
             DVec3::splat(self.scale),
@@ -166,78 +167,76 @@ impl Unit {
         )
     }
 
-    /// A point of the world in the unit scene.
+    /// Converts a point from the world to the unit scene.
     #[must_use]
     pub fn map(&self, point: DVec3) -> DVec3 {
         (point - self.center) * self.scale
     }
 
-    /// A point of the unit scene in the world.
+    /// Converts a point from the unit scene to the world.
     #[must_use]
     pub fn world(&self, point: DVec3) -> DVec3 {
         point / self.scale + self.center
     }
 
-    /// A length in the unit scene, in the world.
+    /// Converts a length from the unit scene to the world.
     #[must_use]
     pub fn length(&self, length: f64) -> f64 {
         length / self.scale
     }
 }
 
-/// The least height of a scene's elements along the scene's `up`, apart from planes; 0 without any.
+/// Returns the least height of a scene's elements along the scene's `up`, apart from planes; 0
+/// without any.
 #[must_use]
 pub fn lowest(scene: &Scene) -> f64 {
     let up = scene.up.normalize_or(DVec3::Y);
-    let bottom = |element: &Element| {
-        let (low, high) = corners(&element.shape);
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        middle.dot(up) - half.dot(up.abs()) - scene.radius(element).abs()
-    };
-    let bounded = |e: &&Element| !matches!(e.shape, Shape::Plane { .. });
-    let heights = scene.elements.iter().filter(bounded).map(bottom);
-    let lowest = heights.fold(f64::INFINITY, f64::min);
+    let mut lowest = f64::INFINITY;
+    for element in &scene.elements {
+        if !matches!(element.shape, Shape::Plane { .. }) {
+            let (low, high) = corners(&element.shape);
+            let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+            let radius = scene.radius(element).abs();
+            lowest = lowest.min(middle.dot(up) - half.dot(up.abs()) - radius);
+        }
+    }
     if lowest.is_finite() { lowest } else { 0.0 }
 }
 
-/// The corners of a box that holds a shape's skeleton.
+/// Returns the least and the greatest corner of a box that holds a shape's skeleton.
 fn corners(shape: &Shape) -> (DVec3, DVec3) {
-    let around = |points: &mut dyn Iterator<Item = &DVec3>| {
-        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        points.fold(start, |(low, high), p| {
-            // A coordinate that is not a number must not be passed over.
-            let p = if p.is_nan() { DVec3::NAN } else { *p };
-            if low.is_nan() {
-                (low, high)
-            } else if p.is_nan() {
-                (p, p)
-            } else {
-                (low.min(p), high.max(p))
-            }
-        })
-    };
     match *shape {
-        Shape::Polygon { ref rings, .. } => around(&mut rings.iter().flatten()),
-        Shape::Curve { ref control, .. } => around(&mut control.iter()),
+        Shape::Polygon { ref rings, .. } => extent(rings.iter().flatten()),
+        Shape::Curve { ref control, .. } => extent(control),
         Shape::Sphere { center, .. } => (center, center),
         Shape::Cylinder { base, apex, .. }
         | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => around(&mut [base, apex].iter()),
+        | Shape::Cone { base, apex, .. } => extent(&[base, apex]),
         Shape::Arc { center, sweep, .. } => {
             (center - DVec3::splat(sweep), center + DVec3::splat(sweep))
         }
-        Shape::Triangle { ref corners, .. } | Shape::Patch { ref corners, .. } => {
-            around(&mut corners.iter())
-        }
+        Shape::Triangle { ref corners, .. } | Shape::Patch { ref corners, .. } => extent(corners),
         Shape::Plane { point, .. } => (point, point),
-        Shape::Box { center, axes } => boxed(center, axes),
-        Shape::Quadric(ref quadric) => boxed(quadric.center, quadric.axes),
+        Shape::Box { center, axes } => extent_of_box(center, axes),
+        Shape::Quadric(ref quadric) => extent_of_box(quadric.center, quadric.axes),
         Shape::Function(ref function) => function.corners(),
     }
 }
 
-/// The corners of the axis-parallel box around one that need not be.
-fn boxed(center: DVec3, axes: [DVec3; 3]) -> (DVec3, DVec3) {
+/// Returns the least and the greatest coordinates of some points; NaN if a coordinate is NaN.
+fn extent<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> (DVec3, DVec3) {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for p in points {
+        if p.is_nan() {
+            return (DVec3::NAN, DVec3::NAN);
+        }
+        (low, high) = (low.min(*p), high.max(*p));
+    }
+    (low, high)
+}
+
+/// Returns the least and the greatest coordinates of a box, given by its middle and half axes.
+fn extent_of_box(center: DVec3, axes: [DVec3; 3]) -> (DVec3, DVec3) {
     let reach = axes[0].abs() + axes[1].abs() + axes[2].abs();
     (center - reach, center + reach)
 }

@@ -1,4 +1,4 @@
-//! From pixels to rays.
+//! The view of a picture's camera: the rays through its pixels.
 use crate::area::Area;
 use crate::beam::Beam;
 use crate::layout::halves_across;
@@ -15,7 +15,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// The view of a scene's camera, in units of the scene's size.
+    /// Returns the view of a scene's camera, in units of the scene's size.
     pub fn of(scene: &Scene, unit: &Unit, size: [u32; 2]) -> Self {
         let mut camera = scene.camera;
         camera.eye = unit.map(camera.eye);
@@ -26,7 +26,7 @@ impl View {
         }
     }
 
-    /// The ray through a point of the picture, in pixels.
+    /// Returns the ray through a point of the picture, in pixels.
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         Ray {
             origin: self.projection.eye,
@@ -36,12 +36,12 @@ impl View {
         }
     }
 
-    /// The width of a pixel at distance 1.
+    /// Returns the width of a pixel at distance 1.
     pub fn pixel(&self) -> f64 {
         2.0 * self.projection.half_width / f64::from(self.size[0])
     }
 
-    /// The beam of all rays through a rectangle of pixels.
+    /// Returns the beam of all rays through a rectangle of pixels.
     pub fn beam(&self, area: Area) -> Beam {
         let [l, t, r, b] = [area.left, area.top, area.right, area.bottom].map(f64::from);
         let axis = self.ray(0.5 * (l + r), 0.5 * (t + b));
@@ -60,8 +60,8 @@ impl View {
     }
 }
 
-/// The part of a rectangle, divided into columns and rows of packets, that a number in the binary
-/// tree of its divisions stands for: the halves of i are 2i+1 (left or upper) and 2i+2.
+/// Returns the part of a rectangle of columns and rows of packets that has a number in the binary
+/// tree of its divisions: the halves of i are 2i+1 (left or upper) and 2i+2.
 pub(crate) fn division(area: Area, mut packets: [u32; 2], number: usize) -> Area {
     let path = number + 1;
     let mut part = area;

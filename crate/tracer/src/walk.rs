@@ -1,4 +1,5 @@
-//! Traversal of a beam's slabs by a packet: finds where its rays cross the soft surface.
+//! Traversal of a beam's slabs by a packet, which finds the crossings of its rays with the soft
+//! surface.
 //!
 //! The rays visit the slabs of their beam together, front to back. Each slab adds its resolved
 //! primitives' spans to the cubics of the longer slabs that contain it. Where the cubics and the
@@ -20,11 +21,11 @@ pub enum Quest {
     First,
     /// Whether there is any crossing from outside to inside.
     Entry,
-    /// All crossings.
+    /// Every crossing.
     All,
 }
 
-/// Some rays of the slabs' beam, one a lane.
+/// Rays of the slabs' beam, one a lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Bundle<'r> {
     /// The rays, at least one and at most as many as there are lanes; t is counted from where the
@@ -64,13 +65,14 @@ pub struct Walk<'w, 's, L> {
     limit: L,
     /// Rays without their crossing, a bit each.
     alive: u32,
-    /// Rays known to be outside and inside at the parameter reached.
+    /// Rays known to be outside at the parameter reached, a bit each.
     outside: u32,
+    /// Rays known to be inside at the parameter reached, a bit each.
     inside: u32,
     memory: &'w mut Memories<L>,
     isolator: RootIsolator,
     found: Vec<Found>,
-    /// Work done, see [`MOST_WORK`].
+    /// Work so far, see [`MOST_WORK`].
     work: usize,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
@@ -127,21 +129,22 @@ impl<L: Lanes> Memories<L> {
 const DEEPEST_SLAB: u32 = 40;
 
 /// Most primitives in a slab with which crossings are isolated directly, without shared
-/// interpolants …
+/// interpolants.
 const FEW_PRIMITIVES: usize = 64;
-/// … as they are where the near primitives are more than one over this of all.
+/// Least ratio of all primitives in a slab to the near ones at which shared interpolants are used
+/// in place of the others.
 const WORTH: usize = 4;
 
 /// Number of halvings of a slab's cubics to isolate their crossings.
 const CUTS: u32 = 4;
 
-/// Most list entries that one packet's traversal looks at, or [`MOST_VISITS`] times the scene's
-/// primitives. After that, slabs are not halved further; crossings in them are isolated ray by ray,
-/// within limits, so that no scene takes unlimited time or memory. A packet of the published scenes
-/// looks at a few hundred. The limit must not depend on the work of other packets of the beam,
-/// which differs with the tiles.
+/// Most list entries that one packet's traversal looks at, unless [`MOST_VISITS`] times the scene's
+/// primitives are more. After that, slabs are not halved further; crossings in them are isolated
+/// ray by ray, within limits, so that no scene takes unlimited time or memory. A packet of the
+/// published scenes looks at a few hundred. The limit must not depend on the work of other packets
+/// of the beam, which differs with the tiles.
 const MOST_WORK: usize = 1 << 17;
-/// Visits of each primitive, see [`MOST_WORK`].
+/// Most visits of each primitive, see [`MOST_WORK`].
 const MOST_VISITS: usize = 64;
 /// Upper limit on the entries of [`MOST_WORK`] with very many primitives.
 const MOST_WORK_OF_MANY: usize = 1 << 22;
@@ -202,7 +205,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         // Rays that end before this slab have no crossing.
         self.alive &= L::splat(from).less(self.limit);
         let mut span = shared.plus(base);
-        if self.alive == 0 || self.rejected(index, span, above, below, error) {
+        if self.alive == 0 || self.reject(index, span, above, below, error) {
             return;
         }
         if shares {
@@ -216,7 +219,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
         if shares || joins || resolves {
             span = shared.plus(base);
-            if self.rejected(index, span, pending[0], pending[1], error) {
+            if self.reject(index, span, pending[0], pending[1], error) {
                 return;
             }
         }
@@ -230,7 +233,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         if done {
             let doubtful = self.doubtful(span, error);
             if doubtful != 0 && !self.slabs.is_final(index) {
-                let finer = self.slabs.finer(index);
+                let finer = self.slabs.refine(index);
                 self.visit(finer, shared, Span::zero());
             } else {
                 self.cross(index, span, !doubtful);
@@ -251,7 +254,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// Span of the primitives with a common interpolant.
+    /// Returns the span of the primitives with a common interpolant.
     fn together(&mut self, index: u32, which: Which) -> Span<L> {
         let s = self.slabs.slab(index);
         let (from, to) = (s.from, s.to);
@@ -264,30 +267,29 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let near = block.cell.local(near);
         let length = L::splat(to - from);
         let far = core::array::from_fn(|k| near[k] + steps[k] * length);
-        let node = |place: [L; 3]| {
+        let [near, far] = [near, far].map(|place| {
             let (value, [x, y, z]) = block.total.jet(place);
             Node {
                 value,
                 slope: x * steps[0] + y * steps[1] + z * steps[2],
             }
-        };
-        Span::hermite(node(near), node(far), to - from)
+        });
+        Span::hermite(near, far, to - from)
     }
 
-    /// Whether all rays are proved to stay on one side in the whole slab; records the side.
-    fn rejected(&mut self, index: u32, span: Span<L>, above: f64, below: f64, error: f64) -> bool {
+    /// Returns whether all rays are proved to stay on one side in the whole slab; records the side.
+    fn reject(&mut self, index: u32, span: Span<L>, above: f64, below: f64, error: f64) -> bool {
         let outside = span.max().less(L::splat(THRESHOLD - above - error));
         let inside = L::splat(THRESHOLD + below + error).less(span.min());
         if self.alive & !(outside | inside) != 0 {
             return false;
         }
-        let slab = self.slabs.slab(index);
-        let from = slab.from;
+        let from = self.slabs.slab(index).from;
         self.arrive(index, from, outside, inside, false);
         true
     }
 
-    /// Records on which side the rays are at t; a ray that was on the other side crosses there.
+    /// Records the sides of the rays at t; a ray that was on the other side crosses there.
     fn arrive(&mut self, index: u32, t: f64, outside: u32, inside: u32, isolated: bool) {
         let outside = outside & self.alive;
         let inside = inside & self.alive & !outside;
@@ -309,6 +311,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
+    /// Records a crossing, if it is one that the quest asks for and before the ray's end.
     fn report(&mut self, found: Found, enters: bool) {
         if found.t > self.limit.lane(found.lane) {
             self.alive &= !(1 << found.lane);
@@ -322,15 +325,15 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// Rays whose cubics do not prove the number of crossings in this slab: on each piece of it
-    /// none, or exactly one.
+    /// Returns the rays whose cubics do not prove the number of crossings in this slab: on each
+    /// piece of it none, or exactly one.
     fn doubtful(&self, span: Span<L>, error: f64) -> u32 {
-        Self::open(self.alive, span, error, STEEP * error, CUTS)
+        Self::doubts(self.alive, span, error, STEEP * error, CUTS)
     }
 
-    /// Those of some rays that are in doubt on a piece, on which differences of coefficients have
-    /// the error `steep`.
-    fn open(lanes: u32, span: Span<L>, error: f64, steep: f64, cuts: u32) -> u32 {
+    /// Returns those of some rays that are in doubt on a piece of a slab, which is halved up to
+    /// `cuts` times. The differences of the coefficients there have the error `steep`.
+    fn doubts(lanes: u32, span: Span<L>, error: f64, steep: f64, cuts: u32) -> u32 {
         let [a, b, c, d] = span.0;
         let level = L::splat(THRESHOLD);
         let e = L::splat(error);
@@ -343,8 +346,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             return open;
         }
         let [left, right] = span.halves();
-        let before = Self::open(open, left, error, 0.5 * steep, cuts - 1);
-        before | Self::open(open & !before, right, error, 0.5 * steep, cuts - 1)
+        let before = Self::doubts(open, left, error, 0.5 * steep, cuts - 1);
+        before | Self::doubts(open & !before, right, error, 0.5 * steep, cuts - 1)
     }
 
     /// Isolates the crossings of some rays in a slab one ray at a time in double precision.
@@ -373,8 +376,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             };
             let mut isolator = core::mem::take(&mut self.isolator);
             isolator.crossings(&along, [from, to], |t, inside| {
-                let side = |yes: bool| if yes { bit } else { 0 };
-                self.arrive(index, t, side(!inside), side(inside), true);
+                let (outside, inside) = if inside { (0, bit) } else { (bit, 0) };
+                self.arrive(index, t, outside, inside, true);
                 self.alive & bit != 0
             });
             // Isolation counts as work, too: it takes far longer in many short slabs than in a few
@@ -386,7 +389,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     }
 
     /// Isolates crossings with shared interpolants in place of far primitives, where that saves
-    /// most of the work. Returns the rays for which they decide.
+    /// most of the work. Returns the rays that are decided so, a bit each.
     fn isolate_near(&mut self, index: u32, lanes: u32) -> u32 {
         let all = self.slabs.count(index);
         if all <= FEW_PRIMITIVES {
@@ -395,7 +398,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         // Listing counts as work, too.
         self.work += all / 16;
         self.isolator.list.clear();
-        let afar = self.slabs.near(index, &mut self.isolator.list);
+        let afar = self.slabs.list_near(index, &mut self.isolator.list);
         if self.isolator.list.len() * WORTH > all {
             return 0;
         }
@@ -409,18 +412,20 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
                 resolution: self.slabs.resolution(),
             };
             let isolator = &mut self.isolator;
-            let told = afar.along(&along.ray, |known| {
+            let crossings = afar.along(&along.ray, |known| {
                 isolator.crossings_with(&along, interval, known)
             });
             let spent = core::mem::take(&mut self.isolator.evaluations);
             self.work += spent as usize;
             self.evaluations += spent;
-            let Some(told) = told else { continue };
+            let Some(crossings) = crossings else {
+                continue;
+            };
             let bit = 1u32 << lane;
             isolated |= bit;
-            for (t, inside) in told {
-                let side = |yes: bool| if yes { bit } else { 0 };
-                self.arrive(index, t, side(!inside), side(inside), false);
+            for (t, inside) in crossings {
+                let (outside, inside) = if inside { (0, bit) } else { (bit, 0) };
+                self.arrive(index, t, outside, inside, false);
                 if self.alive & bit == 0 {
                     break;
                 }
@@ -468,16 +473,15 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// Sum of the spans of a slab's resolved primitives.
+    /// Adds up the spans of a slab's resolved primitives.
     fn span(&mut self, index: u32) -> Span<L> {
         let s = self.slabs.slab(index);
         let range = &s.resolved;
         let (from, to) = (s.from, s.to);
-        let along = |t: f64| {
+        let places: [[L; 3]; 2] = [from, to].map(|t| {
             let t = L::splat(t);
             core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
-        };
-        let places: [[L; 3]; 2] = [along(from), along(to)];
+        });
         let (mut left, mut right) = (Node::zero(), Node::zero());
         self.memory.hold(self.slabs.len());
         for &local in self.slabs.locals(range) {
@@ -498,7 +502,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     }
 }
 
-/// Value of a primitive and its slope along rays.
+/// Returns the value of a primitive and its slope along rays.
 #[inline]
 fn node<L: Lanes>(primitive: &Primitive, point: [L; 3], direction: [L; 3]) -> Node<L> {
     let jet = primitive.jet(point);

@@ -11,7 +11,7 @@ use crate::scratch::Scratch;
 pub struct Workspace {
     pub(crate) scratch: Scratch,
     pub(crate) crossings: Vec<Crossing>,
-    /// Lumps near the rays of a patch to a light.
+    /// Blobs near the rays of a patch to a light.
     pub(crate) around: Nearby,
     /// Rays to a light.
     pub(crate) shadows: Vec<Shadow>,
@@ -21,14 +21,14 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Counts from nothing again what is made for a packet.
+    /// Starts the counts of a packet's evaluations at 0.
     pub(crate) fn begin(&mut self) {
         self.scratch.evaluations = 0;
         self.scratch.alone = [0; PACKET];
     }
 
-    /// The cost of each of the packet's first rays: the ray itself, its share of the evaluations
-    /// made for all, and those made for it alone (see [`map`](crate::map)).
+    /// Returns the cost of each of the packet's first rays: the ray itself, its share of the
+    /// evaluations made for all, and those made for it alone (see [`map`](crate::map)).
     pub(crate) fn costs(&self, rays: usize) -> [f32; PACKET] {
         let Scratch {
             evaluations, alone, ..
@@ -40,23 +40,23 @@ impl Workspace {
 
 /// A ray from a surface point to a light.
 pub(crate) struct Shadow {
-    /// The surface point: its packet and its lane.
+    /// Packet and lane of the surface point.
     pub hit: (usize, usize),
     pub ray: Ray,
-    /// How far it is to the light.
+    /// Distance of the light.
     pub limit: f64,
-    /// How far from the eye the surface point is.
+    /// Distance of the surface point from the eye.
     pub depth: f64,
     pub state: State,
-    /// What finding out cost.
+    /// Cost of the decision whether the ray is dark.
     pub cost: f32,
 }
 
-/// What is known of a ray to a light.
+/// State of a ray to a light.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum State {
     Unknown,
-    /// Being looked at.
+    /// Member of the patch that is being decided.
     Asked,
     Lit,
     Dark,

@@ -1,4 +1,4 @@
-//! Everything that rays can meet, made ready.
+//! The surfaces and lights of a scene, prepared for tracing.
 use crate::body::Body;
 use crate::function::FunctionBody;
 use crate::rich::Rich;
@@ -26,11 +26,11 @@ pub(crate) struct World {
     pub background: Vec3,
     /// Whether faces seen from behind are hidden.
     pub one_sided: bool,
-    /// How far rays start from hard surfaces, for each unit of distance more than 0.
+    /// Distance from a hard surface at which rays start from a hit at t, over 1 + t.
     pub hard_lift: f64,
-    /// What only some scenes need.
+    /// Data that only some scenes need.
     pub rich: Option<Rich>,
-    /// How many bodies the scene has.
+    /// Number of the scene's bodies.
     bodies: u32,
 }
 
@@ -46,7 +46,7 @@ pub(crate) enum Owner {
     Soft(u32),
     /// The surface of a body that is met ray by ray.
     Other(usize),
-    /// A hard element's.
+    /// The surface of a hard element.
     Solid(u32),
 }
 
@@ -58,7 +58,7 @@ pub(crate) struct SurfacePoint {
     pub position: DVec3,
     /// Outward unit normal.
     pub normal: DVec3,
-    /// How far rays to the lights must start above the surface.
+    /// Distance above the surface at which rays to the lights start.
     pub lift: f64,
     /// The mixture of the elements' finishes.
     pub finish: Finish,
@@ -67,7 +67,7 @@ pub(crate) struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// The normal on the side from which a ray of this direction sees the surface.
+    /// Returns the normal on the side from which a ray of this direction sees the surface.
     pub fn facing(&self, direction: DVec3) -> DVec3 {
         if self.normal.dot(direction) > 0.0 {
             -self.normal
@@ -80,11 +80,11 @@ impl SurfacePoint {
 impl World {
     /// Prepares a scene.
     pub fn new(world: &Scene) -> Self {
-        Self::lit(world, Rich::is_needed(world))
+        Self::prepare(world, Rich::is_needed(world))
     }
 
-    /// Prepares a scene, with or without what only some scenes need.
-    pub fn lit(world: &Scene, rich: bool) -> Self {
+    /// Prepares a scene, with or without the data that only some scenes need.
+    pub fn prepare(world: &Scene, rich: bool) -> Self {
         let (unit, scene) = Unit::fit(world);
         let solids = Solids::new(&scene);
         let rich = rich.then(|| Rich::new(world, unit, &scene, &solids));
@@ -111,7 +111,7 @@ impl World {
         let soft = Soft::new(scene, sums);
         Self {
             hard_lift: HARD_LIFT * (epsilon / EPSILON),
-            rich: rich.map(|rich| rich.with(&soft)),
+            rich: rich.map(|rich| rich.complete(&soft)),
             unit,
             soft,
             others,
@@ -125,7 +125,7 @@ impl World {
     }
 
     /// Adds a body of an implicit function, given with the finish of each of its elements, and
-    /// gives the body's number.
+    /// returns the body's number.
     pub fn add(&mut self, function: Arc<dyn Implicit>, finish: Vec<u32>) -> u32 {
         let number = self.bodies;
         self.bodies += 1;
@@ -140,7 +140,7 @@ impl World {
         number
     }
 
-    /// Has the convolution surfaces found by another root finder, ray by ray.
+    /// Lets another root finder find the convolution surfaces from now on, ray by ray.
     pub fn find_with(&mut self, finder: &Arc<dyn RootFinder>) {
         let nothing = Soft::new(Scene::default(), Vec::new());
         let soft = Arc::new(core::mem::replace(&mut self.soft, nothing));
@@ -155,17 +155,19 @@ impl World {
         self.others.splice(0..0, found);
     }
 
-    /// The number that tells the surface of a body, by its number in the scene, from others.
+    /// Returns the number that tells the surface of a body, by its number in the scene, from
+    /// others.
     pub fn surface_of_body(&self, number: u32) -> u32 {
         1 + number
     }
 
-    /// The number that tells the surface of a hard element from others.
+    /// Returns the number that tells the surface of a hard element from others.
     pub fn surface_of_solid(&self, number: u32) -> u32 {
         1 + self.bodies + number
     }
 
-    /// Whose surface a number of [`World::surface_of_body`] or [`World::surface_of_solid`] tells.
+    /// Returns the owner of the surface of a number ([`World::surface_of_body`],
+    /// [`World::surface_of_solid`]).
     pub fn owner_of(&self, surface: u32) -> Owner {
         let number = surface - 1;
         if number >= self.bodies {
@@ -186,8 +188,8 @@ impl World {
         self.solids.is_empty() && self.others.is_empty()
     }
 
-    /// The finish mixed of those of some elements by weights ≥ 0.
-    pub fn mixed(&self, weights: impl Iterator<Item = (u32, f64)> + Clone) -> Finish {
+    /// Mixes finishes by weights ≥ 0.
+    pub fn mix(&self, weights: impl Iterator<Item = (u32, f64)> + Clone) -> Finish {
         let total: f64 = weights.clone().map(|(_, weight)| weight).sum();
         let mut finish = Finish::default();
         for (index, weight) in weights {

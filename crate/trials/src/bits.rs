@@ -36,8 +36,8 @@ impl Hash {
     }
 }
 
-/// Compares hashes with kept ones: lines `NAME HASH` of a file. `UPDATE_EXPECT=1` writes them
-/// anew, natively.
+/// Compares hashes with kept ones, lines `NAME HASH` of a file. With `UPDATE_EXPECT=1` it writes
+/// the file instead, natively.
 ///
 /// ```no_run
 /// let mut hash = trials::bits::Hash::default();
@@ -66,8 +66,8 @@ pub fn compare(found: &[(String, Hash)], kept: &str, path: &str) {
         .collect();
     assert!(
         differing.is_empty(),
-        "bits differ from those kept in {path}:\n{}\nIf that is meant, and it is so natively: run \
-         the test with UPDATE_EXPECT=1. Bits that differ only as wasm are a fault.",
+        "bits differ from those kept in {path}:\n{}\nIf that is meant, and they differ natively, \
+         too: run the test with UPDATE_EXPECT=1. Bits that differ only as wasm are a fault.",
         differing.join("\n")
     );
 }
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_those_that_differ_are_told() {
+    fn names_of_differing_hashes_are_shown() {
         let found = [1.0, 2.0].map(|x| (format!("number {x}"), hash(x)));
         let text = found
             .iter()
@@ -100,10 +100,10 @@ mod tests {
         let text: String = text.collect();
         compare(&found, &text, "/nowhere");
         for kept in [text.replace("number 2", "number 3"), String::new()] {
-            let told = std::panic::catch_unwind(|| compare(&found, &kept, "/nowhere"));
-            let told = told.expect_err("they differ");
-            let told = told.downcast_ref::<String>().expect("a message");
-            assert!(told.contains("now  number 2 "), "{told}");
+            let error = std::panic::catch_unwind(|| compare(&found, &kept, "/nowhere"));
+            let error = error.expect_err("they differ");
+            let message = error.downcast_ref::<String>().expect("a message");
+            assert!(message.contains("now  number 2 "), "{message}");
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Random inputs for tests: how many, and which.
+//! Random inputs for tests, and their number.
 //!
-//! Every test that draws its inputs asks [`count`] how many, and takes them from [`Random`] or,
-//! where bytes are to be anything at all, from [`trials`]. They are the same on every machine and
-//! in every run, so that a test that has passed passes again (a library that spends a budget of
-//! time, as `arbtest` does, cannot promise that). `SINEW_TRIALS`, a number, asks for so many times
-//! as many: `cargo xtask test quick` sets 0.1, `cargo xtask test all` sets 10. `SINEW_SEED`, a
-//! whole number, asks for other inputs.
+//! Every test that draws its inputs takes their number from [`count`], and the inputs from
+//! [`Random`] or, if they are to be any bytes, from [`trials`]. They are the same on every machine
+//! and in every run, so that a test that has passed passes again (a library that spends a budget of
+//! time, as `arbtest` does, cannot promise that). `SINEW_TRIALS` is a factor on their number:
+//! `cargo xtask test quick` sets 0.1, `cargo xtask test all` sets 10. `SINEW_SEED`, a whole number,
+//! asks for other inputs.
 //!
 //! ```
 //! use trials::{Random, count};
@@ -22,7 +22,7 @@
 //! With the feature `field` there are random skeletons, with `scene` random scenes; the crate
 //! `oracle` has rays through them and their judge.
 //!
-//! [`WorkClock`] is for tests that something does not take long.
+//! [`WorkClock`] is for tests of the time that something takes.
 
 pub mod bits;
 mod random;
@@ -37,21 +37,22 @@ pub use random::Random;
 use arbitrary::{Result, Unstructured};
 use std::time::Duration;
 
-/// Inputs of a property, if it does not say how many.
+/// Default number of inputs of a property.
 const CASES: u32 = 200;
-/// Bytes of the shortest input. Each step makes inputs a quarter longer, up to about 60,000 bytes.
+/// Bytes of the shortest input.
 const SHORTEST: usize = 32;
+/// Number of steps that each make inputs a quarter longer, up to about 60,000 bytes.
 const STEPS: u64 = 35;
 
-/// A property to be tested. It runs when this is dropped.
+/// A property to be tested, when this is dropped.
 pub struct Trials<P: FnMut(&mut Unstructured<'_>) -> Result<()>> {
     property: P,
     cases: u32,
 }
 
-/// Tests a property on many inputs of bytes, short ones first: it panics where it does not hold,
-/// and gives an error where an input is too short for it. A failure tells its input, and
-/// `SINEW_CASE` runs that input alone.
+/// Tests a property on many inputs of bytes, short ones first: it panics if it does not hold, and
+/// returns an error if an input is too short for it. A failure prints its input, and `SINEW_CASE`
+/// runs that input alone.
 ///
 /// ```
 /// use trials::trials;
@@ -79,7 +80,7 @@ impl<P: FnMut(&mut Unstructured<'_>) -> Result<()>> Trials<P> {
 
     /// Runs the property on one input.
     fn case(&mut self, case: Case) -> Result<()> {
-        let _told = Told(case);
+        let _report = Report(case);
         let bytes = case.bytes();
         (self.property)(&mut Unstructured::new(&bytes))
     }
@@ -109,73 +110,75 @@ impl<P: FnMut(&mut Unstructured<'_>) -> Result<()>> Drop for Trials<P> {
     }
 }
 
-/// A clock of the work of one thread: what other threads and programs do does not count, so that
-/// limits on it hold on a busy machine.
+/// A clock of the work of one thread: the work of other threads and programs does not count, so
+/// that limits on it hold on a busy machine.
 #[derive(Clone, Copy, Debug)]
 pub struct WorkClock(Option<Duration>);
 
 impl WorkClock {
     /// Starts a clock of this thread.
     pub fn start() -> Self {
-        Self(worked())
+        Self(processor_time())
     }
 
-    /// The processor time that this thread has taken since. Zero where the system does not tell,
-    /// which is everywhere but on Linux.
+    /// Returns the processor time that this thread has taken since the start; zero on systems other
+    /// than Linux, which do not tell it.
     pub fn elapsed(self) -> Duration {
-        let now = worked().zip(self.0);
+        let now = processor_time().zip(self.0);
         now.map_or(Duration::ZERO, |(now, start)| now - start)
     }
 }
 
-/// Processor time of this thread.
-fn worked() -> Option<Duration> {
+/// Returns the processor time of this thread.
+fn processor_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds = text.split_whitespace().next()?.parse().ok()?;
     Some(Duration::from_nanos(nanoseconds))
 }
 
-/// Returns how many random inputs a test takes: a basic number times `SINEW_TRIALS`, at least one.
+/// Returns the number of random inputs of a test: a basic number times `SINEW_TRIALS`, at least
+/// one.
 ///
 /// A test that also counts how often something happened scales that count alike.
 pub fn count(basic: usize) -> usize {
-    scaled(basic, setting("SINEW_TRIALS", 1.0))
+    scale(basic, setting("SINEW_TRIALS", 1.0))
 }
 
-fn scaled(basic: usize, times: f64) -> usize {
+/// Returns a basic number times a factor, at least one.
+fn scale(basic: usize, times: f64) -> usize {
     // Rounded down, as a test of few slow inputs gets no quicker otherwise.
     ((basic as f64 * times) as usize).max(1)
 }
 
-/// The number that all random inputs depend on.
+/// Returns the number that all random inputs depend on.
 fn seed() -> u64 {
     setting("SINEW_SEED", 0)
 }
 
-/// A number from the environment.
+/// Returns a number from the environment, or a default.
 fn setting<T: std::str::FromStr>(name: &str, otherwise: T) -> T {
     let set = std::env::var(name).ok();
     set.and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
-/// An input.
+/// An input of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Case {
     seed: u64,
-    /// Its length in bytes.
+    /// Length in bytes.
     size: usize,
 }
 
 impl Case {
-    /// One of so many inputs. As many are made for each step of their size.
+    /// Returns one of `cases` inputs. Each size has as many of them.
     fn of(seed: u64, index: u64, cases: u64) -> Self {
         let steps = index * STEPS / cases;
         let size = (0..steps).fold(SHORTEST, |size, _| size * 5 / 4);
-        let seed = mixed(mixed(seed) ^ index);
+        let seed = mix(mix(seed) ^ index);
         Self { seed, size }
     }
 
-    /// Parses the output of [`Told`].
+    /// Parses the output of [`Report`].
     fn read(text: &str) -> Option<Self> {
         let (seed, size) = text.split_once(':')?;
         Some(Self {
@@ -184,9 +187,10 @@ impl Case {
         })
     }
 
+    /// Returns the bytes of the input.
     fn bytes(self) -> Vec<u8> {
         (0..self.size.div_ceil(8) as u64)
-            .flat_map(|word| mixed(self.seed.wrapping_add(word)).to_le_bytes())
+            .flat_map(|word| mix(self.seed.wrapping_add(word)).to_le_bytes())
             .take(self.size)
             .collect()
     }
@@ -196,25 +200,25 @@ impl Case {
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// Returns an unrelated number for each number.
-fn mixed(number: u64) -> u64 {
-    scrambled(number.wrapping_add(1).wrapping_mul(STEP))
+fn mix(number: u64) -> u64 {
+    scramble(number.wrapping_add(1).wrapping_mul(STEP))
 }
 
 /// Returns SplitMix64's output of a state.
-fn scrambled(mut z: u64) -> u64 {
+fn scramble(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
 }
 
-/// Tells which input a property panicked with.
-struct Told(Case);
+/// A report of the input that a property panicked with, printed when this is dropped.
+struct Report(Case);
 
-impl Drop for Told {
+impl Drop for Report {
     fn drop(&mut self) {
         if std::thread::panicking() {
             let Case { seed, size } = self.0;
-            eprintln!("That was with this random input. To run it alone: SINEW_CASE={seed}:{size}");
+            eprintln!("The input was random. To run it alone: SINEW_CASE={seed}:{size}");
         }
     }
 }
@@ -226,7 +230,7 @@ mod tests {
 
     #[test]
     fn inputs_are_the_same_each_time_and_grow() {
-        let run = || {
+        let [seen, again] = [(), ()].map(|()| {
             let mut seen = Vec::new();
             trials(|u| {
                 seen.push((u.len(), u.arbitrary::<u64>()?));
@@ -234,9 +238,8 @@ mod tests {
             })
             .cases(50);
             seen
-        };
-        let seen = run();
-        assert_eq!(seen, run());
+        });
+        assert_eq!(seen, again);
         assert_eq!(seen.len(), 50);
         assert_eq!(seen[0].0, 32);
         assert!(seen[49].0 > 40_000 && seen.is_sorted_by_key(|(size, _)| *size));
@@ -250,10 +253,10 @@ mod tests {
     #[test]
     fn counts_are_scaled_and_never_nothing() {
         assert_eq!(
-            [0.1, 1.0, 10.0].map(|times| scaled(250, times)),
+            [0.1, 1.0, 10.0].map(|times| scale(250, times)),
             [25, 250, 2500]
         );
-        assert_eq!([0.1, 1.0, 0.0].map(|times| scaled(4, times)), [1, 4, 1]);
+        assert_eq!([0.1, 1.0, 0.0].map(|times| scale(4, times)), [1, 4, 1]);
     }
 
     #[test]
@@ -263,7 +266,7 @@ mod tests {
         let waited = clock.elapsed();
         let mut sum = 0_u64;
         for i in 0..30_000_000 {
-            sum = std::hint::black_box(sum ^ mixed(i));
+            sum = std::hint::black_box(sum ^ mix(i));
         }
         let worked = clock.elapsed();
         assert!(waited < Duration::from_millis(200), "{waited:?}");

@@ -1,13 +1,14 @@
 //! Random numbers and vectors.
 
-use crate::{STEP, mixed, scrambled, seed};
+use crate::{STEP, mix, scramble, seed};
 use core::f64::consts::PI;
 use glam::{DQuat, DVec3};
 
-/// A SplitMix64 generator: the same numbers on every platform.
+/// A generator of numbers that are the same on every platform, mostly SplitMix64.
 #[derive(Clone, Debug)]
 pub struct Random(u64, Step);
 
+/// The step from one state of a generator to the next.
 #[derive(Clone, Copy, Debug)]
 enum Step {
     SplitMix,
@@ -19,7 +20,7 @@ impl Random {
     pub fn new(start: u64) -> Self {
         match seed() {
             0 => Self(start, Step::SplitMix),
-            other => Self(mixed(start ^ mixed(other)), Step::SplitMix),
+            other => Self(mix(start ^ mix(other)), Step::SplitMix),
         }
     }
 
@@ -40,7 +41,7 @@ impl Random {
         match self.1 {
             Step::SplitMix => {
                 self.0 = self.0.wrapping_add(STEP);
-                scrambled(self.0)
+                scramble(self.0)
             }
             Step::Linear => {
                 let times = self.0.wrapping_mul(6_364_136_223_846_793_005);

@@ -175,13 +175,13 @@ pub enum Kind {
     Curve,
     /// A segment, arc or curve whose radius and blobbiness vary.
     Taper,
-    /// Profiles with smooth waves …
+    /// Profiles with smooth waves.
     Waves,
-    /// … and with kinks and jumps.
+    /// Profiles with kinks and jumps.
     Kinks,
     /// Triangles whose field is restricted.
     Restricted,
-    /// Some of everything, with other kernels beside.
+    /// Elements of all of the first seven kinds, some with other kernels.
     Mixed,
     /// A hundred or two points and segments.
     Cluster,
@@ -189,7 +189,7 @@ pub enum Kind {
     Cloud,
 }
 
-/// All kinds.
+/// Every kind.
 pub const KINDS: [Kind; 14] = [
     Kind::Point,
     Kind::Segment,
@@ -207,10 +207,10 @@ pub const KINDS: [Kind; 14] = [
     Kind::Cloud,
 ];
 
-/// The places of a scene: moved and magnified.
+/// The map of a scene's places, which are moved and magnified.
 #[derive(Clone, Copy, Debug)]
 pub struct World {
-    /// Where the origin is.
+    /// Place of the origin.
     pub center: DVec3,
     /// Length of a unit.
     pub scale: f64,
@@ -239,10 +239,11 @@ pub fn scene(kernel: Kernel, kind: Kind, n: &mut Random) -> (Scene, World) {
     };
     let center = n.vector(1.0) * (far * scale);
     let world = World { center, scale };
-    (within(world, kernel, kind, n), world)
+    (scene_in(world, kernel, kind, n), world)
 }
 
-fn within(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
+/// Returns a scene of a kind in the places of a world.
+fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
     let mut scene = empty();
     scene.camera.eye = world.at(DVec3::Z * 4.0);
     scene.camera.target = world.at(DVec3::ZERO);
@@ -329,6 +330,7 @@ fn within(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
     scene
 }
 
+/// Returns a shape of a kind.
 fn shape(kind: Kind, radius: f64, thin: bool, n: &mut Random, world: World) -> Shape {
     let at = |n: &mut Random| world.at(n.vector(1.0));
     let radius = radius * world.scale;
@@ -377,14 +379,13 @@ fn shape(kind: Kind, radius: f64, thin: bool, n: &mut Random, world: World) -> S
                     (far * libm::cos(turn), far * libm::sin(turn))
                 })
                 .collect();
-            let ring = |scale: f64| {
-                let place = |&(a, b): &(f64, f64)| world.at(center + (x * a + y * b) * scale);
-                outer.iter().map(place).collect()
-            };
-            let mut rings = vec![ring(1.0)];
             // A hole of the same form is inside as long as the form is a star.
-            if n.chance(0.4) {
-                rings.push(ring(0.4));
+            let scales: &[f64] = if n.chance(0.4) { &[1.0, 0.4] } else { &[1.0] };
+            let mut rings = Vec::new();
+            for &scale in scales {
+                let corners = outer.iter();
+                let corners = corners.map(|&(a, b)| world.at(center + (x * a + y * b) * scale));
+                rings.push(corners.collect());
             }
             Shape::Polygon { rings, radius }
         }

@@ -4,7 +4,7 @@ use crate::Random;
 use core::f64::consts::{PI, TAU};
 use field::local::Limb;
 use field::{BlobScale, Kernel, Local, Primitive, Shaping, Skeleton};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// A kind of skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub const KINDS: [Kind; 5] = [
     Kind::Plane,
 ];
 
-/// All kinds.
+/// Every kind.
 pub const ALL_KINDS: [Kind; 7] = [
     Kind::Point,
     Kind::Segment,
@@ -161,7 +161,8 @@ impl Random {
         }
     }
 
-    /// Returns a point at a distance of these decades from such a place.
+    /// Returns a point at a distance of these decades from a natural place of the skeleton
+    /// ([`Random::place`]).
     pub fn near(&mut self, skeleton: &Skeleton, low: f64, high: f64) -> DVec3 {
         let place = self.place(skeleton);
         let direction = match *skeleton {
@@ -179,7 +180,7 @@ impl Random {
         place + direction * self.decades(low, high)
     }
 
-    /// Returns a shaping of width about 1/R.
+    /// Returns a shaping of a radius R, whose width is about 1/R.
     pub fn shaping(&mut self, radius: f64) -> Shaping {
         Shaping {
             blobbiness: -self.decades(-1.0, 1.0),
@@ -237,4 +238,144 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
         }
     });
     Local::new(&points, &limbs.collect::<Vec<_>>(), 1.2).expect("it is short")
+}
+
+/// Returns the parts of a skeleton that is cut in two at a fraction `at` of its parameter; `None`
+/// if it has no such parts.
+#[must_use]
+pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
+    Some(match *skeleton {
+        Skeleton::Segment { base, apex } => {
+            let middle = base + (apex - base) * at;
+            [
+                Skeleton::Segment { base, apex: middle },
+                Skeleton::Segment { base: middle, apex },
+            ]
+        }
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => {
+            let turn = angle * at;
+            let (sine, cosine) = libm::sincos(turn);
+            let parts = [
+                (u, v, turn),
+                (u * cosine + v * sine, v * cosine - u * sine, angle - turn),
+            ];
+            parts.map(|(u, v, angle)| Skeleton::Arc {
+                center,
+                u,
+                v,
+                radius,
+                angle,
+            })
+        }
+        Skeleton::Triangle { corners: [a, b, c] } => {
+            let middle = a + (b - a) * at;
+            [
+                Skeleton::Triangle {
+                    corners: [a, middle, c],
+                },
+                Skeleton::Triangle {
+                    corners: [middle, b, c],
+                },
+            ]
+        }
+        Skeleton::Polygon { ref rings } => {
+            // From the centre of the star to two corners.
+            let ring = &rings[0];
+            if rings.len() > 1 || ring.len() < 4 {
+                return None;
+            }
+            let center = (ring[0] + ring[2]) * 0.5;
+            let half = ring.len() / 2;
+            let mut first: Vec<DVec3> = ring[..=half].to_vec();
+            first.push(center);
+            let mut second: Vec<DVec3> = ring[half..].to_vec();
+            second.extend([ring[0], center]);
+            // Only if both are simple, with areas that add up.
+            let whole = skeleton.measure();
+            let parts = [first, second].map(|ring| Skeleton::Polygon { rings: vec![ring] });
+            let sum = parts[0].measure() + parts[1].measure();
+            if (sum - whole).abs() > 1e-9 * whole {
+                return None;
+            }
+            parts
+        }
+        Skeleton::Curve {
+            control: [a, b, c, d],
+        } => {
+            let [ab, bc, cd] = [[a, b], [b, c], [c, d]].map(|ends| mix(ends, at));
+            let [abc, bcd] = [[ab, bc], [bc, cd]].map(|ends| mix(ends, at));
+            let m = mix([abc, bcd], at);
+            [
+                Skeleton::Curve {
+                    control: [a, ab, abc, m],
+                },
+                Skeleton::Curve {
+                    control: [m, bcd, cd, d],
+                },
+            ]
+        }
+        Skeleton::Point { .. } | Skeleton::Plane { .. } => return None,
+    })
+}
+
+/// Returns the point at a fraction of the way from one end to the other.
+fn mix([from, to]: [DVec3; 2], at: f64) -> DVec3 {
+    from + (to - from) * at
+}
+
+/// Returns a skeleton turned, scaled and shifted.
+#[must_use]
+pub fn move_by(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
+    map_points(skeleton, turn, scale, |p| turn * p * scale + shift)
+}
+
+/// Returns a skeleton with its points mapped, its directions turned and its radius scaled.
+fn map_points(
+    skeleton: &Skeleton,
+    turn: DQuat,
+    scale: f64,
+    to: impl Fn(DVec3) -> DVec3,
+) -> Skeleton {
+    match *skeleton {
+        Skeleton::Point { center } => Skeleton::Point { center: to(center) },
+        Skeleton::Segment { base, apex } => Skeleton::Segment {
+            base: to(base),
+            apex: to(apex),
+        },
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius,
+            angle,
+        } => Skeleton::Arc {
+            center: to(center),
+            u: turn * u,
+            v: turn * v,
+            radius: radius * scale,
+            angle,
+        },
+        Skeleton::Triangle { corners } => Skeleton::Triangle {
+            corners: corners.map(to),
+        },
+        Skeleton::Plane { point, normal } => Skeleton::Plane {
+            point: to(point),
+            normal: turn * normal,
+        },
+        Skeleton::Polygon { ref rings } => Skeleton::Polygon {
+            rings: rings
+                .iter()
+                .map(|ring| ring.iter().map(|p| to(*p)).collect())
+                .collect(),
+        },
+        Skeleton::Curve { control } => Skeleton::Curve {
+            control: control.map(to),
+        },
+    }
 }

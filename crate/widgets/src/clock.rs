@@ -1,6 +1,6 @@
-//! A clock for measuring how long something takes.
+//! A clock for measuring times.
 
-/// Seconds on a clock that never goes back.
+/// Returns the seconds on a clock that never goes back.
 #[cfg(target_arch = "wasm32")]
 #[must_use]
 pub fn stopwatch() -> f64 {
@@ -10,7 +10,7 @@ pub fn stopwatch() -> f64 {
         / 1000.0
 }
 
-/// Seconds on a clock that never goes back.
+/// Returns the seconds on a clock that never goes back.
 #[cfg(not(target_arch = "wasm32"))]
 #[must_use]
 pub fn stopwatch() -> f64 {

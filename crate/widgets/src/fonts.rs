@@ -1,5 +1,5 @@
 //! The page's two fonts: one for words, one for the text of datasets. Each stands in for the other
-//! where a sign is missing.
+//! where a character is missing.
 //!
 //! The build script leaves out their hinting programs. Letters are kept sharp by egui's own hinter,
 //! which works on the bare outlines.
@@ -10,7 +10,7 @@ use std::sync::Arc;
 const SANS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/sans.ttf"));
 const MONO: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/mono.ttf"));
 
-/// The fonts and who uses them.
+/// Returns the fonts and their families.
 #[must_use]
 pub fn definitions() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();

@@ -56,7 +56,7 @@ pub enum Icon {
     Done,
 }
 
-/// A square button; `name` is its tooltip and its name for screen readers.
+/// Adds a square button; `name` is its tooltip and its name for screen readers.
 pub fn button(ui: &mut Ui, icon: Icon, name: &str, enabled: bool) -> Response {
     let side = ui.spacing().interact_size.y.max(28.0);
     let sense = if enabled {
@@ -267,7 +267,7 @@ pub fn paint(painter: &Painter, icon: Icon, at: Pos2, stroke: Stroke) {
     }
 }
 
-/// The mark of the program: two balls that melt together.
+/// Draws the mark of the program: two balls that melt together.
 pub fn mark(ui: &mut Ui) {
     let palette = theme::palette(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::hover());

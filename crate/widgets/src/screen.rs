@@ -2,7 +2,7 @@
 
 use egui::Context;
 
-/// Below this width in points the parts stand on top of each other.
+/// Width in points below which the parts of the page stand on top of each other.
 pub const NARROW: f32 = 700.0;
 
 /// Whether the page is narrow.

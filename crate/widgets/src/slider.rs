@@ -3,7 +3,8 @@
 use crate::theme;
 use egui::Ui;
 
-/// The accent on what is filled, and a knob that stands out from the rail.
+/// Sets the colours of sliders: the accent for the filled part, and a knob that stands out from the
+/// rail.
 pub fn colours(ui: &mut Ui) {
     let palette = theme::palette(ui.visuals());
     let visuals = ui.visuals_mut();
@@ -21,7 +22,7 @@ pub fn colours(ui: &mut Ui) {
     widgets.active.bg_fill = palette.accent;
 }
 
-/// A range to play in: up to four times the value, or a unit around zero.
+/// Returns a range to play in: up to four times the value, or a unit around zero.
 #[must_use]
 pub fn fitting_range(value: f64) -> (f64, f64) {
     if value > 0.0 {
@@ -33,7 +34,8 @@ pub fn fitting_range(value: f64) -> (f64, f64) {
     }
 }
 
-/// Decimals that move a slider of this range in steps of a thousandth or less.
+/// Returns the number of decimals with which a slider of this range moves in steps of a thousandth
+/// or less.
 #[must_use]
 pub fn decimals(range: f64) -> usize {
     if !range.is_finite() || range <= 0.0 {
@@ -52,7 +54,7 @@ pub fn counts(value: f64) -> bool {
 /// Returns the number nearest to `value` that lies a whole number of steps above `low`, without
 /// digits that no hand could set.
 #[must_use]
-pub fn stepped(value: f64, low: f64, step: Option<f64>, decimals: usize) -> f64 {
+pub fn snap(value: f64, low: f64, step: Option<f64>, decimals: usize) -> f64 {
     match step {
         Some(step) if step > 0.0 => shorten(low + ((value - low) / step).round() * step, 9),
         _ => shorten(value, decimals),

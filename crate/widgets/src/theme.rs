@@ -1,4 +1,4 @@
-//! The look of the page: two calm palettes, slate and paper, with one warm accent for what acts.
+//! The look of the page: two calm palettes, slate and paper, with one warm accent for active parts.
 
 use egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme,
@@ -50,7 +50,7 @@ pub struct Palette {
     pub text: Color32,
     /// Less important text.
     pub weak: Color32,
-    /// Headings and what is chosen.
+    /// Headings and chosen items.
     pub strong: Color32,
     /// Accents: the share button, progress, slider fill.
     pub accent: Color32,
@@ -134,7 +134,7 @@ pub const LIGHT: Palette = Palette {
     sign: hex(0x59636E),
 };
 
-/// The palette in use.
+/// Returns the palette in use.
 #[must_use]
 pub fn palette(visuals: &Visuals) -> &'static Palette {
     if visuals.dark_mode { &DARK } else { &LIGHT }
@@ -263,11 +263,11 @@ fn style(palette: &Palette, mut visuals: Visuals, touch: bool) -> Style {
     style
 }
 
-/// The choice in words.
+/// Returns the choice in words.
 #[must_use]
 pub fn label(choice: Choice) -> &'static str {
     match choice {
-        Choice::System => "as the system",
+        Choice::System => "system",
         Choice::Dark => "dark",
         Choice::Light => "light",
     }

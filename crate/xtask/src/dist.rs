@@ -1,4 +1,4 @@
-//! The folder for static hosts, and how large its modules are.
+//! The folder for static hosts, and the sizes of its modules.
 
 use crate::packages::MODULES;
 use crate::page::{self, Build};
@@ -6,7 +6,7 @@ use crate::shell::{command, find, read, root, tell};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 
-/// Writes dist/ and gives its path.
+/// Writes dist/ and returns its path.
 pub fn dist() -> Result<PathBuf> {
     let folder = root().join("dist");
     page::build(Build::Release, &folder)?;
@@ -21,7 +21,7 @@ pub fn dist() -> Result<PathBuf> {
 /// Prints the sizes and fails if one is above its budget.
 fn weigh(folder: &Path) -> Result<()> {
     if find("node").is_none() {
-        tell("Node.js is missing, so how large the files are after brotli is not known.");
+        tell("Node.js is missing, so the sizes of the files after brotli are unknown.");
         return Ok(());
     }
     let mut heavy = Vec::new();
@@ -29,7 +29,7 @@ fn weigh(folder: &Path) -> Result<()> {
         let file = format!("{}_bg.wasm", module.name);
         let path = folder.join(&file);
         let bytes = std::fs::metadata(&path)?.len() / 1000;
-        let small = compressed(&path).with_context(|| format!("{file} is not compressed"))?;
+        let small = brotli_size(&path).with_context(|| format!("{file} is not compressed"))?;
         let [kilobytes, most] = [small, module.budget].map(|bytes| bytes / 1000);
         let sizes = format!("{file}: {bytes} kB, {kilobytes} kB with brotli (at most {most} kB)");
         tell(&sizes);
@@ -41,13 +41,14 @@ fn weigh(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Bytes of a file after brotli, as static hosts compress it. Node.js has an implementation, so
-/// that none is compiled here.
-fn compressed(file: &Path) -> Option<usize> {
+/// Returns the number of a file's bytes after brotli, as static hosts compress it. Node.js has an
+/// implementation, so that none is compiled here.
+fn brotli_size(file: &Path) -> Option<usize> {
     const SCRIPT: &str = "\
         const { brotliCompressSync, constants } = require('zlib'); \
         const bytes = require('fs').readFileSync(process.argv[1]); \
-        const params = { [constants.BROTLI_PARAM_QUALITY]: 11, [constants.BROTLI_PARAM_LGWIN]: 22 }; \
+        const params = { [constants.BROTLI_PARAM_QUALITY]: 11, \
+            [constants.BROTLI_PARAM_LGWIN]: 22 }; \
         console.log(brotliCompressSync(bytes, { params }).length);";
     let file = file.to_string_lossy();
     read(&mut command("node", &["-e", SCRIPT, &file]))?

@@ -1,6 +1,6 @@
 //! The thumbnails of the gallery, and the pictures of the reference.
 
-use crate::pictures::{self, fitted, program};
+use crate::pictures::{self, program, size_within};
 use crate::shell::{cargo, files, root, run, words};
 use anyhow::{Result, bail};
 use std::fs;
@@ -25,7 +25,7 @@ pub fn draw(names: &[String]) -> Result<()> {
     });
     let sinew = program()?;
     for dataset in datasets {
-        let size = fitted(&sinew, &dataset, THUMBNAIL)?;
+        let size = size_within(&sinew, &dataset, THUMBNAIL)?;
         pictures::draw(&sinew, &dataset, &dataset.with_extension("png"), size, "4")?;
     }
     Ok(())

@@ -1,15 +1,15 @@
 //! `cargo xtask figures`: the page `www/figures.html`, which shows the figures of Sherstyuk's
 //! thesis as this renderer draws them, each with a link that opens its dataset.
 
-use crate::pictures::{draw, fitted, program, read_picture};
+use crate::pictures::{draw, program, read_picture, size_within};
 use crate::shell::{command, files, read, root, target};
 use anyhow::{Context, Result};
 use std::fs;
 use std::path::Path;
 
-/// The figures, apart by empty lines: number and title, what the thesis says about it in short, and
-/// lines `EXAMPLE: LABEL`. Of an example whose name ends with [`OFFSET`] the offset surface is
-/// drawn in place of the convolution surface.
+/// The figures, separated by empty lines: number and title, the thesis's description in short, and
+/// lines `EXAMPLE: LABEL`. If an example's name ends with [`OFFSET`], its offset surface is drawn
+/// in place of the convolution surface.
 const FIGURES: &str = include_str!("../figures.txt");
 const OFFSET: &str = "-offset";
 /// The head of the page.
@@ -22,14 +22,14 @@ const BOX: [f64; 2] = [400.0, 300.0];
 type Figure<'a> = (&'a str, &'a str, &'a str, Vec<(&'a str, &'a str)>);
 
 fn figures_of(text: &str) -> Option<Vec<Figure<'_>>> {
-    let figure = |text| {
-        let (title, text) = str::split_once(text, '\n')?;
+    let figures = text.trim_end().split("\n\n").map(|figure| {
+        let (title, text) = figure.split_once('\n')?;
         let (thesis, parts) = text.split_once('\n')?;
         let (number, title) = title.split_once(' ')?;
         let parts = parts.lines().map(|line| line.split_once(": "));
         Some((number, title, thesis, parts.collect::<Option<_>>()?))
-    };
-    text.trim_end().split("\n\n").map(figure).collect()
+    });
+    figures.collect()
 }
 
 /// Draws the pictures that are older than their datasets, and writes the page.
@@ -45,7 +45,8 @@ pub fn figures() -> Result<()> {
     let mut page = format!("{HEAD}<nav><p>{numbers}</p></nav>\n");
     for (number, title, thesis, parts) in figures {
         page += &format!(
-            "<section id=\"figure-{number}\">\n<h3>{number} {title}</h3>\n<p>{thesis}</p>\n<div class=\"figures\">\n"
+            "<section id=\"figure-{number}\">\n<h3>{number} {title}</h3>\n<p>{thesis}</p>\n\
+             <div class=\"figures\">\n"
         );
         for (name, label) in parts {
             page +=
@@ -71,25 +72,25 @@ fn part(sinew: &Path, name: &str, label: &str) -> Result<String> {
     let mut link = format!("#example={name}");
     if name != example {
         text = target().join(format!("{name}.rat"));
-        fs::write(&text, hardened(&fs::read_to_string(&dataset)?))?;
+        fs::write(&text, use_offsets(&fs::read_to_string(&dataset)?))?;
         let share = ["share", &text.to_string_lossy()];
         link = read(&mut command(sinew, &share)).context("the dataset has errors")?;
     }
     let picture = root().join(format!("www/figures/{name}.png"));
-    let time = |path: &Path| path.metadata().and_then(|data| data.modified());
-    if !picture.exists() || time(&picture)? <= time(&dataset)? {
-        draw(sinew, &text, &picture, fitted(sinew, &text, BOX)?, "4")?;
+    if !picture.exists() || picture.metadata()?.modified()? <= dataset.metadata()?.modified()? {
+        draw(sinew, &text, &picture, size_within(sinew, &text, BOX)?, "4")?;
     }
     let (info, _) = read_picture(&picture)?;
     let (width, height) = (info.width, info.height);
     Ok(format!(
-        "<figure><a href=\"./{link}\"><img src=\"figures/{name}.png\" width=\"{width}\" height=\"{height}\" loading=\"lazy\" alt=\"{name}\"></a>\n\
+        "<figure><a href=\"./{link}\"><img src=\"figures/{name}.png\" \
+         width=\"{width}\" height=\"{height}\" loading=\"lazy\" alt=\"{name}\"></a>\n\
          <figcaption>{label} <a href=\"./{link}\">Open</a></figcaption></figure>\n"
     ))
 }
 
-/// The text with its surfaces drawn as offset surfaces.
-fn hardened(text: &str) -> String {
+/// Changes a text so that its surfaces are drawn as offset surfaces.
+fn use_offsets(text: &str) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let shoot = lines.iter().rposition(|line| line.trim() == "shoot");
     lines.insert(shoot.unwrap_or(lines.len()), "soft off");
@@ -102,8 +103,8 @@ mod tests {
 
     #[test]
     fn offset_surfaces_are_asked_for_before_the_picture_is_taken() {
-        assert_eq!(hardened("a\nshoot\nb\n"), "a\nsoft off\nshoot\nb\n");
-        assert_eq!(hardened("a\n"), "a\nsoft off\n");
+        assert_eq!(use_offsets("a\nshoot\nb\n"), "a\nsoft off\nshoot\nb\n");
+        assert_eq!(use_offsets("a\n"), "a\nsoft off\n");
     }
 
     #[test]

@@ -5,11 +5,11 @@ use anyhow::{Context, Result};
 use std::fs;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Times as many inputs as the tests have, in each round.
+/// Number of inputs in each round relative to that of the tests.
 const TIMES: &str = "10";
 
 /// Runs the random tests with fresh seeds, the fuzzer of the language, and each target of
-/// cargo-fuzz, each for so many minutes.
+/// cargo-fuzz, each for `minutes`.
 pub fn fuzz(minutes: u64) -> Result<()> {
     let seconds = 60 * minutes;
     tests(Duration::from_secs(seconds))?;
@@ -18,16 +18,16 @@ pub fn fuzz(minutes: u64) -> Result<()> {
         fresh()
     );
     run(&mut cargo(&words(&line)))?;
-    guided(seconds)
+    run_targets(seconds)
 }
 
-/// A seed of this moment.
+/// Returns a seed made of the time.
 fn fresh() -> u64 {
     let now = SystemTime::now().duration_since(UNIX_EPOCH);
     now.map_or(1, |since| since.as_secs() ^ u64::from(since.subsec_nanos()))
 }
 
-/// Tests of properties on random inputs, in rounds, each with another seed.
+/// Tests properties on random inputs, in rounds, each with another seed.
 fn tests(time: Duration) -> Result<()> {
     let mut line = String::from("test --tests");
     for package in fs::read_dir(root().join("crate"))? {
@@ -51,8 +51,9 @@ fn tests(time: Duration) -> Result<()> {
     }
 }
 
-/// The targets of cargo-fuzz, which watches what the code does, and needs a nightly compiler.
-pub fn guided(seconds: u64) -> Result<()> {
+/// Runs the targets of cargo-fuzz, each for `seconds`. It watches which code the inputs reach, and
+/// needs a nightly compiler.
+pub fn run_targets(seconds: u64) -> Result<()> {
     if read(&mut cargo(&["fuzz", "--version"])).is_none() {
         run(&mut cargo(&["install", "cargo-fuzz"]))
             .context("cargo-fuzz is missing. Install it: cargo install cargo-fuzz")?;

@@ -15,9 +15,9 @@ pub mod serve;
 pub mod shell;
 pub mod tools;
 
-/// Says why a command failed, if it did.
-pub fn end(done: anyhow::Result<()>) -> std::process::ExitCode {
-    let Err(error) = done else {
+/// Ends a command: prints the reason if it failed.
+pub fn end(result: anyhow::Result<()>) -> std::process::ExitCode {
+    let Err(error) = result else {
         return std::process::ExitCode::SUCCESS;
     };
     eprintln!("\nxtask: {error:#}");

@@ -16,10 +16,10 @@ struct Arguments {
 enum Command {
     /// Build the page and serve it on this machine.
     Serve {
-        /// The port; another one is taken if it is in use and was not asked for.
+        /// The port. Without this option another one is taken if 8080 is in use.
         #[arg(long)]
         port: Option<u16>,
-        /// Build all of it as for a release: slower to build, faster to use.
+        /// Build it as for a release: slower to build, faster to use.
         #[arg(long)]
         release: bool,
     },
@@ -27,10 +27,10 @@ enum Command {
     Dist,
     /// Run all tests, or one part of them.
     Test {
-        /// Only this part.
+        /// Part to run.
         part: Option<check::Part>,
-        /// Only this package (a folder in crate/), or tests or files of browser tests with this in
-        /// their names.
+        /// Package to test (a folder in crate/), or part of the names of tests or of files of
+        /// browser tests.
         filter: Option<String>,
     },
     /// Run the random tests with fresh seeds, the fuzzer of the language and the targets of
@@ -42,20 +42,20 @@ enum Command {
     },
     /// Measure, and write BENCHMARKS.md.
     Bench {
-        /// Only these parts.
+        /// Parts to run; all if none is named.
         parts: Vec<String>,
     },
     /// Draw the thumbnails of the examples, www/examples/*.png, with our own renderer.
     Examples {
-        /// Only these: names of files without their extension.
+        /// Names of files without their extension; all if none is named.
         names: Vec<String>,
     },
     /// Write the page of the thesis's figures, www/figures.html, and draw its pictures.
     Figures,
     /// Write the reference page, www/reference.html, and draw the pictures of its examples.
     Reference,
-    /// Renew tests/pins.txt, the hashes that pictures are held to, after a change of the pictures
-    /// that is meant, and show the old and the new pictures.
+    /// Renew tests/pins.txt, the hashes that pictures must have, after an intended change of the
+    /// pictures, and show the old and the new ones.
     Pins,
 }
 

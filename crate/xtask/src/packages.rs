@@ -1,4 +1,4 @@
-//! The packages that commands treat in a way of their own: the place to add one.
+//! The packages that commands treat in a special way.
 
 /// A wasm file of the page.
 #[derive(Clone, Copy, Debug)]
@@ -9,13 +9,13 @@ pub struct Module {
     pub features: &'static str,
     /// The profile of a release.
     pub profile: &'static str,
-    /// The files are `NAME.js` and `NAME_bg.wasm`.
+    /// Name of the files `NAME.js` and `NAME_bg.wasm`.
     pub name: &'static str,
     /// Most bytes of the wasm after brotli.
     pub budget: usize,
 }
 
-/// All wasm files of the page. Each is compiled apart from the others, as features of one must not
+/// The wasm files of the page. Each is compiled apart from the others, as features of one must not
 /// reach another.
 pub const MODULES: [Module; 4] = [
     Module {

@@ -10,25 +10,26 @@ use std::sync::LazyLock;
 use std::time::Instant;
 use wasm_bindgen_cli_support::Bindgen;
 
-/// How a page is built.
+/// A way of building the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Build {
-    /// Soon, and as quick as a release where a visitor waits: for pictures and meshes.
+    /// Builds quickly, and runs as fast as a release where a visitor waits: for pictures and
+    /// meshes.
     Development,
-    /// Small and fast, each module optimised as a whole.
+    /// Runs fast and is small, with each module optimised as a whole.
     Release,
 }
 
 /// Builds the page into a folder, which is emptied first.
 pub fn build(build: Build, folder: &Path) -> Result<()> {
     tools::target(tools::WASM)?;
-    let made = target().join("modules");
-    tell("Building the page: some minutes the first time, then as long as what has changed takes.");
+    let modules = target().join("modules");
+    tell("Building the page: some minutes the first time, later only as long as changes take.");
     // For a release each has a folder of its own to build in, and is optimised by one core; else
     // they share what is compiled.
     let work = MODULES.map(|module| {
-        let made = &made;
-        move || in_lane(module.name, || make(&module, build, made))
+        let modules = &modules;
+        move || in_lane(module.name, || make(&module, build, modules))
     });
     at_once(work.into()).into_iter().collect::<Result<()>>()?;
     if folder.exists() {
@@ -36,7 +37,7 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     }
     copy(&root().join("www"), folder)?;
     copy(&root().join("index.html"), &folder.join("index.html"))?;
-    copy(&made, folder)
+    copy(&modules, folder)
 }
 
 /// Makes NAME.js and NAME_bg.wasm.
@@ -69,18 +70,17 @@ fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// How hard wasm-opt tries. Harder is slower for what a worker runs: with -O3 flakes take a tenth
-/// longer, as numbers side by side are moved about more. The app is no smaller after brotli with
-/// -Oz.
+/// The level of wasm-opt. Higher ones make workers slower: with -O3 flakes take a tenth longer, as
+/// numbers side by side are moved about more. The app is no smaller after brotli with -Oz.
 const LEVEL: &str = "-O1";
 
-/// Has wasm-opt make a wasm of another.
+/// Optimises a wasm file with wasm-opt.
 pub fn optimise(wasm_opt: &Path, from: &Path, to: &Path) -> Result<()> {
     let [wasm_opt, from, to] = [wasm_opt, from, to].map(Path::to_string_lossy);
     run(&mut command("node", &[&wasm_opt, &from, LEVEL, "-o", &to]))
 }
 
-/// Compiles a package to wasm and gives the file.
+/// Compiles a package to wasm and returns the file.
 fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
     // Only a cdylib: with an rlib beside it, link-time optimisation is silently left out.
     let Module {
@@ -96,8 +96,8 @@ fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
     command.args(["--package", package, "--features", features]);
     artifacts(&mut command)?
         .iter()
-        .filter(|made| made["target"]["name"] == *package)
-        .filter_map(|made| Some(PathBuf::from(made["filenames"][0].as_str()?)))
+        .filter(|artifact| artifact["target"]["name"] == *package)
+        .filter_map(|artifact| Some(PathBuf::from(artifact["filenames"][0].as_str()?)))
         .rfind(|file| {
             file.extension()
                 .is_some_and(|extension| extension == "wasm")
@@ -105,7 +105,7 @@ fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
         .with_context(|| format!("cargo made no wasm of {package}"))
 }
 
-/// Copies a file, or what is in a folder.
+/// Copies a file, or the contents of a folder.
 fn copy(from: &Path, to: &Path) -> Result<()> {
     if !from.is_dir() {
         fs::copy(from, to).with_context(|| format!("{} is missing", from.display()))?;
@@ -119,7 +119,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Where `serve` builds the page.
-pub fn served() -> PathBuf {
+/// Returns the folder in which `serve` builds the page.
+pub fn serve_folder() -> PathBuf {
     target().join("page")
 }

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 
-/// The program `sinew`, built for speed, perhaps in another way.
+/// Builds the program `sinew` for speed, in the usual way or as `build` says.
 pub fn sinew(build: Option<Build>) -> Result<PathBuf> {
     let mut cargo = cargo(&words("build --release --package cli"));
     run(cargo.envs(build.into_iter().flat_map(Build::settings)))?;
@@ -17,8 +17,8 @@ pub fn sinew(build: Option<Build>) -> Result<PathBuf> {
     Ok(program.with_extension(std::env::consts::EXE_EXTENSION))
 }
 
-/// The program `sinew` that draws pictures: built for speed, or the one that the variable `SINEW`
-/// of the environment names, as each build draws the same.
+/// Returns the program `sinew` that draws pictures: the one that the environment variable `SINEW`
+/// names, as each build draws the same, else one built for speed.
 pub fn program() -> Result<PathBuf> {
     std::env::var_os("SINEW").map_or_else(|| sinew(None), |path| Ok(path.into()))
 }
@@ -31,8 +31,8 @@ pub fn draw(program: &Path, text: &Path, picture: &Path, size: [u32; 2], n: &str
     reduce(picture).with_context(|| picture.display().to_string())
 }
 
-/// The size of a dataset's picture that fits into a box of pixels.
-pub fn fitted(sinew: &Path, dataset: &Path, within: [f64; 2]) -> Result<[u32; 2]> {
+/// Computes the size of a dataset's picture that fits into a box of pixels.
+pub fn size_within(sinew: &Path, dataset: &Path, within: [f64; 2]) -> Result<[u32; 2]> {
     let path = dataset.to_string_lossy();
     let scene = read(&mut command(sinew, &["scene", &path]))
         .with_context(|| format!("{path} has errors; see: sinew check {path}"))?;
@@ -45,7 +45,7 @@ pub fn fitted(sinew: &Path, dataset: &Path, within: [f64; 2]) -> Result<[u32; 2]
     Ok([width, height].map(|side| (scale * side).round().max(1.0) as u32))
 }
 
-/// A picture's size and kind, and its bytes.
+/// Reads a picture's size and kind, and its bytes.
 pub fn read_picture(path: &Path) -> Result<(png::OutputInfo, Vec<u8>)> {
     let mut decoder = png::Decoder::new(BufReader::new(File::open(path)?));
     decoder.set_transformations(png::Transformations::ALPHA);
@@ -79,7 +79,7 @@ pub fn write_picture(
     Ok(writer.finish()?)
 }
 
-/// How many pixels of so many channels differ, and by how much at most.
+/// Returns the number of pixels that differ, and their largest difference in a channel.
 pub fn difference(a: &[u8], b: &[u8], channels: usize) -> (usize, u8) {
     let pixels = a.chunks_exact(channels).zip(b.chunks_exact(channels));
     let most = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max();
@@ -94,28 +94,28 @@ fn reduce(path: &Path) -> Result<()> {
         bail!("not a picture of 8 bits a channel");
     }
     let palette = NeuQuant::new(1, 256, &pixels);
-    let indices = dithered(&palette, info.width as usize, &pixels);
+    let indices = dither(&palette, info.width as usize, &pixels);
     write_picture(path, info.width, &indices, Some(palette.color_map_rgb()))
 }
 
-/// Differences between a colour and the nearest of the palette that are not seen, of 255.
+/// Largest invisible difference between a colour and the nearest of the palette, of 255.
 const UNSEEN: f32 = 3.0;
 
-/// Indices of a palette for a picture's RGBA bytes. Where the palette has no colour near enough, as
-/// on a wide gradient of many hues, the difference is handed on to the neighbours (Floyd and
-/// Steinberg 1976), so that no blotches are seen; elsewhere the bytes stay even, which makes the
-/// file small.
-fn dithered(palette: &NeuQuant, width: usize, pixels: &[u8]) -> Vec<u8> {
+/// Returns indices of a palette for a picture's RGBA bytes. Where the palette has no colour near
+/// enough, as on a wide gradient of many hues, the difference is passed on to the neighbours (Floyd
+/// and Steinberg 1976), so that no blotches are seen; elsewhere the bytes stay even, which makes
+/// the file small.
+fn dither(palette: &NeuQuant, width: usize, pixels: &[u8]) -> Vec<u8> {
     let colours = palette.color_map_rgb();
-    // What the rest of the picture has been handed, with a column on either side and a row below.
+    // Differences passed on to each pixel, with a column on either side and a row below.
     let stride = width + 2;
-    let mut handed = vec![[0.0_f32; 3]; stride * (pixels.len() / 4 / width + 1)];
+    let mut passed = vec![[0.0_f32; 3]; stride * (pixels.len() / 4 / width + 1)];
     let mut indices = Vec::with_capacity(pixels.len() / 4);
     for (i, pixel) in pixels.chunks_exact(4).enumerate() {
         let at = stride * (i / width) + i % width + 1;
         // Colours beyond those of the palette must not bleed far.
         let wanted = [0, 1, 2].map(|k| {
-            (f32::from(pixel[k]) + handed[at][k])
+            (f32::from(pixel[k]) + passed[at][k])
                 .clamp(0.0, 255.0)
                 .round()
         });
@@ -133,7 +133,7 @@ fn dithered(palette: &NeuQuant, width: usize, pixels: &[u8]) -> Vec<u8> {
             (stride + 1, 1.0),
         ] {
             for k in 0..3 {
-                handed[at + ahead][k] += rest[k] * share / 16.0;
+                passed[at + ahead][k] += rest[k] * share / 16.0;
             }
         }
     }
@@ -144,20 +144,21 @@ fn dithered(palette: &NeuQuant, width: usize, pixels: &[u8]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// A palette that is far too small, and one that has all colours.
+    fn nearest(palette: &NeuQuant, pixels: &[u8]) -> Vec<u8> {
+        let pixels = pixels.chunks_exact(4);
+        pixels.map(|pixel| palette.index_of(pixel) as u8).collect()
+    }
+
+    /// Tests a palette that is far too small, and one that has all colours.
     #[test]
     fn dithering_keeps_the_mean_and_touches_nothing_that_fits() {
-        let nearest = |palette: &NeuQuant, pixels: &[u8]| -> Vec<u8> {
-            let pixels = pixels.chunks_exact(4);
-            pixels.map(|pixel| palette.index_of(pixel) as u8).collect()
-        };
-        let ramp = |i: usize| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, 128, 255];
-        let pixels: Vec<u8> = (0..64 * 64).flat_map(ramp).collect();
+        let pixels: Vec<u8> = (0..64 * 64)
+            .flat_map(|i| [(i % 64 * 4) as u8, (i / 64 * 4) as u8, 128, 255])
+            .collect();
         let palette = NeuQuant::new(1, 64, &pixels);
         let colours = palette.color_map_rgb();
-        // How far the sums of red in squares of 4 by 4 pixels are off, so that blotches would be
-        // seen.
-        let off = |indices: Vec<u8>| {
+        // Error of the sums of red in squares of 4 by 4 pixels, which is seen as blotches.
+        let error = |indices: Vec<u8>| {
             let mut sums = [0; 256];
             for (i, index) in indices.into_iter().enumerate() {
                 let shown = i32::from(colours[3 * usize::from(index)]);
@@ -165,14 +166,14 @@ mod tests {
             }
             f64::from(sums.map(|sum| sum * sum).iter().sum::<i32>()).sqrt()
         };
-        let dithered_off = off(dithered(&palette, 64, &pixels));
+        let dithered = error(dither(&palette, 64, &pixels));
         assert!(
-            dithered_off < 0.65 * off(nearest(&palette, &pixels)),
-            "{dithered_off}"
+            dithered < 0.65 * error(nearest(&palette, &pixels)),
+            "{dithered}"
         );
         let grey = [10, 10, 10, 255, 200, 200, 200, 255].repeat(256);
         let two = NeuQuant::new(1, 64, &grey);
-        assert_eq!(dithered(&two, 64, &grey), nearest(&two, &grey));
+        assert_eq!(dither(&two, 64, &grey), nearest(&two, &grey));
     }
 
     #[test]

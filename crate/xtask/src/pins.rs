@@ -1,5 +1,5 @@
-//! `cargo xtask pins`: renews `tests/pins.txt`, the hashes that pictures are held to, and shows
-//! what has changed since the commit that renewed them last.
+//! `cargo xtask pins`: renews `tests/pins.txt`, the hashes that pictures must have, and shows the
+//! changes since the commit that renewed them last.
 //!
 //! The repository keeps no pictures: the old ones are drawn by that commit, checked out in a folder
 //! of its own. New and old ones come from the same test, `crate/worker/tests/it/pins.rs`.
@@ -13,8 +13,10 @@ use std::path::Path;
 
 const FILE: &str = "tests/pins.txt";
 const HEAD: &str = "\
-# Hashes of traced pictures of 256x256 pixels, at most 2x2 rays a pixel: NAME PASS SIDE HASH. Where SIDE is less than 256, only
-# a square of SIDExSIDE pixels in the middle of the picture is traced, as the rest would take minutes.
+# Hashes of traced pictures of 256x256 pixels, at most 2x2 rays a pixel: NAME PASS SIDE HASH. \
+Where SIDE is less than 256, only
+# a square of SIDExSIDE pixels in the middle of the picture is traced, \
+as the rest would take minutes.
 # crate/worker/tests/it/pins.rs compares them, natively and as wasm. Written by: cargo xtask pins
 ";
 
@@ -46,27 +48,31 @@ pub fn renew() -> Result<()> {
     }
     let checkout = folder.join("checkout");
     let path = checkout.to_string_lossy();
-    let worktree = |words: &[&str]| run(&mut command("git", &[&["worktree"], words].concat()));
     worktree(&["prune"])?;
     worktree(&["add", "--detach", &path, &commit])?;
-    let drawn = draw(&checkout, &folder.join("old"));
+    let result = draw(&checkout, &folder.join("old"));
     worktree(&["remove", "--force", &path])?;
-    drawn?;
+    result?;
     println!("\nChanged since {commit}:");
     for name in changed {
-        let said = match (old.contains_key(name), new.contains_key(name)) {
+        let change = match (old.contains_key(name), new.contains_key(name)) {
             (true, true) => show(&folder, name)?,
             (true, false) => String::from("gone"),
             _ => String::from("new"),
         };
-        println!("  {name}: {said}");
+        println!("  {name}: {change}");
     }
     let folder = folder.display();
     println!("{FILE} is renewed. Old, new and difference side by side: {folder}");
     Ok(())
 }
 
-/// The pins of a text; lines that begin with `#` are comments.
+/// Runs `git worktree`.
+fn worktree(arguments: &[&str]) -> Result<()> {
+    run(&mut command("git", &[&["worktree"], arguments].concat()))
+}
+
+/// Reads the pins of a text; lines that begin with `#` are comments.
 fn pins(text: &str) -> Pins {
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     let pins = lines.filter_map(|line| match words(line)[..] {
@@ -76,19 +82,19 @@ fn pins(text: &str) -> Pins {
     pins.collect()
 }
 
-/// Draws all pictures of a checkout into a folder and gives their pins, a line each.
+/// Draws all pictures of a checkout into a folder and returns their pins, a line each.
 fn draw(checkout: &Path, folder: &Path) -> Result<String> {
     fs::create_dir_all(folder)?;
     let test =
         "test --package worker --tests -- --nocapture --test-threads=1 pictures_are_as_pinned";
-    // Other packages are found built in the same target folder.
+    // With the same target folder, other packages need not be built again.
     let output = run_and_read(
         cargo(&words(test))
             .current_dir(checkout)
             .env("CARGO_TARGET_DIR", target())
             .env("SINEW_PICTURES", folder),
     )?;
-    // The first of a test stands behind the test's name.
+    // The first pin of a test follows the test's name in its line.
     let lines = output.lines().filter_map(|line| line.split_once("pin "));
     let lines: String = lines.flat_map(|(_, pin)| [pin, "\n"]).collect();
     if lines.is_empty() {
@@ -97,15 +103,17 @@ fn draw(checkout: &Path, folder: &Path) -> Result<String> {
     Ok(lines)
 }
 
-/// Writes the old picture, the new one and their difference side by side, and says how much they
-/// differ.
+/// Reads width and RGB bytes of a square picture that the test has written.
+fn read_pixels(path: &Path) -> Result<(u32, Vec<u8>)> {
+    pixels(&fs::read(path)?).with_context(|| format!("{} is no picture", path.display()))
+}
+
+/// Writes the old picture, the new one and their difference side by side, and describes the
+/// difference.
 fn show(folder: &Path, name: &str) -> Result<String> {
     let file = name.replace(['/', ' '], "-");
-    let read = |which: &str| {
-        let path = folder.join(which).join(format!("{file}.ppm"));
-        pixels(&fs::read(&path)?).with_context(|| format!("{} is no picture", path.display()))
-    };
-    let ((width, old), (other, new)) = (read("old")?, read("new")?);
+    let (width, old) = read_pixels(&folder.join(format!("old/{file}.ppm")))?;
+    let (other, new) = read_pixels(&folder.join(format!("new/{file}.ppm")))?;
     if width != other {
         return Ok(format!("{width} pixels wide before, {other} now"));
     }
@@ -126,7 +134,7 @@ fn show(folder: &Path, name: &str) -> Result<String> {
     ))
 }
 
-/// Width and RGB bytes of a square picture as the test writes them.
+/// Parses the file of a square picture as the test writes it. Returns width and RGB bytes.
 fn pixels(file: &[u8]) -> Option<(u32, Vec<u8>)> {
     let end = file.iter().position(|&byte| byte == b'\n')?;
     let head = std::str::from_utf8(&file[..end]).ok()?;

@@ -15,13 +15,12 @@ pub fn serve(port: Option<u16>, release: bool) -> Result<()> {
     } else {
         Build::Development
     };
-    let folder = page::served();
+    let folder = page::serve_folder();
     page::build(build, &folder)?;
-    let bind = |port| Server::http(("127.0.0.1", port));
-    let server = match port {
-        Some(port) => bind(port),
-        None => bind(PORT).or_else(|_| bind(0)),
-    };
+    let mut server = Server::http(("127.0.0.1", port.unwrap_or(PORT)));
+    if server.is_err() && port.is_none() {
+        server = Server::http(("127.0.0.1", 0));
+    }
     let server = server.map_err(|error| {
         anyhow!("The port cannot be used: {error}. Choose another one with --port.")
     })?;

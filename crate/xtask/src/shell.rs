@@ -9,14 +9,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::Mutex;
 
-/// The root of the repository.
+/// Returns the root of the repository.
 pub fn root() -> PathBuf {
     // This program is built in the repository it works on.
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.ancestors().nth(2).unwrap_or(package).to_owned()
 }
 
-/// Where cargo puts what it builds.
+/// Returns the folder that cargo builds in.
 pub fn target() -> PathBuf {
     root().join(std::env::var_os("CARGO_TARGET_DIR").unwrap_or("target".into()))
 }
@@ -24,28 +24,28 @@ pub fn target() -> PathBuf {
 /// A way of building for this machine that is not `.cargo/config.toml`'s.
 #[derive(Clone, Copy, Debug)]
 pub struct Build {
-    /// The folder in [`target`] of what is built so.
+    /// The folder in [`target`] that it builds in.
     pub folder: &'static str,
     /// Options of the compiler.
     pub flags: &'static str,
 }
 
-/// For any processor of this one's kind, where `.cargo/config.toml` asks for all that this one can
-/// do: the same bits, later.
+/// A build for any processor of this one's kind, where `.cargo/config.toml` asks for all features
+/// of this one: slower, with the same bits.
 pub const PORTABLE: Build = Build {
     folder: "portable",
     flags: "-C target-cpu=x86-64",
 };
 
-/// For this processor, which may round a product and a sum once instead of twice: other bits,
-/// sooner.
+/// A build for this processor that may round a product and a sum once instead of twice: faster,
+/// with other bits.
 pub const FUSED: Build = Build {
     folder: "fused",
     flags: "-C target-cpu=native -C llvm-args=-fp-contract=fast",
 };
 
 impl Build {
-    /// Environment variables for cargo.
+    /// Returns environment variables for cargo.
     pub fn settings(self) -> [(&'static str, OsString); 2] {
         let target = self.target().into();
         [
@@ -54,32 +54,32 @@ impl Build {
         ]
     }
 
-    /// Where cargo puts what it builds so.
+    /// Returns the folder that cargo builds in.
     pub fn target(self) -> PathBuf {
         target().join(self.folder)
     }
 }
 
-/// A command that runs in the root of the repository.
+/// Returns a command that runs in the root of the repository.
 pub fn command(program: impl AsRef<OsStr>, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.current_dir(root()).args(arguments);
     command
 }
 
-/// The cargo that runs this program.
+/// Returns a command of the cargo that runs this program.
 pub fn cargo(arguments: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
     command(cargo, arguments)
 }
 
-/// The words of a line, as arguments of a command.
+/// Returns the words of a line, as arguments of a command.
 pub fn words(line: &str) -> Vec<&str> {
     line.split_whitespace().collect()
 }
 
 thread_local! {
-    /// A thread's lane: what stands before each line that it and its programs write; empty where
+    /// A thread's lane: the name before each line that it and its programs write; empty where
     /// nothing else runs at the same time.
     static LANE: Cell<&'static str> = const { Cell::new("") };
 }
@@ -87,9 +87,9 @@ thread_local! {
 /// Does something while other threads do something else: each line is marked with a name.
 pub fn in_lane<T>(name: &'static str, work: impl FnOnce() -> T) -> T {
     let before = LANE.replace(name);
-    let done = work();
+    let result = work();
     LANE.set(before);
-    done
+    result
 }
 
 /// Writes a line.
@@ -100,7 +100,7 @@ pub fn tell(line: &str) {
     }
 }
 
-/// Says what is run.
+/// Prints a command that is about to run.
 pub fn say(command: &Command) {
     let program = Path::new(command.get_program()).file_name();
     let words = program.into_iter().chain(command.get_args());
@@ -109,43 +109,48 @@ pub fn say(command: &Command) {
     tell(&format!("$ {}", words.join(" ").replace(&root, "")));
 }
 
-/// Runs a command and fails if it fails.
+/// Runs a command.
+///
+/// # Errors
+/// If the command fails.
 pub fn run(command: &mut Command) -> Result<()> {
     if LANE.get().is_empty() {
         say(command);
         let status = command.status();
-        return succeeded(command, status);
+        return check(command, status);
     }
     run_and_read(command).map(|_| ())
 }
 
-/// Runs a command, passes on what it writes, line by line as it comes, and gives its standard
-/// output.
+/// Runs a command, prints its output line by line as it comes, and returns its standard output.
 pub fn run_and_read(command: &mut Command) -> Result<String> {
     pass_on(command, true)
 }
 
-/// Does several things, as many at a time as there are cores, in their order, and gives what comes
-/// of them in that order.
+/// Does several things in their order, as many at a time as there are cores, and returns their
+/// results in that order.
 pub fn at_once<T: Send>(work: Vec<impl FnOnce() -> T + Send>) -> Vec<T> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (next, lane) = (Mutex::new(work.into_iter().enumerate()), LANE.get());
-    let take = || next.lock().ok()?.next();
-    let some = || {
-        let done = std::iter::from_fn(take).map(|(i, work)| (i, work()));
-        in_lane(lane, || done.collect::<Vec<_>>())
+    let work_off = || {
+        let tasks = std::iter::from_fn(|| next.lock().ok()?.next());
+        in_lane(lane, || {
+            tasks.map(|(i, work)| (i, work())).collect::<Vec<_>>()
+        })
     };
-    let mut done: Vec<(usize, T)> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(some)).collect();
-        let done = threads.into_iter().map(|thread| thread.join());
-        done.flat_map(|done| done.unwrap_or_else(|panic| resume_unwind(panic)))
+    let mut results: Vec<(usize, T)> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work_off)).collect();
+        let results = threads.into_iter().map(|thread| thread.join());
+        results
+            .flat_map(|results| results.unwrap_or_else(|panic| resume_unwind(panic)))
             .collect()
     });
-    done.sort_by_key(|(i, _)| *i);
-    done.into_iter().map(|(_, result)| result).collect()
+    results.sort_by_key(|(i, _)| *i);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
-fn succeeded(command: &Command, status: std::io::Result<ExitStatus>) -> Result<()> {
+/// Checks that a command has run and succeeded.
+fn check(command: &Command, status: std::io::Result<ExitStatus>) -> Result<()> {
     let program = command.get_program().to_string_lossy();
     let status = status.with_context(|| format!("{program} could not be run"))?;
     if !status.success() {
@@ -154,8 +159,8 @@ fn succeeded(command: &Command, status: std::io::Result<ExitStatus>) -> Result<(
     Ok(())
 }
 
-/// Runs a command, passes on what it writes to standard error, and to standard output if that is
-/// `shown`, and gives the latter.
+/// Runs a command, prints its standard error, and its standard output if that is to be `shown`, and
+/// returns the latter.
 fn pass_on(command: &mut Command, shown: bool) -> Result<String> {
     say(command);
     let lane = LANE.get();
@@ -165,18 +170,19 @@ fn pass_on(command: &mut Command, shown: bool) -> Result<String> {
     }
     let mut child = match command.spawn() {
         Ok(child) => child,
-        Err(error) => return succeeded(command, Err(error)).map(|()| String::new()),
+        Err(error) => return check(command, Err(error)).map(|()| String::new()),
     };
     let errors = child.stderr.take();
     let errors = std::thread::spawn(move || in_lane(lane, || lines(errors, true)));
     let output = lines(child.stdout.take(), shown);
-    // It ends with the program.
+    // The thread ends with the program.
     let _ = errors.join();
-    succeeded(command, child.wait())?;
+    check(command, child.wait())?;
     Ok(output)
 }
 
-/// Reads what a program writes to the end, and tells each line as it comes if it is to be shown.
+/// Reads the output of a program to its end, and prints each line as it comes if it is to be
+/// `shown`.
 fn lines(from: Option<impl Read>, shown: bool) -> String {
     let mut all = String::new();
     let from = from.into_iter().map(BufReader::new);
@@ -211,15 +217,16 @@ pub fn artifacts(command: &mut Command) -> Result<Vec<serde_json::Value>> {
         .collect())
 }
 
-/// The program or test of this name among what cargo has made.
-pub fn executable(made: &[serde_json::Value], name: &str) -> Result<PathBuf> {
-    let mut of_it = made.iter().filter(|made| made["target"]["name"] == name);
-    of_it
-        .find_map(|made| Some(PathBuf::from(made["executable"].as_str()?)))
+/// Returns the program or test of a name among cargo's artifacts.
+pub fn executable(artifacts: &[serde_json::Value], name: &str) -> Result<PathBuf> {
+    let mut own = artifacts
+        .iter()
+        .filter(|artifact| artifact["target"]["name"] == name);
+    own.find_map(|artifact| Some(PathBuf::from(artifact["executable"].as_str()?)))
         .with_context(|| format!("cargo made no {name}"))
 }
 
-/// The path of a program that can be called by this name.
+/// Returns the path of a program that can be called by this name.
 pub fn find(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let file = Path::new(name).with_extension(std::env::consts::EXE_EXTENSION);
@@ -228,7 +235,7 @@ pub fn find(name: &str) -> Option<PathBuf> {
         .find(|file| file.is_file())
 }
 
-/// The files in a folder whose names end with this extension, in the order of their names.
+/// Lists the files in a folder whose names end with this extension, in the order of their names.
 pub fn files(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(folder)?.filter_map(|entry| Some(entry.ok()?.path()));
     let mut files: Vec<_> = entries

@@ -23,7 +23,7 @@ pub fn target(name: &str) -> Result<()> {
     })
 }
 
-/// The target of tests as wasm: what runs in the page, with a way to write lines.
+/// The target of tests as wasm: like [`WASM`], with a way to write lines.
 pub const WASI: &str = "wasm32-wasip1";
 
 /// Returns a command that runs a program for [`WASI`] in node.
@@ -43,14 +43,15 @@ pub fn in_node(wasm: &Path) -> Command {
 pub fn node() -> Result<()> {
     const MISSING: &str =
         "Node.js is missing. Install Node.js 20 or newer with npm (https://nodejs.org)";
-    let present = || find("node").is_some() && find("npm").is_some();
-    if !present() && find("apt-get").is_some() {
+    let has_node = || find("node").is_some() && find("npm").is_some();
+    if !has_node() && find("apt-get").is_some() {
         apt_install(&["nodejs", "npm"]).context(MISSING)?;
     }
-    present().then_some(()).context(MISSING)
+    has_node().then_some(()).context(MISSING)
 }
 
-/// The node packages of tests/package.json (browser driver, wasm optimiser). Gives their folder.
+/// Installs the node packages of tests/package.json (browser driver, wasm optimiser) and returns
+/// their folder.
 pub fn node_packages() -> Result<PathBuf> {
     node()?;
     let tests = root().join("tests");
@@ -67,7 +68,7 @@ pub fn node_packages() -> Result<PathBuf> {
     Ok(modules)
 }
 
-/// The optimiser of wasm, if node is there.
+/// Returns the optimiser of wasm, if node is there.
 pub fn wasm_opt() -> Option<PathBuf> {
     match node_packages() {
         Ok(modules) => Some(modules.join("binaryen/bin/wasm-opt")),
@@ -87,18 +88,20 @@ pub fn wasm_opt() -> Option<PathBuf> {
 fn apt_install(packages: &[&str]) -> Result<()> {
     let root_user = read(&mut command("id", &["-u"])).is_some_and(|id| id == "0");
     let sudo = if root_user { "" } else { "sudo -n" };
-    let apt = |task: &str| {
+    let packages = packages.join(" ");
+    for task in [
+        "update",
+        &format!("install -y --no-install-recommends {packages}"),
+    ] {
         let line = format!("{sudo} apt-get -o DPkg::Lock::Timeout=500 {task}");
         let words = words(&line);
         run(command(words[0], &words[1..]).env("DEBIAN_FRONTEND", "noninteractive"))
-    };
-    let packages = packages.join(" ");
-    apt("update")
-        .and_then(|()| apt(&format!("install -y --no-install-recommends {packages}")))
-        .with_context(|| format!("Install it: apt-get install {packages}"))
+            .with_context(|| format!("Install it: apt-get install {packages}"))?;
+    }
+    Ok(())
 }
 
-/// A Firefox that tests can drive, installed with apt-get on Debian.
+/// Returns a Firefox that tests can drive, installed with apt-get on Debian.
 ///
 /// # Errors
 /// If there is none and none can be installed.
@@ -106,48 +109,54 @@ pub fn firefox() -> Result<PathBuf> {
     if let Some(chosen) = std::env::var_os("FIREFOX") {
         return Ok(chosen.into());
     }
-    let present = || ["firefox-esr", "firefox"].into_iter().find_map(find);
-    if let Some(path) = present() {
+    if let Some(path) = find("firefox-esr").or_else(|| find("firefox")) {
         return Ok(path);
     }
     apt_install(&["firefox-esr"])
         .context("Firefox is missing. Install it, or set FIREFOX to its path")?;
-    present().context("apt-get installed no Firefox")
+    find("firefox-esr").context("apt-get installed no Firefox")
 }
 
-/// A Chromium that tests can drive, installed with apt-get on Debian, by playwright elsewhere.
+/// Returns the Chromium that is installed, if it runs.
+fn find_chromium() -> Option<PathBuf> {
+    let names = words("chromium chromium-browser google-chrome-stable google-chrome");
+    // Ubuntu's /usr/bin/chromium-browser only says that there is a snap.
+    let path = names.into_iter().find_map(find)?;
+    read(&mut command(&path, &["--version"])).map(|_| path)
+}
+
+/// Returns a Chromium that tests can drive, installed with apt-get on Debian, by playwright
+/// elsewhere.
 pub fn chromium() -> Result<PathBuf> {
+    const MISSING: &str =
+        "The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path";
     if let Some(chosen) = std::env::var_os("CHROMIUM") {
         return Ok(chosen.into());
     }
-    let names = words("chromium chromium-browser google-chrome-stable google-chrome");
-    // Ubuntu's /usr/bin/chromium-browser only says that there is a snap.
-    let runs = |path: &PathBuf| read(&mut command(path, &["--version"])).is_some();
-    let present = || names.iter().copied().find_map(find).filter(runs);
-    if let Some(path) = present() {
+    if let Some(path) = find_chromium() {
         return Ok(path);
     }
     let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
-    let is = |name: &str| release.lines().any(|line| line == format!("ID={name}"));
-    if is("debian") {
+    let system = release.lines().find_map(|line| line.strip_prefix("ID="));
+    if system == Some("debian") {
         // The second package draws without a graphics card.
         apt_install(&["chromium", "mesa-vulkan-drivers"]).context("The browser is missing")?;
-        return present().context("apt-get installed no chromium that runs");
+        return find_chromium().context("apt-get installed no chromium that runs");
     }
-    if is("ubuntu") {
+    if system == Some("ubuntu") {
         // Ubuntu's own package is a snap, which does not run everywhere.
         let cli = node_packages()?.join("playwright-core/cli.js");
         let install = |options: &str| {
             let line = format!("install {options} chromium");
             run(command("node", &[&cli.to_string_lossy()]).args(words(&line)))
         };
-        install("--with-deps").or_else(|_| install("")).context(
-            "The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path",
-        )?;
+        install("--with-deps")
+            .or_else(|_| install(""))
+            .context(MISSING)?;
         let script = "console.log(require('playwright-core').chromium.executablePath())";
         return read(command("node", &["-e", script]).current_dir(root().join("tests")))
             .map(PathBuf::from)
             .context("playwright does not say where it installed the browser");
     }
-    bail!("The browser is missing. Install Chromium or Google Chrome, or set CHROMIUM to its path.")
+    bail!("{MISSING}.")
 }

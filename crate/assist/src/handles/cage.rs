@@ -7,12 +7,13 @@ use rats::limits::MAX_MAGNITUDE;
 use rats::provenance::{Number, Source};
 use rats::{Deform, Project, TextEdit};
 
-/// The handles of the control points of a deformation, in their order: each stands where its point
+/// Returns the handles of the control points of a deformation, in their order, each where its point
 /// is moved to.
 #[must_use]
 pub fn cage(deform: &Deform) -> Vec<Handle> {
     let count = deform.controls.len();
-    let handle = |(index, control): (usize, &rats::Control)| {
+    let controls = deform.controls.iter().enumerate();
+    let handles = controls.map(|(index, control)| {
         let why = if deform.repeated {
             Some("is in a loop or a defined command")
         } else if control.is_literal {
@@ -29,25 +30,25 @@ pub fn cage(deform: &Deform) -> Vec<Handle> {
                 spans: vec![(deform.origin.file as usize, span.clone())],
             },
         };
-        let number = |value| Number {
+        let numbers = control.way.to_array().map(|value| Number {
             value,
             source: Source::Computed(String::from("is one of three")),
-        };
+        });
         Handle {
             kind: Kind::Point,
             place: control.place + control.way,
             label: format!("control {} of {count}, moved by", index + 1),
             edit,
-            numbers: control.way.to_array().map(number).to_vec(),
+            numbers: numbers.to_vec(),
             moves: Moves::Freely(DAffine3::from_translation(control.place)),
         }
-    };
-    deform.controls.iter().enumerate().map(handle).collect()
+    });
+    handles.collect()
 }
 
-/// The change of the text that moves a control point of a deformation to a place; a move is written
-/// behind a point that has none. `grain` as for [`drag`](super::drag()). `None` if the point is
-/// fixed, or as near already.
+/// Computes the change of the text that moves a control point of a deformation to a place; a move
+/// is written behind a point that has none. `grain` is as for [`drag`](super::drag()). `None` if
+/// the point is fixed, or as near already.
 ///
 /// ```
 /// use glam::DVec3;
@@ -55,7 +56,8 @@ pub fn cage(deform: &Deform) -> Vec<Handle> {
 ///
 /// let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 /// let asset = Asset { name: "leaf.obj".into(), bytes: obj.to_vec().into() };
-/// let project = Project::single("surface s, diffuse Red\nmesh s leaf.obj\ndeform { control <1 0 0> }\n");
+/// let text = "surface s, diffuse Red\nmesh s leaf.obj\ndeform { control <1 0 0> }\n";
+/// let project = Project::single(text);
 /// let compiled = rats::compile_at(&project, &[asset], 0.0);
 /// let to = DVec3::new(1.0, 0.0, 0.5);
 /// let edit = assist::handles::pull(&project, &compiled.deforms[0], 0, to, 0.01).unwrap();

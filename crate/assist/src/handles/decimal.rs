@@ -1,12 +1,12 @@
 //! Numbers as a text gives them, short.
 
-/// The largest power of ten that is not above `x`.
+/// Returns the largest power of ten that is not above `x`.
 pub fn power(x: f64) -> f64 {
     let exponent = libm::floor(libm::log10(x) + 1e-9);
     libm::pow(10.0, exponent.clamp(-15.0, 12.0))
 }
 
-/// A number rounded to a multiple of a power of ten, as short as it can be written.
+/// Writes a number rounded to a multiple of a power of ten, as short as possible.
 pub fn write(x: f64, grain: f64) -> String {
     let decimals = -libm::round(libm::log10(grain));
     if decimals <= 0.0 {

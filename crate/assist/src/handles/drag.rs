@@ -7,9 +7,9 @@ use rats::TextEdit;
 use rats::limits::MAX_MAGNITUDE;
 use rats::provenance::{Number, Source};
 
-/// The changes of the texts that bring a handle to `to`, or as near as its numbers allow. `grain`,
-/// a length of the world above 0 (say, that of a pixel), says how exactly: numbers get no more
-/// digits than that needs, and a number that is that near already stays as it is written.
+/// Computes the changes of the texts that bring a handle to `to`, or as near as its numbers allow.
+/// `grain`, a length of the world above 0 (say, that of a pixel), says how exactly: numbers get no
+/// more digits than that needs, and a number that is that near already stays as it is written.
 ///
 /// The changes are in the order of the text, apart from each other; made from the last to the
 /// first, no range moves under another. There are none if the handle is fixed, or a number would be
@@ -51,12 +51,13 @@ pub fn drag(handle: &Handle, to: DVec3, grain: f64) -> Vec<TextEdit> {
             text: write(value, grain),
         });
     }
-    let place = |edit: &TextEdit| (edit.file, edit.span.start);
-    field::heap_sort(&mut edits, |a, b| place(a) < place(b));
+    field::heap_sort(&mut edits, |a, b| {
+        (a.file, a.span.start) < (b.file, b.span.start)
+    });
     edits
 }
 
-/// The numbers that bring a handle to a place, each with its own grain.
+/// Computes the numbers that bring a handle to a place, each with its own grain.
 fn values(handle: &Handle, to: DVec3, grain: f64) -> Option<Vec<(f64, f64)>> {
     let numbers = &handle.numbers;
     let first = numbers.first()?.value;
@@ -113,18 +114,18 @@ fn values(handle: &Handle, to: DVec3, grain: f64) -> Option<Vec<(f64, f64)>> {
     })
 }
 
-/// The change of the numbers that can change which comes nearest to moving their point by `moved`.
+/// Computes the change, of the numbers that can change, which comes nearest to moving their point
+/// by `moved`.
 fn free_move(linear: &DMat3, numbers: &[Number], moved: DVec3) -> Option<DVec3> {
     let free: Vec<usize> = (0..3)
         .filter(|k| matches!(numbers[*k].source, Source::Literal { .. }))
         .collect();
-    let column = |k: usize| linear.col(k);
     let mut change = DVec3::ZERO;
     match *free {
-        [k] => change[k] = column(k).dot(moved) / column(k).length_squared(),
+        [k] => change[k] = linear.col(k).dot(moved) / linear.col(k).length_squared(),
         [j, k] => {
             // The normal equations of two unknowns.
-            let (a, b) = (column(j), column(k));
+            let (a, b) = (linear.col(j), linear.col(k));
             let determinant = a.length_squared() * b.length_squared() - a.dot(b) * a.dot(b);
             let (p, q) = (a.dot(moved), b.dot(moved));
             change[j] = (p * b.length_squared() - q * a.dot(b)) / determinant;

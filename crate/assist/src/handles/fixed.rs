@@ -8,7 +8,7 @@ use rats::symbol::Symbols;
 use rats::syntax::{Block, Node};
 use scene::{Origin, Shape};
 
-/// The places of a shape, none of which can be moved.
+/// Returns the places of a shape as handles, none of which can be moved.
 pub fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
     let places = match shape {
         Shape::Sphere { center, .. } | Shape::Box { center, .. } => vec![(*center, "the centre")],
@@ -20,15 +20,12 @@ pub fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
             angle,
             ..
         } => {
-            let at = |share: f64| {
+            let labels = [(0.0, "the start"), (0.5, "the middle"), (1.0, "the end")];
+            let places = labels.map(|(share, label)| {
                 let (sin, cos) = libm::sincos(share * angle);
-                *center + (*u * cos + *v * sin) * *sweep
-            };
-            vec![
-                (at(0.0), "the start"),
-                (at(0.5), "the middle"),
-                (at(1.0), "the end"),
-            ]
+                (*center + (*u * cos + *v * sin) * *sweep, label)
+            });
+            places.to_vec()
         }
         Shape::Cylinder { base, apex, .. }
         | Shape::Cone { base, apex, .. }
@@ -42,21 +39,23 @@ pub fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
         Shape::Quadric(quadric) => vec![(quadric.center, "the centre")],
         Shape::Function(function) => vec![(function.middle(), "the middle")],
     };
-    let handle = |(place, label): (DVec3, &str)| Handle {
-        kind: Kind::Point,
-        place,
-        label: label.to_owned(),
-        edit: Editable::Fixed {
-            why: why.to_owned(),
-        },
-        numbers: Vec::new(),
-        moves: Moves::Nowhere,
-    };
-    places.into_iter().map(handle).collect()
+    let handles = places
+        .into_iter()
+        .map(|(place, label): (DVec3, &str)| Handle {
+            kind: Kind::Point,
+            place,
+            label: label.to_owned(),
+            edit: Editable::Fixed {
+                why: why.to_owned(),
+            },
+            numbers: Vec::new(),
+            moves: Moves::Nowhere,
+        });
+    handles.collect()
 }
 
-/// Why the numbers of a command that made an element differ from one element to the next, if they
-/// may. Copies by `instance` share theirs.
+/// Returns the reason why the numbers of a command that made an element may differ from one element
+/// to the next, if they may. Copies by `instance` share theirs.
 pub fn why_repeated(project: &Project, origin: Origin) -> Option<String> {
     let file = project.files.get(origin.file as usize)?;
     let mut symbols = Symbols::default();
@@ -84,8 +83,7 @@ pub fn why_repeated(project: &Project, origin: Origin) -> Option<String> {
                 }
                 Node::For(node) => (&node.head, &node.body),
                 Node::If(node) => {
-                    let holds = |block: &Block| last_byte(block) >= at;
-                    let branch = if holds(&node.then) {
+                    let branch = if last_byte(&node.then) >= at {
                         &node.then
                     } else {
                         &node.otherwise
@@ -111,7 +109,7 @@ pub fn why_repeated(project: &Project, origin: Origin) -> Option<String> {
     }
 }
 
-/// One past the last byte of the last command of a block.
+/// Returns the end of the last command of a block: one past its last byte.
 fn last_byte(block: &Block) -> usize {
     block.last().map_or(0, |node| match node {
         Node::Command(command) => command.span.end,

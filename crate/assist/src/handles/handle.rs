@@ -22,13 +22,13 @@ pub enum Kind {
 /// Whether a handle can be moved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Editable {
-    /// Yes: these numbers can change, each in a file (an index of [`Project::files`]) at a byte
+    /// The numbers can change, each in a file (an index of [`Project::files`]) at a byte
     /// range.
     Literal {
         /// The places.
         spans: Vec<(usize, Range<usize>)>,
     },
-    /// No.
+    /// The numbers cannot change.
     Fixed {
         /// Why not, a sentence's end: "is made in a loop".
         why: String,
@@ -40,7 +40,7 @@ pub enum Editable {
 pub struct Handle {
     /// The quantity that it moves.
     pub kind: Kind,
-    /// Where it is, world coordinates.
+    /// The place in the world.
     pub place: DVec3,
     /// A label for a person: "the centre".
     pub label: String,
@@ -51,7 +51,7 @@ pub struct Handle {
 }
 
 impl Handle {
-    /// Its numbers as the text might give them, short.
+    /// Writes the numbers as the text might give them, short.
     #[must_use]
     pub fn text(&self) -> String {
         let numbers = self.numbers.iter().map(|number| write(number.value, 1e-4));
@@ -59,7 +59,7 @@ impl Handle {
     }
 }
 
-/// How a handle's place follows from its numbers.
+/// Way in which a handle's place follows from its numbers.
 #[derive(Clone, Copy, Debug)]
 pub enum Moves {
     /// `to_world · (x, y, z)`
@@ -76,7 +76,7 @@ pub enum Moves {
         linear: DMat3,
         size: f64,
     },
-    /// On the circle of an arc: where it starts if `start`, else where it ends.
+    /// The start of an arc if `start`, else its end, on its circle.
     Circle {
         center: DVec3,
         u: DVec3,
@@ -89,7 +89,7 @@ pub enum Moves {
     Nowhere,
 }
 
-/// A handle at the place that its numbers give, and whether they can be changed.
+/// Makes a handle at the place that its numbers give, and finds whether they can be changed.
 pub fn handle(kind: Kind, mut label: String, numbers: Vec<Number>, moves: Moves) -> Handle {
     let mut spans: Vec<(usize, Range<usize>)> = Vec::new();
     let mut variables: Vec<&str> = Vec::new();
@@ -149,7 +149,7 @@ pub fn handle(kind: Kind, mut label: String, numbers: Vec<Number>, moves: Moves)
     }
 }
 
-/// Three numbers as a vector; NaN if there are not three.
+/// Returns three numbers as a vector; NaN if there are not three.
 pub fn triple(numbers: &[Number]) -> DVec3 {
     match numbers {
         [x, y, z] => DVec3::new(x.value, y.value, z.value),
@@ -157,7 +157,7 @@ pub fn triple(numbers: &[Number]) -> DVec3 {
     }
 }
 
-/// The place that numbers give.
+/// Returns the place that numbers give.
 fn place(numbers: &[Number], moves: &Moves) -> DVec3 {
     match *moves {
         Moves::Freely(to_world) => to_world.transform_point3(triple(numbers)),

@@ -7,8 +7,8 @@ use rats::commands::{Kind as Takes, Role};
 use rats::provenance::{Operand, Provenance};
 use scene::{Element, Flesh, Scene, Shape};
 
-/// Makes the handles of one element: its scene, itself, how it came from its command, the axes of
-/// the view, and from where the numbers of its command come.
+/// Maker of the handles of one element, from its scene, its way from its command, the axes of the
+/// view, and the sources of its command's numbers.
 pub struct Maker<'a> {
     pub scene: &'a Scene,
     pub element: &'a Element,
@@ -18,15 +18,18 @@ pub struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// The handles of all operands that stand for places, radii and angles, and of the material's
-    /// radius if that counts.
+    /// Returns the handles of all operands that stand for places, radii and angles, and of the
+    /// material's radius if that counts.
     pub fn handles(&self) -> Vec<Handle> {
         let mut handles = Vec::new();
         for (index, operand) in self.seen.operands.iter().enumerate() {
-            let same = |o: &&Operand| o.parameter.meaning == operand.parameter.meaning;
             let mut label = operand.parameter.meaning.to_owned();
-            if self.seen.operands.iter().filter(same).count() > 1 {
-                let number = self.seen.operands[..=index].iter().filter(same).count();
+            let count = |operands: &[Operand]| {
+                let meanings = operands.iter().map(|operand| operand.parameter.meaning);
+                meanings.filter(|meaning| *meaning == label).count()
+            };
+            let number = count(&self.seen.operands[..=index]);
+            if count(&self.seen.operands) > 1 {
                 label = format!("{label} ({number})");
             }
             match operand.parameter.kind {
@@ -56,9 +59,9 @@ impl Maker<'_> {
         handles
     }
 
-    /// The knob of the radius of a shape that a loop or a defined command makes, if the number is
-    /// written out or is a variable from outside: then all that is made so follows it.
-    pub fn shared_radius(&self) -> Option<Handle> {
+    /// Makes the knob of the radius of a shape that a loop or a defined command makes, if the
+    /// number is written out or is a variable from outside: then all that is made so follows it.
+    pub fn radius_of_all(&self) -> Option<Handle> {
         let mut handle = self.handles().into_iter().find(|handle| {
             let is_radius = handle.label.contains("radius") && !handle.label.contains("sweep");
             handle.kind == Kind::Length && is_radius
@@ -78,7 +81,7 @@ impl Maker<'_> {
         handle(Kind::Point, label, operand.numbers.clone(), moves)
     }
 
-    /// The knob of the radius at a skeleton's node, across the view.
+    /// Makes the knob of the radius at a skeleton's node, across the view.
     fn node_radius(&self, node: &Operand, operand: &Operand, label: String) -> Option<Handle> {
         let [x, y, z] = node.numbers.get(..3)? else {
             return None;
@@ -115,7 +118,7 @@ impl Maker<'_> {
         ))
     }
 
-    /// A radius or an angle of the shape, if it can be seen.
+    /// Makes the handle of a radius or an angle of the shape, if it can be seen.
     fn number(&self, operand: &Operand, label: String) -> Option<Handle> {
         let circle = |start: bool| match self.element.shape {
             Shape::Arc {
@@ -164,12 +167,12 @@ impl Maker<'_> {
         Some(handle(kind, label, operand.numbers.clone(), moves))
     }
 
-    /// The element's flesh, if it is soft.
+    /// Returns the element's flesh, if it is soft.
     fn flesh(&self) -> Option<&Flesh> {
         self.scene.flesh.get(self.element.flesh? as usize)
     }
 
-    /// Whether the radius that counts is the material's.
+    /// Returns whether the radius that counts is the material's.
     fn material_decides(&self) -> bool {
         let Some(flesh) = self.flesh() else {
             return false;
@@ -182,7 +185,7 @@ impl Maker<'_> {
         self.element.shape.radius() == 0.0 || self.scene.radius_of_flesh(self.element).is_some()
     }
 
-    /// Where the knob of the shape's radius is: on the rim, across the view. `end` is the end of a
+    /// Places the knob of the shape's radius on the rim, across the view. `end` is the end of a
     /// cone or limb that tapers, 0 or 1.
     fn radius(&self, end: f64) -> Moves {
         let view = self.view;
@@ -256,7 +259,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Where the knob of a box's side along an axis is: in the middle of a face.
+    /// Places the knob of a box's side along an axis in the middle of a face.
     fn side(&self, k: usize) -> Option<Moves> {
         let Shape::Box { center, axes } = self.element.shape else {
             return None;
@@ -269,7 +272,7 @@ impl Maker<'_> {
         })
     }
 
-    /// Where the knob of an arc's sweep radius is: in the middle of the arc.
+    /// Places the knob of an arc's sweep radius in the middle of the arc.
     fn sweep(&self) -> Option<Moves> {
         let Shape::Arc {
             center,

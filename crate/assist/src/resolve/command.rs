@@ -1,6 +1,6 @@
-//! One command or definition: the names that it uses and makes.
+//! Commands and definitions: the names that they use and make.
 
-use super::state::{Frame, Local, Open, Resolver, taken};
+use super::state::{Frame, Local, Open, Resolver, value_type};
 use crate::grammar::Grammar;
 use crate::index::SymbolKind;
 use crate::slots::{Slot, Slots, Type, What};
@@ -10,8 +10,8 @@ use std::ops::Range;
 use std::rc::Rc;
 
 impl<'p, 's> Resolver<'p, 's> {
-    /// One command: notes the names that it uses, then those that it makes. Returns the files that
-    /// it reads, the last one first.
+    /// Notes the names that a command uses, then those that it makes. Returns the files that it
+    /// reads, the last one first.
     pub(super) fn command(&mut self, file: usize, command: &'s Command) -> Vec<usize> {
         let text = self.text(file);
         let syntaxes: &'s [Syntax] = self.syntaxes;
@@ -45,7 +45,8 @@ impl<'p, 's> Resolver<'p, 's> {
         reads
     }
 
-    /// The operands that a command takes here. Notes the use of a command that the texts define.
+    /// Returns the operands that a command takes here. Notes the use of a command that the texts
+    /// define.
     pub(super) fn grammar(
         &mut self,
         file: usize,
@@ -58,7 +59,7 @@ impl<'p, 's> Resolver<'p, 's> {
             _ => self.own(word).cloned(),
         };
         if command.spec.is_none() || own.is_some() {
-            let entity = self.named(SymbolKind::Command, word);
+            let entity = self.entity_of(SymbolKind::Command, word);
             let (word, whole) = (command.word_span.clone(), command.span.clone());
             self.note(entity, file, word, whole, false);
         }
@@ -88,16 +89,17 @@ impl<'p, 's> Resolver<'p, 's> {
     ) -> Option<usize> {
         let text = self.text(file);
         match slot.what {
-            What::Name { of, is_new: false } => self.known(file, span, of, command),
+            What::Name { of, is_new: false } => self.use_name(file, span, of, command),
             What::File => {
                 let written = &text[span.clone()];
                 let bare = written.strip_prefix("./").unwrap_or(written);
                 let files = &self.project.files;
                 let places = rats::places(&files[file].name, written);
-                let find = |place: &String| files.iter().position(|f| f.name == *place);
-                let read = places.iter().find_map(find)?;
+                let read = places
+                    .iter()
+                    .find_map(|place| files.iter().position(|file| file.name == *place))?;
                 let start = span.end - bare.len();
-                let entity = self.named(SymbolKind::File, &self.project.files[read].name);
+                let entity = self.entity_of(SymbolKind::File, &self.project.files[read].name);
                 self.note(entity, file, start..span.end, command.span.clone(), false);
                 return command
                     .spec
@@ -140,20 +142,21 @@ impl<'p, 's> Resolver<'p, 's> {
                     // `var a += 1` reads the one and may set the other.
                     let is_set = slots.iter().any(|slot| matches!(slot.what, What::Lead));
                     if !is_set && command.spec.is_some_and(|spec| !spec.is_structure()) {
-                        self.changed(&text[span.clone()]);
+                        self.change_variable(&text[span.clone()]);
                     }
                     self.set_variable(file, span, value.unwrap_or(Type::Any), command);
                 }
                 SymbolKind::Command => {}
                 kind => {
-                    let entity = self.named(kind, &text[span.clone()]);
+                    let entity = self.entity_of(kind, &text[span.clone()]);
                     self.note(entity, file, span, command.span.clone(), true);
                 }
             }
         }
     }
 
-    /// Whether a shape leaves out its material: in a chain, and in a define that is called in one.
+    /// Returns whether a shape leaves out its material: in a chain, and in a define that is called
+    /// in one.
     pub(super) fn leaves_material_out(&self, items: &[Item], text: &str) -> bool {
         let Some(frame) = self.frames.last() else {
             return false;
@@ -179,7 +182,13 @@ impl<'p, 's> Resolver<'p, 's> {
     }
 
     /// Notes the use of a name.
-    pub(super) fn known(&mut self, file: usize, span: Range<usize>, of: Names, command: &Command) {
+    pub(super) fn use_name(
+        &mut self,
+        file: usize,
+        span: Range<usize>,
+        of: Names,
+        command: &Command,
+    ) {
         let name = &self.text(file)[span.clone()];
         let kind = kind_of(of);
         if kind == SymbolKind::Command && commands::find(name).is_some() {
@@ -193,31 +202,28 @@ impl<'p, 's> Resolver<'p, 's> {
             }
             return self.use_variable(file, span, command.span.clone());
         }
-        let entity = self.named(kind, name);
+        let entity = self.entity_of(kind, name);
         self.note(entity, file, span, command.span.clone(), false);
     }
 
-    /// The operands of a command of the table; `in_chain` leaves the material out.
+    /// Returns the operands of a command of the table; `in_chain` leaves the material out.
     pub(super) fn table(&mut self, spec: &'static CommandSpec, in_chain: bool) -> Rc<Grammar<'p>> {
-        let make = || {
-            let grammar = Grammar::of(spec);
-            Rc::new(if in_chain {
-                grammar.in_chain()
-            } else {
-                grammar
-            })
-        };
         let known = self.grammars.entry((spec.name, in_chain));
-        known.or_insert_with(make).clone()
+        let grammar = known.or_insert_with(|| match (Grammar::of(spec), in_chain) {
+            (grammar, true) => Rc::new(grammar.in_chain()),
+            (grammar, false) => Rc::new(grammar),
+        });
+        grammar.clone()
     }
 
+    /// Begins the definition of a command.
     pub(super) fn begin_define(&mut self, file: usize, node: &'s Define) {
         self.open.push(Open::Define);
         let name = self.symbols.word(node.name);
         let head = &node.head;
         let syntaxes: &'s [Syntax] = self.syntaxes;
         let items = &syntaxes[file].items;
-        let command = self.named(SymbolKind::Command, name);
+        let command = self.entity_of(SymbolKind::Command, name);
         let name_span = items[head.items.start].span();
         self.note(command, file, name_span.clone(), head.span.clone(), true);
         self.order += 1;
@@ -231,7 +237,7 @@ impl<'p, 's> Resolver<'p, 's> {
             return;
         };
         for (formal, (name, entity)) in node.parameters.iter().zip(&own.parameters) {
-            let value = taken(formal.takes);
+            let value = value_type(formal.takes);
             self.entities[*entity].owner = Some(owner);
             self.note(*entity, file, formal.span.clone(), head.span.clone(), true);
             // A default may use the parameters before it.
@@ -258,7 +264,7 @@ impl<'p, 's> Resolver<'p, 's> {
         self.frames.push(frame);
     }
 
-    /// The names in the default of a parameter.
+    /// Notes the names in the default of a parameter.
     pub(super) fn default(&mut self, file: usize, head: &Command, items: Range<usize>) {
         let text = self.text(file);
         let syntaxes: &'s [Syntax] = self.syntaxes;
@@ -274,13 +280,14 @@ impl<'p, 's> Resolver<'p, 's> {
     }
 }
 
-/// The bytes of an operand; `None` if it has no items.
+/// Returns the bytes of an operand; `None` if it has no items.
 fn span_of(slot: &Slot<'_>, items: &[Item]) -> Option<Range<usize>> {
     let items = items.get(slot.items.clone())?;
     let (first, last) = (items.first()?, items.last()?);
     Some(first.start as usize..last.end as usize)
 }
 
+/// Returns the kind of thing that has such names.
 fn kind_of(names: Names) -> SymbolKind {
     match names {
         Names::Material => SymbolKind::Material,

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use std::rc::Rc;
 
 impl<'p, 's> Resolver<'p, 's> {
-    /// Whether the place that is asked for is in this command.
+    /// Returns whether the place that is asked for is in this command.
     pub(super) fn is_here(&self, file: usize, command: &Command) -> bool {
         let Some((place, byte)) = self.place else {
             return false;
@@ -62,7 +62,7 @@ impl<'p, 's> Resolver<'p, 's> {
         });
     }
 
-    /// The variables that can be seen here, the nearest first.
+    /// Returns the variables that can be seen here, the nearest first.
     pub(super) fn visible(&self) -> Vec<(&'p str, Type, SymbolKind)> {
         let mut seen = Vec::new();
         let mut frames = vec![self.frames.last()];
@@ -97,7 +97,7 @@ impl<'p, 's> Resolver<'p, 's> {
     }
 }
 
-/// How far a command reaches: to what ends its line or begins its block.
+/// Returns the end of a command: the byte that ends its line or begins its block.
 fn reach(text: &str, command: &Command) -> usize {
     let end = command.span.end;
     let rest = &text[end..];

@@ -12,7 +12,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// How many names are compared where files are read again.
+/// Most names that are compared where files are read again.
 pub const MAX_COMPARED: usize = 200_000;
 
 /// A variable that a call has of its own.
@@ -21,7 +21,7 @@ pub struct Local {
     pub entity: usize,
     /// Whether it surely has a value here.
     pub sure: bool,
-    /// How deep the block is that sets it.
+    /// The depth of the block that sets it.
     pub depth: usize,
 }
 
@@ -31,16 +31,16 @@ pub struct Frame<'p> {
     /// The order of the define; `None` for the project.
     pub owner: Option<usize>,
     pub locals: HashMap<&'p str, Local>,
-    /// The locals that were set in blocks that are open, with how deep these are.
+    /// The locals that were set in blocks that are open, with the depths of these.
     pub set_inside: Vec<(&'p str, usize)>,
     /// The loops that are open, with their variables and numbers.
     pub loops: Vec<(&'p str, usize, usize)>,
     /// Names used before they were set, with the outermost loop that was open then.
     pub free: HashMap<&'p str, Option<usize>>,
     pub types: HashMap<&'p str, Type>,
-    /// Blocks open inside of it.
+    /// The number of blocks that are open inside of it.
     pub depth: usize,
-    /// For each open object whether it is a chain.
+    /// The objects that are open: whether each is a chain.
     pub objects: Vec<bool>,
 }
 
@@ -64,9 +64,9 @@ pub struct Resolver<'p, 's> {
     pub open: Vec<Open>,
     /// The commands that have been defined so far.
     pub defines: HashMap<&'p str, Rc<Own<'p>>>,
-    /// All commands that are defined anywhere, by file and byte; those that are called before they
-    /// are defined in the text, by name.
+    /// The commands that are defined anywhere, by file and byte.
     pub all_defines: HashMap<(usize, usize), Rc<Own<'p>>>,
+    /// The commands that are defined anywhere, by name.
     pub later: HashMap<&'p str, Rc<Own<'p>>>,
     /// The parameters of all commands, by the names of both.
     pub parameters: HashMap<(&'p str, &'p str), usize>,
@@ -81,7 +81,7 @@ pub struct Resolver<'p, 's> {
     /// The places in which files have been read: the file, the call, the loop, its number of
     /// variables.
     pub contexts: HashSet<(usize, Option<usize>, Option<usize>, usize)>,
-    /// How many more names may be compared where files are read again.
+    /// The number of names that may still be compared where files are read again.
     pub work_left: usize,
     /// Parameters that stand for names in files, where something else may have that name.
     pub stand_ins: HashSet<(usize, SymbolKind, &'p str)>,
@@ -140,7 +140,7 @@ impl<'p, 's> Resolver<'p, 's> {
             order: 0,
         };
         for (index, file) in project.files.iter().enumerate() {
-            let entity = resolver.named(SymbolKind::File, &file.name);
+            let entity = resolver.entity_of(SymbolKind::File, &file.name);
             resolver.note(entity, index, 0..0, 0..0, true);
         }
         resolver.collect_defines();
@@ -151,7 +151,7 @@ impl<'p, 's> Resolver<'p, 's> {
         &self.project.files[file].text
     }
 
-    /// A new thing.
+    /// Adds a thing.
     pub(super) fn entity(&mut self, kind: SymbolKind, name: &'p str) -> usize {
         let index = self.entities.len();
         self.entities.push(Entity {
@@ -166,8 +166,8 @@ impl<'p, 's> Resolver<'p, 's> {
         index
     }
 
-    /// The thing of a name that counts for the whole project.
-    pub(super) fn named(&mut self, kind: SymbolKind, name: &'p str) -> usize {
+    /// Returns the thing of a name that counts for the whole project, a new one for a new name.
+    pub(super) fn entity_of(&mut self, kind: SymbolKind, name: &'p str) -> usize {
         if let Some(&entity) = self.by_name.get(&(kind, name)) {
             return entity;
         }
@@ -176,6 +176,7 @@ impl<'p, 's> Resolver<'p, 's> {
         entity
     }
 
+    /// Returns the thing that stands for all that are the same as one.
     pub(super) fn root(&mut self, mut entity: usize) -> usize {
         loop {
             let parent = self.entities[entity].parent;
@@ -188,12 +189,14 @@ impl<'p, 's> Resolver<'p, 's> {
         }
     }
 
+    /// Makes two things count as one.
     pub(super) fn unite(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         let (first, second) = (a.min(b), a.max(b));
         self.entities[second].parent = first;
     }
 
+    /// Notes a place of a name.
     pub(super) fn note(
         &mut self,
         entity: usize,
@@ -224,12 +227,12 @@ impl<'p, 's> Resolver<'p, 's> {
         self.frames.last_mut().expect("the project's own frame")
     }
 
-    /// The command that the texts define under a name: so far, else further down.
+    /// Finds the command that the texts define under a name: so far, else further down.
     pub(super) fn own(&self, name: &str) -> Option<&Rc<Own<'p>>> {
         self.defines.get(name).or_else(|| self.later.get(name))
     }
 
-    /// The type of a variable that can be seen here; `None` if there is no such variable.
+    /// Returns the type of a variable that can be seen here; `None` if there is no such variable.
     pub(super) fn type_of(&self, name: &str) -> Option<Type> {
         let frame = self.frames.last()?;
         frame
@@ -250,7 +253,7 @@ impl<'p, 's> Resolver<'p, 's> {
                 for formal in &node.parameters {
                     let parameter = self.symbols.word(formal.name);
                     let entity = self.entity(SymbolKind::Parameter, parameter);
-                    self.entities[entity].value = taken(formal.takes);
+                    self.entities[entity].value = value_type(formal.takes);
                     // A call by name can mean each of several commands of one name.
                     let known = self.parameters.entry((name, parameter));
                     let first = *known.or_insert(entity);
@@ -275,8 +278,8 @@ impl<'p, 's> Resolver<'p, 's> {
     }
 }
 
-/// The type of a value that a parameter takes.
-pub fn taken(takes: Takes) -> Type {
+/// Returns the type of the values that a parameter takes.
+pub fn value_type(takes: Takes) -> Type {
     match takes {
         Takes::Number => Type::Number,
         Takes::Triple => Type::Triple,

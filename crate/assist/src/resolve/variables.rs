@@ -9,19 +9,20 @@ use rats::{colours, functions};
 use std::ops::Range;
 
 impl<'p> Resolver<'p, '_> {
-    /// A variable is changed without being set: if it is not the call's own, it becomes so now.
-    pub(super) fn changed(&mut self, name: &'p str) {
+    /// Notes that a variable is changed without being set: if it is not the call's own, it becomes
+    /// so now.
+    pub(super) fn change_variable(&mut self, name: &'p str) {
         let depth = self.frame().depth;
         let owner = self.frame().owner;
         if owner.is_none() {
             return;
         }
-        match self.bound(name) {
+        match self.visible_variable(name) {
             Some(entity) => self.same_as_global.push((entity, name)),
             None => {
                 let entity = self.entity(SymbolKind::Variable, name);
                 self.entities[entity].owner = owner;
-                let global = self.named(SymbolKind::Variable, name);
+                let global = self.entity_of(SymbolKind::Variable, name);
                 self.unite(entity, global);
                 let local = Local {
                     entity,
@@ -57,10 +58,10 @@ impl<'p> Resolver<'p, '_> {
             self.frame().types.insert(name, Type::Number);
             return;
         }
-        let bound = self.bound(name);
+        let bound = self.visible_variable(name);
         let entity = match (bound, owner) {
             (Some(entity), _) => entity,
-            (None, None) => self.named(SymbolKind::Variable, name),
+            (None, None) => self.entity_of(SymbolKind::Variable, name),
             (None, Some(_)) => {
                 let entity = self.entity(SymbolKind::Variable, name);
                 self.entities[entity].owner = owner;
@@ -68,7 +69,7 @@ impl<'p> Resolver<'p, '_> {
                 let frame = self.frame();
                 let outermost = frame.loops.first().map(|(_, _, number)| *number);
                 if outermost.is_some() && frame.free.get(name) == Some(&outermost) {
-                    let global = self.named(SymbolKind::Variable, name);
+                    let global = self.entity_of(SymbolKind::Variable, name);
                     self.unite(entity, global);
                 }
                 entity
@@ -107,8 +108,8 @@ impl<'p> Resolver<'p, '_> {
         self.note(entity, file, span, command.span.clone(), true);
     }
 
-    /// The loop or local variable of a name that can be seen here.
-    pub(super) fn bound(&self, name: &str) -> Option<usize> {
+    /// Finds the loop or local variable of a name that can be seen here.
+    pub(super) fn visible_variable(&self, name: &str) -> Option<usize> {
         let frame = self.frames.last()?;
         let in_loop = frame
             .loops
@@ -120,8 +121,8 @@ impl<'p> Resolver<'p, '_> {
             .or_else(|| frame.locals.get(name).map(|local| local.entity))
     }
 
-    /// Whether a word means a colour or a constant here, as no variable of that name has been set
-    /// so far. Only in the first file and outside of loops and commands is that certain.
+    /// Returns whether a word means a colour or a constant here, as no variable of that name has
+    /// been set so far. Only in the first file and outside of loops and commands is that certain.
     pub(super) fn is_not_set_yet(&self, name: &str) -> bool {
         let is_plain = matches!(&self.frames[..], [frame] if frame.loops.is_empty());
         is_plain
@@ -144,7 +145,7 @@ impl<'p> Resolver<'p, '_> {
         if file == 0 && self.is_not_set_yet(name) {
             return;
         }
-        let entity = match self.bound(name) {
+        let entity = match self.visible_variable(name) {
             Some(entity) => {
                 let frame = self.frame();
                 let in_loop = frame.loops.iter().any(|(bound, _, _)| *bound == name);
@@ -161,7 +162,7 @@ impl<'p> Resolver<'p, '_> {
                     frame.free.insert(name, outermost);
                     self.free_in_defines.insert(name);
                 }
-                self.named(SymbolKind::Variable, name)
+                self.entity_of(SymbolKind::Variable, name)
             }
         };
         if self.frames.len() == self.base {
@@ -170,7 +171,7 @@ impl<'p> Resolver<'p, '_> {
         self.note(entity, file, span, command, false);
     }
 
-    /// A file that was read before is read again, perhaps where other variables can be seen.
+    /// Reads a file again that was read before, perhaps where other variables can be seen.
     pub(super) fn read_again(&mut self, file: usize) {
         let frame = self.frame();
         let last_loop = frame.loops.last().map(|(_, _, number)| *number);
@@ -185,9 +186,9 @@ impl<'p> Resolver<'p, '_> {
         }
         let names: Vec<(&'p str, usize)> = self.used_by_file[file].iter().copied().collect();
         for (name, entity) in names {
-            let other = match self.bound(name) {
+            let other = match self.visible_variable(name) {
                 Some(other) => other,
-                None => self.named(SymbolKind::Variable, name),
+                None => self.entity_of(SymbolKind::Variable, name),
             };
             self.unite(entity, other);
         }
@@ -205,9 +206,10 @@ impl<'p> Resolver<'p, '_> {
         }
     }
 
-    /// A parameter that stands for a name, and what has that name itself, count as one.
+    /// Notes that a parameter that stands for a name, and the thing of that name itself, count as
+    /// one.
     pub(super) fn stands_for(&mut self, name: &'p str, kind: SymbolKind) {
-        if let Some(parameter) = self.bound(name) {
+        if let Some(parameter) = self.visible_variable(name) {
             self.stand_ins.insert((parameter, kind, name));
         }
     }

@@ -14,7 +14,7 @@ pub enum Type {
     Triple,
     /// A name that a parameter stands for.
     Name,
-    /// Not known.
+    /// Unknown.
     Any,
 }
 
@@ -23,11 +23,11 @@ pub enum Type {
 pub enum What {
     /// An option's word.
     Option,
-    /// One of the words that a parameter allows.
+    /// A word that a parameter allows.
     Word(&'static OptionSpec),
     /// A name.
     Name {
-        /// Of what.
+        /// The kind of thing that has it.
         of: Names,
         /// Whether it is made here.
         is_new: bool,
@@ -44,7 +44,7 @@ pub enum What {
     Lead,
     /// The name of a parameter in `turns = 3`.
     Named,
-    /// One that the command has no use for.
+    /// An operand that the command has no use for.
     Extra,
 }
 
@@ -53,7 +53,7 @@ pub enum What {
 pub struct Slot<'p> {
     /// The operand's items, as indices of the command's.
     pub items: Range<usize>,
-    /// Its use.
+    /// The use.
     pub what: What,
     /// The parameter it is for.
     pub parameter: Option<Param<'p>>,
@@ -70,7 +70,7 @@ pub enum Want<'p> {
     Parameter {
         /// The parameter.
         parameter: Param<'p>,
-        /// Its index.
+        /// The index of the parameter.
         index: usize,
         /// The option it belongs to.
         option: Option<&'static OptionSpec>,
@@ -81,7 +81,7 @@ pub enum Want<'p> {
     Value,
     /// An option.
     Options(&'static [OptionSpec]),
-    /// This word.
+    /// A word or sign that leads on.
     Lead(&'static str),
 }
 
@@ -100,11 +100,11 @@ pub struct Slots<'i, 'p> {
     pub(super) parameter: Option<Param<'p>>,
     pub(super) index: usize,
     pub(super) option: Option<&'static OptionSpec>,
-    /// All operands.
+    /// The operands with their uses.
     pub slots: Vec<Slot<'p>>,
     /// The items that are words in expressions and no functions.
     pub words: Vec<usize>,
-    /// All that could come next where the operands end.
+    /// The operands and words that could come next where the operands end.
     pub wants: Vec<Want<'p>>,
 }
 
@@ -182,7 +182,7 @@ impl<'i, 'p> Slots<'i, 'p> {
         }
     }
 
-    /// The text from an item to the one before this.
+    /// Returns the text from an item to the one before this.
     pub(super) fn span(&self, start: usize) -> &'p str {
         match self.items.get(start..self.at) {
             Some([first, .., last]) => &self.text[first.start as usize..last.end as usize],
@@ -202,10 +202,10 @@ impl<'i, 'p> Slots<'i, 'p> {
 
     /// Takes a name; signs that are not separated from it belong to it.
     pub(super) fn name(&mut self) -> bool {
-        self.glued(|datum| matches!(datum, Datum::Sign(b'^')))
+        self.glue(|datum| matches!(datum, Datum::Sign(b'^')))
     }
 
-    pub(super) fn glued(&mut self, sign: fn(Datum) -> bool) -> bool {
+    pub(super) fn glue(&mut self, sign: fn(Datum) -> bool) -> bool {
         let part = |datum| matches!(datum, Datum::Word(_) | Datum::Number(_)) || sign(datum);
         if !self.datum(0).is_some_and(part) {
             return false;
@@ -253,12 +253,12 @@ impl<'i, 'p> Slots<'i, 'p> {
     }
 }
 
-/// Whether a word is one of these options or the beginning of one.
+/// Returns whether a word is one of these options or the beginning of one.
 pub fn is_beginning(options: &[OptionSpec], word: &str) -> bool {
     options.iter().any(|option| option.begins(word))
 }
 
-/// The option that a word names, whole or by a beginning that fits one only.
+/// Finds the option that a word names, whole or by a beginning that fits one only.
 fn find_option(options: &'static [OptionSpec], word: &str) -> Option<&'static OptionSpec> {
     if let Some(exact) = options.iter().find(|o| o.name.eq_ignore_ascii_case(word)) {
         return Some(exact);

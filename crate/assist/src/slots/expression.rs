@@ -21,7 +21,7 @@ impl<'i, 'p> Slots<'i, 'p> {
         slots
     }
 
-    /// An expression; its kind. Takes one item at least, if there is one.
+    /// Reads an expression and returns its type. Takes one item at least, if there is one.
     pub(super) fn value(&mut self) -> Type {
         let start = self.at;
         let kind = self.binary(0);
@@ -48,7 +48,7 @@ impl<'i, 'p> Slots<'i, 'p> {
             }
             self.at += length;
             let right = self.binary(operator.right_strength());
-            left = joined(left, right, operator);
+            left = join(left, right, operator);
         }
         self.depth -= 1;
         left
@@ -143,7 +143,7 @@ impl<'i, 'p> Slots<'i, 'p> {
                 loop {
                     let kind = self.binary(0);
                     first = first.or(Some(kind));
-                    together = joined(together, kind, Operator::Times);
+                    together = join(together, kind, Operator::Times);
                     if self.datum(0) != Some(Datum::Sign(b',')) {
                         break;
                     }
@@ -164,8 +164,8 @@ impl<'i, 'p> Slots<'i, 'p> {
     }
 }
 
-/// The kind of two values that are joined.
-fn joined(left: Type, right: Type, operator: Operator) -> Type {
+/// Returns the type of two values joined by an operator.
+fn join(left: Type, right: Type, operator: Operator) -> Type {
     match (left, right) {
         _ if operator.is_logical() => Type::Number,
         (Type::Triple, _) | (_, Type::Triple) => Type::Triple,

@@ -20,7 +20,7 @@ impl<'p> Slots<'_, 'p> {
                 continue;
             }
             if named && self.more() && self.is_named() {
-                return self.named(parameters);
+                return self.arguments(parameters);
             }
             self.parameter = Some(*parameter);
             self.index = index;
@@ -56,7 +56,8 @@ impl<'p> Slots<'_, 'p> {
         }
     }
 
-    /// Takes the word or sign that goes before a parameter (`to b`); whether the parameter follows.
+    /// Takes the word or sign that goes before a parameter (`to b`); returns whether the parameter
+    /// follows.
     pub(super) fn lead(&mut self, parameter: &Param<'p>, needed: bool) -> bool {
         let lead = match parameter.name.split_once(' ') {
             Some((lead @ ("=" | "to" | "step"), _)) => lead,
@@ -88,13 +89,13 @@ impl<'p> Slots<'_, 'p> {
         found
     }
 
-    /// Whether `name =` stands here.
+    /// Returns whether `name =` stands here.
     pub(super) fn is_named(&self) -> bool {
         self.word().is_some() && self.datum(1) == Some(Datum::Sign(b'='))
     }
 
-    /// `name = value …`, to the end.
-    pub(super) fn named(&mut self, parameters: &[Param<'p>]) {
+    /// Reads `name = value …`, to the end.
+    pub(super) fn arguments(&mut self, parameters: &[Param<'p>]) {
         while self.more() {
             if !self.is_named() {
                 self.extra();
@@ -133,7 +134,8 @@ impl<'p> Slots<'_, 'p> {
         }
     }
 
-    /// As the reader of `rats` decides it.
+    /// Returns whether another operand of the parameter follows, as the reader of `rats` decides
+    /// it.
     pub(super) fn goes_on(&self, parameter: &Param<'p>, options: &'static [OptionSpec]) -> bool {
         match parameter.kind {
             Kind::Number { .. } | Kind::Whole { .. } => {
@@ -214,12 +216,12 @@ impl<'p> Slots<'_, 'p> {
                 }
             }
             Kind::File | Kind::NewFile => {
-                self.glued(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
+                self.glue(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
                 self.push(start, What::File);
             }
             Kind::Backdrop => {
                 if self.word().is_some() {
-                    self.glued(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
+                    self.glue(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
                     if rats::is_image(self.span(start)) {
                         return self.push(start, What::File);
                     }
@@ -242,7 +244,7 @@ impl<'p> Slots<'_, 'p> {
         }
     }
 
-    /// Three numbers, a triple, or `N%`.
+    /// Reads three numbers, a triple, or `N%`.
     pub(super) fn triple(&mut self, share: bool) {
         let start = self.at;
         match self.value() {
@@ -281,7 +283,7 @@ impl<'p> Slots<'_, 'p> {
         }
     }
 
-    /// The value of a variable.
+    /// Reads the value of a variable.
     pub(super) fn any_value(&mut self) {
         let start = self.at;
         let first = self.value();
@@ -332,7 +334,7 @@ impl<'p> Slots<'_, 'p> {
                 return self.push(start, What::Word(solid));
             }
             self.at = start;
-            self.glued(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
+            self.glue(|datum| !matches!(datum, Datum::Sign(b',' | b'<' | b'>')));
             let end = self.at;
             if self.more()
                 && let Some(how) = self.word().and_then(|word| exact(options::MAPPINGS, word))

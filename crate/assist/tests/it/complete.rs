@@ -1,17 +1,17 @@
 //! Completion at the caret.
 
-use crate::texts::{corpus, examples, file, marked, names_soup, one_file, soup};
+use crate::texts::{at_mark, corpus, examples, file, names_soup, one_file, soup};
 use assist::complete::MAX_COMPLETIONS;
 use assist::{Completion, complete};
 use trials::trials;
 
-fn offered(text: &str) -> Vec<Completion> {
-    let (project, file, byte) = marked(text);
+fn offers(text: &str) -> Vec<Completion> {
+    let (project, file, byte) = at_mark(text);
     complete(&project, file, byte).items
 }
 
 fn texts(text: &str) -> Vec<String> {
-    offered(text).into_iter().map(|item| item.text).collect()
+    offers(text).into_iter().map(|item| item.text).collect()
 }
 
 /// The first things that are offered at `|` are these.
@@ -24,12 +24,12 @@ fn begins(text: &str, wanted: &[&str]) {
     );
 }
 
-/// These and no others are offered at `|`.
+/// Checks that these and no others are offered at `|`.
 fn exactly(text: &str, wanted: &[&str]) {
     assert_eq!(texts(text), wanted, "{text}");
 }
 
-/// These are among what is offered at `|`; those that begin with `!` are not.
+/// Checks that these are among what is offered at `|`, and that those that begin with `!` are not.
 fn among(text: &str, wanted: &[&str]) {
     let found = texts(text);
     for word in wanted {
@@ -46,7 +46,8 @@ fn among(text: &str, wanted: &[&str]) {
     }
 }
 
-const HEAD: &str = "surface Skin diff Red\nsurface Bone diff White\ntexture Rings strength sin one\n\
+const HEAD: &str = "surface Skin diff Red\nsurface Bone diff White\n\
+    texture Rings strength sin one\n\
     object SHELL\nclose\nvar r = 1\nvar P = 1 2 3\ndefine leg(surface s, B, length = 2) {\n}\n";
 
 fn with_head(text: &str) -> String {
@@ -116,7 +117,7 @@ fn names() {
 
 #[test]
 fn a_file_is_replaced_as_a_whole() {
-    let (project, file, byte) = marked("read sub/c-|\n#file sub/c-2.rat\n");
+    let (project, file, byte) = at_mark("read sub/c-|\n#file sub/c-2.rat\n");
     let found = complete(&project, file, byte);
     assert_eq!(found.replace, 5..11);
     assert_eq!(found.items[0].insert, "sub/c-2.rat");
@@ -194,7 +195,7 @@ fn values() {
 
 #[test]
 fn a_colour_shows() {
-    let found = offered("background OrangeRe|");
+    let found = offers("background OrangeRe|");
     assert_eq!(found[0].text, "OrangeRed");
     assert_eq!(found[0].swatch, Some([1.0, 69.0 / 255.0, 0.0]));
     assert_eq!(found[0].detail, "#ff4500");

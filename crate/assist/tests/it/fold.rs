@@ -49,7 +49,7 @@ if b {
 }
 
 #[test]
-fn unclosed_braces_do_not_fold() {
+fn braces_without_end_do_not_fold() {
     assert_eq!(lines("object A\n  sphere\nfor {\n}\n"), [(2, 4)]);
     assert_eq!(lines("for {\n { \n }\n"), [(1, 3)]);
     assert_eq!(lines("}\n}\nclose\nclose"), []);

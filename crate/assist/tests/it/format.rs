@@ -14,7 +14,8 @@ fn check(before: &str, after: &str) {
 fn levels() {
     check(
         "for i=1 to 3 {\nobject A\n# in\nsphere s 1 {0 0 0,\n1\n}\n  close A\n}\n",
-        "for i = 1 to 3 {\n  object A\n    # in\n    sphere s 1 { 0 0 0,\n      1\n    }\n  close A\n}\n",
+        "for i = 1 to 3 {\n  object A\n    # in\n    sphere s 1 { 0 0 0,\n      1\n    }\n  \
+         close A\n}\n",
     );
     check(
         "if a<2 {\nquit } else {\nif b{\n return\n}}\nquit",
@@ -102,7 +103,7 @@ fn examples_and_library() {
 }
 
 #[test]
-fn unmatched_brackets_are_left_alone() {
+fn brackets_without_partner_are_left_alone() {
     for text in ["for i=1 to 3 {\n  quit", "  }", "a {{ }", "} {"] {
         assert_eq!(format(text), text);
     }
@@ -157,8 +158,8 @@ fn same_meaning(project: &Project) {
         message()
     );
     assert_eq!(
-        said(project, &before),
-        said(&laid_out, &after),
+        messages_of(project, &before),
+        messages_of(&laid_out, &after),
         "{}",
         message()
     );
@@ -181,7 +182,7 @@ fn without_places(compiled: &Compiled) -> scene::Scene {
 
 /// The messages, with their places as the number of letters before them, since only space may
 /// change.
-fn said(project: &Project, compiled: &Compiled) -> Vec<String> {
+fn messages_of(project: &Project, compiled: &Compiled) -> Vec<String> {
     let mut said = Vec::new();
     for d in &compiled.diagnostics {
         let text = &project

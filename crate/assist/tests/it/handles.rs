@@ -25,7 +25,7 @@ fn handles_of(project: &Project, compiled: &Compiled, element: usize) -> Vec<Han
     handles::handles(project, &[], 0, compiled, element, &DMat3::IDENTITY)
 }
 
-fn labelled<'h>(handles: &'h [Handle], label: &str) -> &'h Handle {
+fn with_label<'h>(handles: &'h [Handle], label: &str) -> &'h Handle {
     handles
         .iter()
         .find(|handle| handle.label.starts_with(label))
@@ -40,10 +40,10 @@ fn why(handle: &Handle) -> &str {
 }
 
 /// The text after a drag of one handle of the element of the last command.
-fn dragged(text: &str, label: &str, to: [f64; 3]) -> String {
+fn drag_to(text: &str, label: &str, to: [f64; 3]) -> String {
     let mut project = project(&format!("{MATERIAL}{text}"));
     let handles = of(&project, 0);
-    let edits = handles::drag(labelled(&handles, label), DVec3::from(to), 0.01);
+    let edits = handles::drag(with_label(&handles, label), DVec3::from(to), 0.01);
     project = project.apply(&edits);
     project.files[0].text[MATERIAL.len()..].to_owned()
 }
@@ -51,7 +51,7 @@ fn dragged(text: &str, label: &str, to: [f64; 3]) -> String {
 #[test]
 fn only_the_numbers_that_change_are_written() {
     assert_eq!(
-        dragged(
+        drag_to(
             "sphere  s, 1.0 <1, .50 -2> # a ball\n",
             "the centre",
             [1.0, 0.75, -2.0]
@@ -59,7 +59,7 @@ fn only_the_numbers_that_change_are_written() {
         "sphere  s, 1.0 <1, 0.75 -2> # a ball\n"
     );
     assert_eq!(
-        dragged(
+        drag_to(
             "cylinder s .4 { 0 0 0 # here\n  −1 2 3 }",
             "the apex",
             [1.5, 2.0, -3.0]
@@ -67,21 +67,21 @@ fn only_the_numbers_that_change_are_written() {
         "cylinder s .4 { 0 0 0 # here\n  1.5 2 -3 }"
     );
     assert_eq!(
-        dragged("sphere s 1 2 3 4", "the radius", [2.5, 3.0, 4.0]),
+        drag_to("sphere s 1 2 3 4", "the radius", [2.5, 3.0, 4.0]),
         "sphere s 0.5 2 3 4"
     );
     // A radius never becomes 0: the shape would be lost.
     assert_eq!(
-        dragged("sphere s 1 2 3 4", "the radius", [-9.0, 3.0, 4.0]),
+        drag_to("sphere s 1 2 3 4", "the radius", [-9.0, 3.0, 4.0]),
         "sphere s 0.01 2 3 4"
     );
     // Too far is nowhere.
     assert_eq!(
-        dragged("sphere s 1 2 3 4", "the centre", [1e300, 3.0, 4.0]),
+        drag_to("sphere s 1 2 3 4", "the centre", [1e300, 3.0, 4.0]),
         "sphere s 1 2 3 4"
     );
     assert_eq!(
-        dragged("sphere s 1 2 3 4", "the centre", [f64::NAN, 3.0, 4.0]),
+        drag_to("sphere s 1 2 3 4", "the centre", [f64::NAN, 3.0, 4.0]),
         "sphere s 1 2 3 4"
     );
 }
@@ -89,7 +89,7 @@ fn only_the_numbers_that_change_are_written() {
 #[test]
 fn variables_are_moved_where_they_are_set() {
     assert_eq!(
-        dragged(
+        drag_to(
             "var r = 0.3 hot # the size\nvar P = 1 2 3\nsphere s r P",
             "the centre (the variable `P`)",
             [1.0, 2.5, 3.0]
@@ -97,7 +97,7 @@ fn variables_are_moved_where_they_are_set() {
         "var r = 0.3 hot # the size\nvar P = 1 2.5 3\nsphere s r P"
     );
     assert_eq!(
-        dragged(
+        drag_to(
             "var r = 0.3 hot # the size\nvar P = 1 2 3\nsphere s r P",
             "the radius (the variable `r`)",
             [1.5, 2.0, 3.0]
@@ -105,7 +105,7 @@ fn variables_are_moved_where_they_are_set() {
         "var r = 0.5 hot # the size\nvar P = 1 2 3\nsphere s r P"
     );
     assert_eq!(
-        dragged(
+        drag_to(
             "var x = 2\nvar x = 1\nsphere s 1 <-x 0 0>",
             "the centre",
             [-1.5, 1.0, 0.0]
@@ -113,7 +113,7 @@ fn variables_are_moved_where_they_are_set() {
         "var x = 2\nvar x = 1.5\nsphere s 1 <-x 1 0>"
     );
     assert_eq!(
-        dragged(
+        drag_to(
             "var P = 1 2 3\nsphere s 1 <0 P.z 0>",
             "the centre",
             [0.0, 4.0, 0.0]
@@ -122,7 +122,7 @@ fn variables_are_moved_where_they_are_set() {
     );
     // Computed coordinates stay; the rest of the point moves.
     assert_eq!(
-        dragged(
+        drag_to(
             "sphere s 1 <sqrt(4) 0 0>",
             "the centre; its x is computed: `sqrt(4)`",
             [7.0, 4.0, 0.0]
@@ -132,11 +132,11 @@ fn variables_are_moved_where_they_are_set() {
 }
 
 #[test]
-fn fixed_numbers_have_a_reason() {
+fn numbers_that_are_fixed_have_a_reason() {
     let fixed = |text: &str, label: &str| {
         let project = project(&format!("{MATERIAL}{text}"));
         let handles = of(&project, 0);
-        why(labelled(&handles, label)).to_owned()
+        why(with_label(&handles, label)).to_owned()
     };
     assert_eq!(
         fixed("sphere s 2*0.5 0 0 0", "the radius"),
@@ -175,7 +175,7 @@ fn copies_follow_and_loops_share_a_radius() {
         "{MATERIAL}object o\nsphere s 1 0 0 0\nclose\ninstance o p\ntranslate 2 0 0 p\n"
     ));
     let handles = of(&project, 1);
-    let handle = labelled(&handles, "the centre");
+    let handle = with_label(&handles, "the centre");
     assert_eq!(handle.place, DVec3::X * 2.0);
     let edits = handles::drag(handle, DVec3::new(2.0, 0.5, 0.0), 0.1);
     project = project.apply(&edits);
@@ -219,7 +219,7 @@ fn a_mesh_has_no_numbers() {
     let compiled = rats::compile_at(&project, &assets, 0.0);
     let handles = handles::handles(&project, &assets, 0, &compiled, 0, &DMat3::IDENTITY);
     assert_eq!(
-        why(labelled(&handles, "a corner")),
+        why(with_label(&handles, "a corner")),
         "is made by `mesh` from a file"
     );
 }
@@ -233,13 +233,13 @@ fn a_file_that_is_read_twice_makes_fixed_shapes() {
     });
     let handles = of(&project, 1);
     assert_eq!(
-        why(labelled(&handles, "the centre")),
+        why(with_label(&handles, "the centre")),
         "is in a file that is read more than once"
     );
     // Once is fine, and the change is made in that file.
     project.files[0].text = format!("{MATERIAL}read b.rat\n");
     let handles = of(&project, 0);
-    let edits = handles::drag(labelled(&handles, "the centre"), DVec3::Y, 0.1);
+    let edits = handles::drag(with_label(&handles, "the centre"), DVec3::Y, 0.1);
     project = project.apply(&edits);
     assert_eq!(project.files[1].text, "sphere s 1 0 1 0\n");
 }
@@ -265,7 +265,7 @@ fn the_radius_that_counts_is_the_one_with_a_knob() {
     let line =
         self::project("surface m, blobbiness -2, radius 0.5\nsurface n = m\nline n 0 0 0 1 0 0\n");
     let handles = of(&line, 0);
-    let knob = labelled(&handles, "the radius of the material `n`");
+    let knob = with_label(&handles, "the radius of the material `n`");
     let edits = handles::drag(knob, knob.place * 1.0 + DVec3::Y * 0.25, 0.01);
     assert_eq!((edits.len(), edits[0].text.as_str()), (1, "0.75"));
 }
@@ -405,7 +405,8 @@ fn a_handle_goes_where_it_is_dragged() {
 #[test]
 fn knobs_follow_along_their_own_way() {
     let text = format!(
-        "{MATERIAL}object c\narc s 2 0.5 <1 0 0> <0 0 1> 30 90\nclose\nrotate 1 2 3 40\nscale 2 2 2\n"
+        "{MATERIAL}object c\narc s 2 0.5 <1 0 0> <0 0 1> 30 90\nclose\nrotate 1 2 3 40\n\
+         scale 2 2 2\n"
     );
     let mut project = project(&text);
     for label in [
@@ -416,7 +417,7 @@ fn knobs_follow_along_their_own_way() {
         "the normal",
     ] {
         let handles = of(&project, 0);
-        let handle = labelled(&handles, label);
+        let handle = with_label(&handles, label);
         let anchor = compile(&project).scene.elements[0].clone();
         let scene::Shape::Arc { center, u, v, .. } = anchor.shape else {
             panic!("{anchor:?}")
@@ -438,7 +439,7 @@ fn knobs_follow_along_their_own_way() {
         let edits = handles::drag(handle, to, 1e-6);
         project = project.apply(&edits);
         let handles = of(&project, 0);
-        let now = labelled(&handles, label).place;
+        let now = with_label(&handles, label).place;
         let tolerance = if handle.kind == Kind::Direction {
             1e-2
         } else {

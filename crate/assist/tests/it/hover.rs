@@ -1,11 +1,11 @@
 //! Hover cards of the word under the pointer.
 
-use crate::texts::{corpus, file, marked, one_file, soup};
+use crate::texts::{at_mark, corpus, file, one_file, soup};
 use assist::{Card, hover};
 use trials::trials;
 
 fn card(text: &str) -> Card {
-    let (project, file, byte) = marked(text);
+    let (project, file, byte) = at_mark(text);
     let card = hover(&project, file, byte).unwrap_or_else(|| panic!("nothing: {text}"));
     assert!(project.files[file].text.get(card.span.clone()).is_some());
     card
@@ -120,7 +120,7 @@ fn values() {
         &["1 0.271 0, #ff4500"],
     );
     for text in ["# sph|ere", "|", "nosuch 1|", "sphere s 1 0 0 0    |  "] {
-        let (project, file, byte) = marked(text);
+        let (project, file, byte) = at_mark(text);
         assert_eq!(hover(&project, file, byte), None, "{text}");
     }
 }

@@ -1,15 +1,15 @@
-//! Where names are made and used, and renaming them.
+//! Places where names are made and used, and renaming.
 
-use crate::texts::{corpus, examples, file, marked, names_soup, one_file, soup};
+use crate::texts::{at_mark, corpus, examples, file, names_soup, one_file, soup};
 use assist::{Index, SymbolKind, definition, references, rename, rename_file};
 use rats::{Compiled, Project, compile};
 use trials::trials;
 
 /// The place in «…» is where the name at `|` is made.
-fn made(text: &str) {
-    let (project, file, byte) = marked(&text.replace(['«', '»'], ""));
+fn check_definition(text: &str) {
+    let (project, file, byte) = at_mark(&text.replace(['«', '»'], ""));
     let found = definition(&project, file, byte);
-    let (wanted, in_file, start) = marked(&text.replace('|', "").replace('«', "|"));
+    let (wanted, in_file, start) = at_mark(&text.replace('|', "").replace('«', "|"));
     let end = wanted.files[in_file].text.find('»').expect("an end");
     assert_eq!(
         found.map(|place| (place.file, place.span)),
@@ -21,7 +21,7 @@ fn made(text: &str) {
 /// The name at `|` stands in exactly the places that are in «…».
 fn stands(text: &str) {
     let bare = text.replace(['«', '»'], "");
-    let (project, file, byte) = marked(&bare);
+    let (project, file, byte) = at_mark(&bare);
     let mut shown = project.clone();
     for place in references(&project, file, byte).into_iter().rev() {
         shown.files[place.file].text.insert(place.span.end, '»');
@@ -39,27 +39,31 @@ fn stands(text: &str) {
 
 #[test]
 fn the_last_definition_counts() {
-    made("var a = 1\nvar «a» = 2\nsphere s |a P\nvar a = 3\n");
-    made("surface T1 diff Red\nsurface «T1» = T0\nsphere T1| 1 0 0 0\nsurface T1 = T0\n");
-    made("surface «T1» diff Red\nsurface T1 = |T1\n");
-    made("sphere |s 1 0 0 0\nsurface «s» diff Red\n");
-    made("var «P» = 1 2 3\nsphere s |P.x P\n");
-    made("texture «t» strength sin one\nsurface s rad 1 text u + |t\n");
-    made("object «A»\nclose\nobject B\nclose\nrotate 0 0 1 30, |A\n");
-    made("define «leg»(a) {\n}\n|leg 3\n");
-    made("define leg(«a», B) {\n sphere s |a B\n}\n");
-    made("define leg(surface «s») {\n sphere |s 1 0 0 0\n}\n");
-    made("define walk() { leg 1, b|=3 }\ndefine leg(a, «b» = 2) {\n}\n");
-    made("define leg(a, «b» = 2) {\n}\nleg 1, b|=3\n");
-    made("for «i» = 1 to 3 {\n sphere s |i 0 0 0\n}\n");
-    made("var i = 1\nfor «i» = 1 to 3 { sphere s |i 0 0 0 }\n");
-    made("for i = 1 to 3 { for «i» = i to 3 { sphere s |i 0 0 0 } }\n");
+    check_definition("var a = 1\nvar «a» = 2\nsphere s |a P\nvar a = 3\n");
+    check_definition(
+        "surface T1 diff Red\nsurface «T1» = T0\nsphere T1| 1 0 0 0\n\
+        surface T1 = T0\n",
+    );
+    check_definition("surface «T1» diff Red\nsurface T1 = |T1\n");
+    check_definition("sphere |s 1 0 0 0\nsurface «s» diff Red\n");
+    check_definition("var «P» = 1 2 3\nsphere s |P.x P\n");
+    check_definition("texture «t» strength sin one\nsurface s rad 1 text u + |t\n");
+    check_definition("object «A»\nclose\nobject B\nclose\nrotate 0 0 1 30, |A\n");
+    check_definition("define «leg»(a) {\n}\n|leg 3\n");
+    check_definition("define leg(«a», B) {\n sphere s |a B\n}\n");
+    check_definition("define leg(surface «s») {\n sphere |s 1 0 0 0\n}\n");
+    check_definition("define walk() { leg 1, b|=3 }\ndefine leg(a, «b» = 2) {\n}\n");
+    check_definition("define leg(a, «b» = 2) {\n}\nleg 1, b|=3\n");
+    check_definition("for «i» = 1 to 3 {\n sphere s |i 0 0 0\n}\n");
+    check_definition("var i = 1\nfor «i» = 1 to 3 { sphere s |i 0 0 0 }\n");
+    check_definition("for i = 1 to 3 { for «i» = i to 3 { sphere s |i 0 0 0 } }\n");
 }
 
 #[test]
 fn all_names() {
     let mut project = one_file(
-        "surface S diff Red\nvar a = 1\nfor i = 1 to a { sphere S i 0 0 0 }\nread b.rat\nsurface S rad a\n",
+        "surface S diff Red\nvar a = 1\nfor i = 1 to a { sphere S i 0 0 0 }\nread b.rat\n\
+         surface S rad a\n",
     );
     project.files.push(file(
         "b.rat",
@@ -95,9 +99,9 @@ fn all_names() {
 
 #[test]
 fn files() {
-    made("read b.rat\nsphere s |a 0 0 0\n#file b.rat\nvar «a» = 2\n");
-    made("var «a» = 2\nread b.rat\nvar a = 3\n#file b.rat\nsphere s |a 0 0 0\n");
-    let (project, file, byte) = marked("quit\nread ./b|.rat\n#file b.rat\nquit\n");
+    check_definition("read b.rat\nsphere s |a 0 0 0\n#file b.rat\nvar «a» = 2\n");
+    check_definition("var «a» = 2\nread b.rat\nvar a = 3\n#file b.rat\nsphere s |a 0 0 0\n");
+    let (project, file, byte) = at_mark("quit\nread ./b|.rat\n#file b.rat\nquit\n");
     let place = definition(&project, file, byte).expect("a file");
     assert_eq!((place.file, place.span), (1, 0..0));
     stands("read «b|.rat», ./«b.rat»\n#file b.rat\n# b.rat\n");
@@ -106,7 +110,8 @@ fn files() {
 #[test]
 fn one_kind_of_name_is_not_another() {
     stands(
-        "surface «s|» diff Red\nobject s\nclose s\nvar s = 1\nsphere «s» s 0 0 0\nchain «s», s\nclose\n",
+        "surface «s|» diff Red\nobject s\nclose s\nvar s = 1\nsphere «s» s 0 0 0\nchain «s», s\n\
+         close\n",
     );
     stands(
         "surface s diff Red\nvar «s» = 1\nsphere s |«s» 0 0 0 # s\n"
@@ -115,7 +120,8 @@ fn one_kind_of_name_is_not_another() {
     );
     stands("define f(«a|») { var b = «a»*2\n sphere s b «a» 0 0 }\nvar a = 2\nf a\n");
     stands(
-        "var «a|» = 2\ndefine f(a) { sphere s a 0 0 0 }\ndefine g(b) { sphere s «a» b 0 0 }\nf «a»\n",
+        "var «a|» = 2\ndefine f(a) { sphere s a 0 0 0 }\ndefine g(b) { sphere s «a» b 0 0 }\n\
+         f «a»\n",
     );
     stands("var «a|» = 2\ndefine f(b) { var a = «a» + b\n sphere s a 0 0 0 }\n");
     stands("var a = 2\ndefine f(b) { var «a» = a + b\n sphere s «|a» 0 0 0 }\n");
@@ -127,7 +133,8 @@ fn names_that_may_be_the_same_are_renamed_together() {
     stands("var «a|» = 2\ndefine f(b) { if b { var «a» = 1 }\n sphere s «a» 0 0 0 }\n");
     // Without another one there is nothing to be mixed up with.
     stands(
-        "define f(b) { if b { var «a|» = 1 }\n sphere s «a» 0 0 0 }\nfor a = 1 to 2 { sphere s a 0 0 0 }\n",
+        "define f(b) { if b { var «a|» = 1 }\n sphere s «a» 0 0 0 }\n\
+         for a = 1 to 2 { sphere s a 0 0 0 }\n",
     );
     // The second time round the local one is meant.
     stands("var «a|» = 2\ndefine f(b) { for i = 1 to 2 { sphere s «a» 0 0 0\nvar «a» = 1 } }\n");
@@ -153,7 +160,7 @@ fn words_that_are_no_names() {
         "|",
         "sphere s 1| 0 0 0",
     ] {
-        let (project, file, byte) = marked(text);
+        let (project, file, byte) = at_mark(text);
         assert_eq!(definition(&project, file, byte), None, "{text}");
         assert_eq!(references(&project, file, byte), [], "{text}");
     }
@@ -162,8 +169,8 @@ fn words_that_are_no_names() {
     assert_eq!(definition(&project, 0, 400), None);
 }
 
-fn renamed(text: &str, name: &str) -> Result<String, String> {
-    let (project, file, byte) = marked(text);
+fn rename_at(text: &str, name: &str) -> Result<String, String> {
+    let (project, file, byte) = at_mark(text);
     let edits = rename(&project, file, byte, name)?;
     Ok(project.apply(&edits).files[0].text.clone())
 }
@@ -171,7 +178,7 @@ fn renamed(text: &str, name: &str) -> Result<String, String> {
 #[test]
 fn renaming() {
     assert_eq!(
-        renamed(
+        rename_at(
             "var |a = 1 # a\nsurface a rad a\nsphere a a 0 0 0\n",
             "radius"
         ),
@@ -180,15 +187,15 @@ fn renaming() {
         ))
     );
     assert_eq!(
-        renamed("surface a^2 rad 1\nsphere |a^2 1 0 0 0\n", "b^3.x"),
+        rename_at("surface a^2 rad 1\nsphere |a^2 1 0 0 0\n", "b^3.x"),
         Ok(String::from("surface b^3.x rad 1\nsphere b^3.x 1 0 0 0\n"))
     );
     // Before it is a variable it is a colour.
     assert_eq!(
-        renamed("background Red\nvar |Red = Red\nfog Red", "b"),
+        rename_at("background Red\nvar |Red = Red\nfog Red", "b"),
         Ok(String::from("background Red\nvar b = Red\nfog b"))
     );
-    let no = |text, name| renamed(text, name).expect_err("a refusal");
+    let no = |text, name| rename_at(text, name).expect_err("a refusal");
     assert_eq!(
         no("var b = 2\nvar |a = 1\n", "b"),
         "`b` is taken: line 1 of main.rat makes a variable of that name"
@@ -231,7 +238,7 @@ fn renaming() {
         "first mend line 2 of main.rat: this `{` of `for` is never closed"
     );
     assert_eq!(
-        renamed("var |a = 1\n", "a"),
+        rename_at("var |a = 1\n", "a"),
         Ok(String::from("var a = 1\n"))
     );
 }
@@ -294,7 +301,7 @@ fn any_rename(project: &Project) -> bool {
             "{}",
             what()
         );
-        assert_eq!(said(&before), said(&compiled), "{}", what());
+        assert_eq!(places_of(&before), places_of(&compiled), "{}", what());
     }
     !has_errors
 }
@@ -315,9 +322,11 @@ fn without_names(compiled: &Compiled) -> scene::Scene {
 }
 
 /// The messages without what stands in them, since they tell names.
-fn said(compiled: &Compiled) -> Vec<(String, usize, rats::Severity)> {
-    let said = |d: &rats::Diagnostic| (d.file.clone(), d.line, d.severity);
-    compiled.diagnostics.iter().map(said).collect()
+fn places_of(compiled: &Compiled) -> Vec<(String, usize, rats::Severity)> {
+    let diagnostics = compiled.diagnostics.iter();
+    diagnostics
+        .map(|d| (d.file.clone(), d.line, d.severity))
+        .collect()
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn the_page_is_what_the_table_says() {
 #[test]
 fn pictures_are_those_of_the_examples() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www/reference");
-    let drawn = assist::manual::pictured();
+    let drawn = assist::manual::texts_with_pictures();
     assert!(drawn.len() > 60, "{} texts make a picture", drawn.len());
     for (name, text) in &drawn {
         let kept = std::fs::read_to_string(folder.join(format!("{name}.rat"))).unwrap_or_default();

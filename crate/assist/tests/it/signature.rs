@@ -1,12 +1,12 @@
 //! The command that the caret is in.
 
-use crate::texts::{corpus, marked, one_file, soup};
+use crate::texts::{at_mark, corpus, one_file, soup};
 use assist::signature;
 use trials::trials;
 
 /// The signature at `|` with the active parameter in brackets.
 fn shows(text: &str, wanted: &str) {
-    let (project, file, byte) = marked(text);
+    let (project, file, byte) = at_mark(text);
     let found = signature(&project, file, byte).map(|signature| {
         let mut shown = signature.command;
         for (index, part) in signature.parameters.iter().enumerate() {

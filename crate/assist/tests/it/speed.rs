@@ -1,4 +1,4 @@
-//! How long the answers take for the longest project that there may be. Run with
+//! Times of the answers for the longest project that there may be. Run with
 //! `cargo test --release -p assist --test it speed:: -- --ignored --nocapture`.
 
 use crate::texts::{file, one_file};
@@ -6,8 +6,8 @@ use rats::limits::MAX_TEXT;
 use std::time::Duration;
 use trials::WorkClock;
 
-/// Returns how long something takes.
-fn timed(run: &mut dyn FnMut()) -> Duration {
+/// Measures the time that something takes.
+fn time_of(run: &mut dyn FnMut()) -> Duration {
     let clock = WorkClock::start();
     run();
     clock.elapsed()
@@ -70,7 +70,7 @@ fn speed() {
         let mut project = one_file(&text);
         project.files.push(file("other.rat", &long(20_000)));
         let mut time = |name: &str, run: &mut dyn FnMut()| {
-            let took = timed(run);
+            let took = time_of(run);
             println!("{what:12} {name:12} {:7.1} ms", took.as_secs_f64() * 1e3);
             slowest = slowest.max(took);
         };
@@ -96,7 +96,7 @@ fn speed() {
     }
     let text = long(10_000);
     let project = one_file(&text);
-    let took = timed(&mut || {
+    let took = time_of(&mut || {
         for byte in 0..100 {
             drop(assist::complete(&project, 0, byte * 90));
         }

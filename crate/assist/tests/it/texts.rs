@@ -194,7 +194,7 @@ pub fn soup(u: &mut Unstructured<'_>) -> Result<String> {
 }
 
 /// The place in a project that `|` marks; the mark is taken out. `#file name` begins another file.
-pub fn marked(text: &str) -> (Project, usize, usize) {
+pub fn at_mark(text: &str) -> (Project, usize, usize) {
     let mut files = vec![file("main.rat", "")];
     for line in text.split_inclusive('\n') {
         match line.strip_prefix("#file ") {
@@ -264,8 +264,10 @@ pub fn names_soup(u: &mut Unstructured<'_>) -> Result<String> {
     ];
     let mut text = String::new();
     if u.ratio(3, 4)? {
-        text += "var a = 1\nvar b = 2\nvar i = 3\nvar r = 4\nvar P = 1 2 3\nsurface s rad 1\nsurface t rad 2\n";
-        text += "texture m strength sin one\ndefine f(a, P = 1 2 3) { sphere s a P }\ndefine g(surface s, b = 2, r = 1) { sphere s b P }\n";
+        text += "var a = 1\nvar b = 2\nvar i = 3\nvar r = 4\nvar P = 1 2 3\nsurface s rad 1\n\
+            surface t rad 2\n";
+        text += "texture m strength sin one\ndefine f(a, P = 1 2 3) { sphere s a P }\n\
+            define g(surface s, b = 2, r = 1) { sphere s b P }\n";
     }
     let mut open = 0;
     for _ in 0..u.int_in_range(0..=30)? {

@@ -1,4 +1,4 @@
-//! Root finders against exact hits.
+//! Tests of root finders against exact hits.
 use glam::DVec3;
 use scene::{Digger, Scene, Shape};
 use tracer::{Pass, Picture, Stats, Tile};
@@ -17,7 +17,7 @@ const ALL: [Digger; 9] = [
     Digger::Sphere,
 ];
 
-/// Largest error of a digger's crossings in an easy scene, along the ray.
+/// Returns the largest error of a digger's crossings in an easy scene, along the ray.
 fn tolerance(digger: Digger) -> f64 {
     match digger {
         // Two spans are crude, the more so as the field is cut off so late here.
@@ -29,13 +29,14 @@ fn tolerance(digger: Digger) -> f64 {
     }
 }
 
-fn dug(scene: &Scene, digger: Digger) -> Picture {
+/// Returns the picture of a scene by a digger.
+fn dig(scene: &Scene, digger: Digger) -> Picture {
     let mut scene = scene.clone();
     scene.settings.digger = digger;
     digger::picture(&scene, [16, 16])
 }
 
-/// First crossing of a ray, as the picture's digger finds it.
+/// Returns the first crossing of a ray, as the picture's digger finds it.
 fn meets(picture: &Picture, origin: DVec3, direction: DVec3) -> Option<f64> {
     picture.cast(&[(origin, direction)])[0].map(|hit| hit.t)
 }
@@ -76,7 +77,7 @@ fn all_diggers_agree_on_an_easy_scene() {
     let scene = easy();
     let exact = Picture::new(&scene, [16, 16]);
     for digger in ALL {
-        let picture = dug(&scene, digger);
+        let picture = dig(&scene, digger);
         let mut n = Random::new(9);
         let (mut met, mut worst) = (0, 0.0_f64);
         for _ in 0..count(400) {
@@ -115,7 +116,7 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
         let exact = Picture::new(&scene, [8, 8]);
         let field = scene.soft_surfaces().swap_remove(0).sum;
         for digger in [Digger::Lg, Digger::Sphere] {
-            let picture = dug(&scene, digger);
+            let picture = dig(&scene, digger);
             for case in 0..25 {
                 let origin = n.vector(1.0) * if case % 2 == 0 { 4.0 } else { 0.8 };
                 let direction = (n.vector(0.8) - origin).normalize();
@@ -196,7 +197,7 @@ fn rays_along_the_surface_come_to_an_end() {
         0,
     ));
     for digger in ALL {
-        let picture = dug(&scene, digger);
+        let picture = dig(&scene, digger);
         for y in [0.25, 0.25 + 1e-13, 0.25 - 1e-13, 0.0] {
             let _ = meets(&picture, DVec3::new(-3.0, y, 0.0), DVec3::X);
         }
@@ -234,15 +235,15 @@ fn a_map_shows_costs_and_does_not_depend_on_tiles() {
                 .all(|p| p[0] == p[1] && p[1] == p[2] && p[3] == 255)
         );
         // The corner is cheap, the middle is not, and the dearest of the sample is white.
-        let grey = |x: usize, y: usize| once[4 * (y * 70 + x)];
-        assert!(grey(1, 1) < 20 && grey(35, 25) > 60, "{digger:?}");
+        let [corner, middle] = [(1, 1), (35, 25)].map(|(x, y)| once[4 * (y * 70 + x)]);
+        assert!(corner < 20 && middle > 60, "{digger:?}");
         assert!(once.chunks_exact(4).any(|p| p[0] == 255));
         // A gamma lifts what is dark.
         scene.settings.map = Some(2.0);
         let lifted = whole(&scene, 128);
         assert!(once.iter().zip(&lifted).all(|(a, b)| a <= b));
         assert!(lifted != once);
-        // Asked to stop, it stops, and has not learnt anything wrong.
+        // A picture that was asked to stop is not spoilt.
         let picture = digger::picture(&scene, size);
         let tile = Tile {
             x: 0,
@@ -259,7 +260,7 @@ fn a_map_shows_costs_and_does_not_depend_on_tiles() {
 #[test]
 fn a_ray_through_very_many_primitives_comes_to_an_end() {
     let mut scene = empty();
-    // So weak that all together they never reach T, and all of them are met.
+    // Balls so weak that all together they never reach T, so that a ray meets all of them.
     clothe(&mut scene, vec![soft(-1.0, 2e-5)]);
     scene.settings.influence = 1e-9;
     let mut n = Random::new(1);

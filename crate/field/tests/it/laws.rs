@@ -6,87 +6,9 @@ use field::{BlobScale, Kernel, Primitive, Profile, Shaping, Skeleton, Sum, THRES
 use glam::{DQuat, DVec3};
 use oracle::evaluation::{jet, primitive, sensitivity, single};
 use oracle::quadrature;
-use trials::skeletons::{KINDS, Kind, shaping};
+use trials::skeletons::{KINDS, Kind, halves, move_by, shaping};
 use trials::{Random, count};
 use wide::f32x8;
-
-/// Returns a skeleton cut in two.
-fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
-    Some(match *skeleton {
-        Skeleton::Segment { base, apex } => {
-            let middle = base + (apex - base) * at;
-            [
-                Skeleton::Segment { base, apex: middle },
-                Skeleton::Segment { base: middle, apex },
-            ]
-        }
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let turn = angle * at;
-            let (sine, cosine) = libm::sincos(turn);
-            let part = |u, v, angle| Skeleton::Arc {
-                center,
-                u,
-                v,
-                radius,
-                angle,
-            };
-            [
-                part(u, v, turn),
-                part(u * cosine + v * sine, v * cosine - u * sine, angle - turn),
-            ]
-        }
-        Skeleton::Triangle { corners: [a, b, c] } => {
-            let middle = a + (b - a) * at;
-            [
-                Skeleton::Triangle {
-                    corners: [a, middle, c],
-                },
-                Skeleton::Triangle {
-                    corners: [middle, b, c],
-                },
-            ]
-        }
-        _ => return None,
-    })
-}
-
-fn transform(skeleton: &Skeleton, turn: DQuat, shift: DVec3) -> Skeleton {
-    let to = |p: DVec3| turn * p + shift;
-    match *skeleton {
-        Skeleton::Point { center } => Skeleton::Point { center: to(center) },
-        Skeleton::Segment { base, apex } => Skeleton::Segment {
-            base: to(base),
-            apex: to(apex),
-        },
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => Skeleton::Arc {
-            center: to(center),
-            u: turn * u,
-            v: turn * v,
-            radius,
-            angle,
-        },
-        Skeleton::Triangle { corners } => Skeleton::Triangle {
-            corners: corners.map(to),
-        },
-        Skeleton::Plane { point, normal } => Skeleton::Plane {
-            point: to(point),
-            normal: turn * normal,
-        },
-        Skeleton::Polygon { .. } | Skeleton::Curve { .. } => unreachable!("not drawn"),
-    }
-}
 
 const WAVES: [Wave; 9] = [
     Wave::One,
@@ -154,7 +76,7 @@ fn rigid_motion() {
             let shift = random.vector(3.0);
             let point = random.near(&skeleton, -2.0, 1.0);
             let here = primitive(skeleton.clone(), &shaping, None);
-            let there = primitive(transform(&skeleton, turn, shift), &shaping, None);
+            let there = primitive(move_by(&skeleton, turn, 1.0, shift), &shaping, None);
             let (value, gradient) = jet::<f64>(&here, point);
             let (other, other_gradient) = jet::<f64>(&there, turn * point + shift);
             let scale = value.abs() + 10.0 * sensitivity(&here, point);

@@ -1,6 +1,6 @@
 //! Lesson 6: every kernel on every primitive, traced and timed.
 
-use super::grid::refused;
+use super::grid::note_refusal;
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::formulas::{self, BONES, Bone};
@@ -24,14 +24,16 @@ use widgets::{places, theme};
 const TIMING: f64 = 0.002;
 /// Times that each cell is timed: the first round may come while the page is still starting.
 const ROUNDS: usize = 2;
-/// Least and most seconds of timing in one frame, and its share of a frame.
+/// Least and most seconds of timing in one frame.
 const BUDGET: [f64; 2] = [0.01, 0.12];
+/// Share of a frame for timing.
 const SHARE: f64 = 0.4;
 /// Cells of the chart.
 const CELLS: usize = Kernel::ALL.len() * BONES.len();
 
-/// Quantity shown below the pictures.
-const COSTS: &str = "2× means: a value and its gradient take twice the time of a Cauchy point, measured just now in this window.";
+/// Remark on the numbers below the pictures.
+const COSTS: &str = "2× means that a value and its gradient take twice as long as those of a \
+    Cauchy point, measured just now in this window.";
 
 /// A cell of the chart.
 type Cell = (Kernel, Bone);
@@ -54,7 +56,7 @@ pub struct Chart {
     chosen: Cell,
     /// Nanoseconds that one value and gradient take.
     costs: HashMap<Cell, f64>,
-    /// How many timings there were.
+    /// The number of timings so far.
     timings: usize,
 }
 
@@ -91,7 +93,7 @@ impl Figure for Chart {
     }
 }
 
-/// The bone of a column, as it is drawn.
+/// Returns the bone of a column, as it is drawn.
 fn skeleton(bone: Bone) -> Skeleton {
     let at = DVec3::new;
     match bone {
@@ -139,11 +141,11 @@ const L_SHAPE: [[f64; 2]; 6] = [
 ];
 const CURVE: [[f64; 2]; 4] = [[-1.1, -0.8], [-0.2, 1.9], [0.2, -1.9], [1.1, 0.8]];
 
-/// The line that makes the bone in the language.
+/// Writes the line of the language that makes the bone.
 fn line(bone: Bone) -> String {
     let list = |points: &[[f64; 2]]| -> String {
-        let write = |[x, y]: &[f64; 2]| format!(" <{x} {y} 0>");
-        points.iter().map(write).collect()
+        let points = points.iter().map(|[x, y]| format!(" <{x} {y} 0>"));
+        points.collect()
     };
     match bone {
         Bone::Point => String::from("sphere flesh radius, <0 0 0>"),
@@ -156,8 +158,8 @@ fn line(bone: Bone) -> String {
     }
 }
 
-/// Kernels without a finite line or plane are scaled by one of 10 radii to each side, and bones
-/// that are much smaller need more strength to have flesh.
+/// Returns the strength that a cell needs: kernels without a finite line or plane are scaled by one
+/// of 10 radii to each side, and bones that are much smaller need more to have flesh.
 fn strength(kernel: Kernel, bone: Bone) -> &'static str {
     match (kernel, bone) {
         (Kernel::Inverse, Bone::Line) => ", strength 1.6",
@@ -168,7 +170,7 @@ fn strength(kernel: Kernel, bone: Bone) -> &'static str {
     }
 }
 
-/// The dataset of a cell.
+/// Writes a cell as a dataset.
 fn text((kernel, bone): Cell) -> String {
     let name = kernel.name();
     format!(
@@ -179,7 +181,8 @@ fn text((kernel, bone): Cell) -> String {
          light SlateBlue point, position -5 -1 4, intensity 0.5, noshadow\n\n\
          var radius     = 0.35 hot\n\
          var blobbiness = -1.5 hot\n\
-         surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, radius radius, kernel {name}{strength}\n\n\
+         surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine \
+         40, blobbiness blobbiness, radius radius, kernel {name}{strength}\n\n\
          {line}\n",
         view = if bone == Bone::Plane {
             // The horizon in the middle.
@@ -194,18 +197,19 @@ fn text((kernel, bone): Cell) -> String {
     )
 }
 
-/// Nanoseconds for one value and gradient of a primitive, over places near it.
+/// Measures the nanoseconds for one value and gradient of a primitive, over places near it.
 fn time(cell: Cell) -> Option<f64> {
     let shaping = sample::shaping(cell.0, 0.35, 1.5);
     let primitive = Primitive::new(skeleton(cell.1), &shaping, None)?;
-    let spread = |step: usize, rate: f32| {
-        f32x8::from(core::array::from_fn(|lane| {
-            let x = (8 * step + lane) as f32 * rate;
-            2.4 * (x - x.floor()) - 1.2
-        }))
-    };
     let places: Vec<[f32x8; 3]> = (0..64)
-        .map(|step| [0.618, 0.414, 0.732].map(|rate| spread(step, rate)))
+        .map(|step| {
+            [0.618, 0.414, 0.732].map(|rate: f32| {
+                f32x8::from(core::array::from_fn(|lane| {
+                    let x = (8 * step + lane) as f32 * rate;
+                    2.4 * (x - x.floor()) - 1.2
+                }))
+            })
+        })
         .collect();
     let mut quickest = f64::INFINITY;
     for _ in 0..3 {
@@ -228,7 +232,7 @@ fn time(cell: Cell) -> Option<f64> {
 }
 
 impl Chart {
-    /// The cost of a cell relative to the Cauchy point, once both are known.
+    /// Returns the cost of a cell relative to the Cauchy point, once both are known.
     fn relative(&self, cell: Cell) -> Option<f64> {
         let unit = self.costs.get(&(Kernel::Cauchy, Bone::Point))?;
         Some(self.costs.get(&cell)? / unit)
@@ -239,7 +243,7 @@ impl Chart {
         self.timings >= ROUNDS * CELLS
     }
 
-    /// Times more cells. Pictures wait for that, so that the workers do not compete.
+    /// Times more cells. Pictures wait until all are timed, so that the workers do not compete.
     fn measure(&mut self, ui: &Ui, bench: &Bench<'_>) {
         if bench.pictures.blocked.is_some() || self.is_timed() {
             return;
@@ -348,7 +352,7 @@ impl Chart {
         if near && self.is_timed() {
             let slot = ("chart", kernel, bone);
             let shown = bench.pictures.show(ui, slot, &text(cell), picture);
-            refused(ui, picture, &shown);
+            note_refusal(ui, picture, &shown);
         } else {
             ui.painter().rect_filled(picture, 6.0, palette.paper);
         }
@@ -383,7 +387,7 @@ impl Chart {
         }
     }
 
-    /// The cost in words: "–" while it is not known.
+    /// Writes the cost: "–" while it is not known.
     fn cost(&self, cell: Cell) -> String {
         match self.relative(cell).filter(|cost| cost.is_finite()) {
             Some(cost) if cost >= 10.0 => format!("{cost:.0}×"),
@@ -392,7 +396,7 @@ impl Chart {
         }
     }
 
-    /// The chosen cell: formula, way, cost, and the way to the editor.
+    /// Draws the chosen cell: formula, method, cost, and a button that opens it in the editor.
     fn details(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let (kernel, bone) = self.chosen;
@@ -438,13 +442,13 @@ impl Chart {
         });
     }
 
-    /// The chosen cell.
+    /// Writes the chosen cell as a dataset.
     fn text(&self) -> String {
         text(self.chosen)
     }
 }
 
-/// Closed formulas, special functions and numerical integrals in colours of their own.
+/// Returns the colour of closed formulas, of special functions, or of numerical integrals.
 fn way_colour(ui: &Ui, way: &str) -> Color32 {
     match way {
         "closed" | "windowed" => crate::plot::hue(ui, 2),

@@ -1,5 +1,5 @@
-//! Lesson 9: two drops that touch and do not melt: each is pressed onto the sheet where both fields
-//! are equal, and a bulge, a function of the other's field, keeps the surface smooth and gives back
+//! Lesson 9: two drops that touch and do not melt. Each is pressed onto the sheet where both fields
+//! are equal; a bulge, a function of the other's field, keeps the surface smooth and gives back
 //! volume.
 
 use crate::bench::Bench;
@@ -27,9 +27,9 @@ const BLOBBINESS: f64 = 1.5;
 /// The range of half the distance between the drops.
 const APART: [f64; 2] = [0.35, 1.5];
 
-/// Which bulge.
+/// Kind of bulge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shaped {
+enum Form {
     Fast,
     Height,
     Ripple,
@@ -39,7 +39,7 @@ enum Shaped {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Key {
     kernel: Kernel,
-    shaped: Shaped,
+    form: Form,
     /// Half the distance between the drops.
     apart: f64,
     c: f64,
@@ -55,10 +55,10 @@ pub static WORDS: Words = Words {
     name: "Drops that do not melt",
     short: "Contact",
     about: "pressed flat, with a bulge",
-    sentences: "Where two drops would overlap, what the other's field is above T is taken from \
-                each drop's own, so that both end on the sheet where their fields are equal. Just \
-                outside a small bulge is added instead, which leaves the surface smooth and gives \
-                back some of the volume. Take hold of the drops, of where the bulge begins and of \
+    sentences: "Where two drops would overlap, each loses as much of its field as the other's \
+                exceeds T, so that both end on the sheet where the two fields are equal. Just \
+                beside the sheet a small bulge is added instead, which keeps the surface smooth \
+                and gives back some of the volume. Drag the drops, the beginning of the bulge and \
                 its crest.",
 };
 
@@ -73,7 +73,7 @@ impl Default for Contact {
         Self {
             key: Key {
                 kernel: Kernel::Cauchy,
-                shaped: Shaped::Height,
+                form: Form::Height,
                 apart: 0.75,
                 c: 0.2,
                 m: 0.65,
@@ -131,7 +131,7 @@ impl Figure for Contact {
     }
 }
 
-/// What is drawn and said of the drops.
+/// Outlines and measures of the drops.
 struct Drops {
     /// Outlines of the left and the right drop, pressed and alone.
     outlines: [Vec<Piece>; 2],
@@ -147,14 +147,14 @@ type Piece = [[f32; 2]; 2];
 
 impl Key {
     fn bulge(&self) -> Bulge {
-        match self.shaped {
-            Shaped::Fast => Bulge::Fast { c: self.c },
-            Shaped::Height => Bulge::Height {
+        match self.form {
+            Form::Fast => Bulge::Fast { c: self.c },
+            Form::Height => Bulge::Height {
                 c: self.c,
                 m: self.m.max(self.c + 0.02),
                 h: self.h,
             },
-            Shaped::Ripple => Bulge::Ripple {
+            Form::Ripple => Bulge::Ripple {
                 c: self.c,
                 h: self.h,
                 n: self.n.round().clamp(0.0, 6.0) as u32,
@@ -162,7 +162,7 @@ impl Key {
         }
     }
 
-    /// The words of the bulge in the language.
+    /// Returns the bulge in words of the language.
     fn words(&self) -> String {
         match self.bulge() {
             Bulge::Fast { c } => format!("fast {c:.3}"),
@@ -171,6 +171,7 @@ impl Key {
         }
     }
 
+    /// Returns the field of a drop at a place on the x axis.
     fn drop(&self, x: f64) -> Sum {
         let shaping = sample::shaping(self.kernel, RADIUS, BLOBBINESS);
         let center = DVec3::X * x;
@@ -179,6 +180,7 @@ impl Key {
             .collect()
     }
 
+    /// Computes the outlines and measures.
     fn compute(&self) -> Drops {
         let [width, height] = SAMPLES;
         let window = Window {
@@ -189,47 +191,48 @@ impl Key {
         let fields =
             [-self.apart, self.apart].map(|x| sample::whole(&self.drop(x), &window, width, height));
         let bulge = self.bulge();
-        let with = |own: usize, g: &dyn Fn(f64) -> f64| {
-            let both = fields[own].values.iter().zip(&fields[1 - own].values);
-            let values = both.map(|(own, other)| own + g(f64::from(*other)) as f32);
-            Grid {
-                width,
-                height,
-                values: values.collect(),
-            }
-        };
-        let deform = |f: f64| bulge.jet(f).0;
-        let cut = |f: f64| (THRESHOLD - f).min(0.0);
-        let pressed = [0, 1].map(|own| with(own, &deform));
-        let outline = |grids: &[Grid; 2]| [0, 1].map(|i: usize| grids[i].line(THRESHOLD as f32));
+        let level = THRESHOLD as f32;
+        let pressed = [[0, 1], [1, 0]]
+            .map(|[own, other]| press(&fields[own], &fields[other], |f| bulge.jet(f).0));
+        let cut = press(&fields[0], &fields[1], |f| (THRESHOLD - f).min(0.0));
         let whole = volume(&fields[0]);
-        let volumes = [&pressed[0], &with(0, &cut)].map(|grid| volume(grid) / whole.max(1e-9));
-        // Inside both pressed fields are f₁+1−f₂ and f₂+1−f₁: what one is above T the other is
-        // below.
+        let volumes = [&pressed[0], &cut].map(|grid| volume(grid) / whole.max(1e-9));
+        // Inside both, the pressed fields are f₁+1−f₂ and f₂+1−f₁: one is as much above T as the
+        // other is below.
         let sum = pressed[0].values.iter().zip(&pressed[1].values);
         let touching = fields[0].values.iter().zip(&fields[1].values);
-        let gap = sum
-            .zip(touching)
-            .filter(|(_, (a, b))| a.min(**b) > THRESHOLD as f32);
+        let gap = sum.zip(touching).filter(|(_, (a, b))| a.min(**b) > level);
         let gap = gap.map(|((a, b), _)| f64::from(a + b) - 2.0 * THRESHOLD);
         Drops {
-            outlines: outline(&pressed),
-            alone: outline(&fields),
-            insides: [0, 1].map(|i: usize| pressed[i].inside(THRESHOLD as f32)),
+            outlines: pressed.each_ref().map(|grid| grid.line(level)),
+            alone: fields.each_ref().map(|grid| grid.line(level)),
+            insides: pressed.each_ref().map(|grid| grid.inside(level)),
             volumes,
             gap: gap.fold(0.0, |most, gap| gap.abs().max(most)),
         }
     }
 }
 
-/// The volume within the figure turned about its horizontal axis, by samples.
+/// Adds a function of the other drop's field to a drop's own.
+fn press(own: &Grid, other: &Grid, bulge: impl Fn(f64) -> f64) -> Grid {
+    let both = own.values.iter().zip(&other.values);
+    let values = both.map(|(own, other)| own + bulge(f64::from(*other)) as f32);
+    Grid {
+        values: values.collect(),
+        ..*own
+    }
+}
+
+/// Computes the volume that the figure encloses when it turns about its horizontal axis, by
+/// samples.
 fn volume(grid: &Grid) -> f64 {
     let [across, up] = [0, 1].map(|i| 2.0 * HALF[i] / (SAMPLES[i] - 1) as f64);
     let rows = grid.values.chunks_exact(grid.width).enumerate();
-    let ring = |(y, row): (usize, &[f32])| {
+    let mut volume = 0.0;
+    for (y, row) in rows {
         let radius = (y as f64 * up - HALF[1]).abs();
-        // The share of each sample's square that is inside, by how steep the field is there.
-        let share = |pair: &[f32]| {
+        // The share of each step along the row that is inside, by linear interpolation.
+        let shares = row.windows(2).map(|pair| {
             let [a, b] = [pair[0], pair[1]].map(|f| f64::from(f) - THRESHOLD);
             match (a > 0.0, b > 0.0) {
                 (true, true) => 1.0,
@@ -237,28 +240,25 @@ fn volume(grid: &Grid) -> f64 {
                 (true, false) => a / (a - b),
                 (false, true) => b / (b - a),
             }
-        };
-        PI * radius * row.windows(2).map(share).sum::<f64>()
-    };
-    rows.map(ring).sum::<f64>() * across * up
+        });
+        volume += PI * radius * shares.sum::<f64>();
+    }
+    volume * across * up
 }
 
 impl Contact {
-    /// The bulge as a function of the other drop's field, with grips.
+    /// Draws the bulge as a function of the other drop's field, with grips.
     fn chart(&mut self, ui: &Ui, place: Rect) {
         let palette = theme::palette(ui.visuals());
         plot::panel(ui, place);
         let top = 0.42;
         let x = Axis::new([0.0, 1.4], "field of the other drop, in T");
-        let y = Axis::new([-0.4, top], "what is added to the own field");
+        let y = Axis::new([-0.4, top], "added to a drop's own field");
         let plot = Plot::new(ui, place, x, y);
         let bulge = self.key.bulge();
         let added = |f: f64| bulge.jet(f).0;
-        plot.fill(
-            palette.note.gamma_multiply(0.25),
-            [bulge.start(), 1.0],
-            added,
-        );
+        let tint = palette.note.gamma_multiply(0.25);
+        plot.fill(tint, [bulge.start(), 1.0], added);
         plot.curve(Stroke::new(2.5, palette.note), added);
         plot.upright(THRESHOLD, Stroke::new(1.0, palette.text), "its surface");
         let grip = |name: &str, x: f64, y: f64| {
@@ -270,11 +270,11 @@ impl Contact {
         if let Some([x, _]) = grip("bulge start", self.key.c, 0.0) {
             self.key.c = x.clamp(0.02, 0.9);
         }
-        if self.key.shaped != Shaped::Fast {
+        if self.key.form != Form::Fast {
             let crest = bulge.crest();
             if let Some([x, y]) = grip("bulge crest", crest, self.key.h) {
                 self.key.h = y.clamp(0.0, top);
-                if self.key.shaped == Shaped::Height {
+                if self.key.form == Form::Height {
                     self.key.m = x.clamp(self.key.c + 0.03, 0.97);
                 }
             }
@@ -286,23 +286,23 @@ impl Contact {
         let palette = theme::palette(ui.visuals());
         choice(
             ui,
-            &mut self.key.shaped,
+            &mut self.key.form,
             &[
-                (Shaped::Fast, "fast"),
-                (Shaped::Height, "height"),
-                (Shaped::Ripple, "ripple"),
+                (Form::Fast, "fast"),
+                (Form::Height, "height"),
+                (Form::Ripple, "ripple"),
             ],
         );
         let key = &mut self.key;
         slider(ui, "Half apart", &mut key.apart, APART[0]..=APART[1], "");
         slider(ui, "Begins at c", &mut key.c, 0.02..=0.9, " T");
-        if key.shaped == Shaped::Height {
+        if key.form == Form::Height {
             slider(ui, "Highest at m", &mut key.m, key.c + 0.03..=0.97, " T");
         }
-        if key.shaped != Shaped::Fast {
+        if key.form != Form::Fast {
             slider(ui, "Height h", &mut key.h, 0.0..=0.42, " T");
         }
-        if key.shaped == Shaped::Ripple {
+        if key.form == Form::Ripple {
             slider(ui, "Ripples n", &mut key.n, 0.0..=6.0, "");
             key.n = key.n.round();
         }
@@ -311,19 +311,19 @@ impl Contact {
             key.kernel = kernel;
         }
         if let Some((_, drops)) = &self.computed {
-            heading(ui, "Volume of a drop, against one alone");
-            let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-            let [with, without] = drops.volumes;
-            reading(ui, "with the bulge", &percent(with), palette.note);
-            reading(ui, "only cut off", &percent(without), palette.accent);
+            heading(ui, "Volume of a drop, compared with one alone");
+            let [with, without] = drops.volumes.map(|share| format!("{:.1} %", 100.0 * share));
+            reading(ui, "with the bulge", &with, palette.note);
+            reading(ui, "only cut off", &without, palette.accent);
             remark(
                 ui,
-                "Thin lines: each drop alone. Where they touch both surfaces are the same sheet, on which the fields are equal.",
+                "Dashed: each drop alone. Where the drops touch, both surfaces are one sheet, on \
+                 which the fields are equal.",
             );
         }
     }
 
-    /// The two drops.
+    /// Writes the two drops as a dataset.
     fn text(&self) -> String {
         let key = self.key;
         format!(
@@ -333,8 +333,10 @@ impl Contact {
              light White point, position 4 6 8, intensity 0.9\n\
              light SlateBlue point, position -6 -1 4, intensity 0.5, noshadow\n\n\
              var apart = {apart:.3} hot {low} {high}\n\n\
-             surface left, diffuse SummerSky, specular 0.5 0.5 0.5, shine 40, blobbiness {blob}, kernel {kernel}\n\
-             surface right, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness {blob}, kernel {kernel}\n\n\
+             surface left, diffuse SummerSky, specular 0.5 0.5 0.5, shine \
+             40, blobbiness {blob}, kernel {kernel}\n\
+             surface right, diffuse Coral, specular 0.5 0.5 0.5, shine \
+             40, blobbiness {blob}, kernel {kernel}\n\n\
              body LEFT\n  sphere left {RADIUS}, <-apart 0 0>\nclose\n\
              body RIGHT\n  sphere right {RADIUS}, <apart 0 0>\nclose\n\
              contact LEFT RIGHT {words}\n",
@@ -374,15 +376,15 @@ impl Map {
     }
 
     fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
-        let world = |sample: f32, axis: usize| {
+        let [x, y] = [(x, 0), (y, 1)].map(|(sample, axis)| {
             let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;
             HALF[axis] * (2.0 * share - 1.0)
-        };
-        self.at(world(x, 0), world(y, 1))
+        });
+        self.at(x, y)
     }
 }
 
-/// The drops, pressed and alone.
+/// Draws the drops, pressed and alone.
 fn draw(ui: &Ui, place: Rect, drops: &Drops) {
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, place);
@@ -414,7 +416,7 @@ fn draw(ui: &Ui, place: Rect, drops: &Drops) {
     }
     let font = FontId::proportional(13.0);
     let at = place.min + vec2(14.0, 9.0);
-    let title = "Take hold of a drop";
+    let title = "Drag a drop";
     painter.text(at, Align2::LEFT_TOP, title, font, palette.text);
     let font = FontId::proportional(12.0);
     let at = pos2(place.right() - 14.0, place.bottom() - 8.0);
@@ -434,15 +436,15 @@ mod tests {
     #[test]
     fn drops_share_a_sheet_and_bulges_give_back_volume() {
         for kernel in [Kernel::Cauchy, Kernel::Gauss, Kernel::Cubed] {
-            for shaped in [Shaped::Fast, Shaped::Height, Shaped::Ripple] {
+            for form in [Form::Fast, Form::Height, Form::Ripple] {
                 let key = Key {
                     kernel,
-                    shaped,
+                    form,
                     ..Contact::default().key
                 };
                 let drops = key.compute();
                 let [with, without] = drops.volumes;
-                assert!(drops.gap < 1e-4, "{kernel:?} {shaped:?}: {}", drops.gap);
+                assert!(drops.gap < 1e-4, "{kernel:?} {form:?}: {}", drops.gap);
                 assert!(without < 0.99 && with > without + 0.003, "{with} {without}");
             }
         }
@@ -464,15 +466,15 @@ mod tests {
 
     #[test]
     fn the_dataset_has_the_drops_in_contact() {
-        for shaped in [Shaped::Fast, Shaped::Height, Shaped::Ripple] {
+        for form in [Form::Fast, Form::Height, Form::Ripple] {
             let mut lesson = Contact::default();
-            lesson.key.shaped = shaped;
+            lesson.key.form = form;
             let file = rats::File {
                 name: String::from("main.rat"),
                 text: lesson.text(),
             };
             let compiled = rats::compile(&rats::Project { files: vec![file] });
-            assert_eq!(compiled.diagnostics, [], "{shaped:?}");
+            assert_eq!(compiled.diagnostics, [], "{form:?}");
             assert_eq!(compiled.scene.contacts.len(), 1);
         }
     }

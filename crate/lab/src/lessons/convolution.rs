@@ -14,7 +14,7 @@ use field::Kernel;
 use field::kernel::Tail;
 use widgets::{places, theme};
 
-/// The line shown.
+/// Shown part of the line.
 const LINE: [f64; 2] = [-5.0, 5.0];
 /// Most bars.
 const MOST: usize = 5;
@@ -100,18 +100,20 @@ impl Figure for Convolution {
         let here = self.field(self.probe);
         let colour = tools::hue(controls, self.kernel);
         reading(controls, "Field at the probe", &number(here), colour);
-        if let Some(seen) = self.seen() {
-            let text = format!("{:.0} % of the bars", 100.0 * seen);
+        if let Some(share) = self.share_in_window() {
+            let text = format!("{:.0} % of the bars", 100.0 * share);
             reading(controls, "The window sees", &text, colour);
             remark(
                 controls,
-                "This kernel ends, so it is a window: what stands in the shade does not count at all. Make a bar longer outside the window and nothing changes here.",
+                "This kernel ends, so it is a window: what is shaded does not count at all. Make a \
+                 bar longer outside the window, and nothing changes here.",
             );
         } else {
             let text = if self.kernel.has_pole() {
-                "This kernel has a pole on the line itself; it is shown a quarter of a width beside the line. It never ends, so every bar counts everywhere."
+                "This kernel has a pole on the line itself, so it is shown a quarter of a width \
+                 beside the line. It never ends: every bar counts everywhere."
             } else {
-                "This kernel never ends: every bar counts everywhere, if ever so little far away."
+                "This kernel never ends: every bar counts everywhere, even if very little far away."
             };
             remark(controls, text);
         }
@@ -129,7 +131,7 @@ impl Figure for Convolution {
 }
 
 impl Convolution {
-    /// The kernel as it is seen here.
+    /// Returns the value of the kernel as the figure shows it.
     fn kernel_at(&self, u: f64) -> f64 {
         match self.kernel {
             kernel if kernel.has_pole() => {
@@ -141,7 +143,7 @@ impl Convolution {
         }
     }
 
-    /// Its integral from 0 to u, odd.
+    /// Computes the kernel's integral from 0 to u, an odd function.
     fn integral(&self, u: f64) -> f64 {
         let along = match self.kernel.tail() {
             Tail::Power { exponent, .. } if self.kernel.has_pole() => match exponent {
@@ -154,7 +156,7 @@ impl Convolution {
         along.copysign(u)
     }
 
-    /// Half of what an endless bar gives.
+    /// Returns half of the field of an endless bar, in widths.
     fn endless(&self) -> f64 {
         self.integral(if self.kernel.is_finite_over(1) {
             1e9
@@ -163,24 +165,24 @@ impl Convolution {
         })
     }
 
-    /// Contribution of one bar at x.
+    /// Computes the contribution of one bar at x.
     fn part(&self, [a, b]: [f64; 2], x: f64) -> f64 {
         let [a, b] = [a, b].map(|end| self.integral((end - x) / self.width));
         (b - a) / (2.0 * self.endless())
     }
 
-    /// The field at x.
+    /// Computes the field at x.
     fn field(&self, x: f64) -> f64 {
         self.bars.iter().map(|bar| self.part(*bar, x)).sum()
     }
 
-    /// Half the width of what the kernel sees, if it ends.
+    /// Returns half the width of the kernel's window, if it ends.
     fn window(&self) -> Option<f64> {
         self.kernel.is_compact().then_some(self.width)
     }
 
-    /// The share of the geometry inside the window at the probe.
-    fn seen(&self) -> Option<f64> {
+    /// Returns the share of the geometry inside the window at the probe, if the kernel ends.
+    fn share_in_window(&self) -> Option<f64> {
         let reach = self.window()?;
         let (low, high) = (self.probe - reach, self.probe + reach);
         let length: f64 = self.bars.iter().map(|[a, b]| b - a).sum();
@@ -192,22 +194,19 @@ impl Convolution {
         (length > 0.0).then(|| inside / length)
     }
 
-    /// Intervals in which the field is above the iso-value.
+    /// Finds the intervals in which the field is above the iso-value.
     fn flesh(&self, samples: usize) -> Vec<[f64; 2]> {
-        let at = |i: usize| LINE[0] + (LINE[1] - LINE[0]) * i as f64 / samples as f64;
         let mut spans = Vec::new();
-        let mut begun: Option<f64> = None;
-        let mut before = (at(0), self.field(at(0)) - self.iso);
-        if before.1 > 0.0 {
-            begun = Some(before.0);
-        }
+        let mut begun = (self.field(LINE[0]) > self.iso).then_some(LINE[0]);
+        let mut before = (LINE[0], self.field(LINE[0]) - self.iso);
         for i in 1..=samples {
-            let here = (at(i), self.field(at(i)) - self.iso);
-            let cross = || before.0 + (here.0 - before.0) * before.1 / (before.1 - here.1);
+            let x = LINE[0] + (LINE[1] - LINE[0]) * i as f64 / samples as f64;
+            let here = (x, self.field(x) - self.iso);
+            let crossing = before.0 + (here.0 - before.0) * before.1 / (before.1 - here.1);
             if before.1 <= 0.0 && here.1 > 0.0 {
-                begun = Some(cross());
+                begun = Some(crossing);
             } else if before.1 > 0.0 && here.1 <= 0.0 {
-                spans.extend(begun.take().map(|from| [from, cross()]));
+                spans.extend(begun.take().map(|from| [from, crossing]));
             }
             before = here;
         }
@@ -215,7 +214,7 @@ impl Convolution {
         spans
     }
 
-    /// The field, the iso-value, and where the one is above the other.
+    /// Draws the field, the iso-value, and where the one is above the other.
     fn field_plot(&mut self, ui: &Ui, place: Rect, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let y = Axis::new([0.0, 1.3], "field F(x)");
@@ -287,7 +286,7 @@ impl Convolution {
         plot.painter.vline(at, plot.rect.y_range(), stroke);
     }
 
-    /// The bars, and the kernel over them: what they share is the field.
+    /// Draws the bars, and the kernel over them: the area that they share is the field.
     fn geometry_plot(&mut self, ui: &Ui, place: Rect) {
         let palette = theme::palette(ui.visuals());
         let y = Axis::new([0.0, 1.3], "geometry, and the kernel at the probe");
@@ -382,7 +381,7 @@ impl Convolution {
         }
     }
 
-    /// The bars as cylinders.
+    /// Writes the bars as cylinders, as a dataset.
     fn text(&self) -> String {
         let name = self.kernel.name();
         let mut text = format!(
@@ -393,7 +392,8 @@ impl Convolution {
              light SlateBlue point, position -6 -1 4, intensity 0.5, noshadow\n\n\
              var radius     = {radius:.3} hot   # of an endless bar\n\
              var blobbiness = -1.5 hot   # near 0: the bars reach for each other\n\n\
-             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}\n\n",
+             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness, kernel {name}\n\n",
             radius = 0.5 * self.width,
         );
         for [a, b] in &self.bars {
@@ -443,9 +443,9 @@ mod tests {
         lesson.bars[0] = [-4.0, 4.5];
         assert_eq!(lesson.field(0.0), before);
         // The window is 2·1.2 of the bar's 8.5.
-        assert!((lesson.seen().unwrap() - 2.4 / 8.5).abs() < 1e-12);
+        assert!((lesson.share_in_window().unwrap() - 2.4 / 8.5).abs() < 1e-12);
         lesson.kernel = Kernel::Cauchy;
-        assert_eq!(lesson.seen(), None);
+        assert_eq!(lesson.share_in_window(), None);
     }
 
     #[test]

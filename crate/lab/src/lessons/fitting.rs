@@ -1,5 +1,5 @@
-//! Lesson 9: one coarse mesh with a lumpy and a thin implicit surface, fitted to points that can be
-//! dragged.
+//! Lesson 11: one coarse mesh with an implicit surface of balls and one of thin shells, both fitted
+//! to points that can be dragged.
 
 use crate::bench::Bench;
 use crate::command::Command;
@@ -21,8 +21,8 @@ const HALF: f64 = 2.1;
 const SAMPLES: usize = 81;
 /// Half the height of the ring of facets whose section is shown.
 const RISE: f64 = 0.25;
-/// Directions of the corners of the mesh, degrees, and how far out they are: uneven, as meshes of
-/// the web are.
+/// Directions of the corners of the mesh, in degrees, and their distances from the middle: uneven,
+/// as in meshes from the web.
 const CORNERS: [(f64, f64); 9] = [
     (5.0, 1.25),
     (28.0, 1.3),
@@ -34,7 +34,7 @@ const CORNERS: [(f64, f64); 9] = [
     (250.0, 1.25),
     (325.0, 1.1),
 ];
-/// Measured points at the start: the same, further out on one side and dented on another.
+/// Measured points at the start: near the corners, farther out on one side and dented on another.
 const POINTS: [[f64; 2]; 12] = [
     [1.45, 0.15],
     [1.25, 0.62],
@@ -50,7 +50,7 @@ const POINTS: [[f64; 2]; 12] = [
     [1.05, -0.7],
 ];
 
-/// What decides the surfaces.
+/// Inputs of the figure.
 #[derive(Clone, Debug, PartialEq)]
 struct Key {
     points: Vec<[f64; 2]>,
@@ -63,7 +63,7 @@ struct Key {
     is_fitted: bool,
 }
 
-/// One of the two surfaces.
+/// Surface of one kind, fitted.
 struct Side {
     /// The mesh's section.
     ring: Vec<[f64; 2]>,
@@ -79,10 +79,11 @@ pub static WORDS: Words = Words {
     name: "Balls or thin shells?",
     short: "Fitting",
     about: "implicit meshes that fit points",
-    sentences: "One coarse mesh, cut by a plane, becomes a soft surface in two ways: with a ball \
-                around each facet, or with a thin shell. Both are fitted to the same measured \
-                points, and the mesh follows its surface. Balls are as thick as facets are large, \
-                so the mesh ends where it should not; shells are as thin as you like.",
+    sentences: "One coarse mesh, here in a section, becomes a soft surface in two ways: with a \
+                ball around each facet, or with a thin shell. Both surfaces are fitted to the \
+                same measured points, and the mesh moves with its surface. A ball is as thick as \
+                its facet is large, so its mesh ends up away from the points; a shell is as thin \
+                as you like.",
 };
 
 /// The lesson's state.
@@ -146,7 +147,7 @@ impl Figure for Fitting {
             let hues = [plot::hue(ui, 0), plot::hue(ui, 1)];
             reading(ui, "balls", &number(balls.errors[0]), hues[0]);
             reading(ui, "shells", &number(shells.errors[0]), hues[1]);
-            heading(ui, "… and from the surface that is fitted");
+            heading(ui, "… and from the fitted surface");
             reading(ui, "balls", &number(balls.errors[1]), hues[0]);
             reading(ui, "shells", &number(shells.errors[1]), hues[1]);
             bench.readings.extend([
@@ -157,7 +158,11 @@ impl Figure for Fitting {
             ]);
             remark(
                 ui,
-                "Drag a point: both meshes are fitted anew. A ball is as thick as its facet is large, so the mesh ends inside of the points, or beyond them; the shells lie on it.",
+                "Drag a point: both meshes are fitted again. A \
+                 ball is as thick as its facet is large, \
+                 so its mesh ends up inside the points, or outside them; \
+                 the mesh of the shells lies \
+                 on them.",
             );
         }
         stage.finish(ui);
@@ -168,7 +173,7 @@ impl Figure for Fitting {
     }
 }
 
-/// The ring of facets.
+/// Makes the ring of facets.
 fn ring() -> TriangleMesh {
     let count = CORNERS.len() as u32;
     let mut mesh = TriangleMesh::default();
@@ -197,18 +202,16 @@ impl Key {
         ]
     }
 
-    /// The mesh, fitted or not.
+    /// Returns the vertices of the mesh, fitted or not.
     fn positions(&self, mesh: &TriangleMesh, kind: metaballs::Kind, slope: f64) -> Vec<DVec3> {
         if !self.is_fitted {
             return mesh.positions.clone();
         }
         let rises = [-0.6 * RISE, 0.0, 0.6 * RISE];
-        let lifted = self.points.iter().flat_map(|[x, y]| {
-            let (x, y) = (*x, *y);
-            rises.map(|z| DVec3::new(x, y, z))
-        });
+        let points = self.points.iter();
+        let points = points.flat_map(|&[x, y]| rises.map(|z| DVec3::new(x, y, z)));
         let observations = Observations {
-            points: lifted.collect(),
+            points: points.collect(),
             sights: Vec::new(),
         };
         let options = Options {
@@ -227,55 +230,52 @@ impl Key {
         fitted.map_or_else(|_| mesh.positions.clone(), |fitted| fitted.positions)
     }
 
+    /// Makes the surface of a kind; `None` if its numbers cannot be computed with.
     fn side(&self, mesh: &TriangleMesh, kind: metaballs::Kind) -> Option<Side> {
         let slope = self.sharpness / fit::mean_edge(&mesh.positions, &mesh.triangles);
         let positions = self.positions(mesh, kind, slope);
         let balls = Metaballs::new(&positions, &mesh.triangles, kind, slope).ok()?;
         let step = 2.0 * HALF / (SAMPLES - 1) as f64;
-        let at = |i: usize| i as f64 * step - HALF;
-        let value = |i: usize| {
-            let point = DVec3::new(at(i % SAMPLES), at(i / SAMPLES), 0.0);
-            // Its logarithm is nearly linear, so that lines are straight within a cell.
-            let log = libm::log(balls.jet(point).value.max(1e-30) / THRESHOLD);
-            log as f32
-        };
+        // The logarithm is nearly linear, so that lines are straight within a cell.
+        let log = |p: DVec2| libm::log(balls.jet(p.extend(0.0)).value.max(1e-30) / THRESHOLD);
+        let samples = (0..SAMPLES * SAMPLES).map(|i| {
+            let [x, y] = [i % SAMPLES, i / SAMPLES].map(|i| i as f64 * step - HALF);
+            log(DVec2::new(x, y)) as f32
+        });
         let grid = Grid {
             width: SAMPLES,
             height: SAMPLES,
-            values: (0..SAMPLES * SAMPLES).map(value).collect(),
+            values: samples.collect(),
         };
-        let scaled = |c: f32| (f64::from(c) * step - HALF) as f32;
         let outline = grid.line(0.0).into_iter();
-        let outline = outline.map(|ends| ends.map(|p| p.map(scaled)));
-        let count = CORNERS.len();
-        let middle = |i: usize| {
-            let p = 0.5 * (positions[i] + positions[i + count]);
-            [p.x, p.y]
-        };
-        let ring: Vec<[f64; 2]> = (0..count).map(middle).collect();
-        let flat = |[x, y]: [f64; 2]| DVec2::new(x, y);
-        let from_mesh = |p: DVec2| {
-            let gaps = (0..count).map(|i| {
-                let [a, b] = [ring[i], ring[(i + 1) % count]].map(flat);
-                let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
-                p.distance(a + (b - a) * t)
-            });
-            gaps.fold(f64::INFINITY, f64::min)
-        };
-        let from_surface = |p: DVec2| {
-            let value = balls.jet(DVec3::new(p.x, p.y, 0.0)).value;
-            (libm::log(value.max(1e-30) / THRESHOLD) / slope).abs()
-        };
-        let mean = |distance: &dyn Fn(DVec2) -> f64| {
-            let squares = self.points.iter().map(|p| distance(flat(*p)).powi(2));
-            (squares.sum::<f64>() / self.points.len().max(1) as f64).sqrt()
-        };
+        let outline =
+            outline.map(|ends| ends.map(|p| p.map(|c| (f64::from(c) * step - HALF) as f32)));
+        let (lower, upper) = positions.split_at(CORNERS.len());
+        let middles = lower.iter().zip(upper).map(|(a, b)| 0.5 * (*a + *b));
+        let ring: Vec<DVec2> = middles.map(DVec3::truncate).collect();
+        let mut squares = [0.0; 2];
+        for point in self.points.iter().copied().map(DVec2::from) {
+            squares[0] += distance(&ring, point).powi(2);
+            squares[1] += (log(point) / slope).powi(2);
+        }
+        let count = self.points.len().max(1) as f64;
         Some(Side {
-            errors: [mean(&from_mesh), mean(&from_surface)],
+            errors: squares.map(|sum| (sum / count).sqrt()),
             outline: outline.collect(),
-            ring,
+            ring: ring.iter().map(DVec2::to_array).collect(),
         })
     }
+}
+
+/// Returns the distance of a point from a closed polyline.
+fn distance(ring: &[DVec2], p: DVec2) -> f64 {
+    let mut least = f64::INFINITY;
+    for (i, a) in ring.iter().copied().enumerate() {
+        let along = ring[(i + 1) % ring.len()] - a;
+        let t = ((p - a).dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
+        least = least.min(p.distance(a + along * t));
+    }
+    least
 }
 
 impl Fitting {
@@ -289,34 +289,38 @@ impl Fitting {
         slider(ui, "k × mean edge", &mut key.sharpness, 4.0..=60.0, "");
         slider(ui, "thickness d₀", &mut key.thickness, 0.0..=0.3, "");
         slider(ui, "log₁₀ smoothness", &mut key.smooth, -4.0..=1.0, "");
-        let again = ui.button("Points as at first");
+        let again = ui.button("Reset the points");
         widgets::places::note(ui.ctx(), "lab again", again.rect);
         if again.clicked() {
             key.points = POINTS.to_vec();
         }
     }
 
-    /// A dataset that shows both surfaces of a mesh, deformed.
+    /// Writes both surfaces of a mesh, deformed, as a dataset.
     fn text(&self) -> String {
         let thickness = self.key.thickness.max(0.005);
         format!(
-            "# One mesh with balls and with thin shells around its facets, both deformed by the same control points.\n\
+            "# One mesh with balls and with thin shells around \
+             its facets, both deformed by the same\n\
+             # control points.\n\
              # Drag the control points: put the caret into a deform.\n\n\
              framesize 480 300\neyep 0 -9 3\nvrp 0 0 0\nvup 0 0 1\nfov 40\n\
              light White, position -4 -6 8, intensity 0.9\n\
              surface Balls, diffuse IndianRed, specular Gray40, shine 40\n\
              surface Shells, diffuse SeaGreen, specular Gray40, shine 40\n\n\
-             body BALLS\n  mesh Balls gem.obj metaballs spherical 12\n  {DEFORM}close\ntranslate -1.6 0 0\n\n\
-             body SHELLS\n  mesh Shells gem.obj metaballs triangular {thickness:.3} 60\n  {DEFORM}close\ntranslate 1.6 0 0\n"
+             body BALLS\n  mesh Balls gem.obj metaballs spherical 12\n  {DEFORM}close\n\
+             translate -1.6 0 0\n\n\
+             body SHELLS\n  mesh Shells gem.obj metaballs triangular {thickness:.3} 60\n  \
+             {DEFORM}close\ntranslate 1.6 0 0\n"
         )
     }
 }
 
-/// The deformation of the dataset.
+/// Deformation in the dataset.
 const DEFORM: &str =
     "deform { control <0 0 -1.2> move <0.4 0 0>\n    control <0 0 0.65> move <0 0 0.2> }\n";
 
-/// One of the two figures. Dragging a point changes it for both.
+/// Draws one of the two figures. Dragging a point changes it for both.
 fn figure(
     ui: &mut Ui,
     place: Rect,

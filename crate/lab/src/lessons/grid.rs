@@ -83,7 +83,7 @@ impl Figure for Grid {
     }
 }
 
-/// The T shape, in words that can be changed.
+/// Writes the T shape as a dataset.
 pub fn tee(kernel: Kernel, radius: f64, blobbiness: f64) -> String {
     format!(
         "# Two cylinders make a T. Drag the sliders: blobbiness and radius shape the joint.\n\
@@ -103,7 +103,7 @@ pub fn tee(kernel: Kernel, radius: f64, blobbiness: f64) -> String {
     )
 }
 
-/// A value between two, by equal ratios.
+/// Returns one of [`SIDE`] values from `low` to `high`, by equal ratios, in two digits.
 fn between([low, high]: [f64; 2], index: usize) -> f64 {
     let share = index as f64 / (SIDE - 1) as f64;
     let value = low * libm::pow(high / low, share);
@@ -113,6 +113,7 @@ fn between([low, high]: [f64; 2], index: usize) -> f64 {
 }
 
 impl Grid {
+    /// Draws the pictures with their radii and blobbinesses.
     fn table(&self, ui: &Ui, stage: &Stage, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let all = stage.figure;
@@ -164,7 +165,7 @@ impl Grid {
         }
     }
 
-    /// The T in the middle of the table.
+    /// Writes the T in the middle of the table, as a dataset.
     fn text(&self) -> String {
         tee(
             self.kernel,
@@ -174,7 +175,7 @@ impl Grid {
     }
 }
 
-/// A picture that opens in the editor when it is clicked.
+/// Draws a picture that opens in the editor when it is clicked.
 fn cell(
     ui: &Ui,
     bench: &mut Bench<'_>,
@@ -188,7 +189,7 @@ fn cell(
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     places::note(ui.ctx(), format!("lab cell {} {}", slot.1, slot.2), place);
     let shown = bench.pictures.show(ui, slot, &text, place);
-    refused(ui, place, &shown);
+    note_refusal(ui, place, &shown);
     if response.hovered() || response.has_focus() {
         let stroke = Stroke::new(2.0, palette.accent);
         ui.painter()
@@ -206,8 +207,8 @@ fn cell(
     }
 }
 
-/// Says that there is no picture, and why.
-pub fn refused(ui: &Ui, place: Rect, shown: &Shown) {
+/// Writes the reason why there is no picture, if there is none.
+pub fn note_refusal(ui: &Ui, place: Rect, shown: &Shown) {
     if let Shown::Refused(reason) = shown {
         let palette = theme::palette(ui.visuals());
         let painter = ui.painter_at(place);

@@ -11,7 +11,7 @@ use field::{Kernel, Shaping, Skeleton, THRESHOLD};
 use glam::DVec3;
 use widgets::theme;
 
-/// Below this share of the threshold an infinite kernel counts as over.
+/// Share of the threshold below which an infinite kernel counts as over.
 const INFLUENCE: f64 = 1e-3;
 
 /// Plotted quantity.
@@ -29,12 +29,12 @@ pub static WORDS: Words = Words {
     title: "Kernels",
     name: "Kernels",
     short: "Kernels",
-    about: "how flesh thins with distance",
-    sentences: "A kernel says how much flesh a point of the skeleton gives at a distance r. \
-                Whatever the kernel, it is scaled so that a lone point has its surface exactly at \
-                the radius R, where its field equals the threshold T = 1. What differs is the way \
-                down: some kernels fade for ever, others end at a certain depth and see nothing \
-                beyond it.",
+    about: "how a field falls with distance",
+    sentences: "A kernel says how strong the field of a point of the skeleton is at a distance \
+                r. Whatever the kernel, it is scaled so that a lone point has its surface exactly \
+                at the radius R, where its field equals the threshold T = 1. What differs is how \
+                the field falls: some kernels fade for ever, others end at a certain distance and \
+                give nothing beyond it.",
 };
 
 /// The lesson's state.
@@ -43,7 +43,7 @@ pub struct Kernels {
     radius: f64,
     blobbiness: f64,
     strength: f64,
-    /// Up to two to compare; the others fade.
+    /// The kernels to compare, at most two; the others fade.
     chosen: Vec<Kernel>,
 }
 
@@ -98,7 +98,8 @@ impl Figure for Kernels {
                 }
             }
             if self.chosen.iter().any(|kernel| !kernel.is_compact()) {
-                let text = "A kernel without an end is taken to be over where its field is below a thousandth of T.";
+                let text = "A kernel without end counts as over where its \
+                    field is below a thousandth of T.";
                 remark(controls, text);
             }
             if (self.strength - 1.0).abs() > 1e-6 {
@@ -108,7 +109,7 @@ impl Figure for Kernels {
         } else {
             remark(
                 controls,
-                "1/u and 1/u² have a pole: at the skeleton itself their field is infinite, and rounded off.",
+                "1/u, 1/u² and 1/u³ have a pole: their field is infinite at the skeleton itself.",
             );
         }
         bench.readings.insert("radius", self.radius);
@@ -122,7 +123,7 @@ impl Figure for Kernels {
     }
 }
 
-/// How wide and how high a kernel becomes.
+/// Width and height of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shape {
     width: f64,
@@ -147,16 +148,16 @@ impl Kernels {
         })
     }
 
-    /// The distance beyond which a point's field is over: the support, or where it has fallen to
-    /// the share ε of the threshold.
+    /// Returns the distance beyond which a point's field is over: the support, or the distance
+    /// where it has fallen to [`INFLUENCE`].
     fn depth(&self, kernel: Kernel) -> Option<f64> {
         let Shape { width, height } = self.shape(kernel)?;
         if kernel.is_compact() {
             return Some(1.0 / width);
         }
-        let field = |r: f64| height * kernel.value(width * r);
+        let is_felt = |r: f64| height * kernel.value(width * r) > INFLUENCE * THRESHOLD;
         let (mut low, mut high) = (0.0, 1.0);
-        while field(high) > INFLUENCE * THRESHOLD {
+        while is_felt(high) {
             high *= 2.0;
             if high > 1e9 {
                 return None;
@@ -164,7 +165,7 @@ impl Kernels {
         }
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if field(middle) > INFLUENCE * THRESHOLD {
+            if is_felt(middle) {
                 low = middle;
             } else {
                 high = middle;
@@ -173,6 +174,7 @@ impl Kernels {
         Some(high)
     }
 
+    /// Chooses a kernel, or lets it go; a third one takes the place of the first.
     fn toggle(&mut self, kernel: Kernel) {
         if self.chosen.contains(&kernel) {
             self.chosen.retain(|k| *k != kernel);
@@ -232,6 +234,7 @@ impl Kernels {
         self.pointer(ui, &plot, bench);
     }
 
+    /// Returns the plotted value of a kernel.
     fn value(&self, kernel: Kernel, x: f64) -> f64 {
         match self.view {
             View::Bare => kernel.value(x),
@@ -241,6 +244,7 @@ impl Kernels {
         }
     }
 
+    /// Draws the curve of a kernel; those that are chosen are marked where they end.
     fn curve(&self, ui: &Ui, plot: &Plot, kernel: Kernel) {
         let chosen = self.chosen.contains(&kernel);
         let faded = !self.chosen.is_empty() && !chosen;
@@ -259,7 +263,7 @@ impl Kernels {
             View::Flesh => shape.height * kernel.value(shape.width * x),
         };
         if kernel.is_compact() {
-            plot.dashed(stroke, value);
+            plot.dashes(stroke, value);
         } else {
             plot.curve(stroke, value);
         }
@@ -320,7 +324,7 @@ impl Kernels {
         }
     }
 
-    /// The values under the pointer.
+    /// Draws the values under the pointer.
     fn pointer(&self, ui: &Ui, plot: &Plot, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let response = ui.interact(plot.rect, ui.scope_id().with("kernels"), Sense::hover());
@@ -347,7 +351,7 @@ impl Kernels {
         label(plot, pointer, &lines, palette.raised);
     }
 
-    /// Balls in pairs, one pair for each of the chosen kernels.
+    /// Writes balls in pairs, one pair for each of the chosen kernels, as a dataset.
     fn text(&self) -> String {
         let kernels = if self.chosen.is_empty() {
             vec![Kernel::Cauchy, Kernel::Quartic]
@@ -355,7 +359,8 @@ impl Kernels {
             self.chosen.clone()
         };
         let mut text = format!(
-            "# Two balls at the same distance, once for each kernel: how do they reach for each other?\n\
+            "# Two balls at the same distance, once for each kernel: \
+             how do they reach for each other?\n\
              # From the lab, lesson 1.\n\n\
              eyep 0 0 {eye:.2}\nvrp 0 0 0\nvup 0 1 0\nfov 40\nframesize 640 480\nsample 3\n\
              light White point, position 4 6 8, intensity 0.9\n\
@@ -384,7 +389,8 @@ impl Kernels {
                 String::new()
             };
             text.push_str(&format!(
-                "\nsurface {name}_flesh, diffuse {colour}, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}{strength}\n\
+                "\nsurface {name}_flesh, diffuse {colour}, specular \
+                 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}{strength}\n\
                  sphere {name}_flesh radius, <-gap/2 {y} 0>\n\
                  sphere {name}_flesh radius, < gap/2 {y} 0>\n"
             ));
@@ -393,7 +399,7 @@ impl Kernels {
     }
 }
 
-/// Lines of text beside the pointer.
+/// Draws lines of text beside the pointer.
 fn label(plot: &Plot, pointer: egui::Pos2, lines: &[(String, Color32)], fill: Color32) {
     let painter = plot.painter.clone();
     let galleys: Vec<_> = lines

@@ -1,6 +1,6 @@
 //! Lesson 5: the strength of a bone as a function along it.
 
-use super::grid::refused;
+use super::grid::note_refusal;
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::lesson::{Figure, Words};
@@ -31,7 +31,7 @@ impl Wave {
         }
     }
 
-    /// Its word in the language.
+    /// Returns the word of the language.
     fn word(self) -> &'static str {
         match self {
             Self::Constant => "one",
@@ -41,7 +41,7 @@ impl Wave {
         }
     }
 
-    /// Factor on u for a number of bumps.
+    /// Returns the factor on u for a number of bumps.
     fn scale(self, bumps: f64) -> f64 {
         match self {
             Self::Constant | Self::Linear => 1.0,
@@ -50,7 +50,7 @@ impl Wave {
         }
     }
 
-    /// The wave, 0 to 1, as `field::Wave` says.
+    /// Computes the wave, from 0 to 1, as `field::Wave` does.
     fn value(self, x: f64) -> f64 {
         match self {
             Self::Constant => 1.0,
@@ -82,7 +82,7 @@ pub struct Profiles {
     bumps: f64,
     low: f64,
     high: f64,
-    /// The one that "Open as dataset" writes.
+    /// The wave that "Open as dataset" writes.
     chosen: Wave,
 }
 
@@ -142,7 +142,7 @@ impl Figure for Profiles {
         );
         remark(
             controls,
-            "Click a picture to go on with it in the editor. Bumps count for the hat and for sin².",
+            "Click a picture to go on with it in the editor. Only the hat and sin² have bumps.",
         );
         bench.readings.insert("bumps", self.bumps);
         stage.finish(ui);
@@ -153,29 +153,35 @@ impl Figure for Profiles {
     }
 }
 
-/// Half the length of the bone, and of what the picture shows of it.
+/// Half the length of the bone.
 const BONE: f64 = 1.5;
+/// Half the width of the picture.
 const VIEW: f64 = 2.05;
 
 impl Profiles {
+    /// Returns the strength at a share u of the bone.
     fn strength(&self, wave: Wave, u: f64) -> f64 {
         self.low + (self.high - self.low) * wave.value(wave.scale(self.bumps) * u)
     }
 
+    /// Writes the bar with a profile, as a dataset.
     fn text(&self, wave: Wave) -> String {
         // From far away, so that the picture and the curve below it stand in line.
         let eye = 30.0;
         let angle = 2.0 * libm::atan(VIEW / eye).to_degrees();
         format!(
-            "# A bar whose strength goes along it as {name}: times low + (high - low) * wave(scale * u),\n\
+            "# A bar whose strength goes along it as {name}: \
+             times low + (high - low) * wave(scale * u),\n\
              # with u from 0 to 1 along the bar. From the lab, lesson 5.\n\n\
              eyep 0 0 {eye}\nvrp 0 0 0\nvup 0 1 0\nfov {angle:.3}\nframesize 640 320\nsample 3\n\
              light White point, position 8 16 20, intensity 0.9\n\
              light SlateBlue point, position -16 -4 10, intensity 0.5, noshadow\n\n\
              var low  = {low:.3} hot    # the strength where the wave is 0\n\
              var high = {high:.3} hot    # and where it is 1\n\n\
-             texture along strength {word} one, bounds low low low high high high, scale {scale:.4} 1 1\n\
-             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness -3, texture along\n\n\
+             texture along strength {word} one, bounds low low low high \
+             high high, scale {scale:.4} 1 1\n\
+             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine \
+             40, blobbiness -3, texture along\n\n\
              cylinder flesh 0.36, <{a} 0 0> <{b} 0 0>\n",
             name = wave.word(),
             low = self.low,
@@ -187,6 +193,7 @@ impl Profiles {
         )
     }
 
+    /// Draws the picture of a wave and its curve.
     fn card(&mut self, ui: &Ui, place: Rect, wave: Wave, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         plot::panel(ui, place);
@@ -206,7 +213,7 @@ impl Profiles {
         let shown = bench
             .pictures
             .show(ui, ("profile", wave.name()), &text, picture);
-        refused(ui, picture, &shown);
+        note_refusal(ui, picture, &shown);
         if response.hovered() || response.has_focus() {
             let stroke = Stroke::new(2.0, palette.accent);
             ui.painter()
@@ -250,7 +257,7 @@ impl Profiles {
         plot.painter.line(points, Stroke::new(2.5, colour));
     }
 
-    /// The bar with the profile chosen last.
+    /// Writes the bar with the profile chosen last.
     fn all(&self) -> String {
         self.text(self.chosen)
     }

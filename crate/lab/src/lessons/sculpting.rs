@@ -1,4 +1,4 @@
-//! Lesson 9: sculpting by strokes: a dog step by step, decay functions, and subdivision with and
+//! Lesson 10: sculpting by strokes: a dog step by step, decay functions, and subdivision with and
 //! without propagation (figures 4, 1 and 2 of Bill and Lodha 1995).
 
 use crate::bench::Bench;
@@ -18,7 +18,7 @@ use widgets::{places, theme};
 /// The strokes of the dog.
 const DOG: &str = include_str!("../../../../www/examples/dog.strokes");
 
-/// A figure of the lesson.
+/// Figure of the lesson.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Subject {
     Stages,
@@ -32,11 +32,11 @@ pub static WORDS: Words = Words {
     title: "Sculpting by strokes",
     name: "Sculpting by strokes",
     short: "Sculpting",
-    about: "a dog of a box, stroke by stroke",
+    about: "a dog from a box, stroke by stroke",
     sentences: "A virtual tool touches a mesh and pushes or pulls the vertices that it meets, and \
-                their neighbours follow by a decay function. Where detail is wanted, a region is \
-                chosen and divided, and smoothed again. Each stroke is a line of a text, so the \
-                whole animal can be made again, step by step.",
+                their neighbours follow as a decay function says. Where detail is wanted, a \
+                region is selected, subdivided and smoothed. Each stroke is a line of a text, so \
+                the whole animal can be made again, step by step.",
 };
 
 /// The lesson's state.
@@ -98,7 +98,7 @@ impl Figure for Sculpting {
     }
 }
 
-/// A drawing and what it depends on.
+/// Drawing, with all that it depends on.
 #[derive(Default)]
 struct Pane {
     key: Option<String>,
@@ -146,7 +146,7 @@ impl Pane {
         }
     }
 
-    /// Makes the mesh of a text anew, if it is another text. Returns its counts.
+    /// Makes the mesh of a text, unless it is there already.
     fn make(&mut self, text: &str) {
         if self.key.as_deref() == Some(text) {
             return;
@@ -159,23 +159,31 @@ impl Pane {
     }
 }
 
-/// The mesh that strokes make; `None` if they cannot be carried out.
-fn clay_of(text: &str) -> Option<Clay> {
-    let script: Script = text.parse().ok()?;
-    let mut load = |name: &str| Err(format!("there is no {name}"));
-    sculpt::replay(&script, &mut load, 20_000_000, |_, _, _| ()).ok()
+/// Most vertices that the strokes of a figure may visit.
+const MOST_WORK: u64 = 20_000_000;
+
+/// Finds no mesh file, as the lesson has none.
+fn no_file(name: &str) -> Result<mesh::TriangleMesh, String> {
+    Err(format!("there is no {name}"))
 }
 
-/// A plane with a bump of one decay function.
+/// Carries out the strokes of a text; `None` if that cannot be done.
+fn clay_of(text: &str) -> Option<Clay> {
+    let script: Script = text.parse().ok()?;
+    sculpt::replay(&script, &mut no_file, MOST_WORK, |_, _, _| ()).ok()
+}
+
+/// Writes a plane with a bump of one decay function.
 fn bump(decay: Decay, radius: f64, range: f64) -> String {
     format!(
-        "strokes 1\nstart plane 28\npull sphere {radius:.3} {radius:.3} {radius:.3} {} {range:.3} : 0 0 0, 0 0 0.9\n",
+        "strokes 1\nstart plane 28\n\
+         pull sphere {radius:.3} {radius:.3} {radius:.3} {} {range:.3} : 0 0 0, 0 0 0.9\n",
         decay.name()
     )
 }
 
-/// A plane whose middle is divided.
-fn divided(how: &str, levels: usize) -> String {
+/// Writes a plane whose middle is divided.
+fn subdivide(how: &str, levels: usize) -> String {
     let mut text =
         String::from("strokes 1\nstart plane 6\nregion sphere 0.3 0.3 0.3 : 0.1 0.1 0\n");
     for _ in 0..levels {
@@ -185,6 +193,7 @@ fn divided(how: &str, levels: usize) -> String {
 }
 
 impl Sculpting {
+    /// Returns the drawing with this number, a new one if need be.
     fn pane(&mut self, index: usize) -> &mut Pane {
         if self.panes.len() <= index {
             self.panes.resize_with(index + 1, Pane::default);
@@ -193,24 +202,24 @@ impl Sculpting {
     }
 
     /// Turns the view by dragging in the figure.
-    fn turned(&mut self, ui: &Ui, rect: Rect) {
+    fn turn(&mut self, ui: &Ui, rect: Rect) {
         let response = ui.interact(rect, ui.scope_id().with("clay"), Sense::drag());
         if response.dragged()
             && let Some(at) = response.interact_pointer_pos()
         {
             let half = 0.5 * rect.size().min_elem().max(1.0);
-            let own = |at: Pos2| {
+            let [from, to] = [at - response.drag_delta(), at].map(|at| {
                 let p = (at - rect.center()) / half;
                 [f64::from(p.x), -f64::from(p.y)]
-            };
-            self.view.turn(own(at - response.drag_delta()), own(at));
+            });
+            self.view.turn(from, to);
         }
     }
 
+    /// Draws the dog at a stroke.
     fn stages(&mut self, ui: &mut Ui, stage: &mut Stage, bench: &mut Bench<'_>) {
-        let mut load = |name: &str| Err(format!("there is no {name}"));
         if self.dog.is_none() {
-            self.dog = Document::open(DOG, &mut load).ok();
+            self.dog = Document::open(DOG, &mut no_file).ok();
             let lines = DOG
                 .lines()
                 .map(|line| line.split('#').next().unwrap_or_default().trim());
@@ -222,18 +231,12 @@ impl Sculpting {
         let count = self.lines.len().saturating_sub(1);
         let controls = &mut stage.controls;
         heading(controls, "Stages");
-        let stages = {
-            // All of them, wherever the dog is now.
-            let all = (0_usize..).zip(&self.lines);
-            all.filter_map(|(at, line)| Some((at, line.strip_prefix("stage ")?.to_owned())))
-                .collect::<Vec<_>>()
-        };
         let mut chosen = usize::MAX;
-        let choices: Vec<(usize, &str)> = stages
-            .iter()
-            .map(|(at, name)| (*at, name.as_str()))
+        let lines = (0_usize..).zip(&self.lines);
+        let stages: Vec<(usize, &str)> = lines
+            .filter_map(|(at, line)| Some((at, line.strip_prefix("stage ")?)))
             .collect();
-        if choice(controls, &mut chosen, &choices) {
+        if choice(controls, &mut chosen, &stages) {
             self.step = chosen as f64;
         }
         slider(controls, "stroke", &mut self.step, 0.0..=count as f64, "");
@@ -264,7 +267,8 @@ impl Sculpting {
         reading(controls, "faces", &counts[1].to_string(), palette.strong);
         remark(
             controls,
-            "Drag in the figure to turn it. The same text is in the gallery: Sculpt goes on with it.",
+            "Drag in the figure to turn it. The same text is in the gallery, where you can go on \
+             with it in Sculpt.",
         );
         bench.readings.insert("stroke", at as f64);
         bench.readings.insert("vertices", counts[0] as f64);
@@ -276,7 +280,7 @@ impl Sculpting {
             .is_none_or(|pane| pane.key.as_ref() != Some(&key)))
         .then(|| surface_of(dog.clay()));
         let rect = stage.figure;
-        self.turned(ui, rect);
+        self.turn(ui, rect);
         let view = self.view;
         let pane = self.pane(0);
         if let Some(surface) = surface {
@@ -287,6 +291,7 @@ impl Sculpting {
         pane.show(ui, rect, &view, true);
     }
 
+    /// Draws bumps of all decay functions.
     fn decays(&mut self, ui: &mut Ui, stage: &mut Stage, bench: &mut Bench<'_>) {
         let controls = &mut stage.controls;
         slider(controls, "range", &mut self.range, 0.1..=1.0, "");
@@ -299,7 +304,10 @@ impl Sculpting {
         );
         remark(
             controls,
-            "A ball pulls the middle of a plane up; what lies within the range along edges follows by the decay function's share. t is the distance over the range.",
+            "A ball pulls up the middle of a plane. Vertices \
+             within the range, measured along edges, \
+             follow by the share that the decay function gives; t is their distance divided by the \
+             range.",
         );
         for (name, formula) in [
             ("goo", "(1 − t⁴)²"),
@@ -331,13 +339,16 @@ impl Sculpting {
         }
     }
 
+    /// Draws a plane divided with propagation and without.
     fn subdivision(&mut self, ui: &mut Ui, stage: &mut Stage, bench: &mut Bench<'_>) {
         let controls = &mut stage.controls;
         slider(controls, "times", &mut self.levels, 1.0..=3.0, "");
         self.levels = self.levels.round();
         remark(
             controls,
-            "The blue faces are the region. With propagation the faces beside it are divided, too, so that all stay triangles; without, they gain vertices and stay one face.",
+            "The blue faces are the region. With propagation \
+             the faces beside it are divided, too, so \
+             that all stay triangles; without, each gains vertices and stays one face.",
         );
         let palette = theme::palette(ui.visuals());
         let columns = if bench.narrow { 1 } else { 2 };
@@ -352,7 +363,7 @@ impl Sculpting {
         {
             let rect = cell(stage.figure, i, columns, rows);
             let pane = self.pane(10 + i);
-            let text = divided(how, levels);
+            let text = subdivide(how, levels);
             pane.make(&text);
             pane.show(ui, rect, &view, true);
             let font = FontId::proportional(14.0);
@@ -374,7 +385,7 @@ impl Sculpting {
     }
 }
 
-/// A cell of a table in a figure.
+/// Returns a cell of a table in a figure.
 fn cell(all: Rect, index: usize, columns: usize, rows: usize) -> Rect {
     let gap = 8.0;
     let size = vec2(
@@ -410,7 +421,7 @@ mod tests {
         }
         // Beside the region, propagation makes triangles of what without it are polygons.
         let count = |how| {
-            let clay = clay_of(&divided(how, 1)).expect("a plane");
+            let clay = clay_of(&subdivide(how, 1)).expect("a plane");
             let mesh = clay.mesh();
             let polygons = mesh.faces().filter(|f| mesh.face_degree(*f) > 3).count();
             (mesh.face_count(), polygons)

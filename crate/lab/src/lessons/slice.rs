@@ -21,14 +21,14 @@ use widgets::theme;
 
 /// Samples across, from the first look to the last.
 const LEVELS: [usize; 5] = [24, 48, 96, 192, 320];
-/// Least and most seconds of sampling in one frame, and its share of a frame: where drawing a frame
-/// takes long anyway, a little more is not felt.
+/// Least and most seconds of sampling in one frame.
 const BUDGET: [f64; 2] = [0.006, 0.05];
+/// Share of a frame for sampling: where drawing takes long anyway, a little more is not felt.
 const SHARE: f64 = 0.4;
-/// The values of the thin lines.
+/// Values of the thin lines.
 const LINES: [f32; 6] = [0.1, 0.25, 0.5, 2.0, 4.0, 8.0];
 
-/// How the plane stands.
+/// Direction that the plane faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Axis {
     X,
@@ -36,6 +36,9 @@ enum Axis {
     Z,
     Camera,
 }
+
+/// Piece of a line.
+type Piece = [[f32; 2]; 2];
 
 /// Key of a sampled slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +49,7 @@ struct Cut {
     tall: f64,
 }
 
-/// The functions of a scene's bodies and where they are.
+/// Functions of a scene's bodies, and where these are.
 struct Subject {
     generation: u64,
     bodies: Vec<Surface>,
@@ -69,7 +72,7 @@ pub static WORDS: Words = Words {
     about: "your dataset, seen from inside",
     sentences: "Here is the field of the dataset in your editor, cut by a plane. The surface that \
                 the picture shows is one of these lines, F = T, and the other lines show where it \
-                would go with another threshold. Move the plane and point at a place to read the \
+                would be with another threshold. Move the plane and point at a place to read the \
                 field there.",
 };
 
@@ -85,8 +88,8 @@ pub struct Slice {
     filling: Filling,
     /// Content of the screen: the colours, and the lines in fractions of the window.
     texture: Option<TextureHandle>,
-    surface: Vec<[[f32; 2]; 2]>,
-    lines: Vec<[[f32; 2]; 2]>,
+    surface: Vec<Piece>,
+    lines: Vec<Piece>,
     width: usize,
 }
 
@@ -204,7 +207,7 @@ impl Figure for Slice {
 }
 
 impl Slice {
-    /// Reads the scene anew if it changed.
+    /// Looks at the scene again if it has changed.
     fn look(&mut self, dataset: Dataset<'_>) {
         let generation = dataset.generation;
         let known = self.subject.as_ref().map(|subject| subject.generation);
@@ -216,7 +219,7 @@ impl Slice {
             |scene| {
                 let bodies = scene.surfaces();
                 let place = extent(scene, &bodies);
-                let place = framed(&bodies, place).unwrap_or(place);
+                let place = frame(&bodies, place).unwrap_or(place);
                 (bodies, place)
             },
         );
@@ -228,7 +231,7 @@ impl Slice {
         });
     }
 
-    /// The plane's window.
+    /// Returns the plane's window and normal.
     fn window(&self, dataset: Dataset<'_>, tall: f64) -> Option<(Window, DVec3)> {
         let subject = self.subject.as_ref()?;
         let (right, up, normal) = match self.axis {
@@ -249,7 +252,7 @@ impl Slice {
         Some((Window { corner, across, up }, normal))
     }
 
-    /// Samples on for a while.
+    /// Goes on sampling for a while.
     fn work(&mut self, ui: &Ui, cut: Cut) {
         if self.cut != Some(cut) {
             self.cut = Some(cut);
@@ -263,9 +266,10 @@ impl Slice {
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
         while self.level < LEVELS.len() {
-            let enough = || widgets::clock::stopwatch() - begun > budget;
-            let filling = &mut self.filling;
-            if !filling.go_on(&functions, elements, &cut.window, enough) {
+            let is_full = self.filling.go_on(&functions, elements, &cut.window, || {
+                widgets::clock::stopwatch() - begun > budget
+            });
+            if !is_full {
                 break;
             }
             let Filling {
@@ -273,19 +277,15 @@ impl Slice {
                 leading,
             } = core::mem::take(&mut self.filling);
             let scale = [grid_done.width - 1, grid_done.height - 1].map(|n| n as f32);
-            let share = |line: Vec<[[f32; 2]; 2]>| -> Vec<[[f32; 2]; 2]> {
-                line.into_iter()
-                    .map(|piece| piece.map(|[x, y]| [x / scale[0], y / scale[1]]))
-                    .collect()
-            };
-            let mut surface = grid_done.line(THRESHOLD as f32);
+            let share = |piece: Piece| piece.map(|[x, y]| [x / scale[0], y / scale[1]]);
+            let surface = grid_done.line(THRESHOLD as f32).into_iter();
             // Bodies in contact share a sheet, which is one line.
-            surface.extend(grid_done.border(&leading, THRESHOLD as f32));
-            self.surface = share(surface);
+            let sheets = grid_done.border(&leading, THRESHOLD as f32);
+            self.surface = surface.chain(sheets).map(share).collect();
             // Thin lines need fewer pieces than the finest grid would give.
             if self.level + 1 < LEVELS.len() {
-                let all = LINES.iter().flat_map(|level| grid_done.line(*level));
-                self.lines = share(all.collect());
+                let lines = LINES.iter().flat_map(|level| grid_done.line(*level));
+                self.lines = lines.map(share).collect();
             }
             let dark = ui.visuals().dark_mode;
             let rows = grid_done.values.chunks_exact(grid_done.width).rev();
@@ -317,6 +317,7 @@ impl Slice {
         }
     }
 
+    /// Draws the slice, its lines, and the value under the pointer.
     fn picture(&mut self, ui: &Ui, place: Rect, window: Window, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let painter = ui.painter_at(place);
@@ -387,7 +388,7 @@ impl Slice {
         );
     }
 
-    /// Which way is which, in a corner.
+    /// Draws the names of the directions in a corner.
     fn directions(&self, painter: &egui::Painter, place: Rect) {
         let (across, up) = match self.axis {
             Axis::X => ("−z", "y"),
@@ -417,16 +418,18 @@ impl Slice {
         );
     }
 
-    /// Three balls to cut.
+    /// Writes three balls to cut, as a dataset.
     fn text(&self) -> String {
         String::from(
-            "# Three balls and a bar. Go back to the lab, lesson 3, to see their field from inside:\n\
+            "# Three balls and a bar. Go back to the lab, lesson 3, to see \
+             their field from inside:\n\
              # the outline of the flesh is the line F = T.\n\n\
              eyep 0 0 9\nvrp 0 0 0\nvup 0 1 0\nfov 36\nframesize 640 480\nsample 3\n\
              light White point, position 4 6 8, intensity 0.9\n\
              light SlateBlue point, position -6 -1 4, intensity 0.5, noshadow\n\n\
              var blobbiness = -1.5 hot    # near 0: the balls run together\n\
-             surface flesh, diffuse SummerSky, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness\n\n\
+             surface flesh, diffuse SummerSky, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness\n\n\
              sphere flesh 0.7, <-1.3  0.5 0>\n\
              sphere flesh 0.5, < 0.2  1.0 0>\n\
              sphere flesh 0.6, < 1.4 -0.2 0.4>\n\
@@ -435,12 +438,14 @@ impl Slice {
     }
 }
 
+/// Begins the grid of a level.
 fn grid(level: usize, tall: f64) -> Filling {
     let width = LEVELS[level];
     Filling::new(width, (width as f64 * tall).round() as usize)
 }
 
-/// The middle of all skeletons and how far flesh may be from it. Planes count for nothing.
+/// Returns the middle of all skeletons, and the largest distance along an axis of flesh from it.
+/// Planes do not count.
 fn extent(scene: &Scene, surfaces: &[Surface]) -> (DVec3, f64) {
     let functions = surfaces.iter().filter_map(|surface| match surface {
         Surface::Sum(_) => None,
@@ -474,29 +479,30 @@ fn extent(scene: &Scene, surfaces: &[Surface]) -> (DVec3, f64) {
     (center, reach.clamp(1e-6, 1e9))
 }
 
-/// How many elements the functions of some bodies have.
+/// Returns the number of elements that the functions of some bodies have.
 fn elements_of(bodies: &[Surface]) -> usize {
     bodies.iter().map(|body| body.element().len()).sum()
 }
 
-/// The same more closely: where the flesh really is, as far as a coarse look in space finds it.
-fn framed(bodies: &[Surface], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
+/// Narrows the middle and reach of the skeletons to where the flesh really is, as far as a coarse
+/// grid of samples finds it; `None` if it finds none, or there are too many elements.
+fn frame(bodies: &[Surface], (center, reach): (DVec3, f64)) -> Option<(DVec3, f64)> {
     /// Samples along each axis.
     const SIDE: usize = 20;
-    /// More primitives would take too long for a look.
+    /// Most elements; more would take too long.
     const MOST: usize = 1500;
     if elements_of(bodies) > MOST {
         return None;
     }
     let functions: Vec<&dyn Implicit> = bodies.iter().map(Surface::function).collect();
     let step = 2.0 * reach / (SIDE - 1) as f64;
-    let at = |index: usize| {
-        let (x, y, z) = (index % SIDE, index / SIDE % SIDE, index / SIDE / SIDE);
-        center - reach + DVec3::new(x as f64, y as f64, z as f64) * step
-    };
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for first in (0..SIDE * SIDE * SIDE).step_by(8) {
-        let points = core::array::from_fn(|lane| at(first + lane));
+        let points = core::array::from_fn(|lane| {
+            let index = first + lane;
+            let place = [index % SIDE, index / SIDE % SIDE, index / SIDE / SIDE];
+            center - reach + DVec3::from(place.map(|i| i as f64)) * step
+        });
         for (value, point) in sample::eight(&functions, points).into_iter().zip(points) {
             if f64::from(value) > 0.5 * THRESHOLD {
                 low = low.min(point);
@@ -511,7 +517,8 @@ fn framed(bodies: &[Surface], (center, reach): (DVec3, f64)) -> Option<(DVec3, f
     Some(((low + high) / 2.0, (1.3 * half).min(reach)))
 }
 
-/// Colour of a field value: F/(F+T) through the map of `SHADES`; negative fields are as 0.
+/// Returns the colour of a field value: F/(F+T) on the scale of `SHADES`; negative fields count as
+/// 0.
 fn colour(value: f32, dark: bool) -> Color32 {
     let value = if value.is_finite() {
         value.max(0.0)
@@ -521,8 +528,8 @@ fn colour(value: f32, dark: bool) -> Color32 {
     shade(value / (value + THRESHOLD as f32), dark)
 }
 
-/// From violet over green to yellow in even steps of lightness (the map "viridis"), which stays
-/// readable for the colour-blind and in grey.
+/// Scale from violet over green to yellow in even steps of lightness (the map "viridis"), which
+/// stays readable for the colour-blind and in grey.
 const SHADES: [[u8; 3]; 9] = [
     [68, 1, 84],
     [71, 44, 122],
@@ -535,21 +542,22 @@ const SHADES: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
+/// Returns the colour at a share of the scale of `SHADES`.
 pub(crate) fn shade(share: f32, dark: bool) -> Color32 {
     let at = share.clamp(0.0, 1.0) * (SHADES.len() - 1) as f32;
     let index = (at as usize).min(SHADES.len() - 2);
     let t = at - index as f32;
     // On paper the colours are a little lighter.
     let lift = if dark { 0.0 } else { 0.08 };
-    let mix = |channel: usize| {
+    let [red, green, blue] = [0, 1, 2].map(|channel| {
         let [a, b] = [index, index + 1].map(|i| f32::from(SHADES[i][channel]));
         let value = a + t * (b - a);
         (value + lift * (255.0 - value)).round() as u8
-    };
-    Color32::from_rgb(mix(0), mix(1), mix(2))
+    });
+    Color32::from_rgb(red, green, blue)
 }
 
-/// The colours and their values.
+/// Draws the colours and their values.
 fn legend(ui: &mut Ui) {
     let palette = theme::palette(ui.visuals());
     let dark = ui.visuals().dark_mode;
@@ -597,7 +605,7 @@ fn legend(ui: &mut Ui) {
     }
 }
 
-/// Advice about a dataset without soft shapes.
+/// Draws advice about a dataset without soft shapes.
 fn nothing(ui: &mut Ui, stage: &Stage, bench: &mut Bench<'_>) {
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, stage.figure);

@@ -4,7 +4,7 @@
 //! Pictures and maps come from the workers: for a map each pixel's hit is held against the exact
 //! crossing, found on the field itself in double precision.
 
-use super::grid::refused;
+use super::grid::note_refusal;
 use super::slice::shade;
 use crate::bench::Bench;
 use crate::command::Command;
@@ -27,7 +27,7 @@ const RADIUS: f64 = 0.3;
 /// The maps' colours begin at this error, in radii, and end at one radius.
 const LEAST: f64 = 1e-4;
 
-/// The columns: what is said above each, the digger's words, the names of the readings.
+/// Columns: the title of each, the digger's words, the name of its reading.
 const COLUMNS: [(&str, &str, &str); 3] = [
     ("2 spans a bone", "hermite2 2", "worst of 2"),
     ("4 spans a bone", "hermite2 4", "worst of 4"),
@@ -50,7 +50,7 @@ struct Key {
 }
 
 impl Key {
-    /// The cross, drawn by a digger.
+    /// Writes the cross, drawn by a digger, as a dataset.
     fn text(&self, digger: &str) -> String {
         let eye = match self.view {
             View::Side => "6 0.7 1.2",
@@ -58,14 +58,15 @@ impl Key {
         };
         format!(
             "# Two crossed bars, traced with a number of Hermite spans a bone. Take the digger\n\
-             # `hermite` for spans as a proven bound on their error asks for.\n\
+             # `hermite` for spans that a proven bound on their error chooses.\n\
              # From the lab, lesson 8.\n\n\
              digger {digger}\n\n\
              var blobbiness = {blob:.3} hot    # near 0: reaches far; far from 0: crisp\n\n\
              eyep {eye}\nvrp 0 0 0\nvup 0 1 0\nfov 38\nframesize 480 480\nsample 3\n\n\
              light White point, position 4 6 8, intensity 0.9\n\
              light SlateBlue point, position 6 -2 -4, intensity 0.5, noshadow\n\n\
-             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {kernel}\n\n\
+             surface flesh, diffuse Coral, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness, kernel {kernel}\n\n\
              cylinder flesh {RADIUS} <-1.6 0 0> <1.6 0 0>\n\
              cylinder flesh {RADIUS} <0 -1.6 0> <0 1.6 0>\n",
             blob = -self.blobbiness,
@@ -74,18 +75,18 @@ impl Key {
     }
 }
 
-/// One column's map.
+/// Map of the errors of a column.
 #[derive(Default)]
 struct Map {
-    /// How far off each pixel is, along its ray.
+    /// The error of each pixel, along its ray.
     pixels: Rc<[Pixel]>,
-    /// Whether they are of the cross that is asked for, or why they are not.
+    /// The state of the pixels: of the cross that is asked for, or of an older one.
     shown: Shown,
     texture: Option<TextureHandle>,
 }
 
 impl Map {
-    /// The distances where both hit, in radii.
+    /// Returns the errors of pixels where both the digger and the exact ray hit, in radii.
     fn distances(&self) -> impl Iterator<Item = f64> {
         self.pixels.iter().filter_map(|pixel| match pixel {
             Pixel::Off(distance) => Some(f64::from(*distance) / RADIUS),
@@ -93,17 +94,17 @@ impl Map {
         })
     }
 
-    /// The largest of them.
+    /// Returns the largest error, in radii.
     fn worst(&self) -> f64 {
         self.distances().fold(0.0, f64::max)
     }
 
-    /// Their mean.
+    /// Returns the mean error, in radii.
     fn mean(&self) -> f64 {
         self.distances().sum::<f64>() / self.distances().count().max(1) as f64
     }
 
-    /// Pixels that only one of them hits.
+    /// Counts the pixels where only one of the two hits.
     fn alone(&self) -> usize {
         self.pixels.iter().filter(|p| **p == Pixel::Alone).count()
     }
@@ -121,7 +122,7 @@ impl Map {
     }
 }
 
-/// Position of a distance on the logarithmic colour scale.
+/// Returns the position of a distance on the logarithmic colour scale.
 fn share(radii: f64) -> f32 {
     let decades = -libm::log10(LEAST);
     (1.0 + libm::log10(radii.max(1e-12)) / decades).clamp(0.0, 1.0) as f32
@@ -134,10 +135,10 @@ pub static WORDS: Words = Words {
     name: "How many spans?",
     short: "Spans",
     about: "cubics along a ray, and errors",
-    sentences: "Along each ray a few cubics stand in for a bone's field, and what a picture shows \
-                is their surface, not the field's. Two spans a bone, as first published, give way \
-                where a ray runs along a bar, and four are better. The tracer here places spans \
-                by a proven bound on their error, so there is no number to choose.",
+    sentences: "Along each ray a few cubics stand in for a bone's field, so a picture shows their \
+                surface, not the field's. Two spans a bone, as first published, fail where a ray \
+                runs along a bar, and four are better. The tracer here chooses the spans by a \
+                proven bound on their error, so there is no number to set.",
 };
 
 /// The lesson's state.
@@ -200,19 +201,16 @@ impl Figure for Spans {
             reading(controls, title, &value, strong);
             bench.readings.insert(name, map.worst());
         }
-        let alone = |i: usize| self.maps[i].alone();
+        let [two, four, certified] = self.maps.each_ref().map(Map::alone);
         let text = format!(
-            "In parts of the bars' radius, along the ray. Red: there is a hit where there should be none, or none where \
-             there should be one; that is so in {}, {} and {} pixels.",
-            alone(0),
-            alone(1),
-            alone(2)
+            "In per cent of the bars' radius, along the ray. Red: a hit where there should be \
+             none, or none where there should be one; so in {two}, {four} and {certified} pixels."
         );
         remark(controls, text);
-        bench.readings.insert("alone of 2", alone(0) as f64);
-        bench.readings.insert("alone certified", alone(2) as f64);
-        let still = |map: &Map| matches!(map.shown, Shown::Older | Shown::Nothing);
-        let done = !self.maps.iter().any(still);
+        bench.readings.insert("alone of 2", two as f64);
+        bench.readings.insert("alone certified", certified as f64);
+        let mut states = self.maps.iter().map(|map| &map.shown);
+        let done = !states.any(|shown| matches!(shown, Shown::Older | Shown::Nothing));
         bench.readings.insert("finished", f64::from(u8::from(done)));
         controls.add_space(4.0);
         legend(controls);
@@ -225,7 +223,7 @@ impl Figure for Spans {
 }
 
 impl Spans {
-    /// Takes in the maps that are there, and asks for those that are not.
+    /// Takes the maps that are there, and asks for those that are not.
     fn measure(&mut self, ui: &Ui, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let colours = [palette.paper, palette.error];
@@ -252,7 +250,7 @@ impl Spans {
         }
     }
 
-    /// The pictures, and below each its map.
+    /// Draws the pictures, and below each its map.
     fn table(&self, ui: &Ui, stage: &Stage, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let all = stage.figure;
@@ -275,8 +273,8 @@ impl Spans {
             let place = Rect::from_min_size(pos2(left, all.top() + top), vec2(side, side));
             let text = self.key.text(digger);
             let shown = bench.pictures.show(ui, ("spans", index), &text, place);
-            refused(ui, place, &shown);
-            named(ui, place, &format!("The cross, {title}"));
+            note_refusal(ui, place, &shown);
+            name(ui, place, &format!("The cross, {title}"));
             let below = place.translate(vec2(0.0, side + gap));
             painter.rect_filled(below, 6.0, palette.paper);
             if let Some(texture) = &self.maps[index].texture {
@@ -284,24 +282,24 @@ impl Spans {
                 let shape = egui::epaint::RectShape::filled(below, 6.0, Color32::WHITE);
                 painter.add(shape.with_texture(texture.id(), whole));
             }
-            refused(ui, below, &self.maps[index].shown);
-            named(ui, below, &format!("Map of the error, {title}"));
+            note_refusal(ui, below, &self.maps[index].shown);
+            name(ui, below, &format!("Map of the error, {title}"));
         }
     }
 
-    /// The cross with two spans.
+    /// Writes the cross with two spans, as a dataset.
     fn text(&self) -> String {
         self.key.text(COLUMNS[0].1)
     }
 }
 
-/// Tells screen readers what a picture is.
-fn named(ui: &Ui, place: Rect, name: &str) {
+/// Names a picture for screen readers.
+fn name(ui: &Ui, place: Rect, name: &str) {
     let response = ui.interact(place, ui.scope_id().with(name), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
 }
 
-/// A number of radii in words.
+/// Writes a number of radii in per cent.
 fn percent(radii: f64) -> String {
     if radii < LEAST {
         return String::from("< 0.01 %");
@@ -314,7 +312,7 @@ fn percent(radii: f64) -> String {
     }
 }
 
-/// The colours and what they stand for.
+/// Draws the colours and their values.
 fn legend(ui: &mut Ui) {
     let palette = theme::palette(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 36.0), Sense::hover());
@@ -379,8 +377,9 @@ mod tests {
             assert!(certified < 0.01, "{certified}");
             assert!(alone[2] < 20 && alone[2] <= alone[0], "{alone:?}");
             // The cross is in the picture.
-            let hits = |map: &Map| map.pixels.iter().filter(|p| **p != Pixel::Empty).count();
-            let part = hits(&maps[2]) as f64 / (SIDE * SIDE) as f64;
+            let pixels = maps[2].pixels.iter();
+            let hits = pixels.filter(|pixel| **pixel != Pixel::Empty).count();
+            let part = hits as f64 / (SIDE * SIDE) as f64;
             assert!((0.1..0.6).contains(&part), "{part}");
         }
     }

@@ -25,7 +25,7 @@ const ARC: (f64, f64) = (1.75, 1.15);
 /// The arc's centre, so that its middle is about that of the figure.
 const CENTER: DVec3 = DVec3::new(0.0, -1.2, 0.0);
 
-/// Which bone is cut.
+/// Bone that is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bone {
     Segment,
@@ -50,10 +50,10 @@ pub static WORDS: Words = Words {
     short: "Superposition",
     about: "why a cut bone shows no seam",
     sentences: "Cut the bone wherever you like: an integral over the whole is the sum of the \
-                integrals over its parts, so a convolution surface does not notice. Next to it \
-                the same parts give flesh by their distance instead, and near the cut both parts \
-                count in full, so the surface bulges. That is why bones may be put together from \
-                many pieces here.",
+                integrals over its parts, so a convolution surface does not notice. In the lower \
+                figure the fields of the same parts depend on the distance instead, and near the \
+                cut both parts count in full, so the surface bulges. That is why a skeleton may \
+                be put together from many pieces here.",
 };
 
 /// The lesson's state.
@@ -143,25 +143,27 @@ impl Figure for Superposition {
             self.key.kernel = kernel;
         }
         if let Some((_, fields)) = &self.computed {
-            let [convolved, distant] = fields.differences;
-            let [steady, swollen] = fields.swelling;
-            heading(controls, "What the cut changes in the field, at most");
-            let times = |value: f64| format!("{} T", number(value));
-            reading(controls, "Convolution", &times(convolved), palette.note);
-            reading(controls, "Distance", &times(distant), palette.accent);
-            heading(controls, "How much thicker the cut place gets");
-            let percent = |ratio: f64| format!("{:.1} %", 100.0 * (ratio - 1.0));
-            reading(controls, "Convolution", &percent(steady), palette.note);
-            reading(controls, "Distance", &percent(swollen), palette.accent);
+            heading(controls, "Largest change of the field by the cut");
+            let [one, other] = fields
+                .differences
+                .map(|value| format!("{} T", number(value)));
+            reading(controls, "Convolution", &one, palette.note);
+            reading(controls, "Distance", &other, palette.accent);
+            heading(controls, "Growth in thickness at the cut");
+            let growth = fields
+                .swelling
+                .map(|ratio| format!("{:.1} %", 100.0 * (ratio - 1.0)));
+            reading(controls, "Convolution", &growth[0], palette.note);
+            reading(controls, "Distance", &growth[1], palette.accent);
             remark(
                 controls,
-                "What is left of a difference in the first line is the rounding of single precision.",
+                "The difference in the first line is only the rounding of single precision.",
             );
             let readings = &mut bench.readings;
             readings.insert("cut", key.cut);
-            readings.insert("convolution", convolved);
-            readings.insert("distance", distant);
-            readings.insert("swelling", swollen);
+            readings.insert("convolution", fields.differences[0]);
+            readings.insert("distance", fields.differences[1]);
+            readings.insert("swelling", fields.swelling[1]);
         }
         stage.finish(ui);
     }
@@ -171,11 +173,11 @@ impl Figure for Superposition {
     }
 }
 
-/// The outlines and what is to be said of them.
+/// Outlines and measures of the fields.
 struct Fields {
     /// Outline of the whole bone and of the sum of its parts.
     convolution: [Vec<Piece>; 2],
-    /// The same for fields made of distances.
+    /// Outline of the whole bone and of its parts, for fields of the distance.
     distance: [Vec<Piece>; 2],
     /// Areas that the parts enclose, by convolution and by distance.
     insides: [Vec<Vec<[f32; 2]>>; 2],
@@ -192,7 +194,7 @@ impl Key {
         sample::shaping(self.kernel, self.radius, self.blobbiness)
     }
 
-    /// The place on the bone at a share of its length.
+    /// Returns the place on the bone at a share of its length.
     fn place(&self, share: f64) -> DVec3 {
         match self.bone {
             Bone::Segment => DVec3::new(LENGTH * (2.0 * share - 1.0), 0.0, 0.0),
@@ -205,7 +207,7 @@ impl Key {
         }
     }
 
-    /// The share of the bone's length nearest to a place.
+    /// Returns the share of the bone's length nearest to a place.
     fn share(&self, at: DVec3) -> f64 {
         match self.bone {
             Bone::Segment => (at.x / LENGTH + 1.0) / 2.0,
@@ -216,7 +218,7 @@ impl Key {
         }
     }
 
-    /// The part of the bone between two shares of its length.
+    /// Returns the part of the bone between two shares of its length.
     fn part(&self, from: f64, to: f64) -> Skeleton {
         match self.bone {
             Bone::Segment => Skeleton::Segment {
@@ -247,8 +249,8 @@ impl Key {
         }
     }
 
-    /// The field of parts by convolution.
-    fn convolved(&self, parts: &[Skeleton]) -> Sum {
+    /// Returns the field of parts by convolution.
+    fn convolve(&self, parts: &[Skeleton]) -> Sum {
         let shaping = self.shaping();
         parts
             .iter()
@@ -256,7 +258,7 @@ impl Key {
             .collect()
     }
 
-    /// Σ h(distance to each part), scaled so that one part has the radius R.
+    /// Computes Σ h(distance to each part), scaled so that one part has the radius R.
     fn by_distance(&self, parts: &[Skeleton], at: DVec3) -> f64 {
         let shaping = self.shaping();
         let center = DVec3::ZERO;
@@ -264,11 +266,13 @@ impl Key {
         let (Some(width), Some(height)) = (shaping.width(), shaping.height(&point)) else {
             return 0.0;
         };
-        let field = |part: &Skeleton| height * self.kernel.value(width * part.distance(at));
-        parts.iter().map(field).sum()
+        let distances = parts.iter().map(|part| part.distance(at));
+        distances
+            .map(|distance| height * self.kernel.value(width * distance))
+            .sum()
     }
 
-    /// How far from the bone, across it at the cut, a field falls to T.
+    /// Finds the distance from the bone, across it at the cut, where a field falls to T.
     fn thickness(&self, field: impl Fn(DVec3) -> f64) -> f64 {
         let at = self.place(self.cut);
         let out = match self.bone {
@@ -287,14 +291,15 @@ impl Key {
         low
     }
 
+    /// Computes outlines and measures.
     fn compute(&self) -> Fields {
         let whole = [self.part(0.0, 1.0)];
         let parts = [self.part(0.0, self.cut), self.part(self.cut, 1.0)];
         let [width, height] = SAMPLES;
         let window = self.window();
-        let fields = [self.convolved(&whole), self.convolved(&parts)];
+        let fields = [self.convolve(&whole), self.convolve(&parts)];
         let convolution = [0, 1].map(|i| sample::whole(&fields[i], &window, width, height));
-        let sampled = |parts: &[Skeleton]| Grid {
+        let distance = [&whole[..], &parts].map(|parts| Grid {
             width,
             height,
             values: (0..width * height)
@@ -304,44 +309,38 @@ impl Key {
                     self.by_distance(parts, window.at(x, y)) as f32
                 })
                 .collect(),
-        };
-        let distance = [sampled(&whole), sampled(&parts)];
-        let difference = |[a, b]: &[Grid; 2]| {
-            let both = a.values.iter().zip(&b.values);
-            // At poles of a kernel both are infinite, or nearly.
-            let far = both.filter(|(a, b)| a.max(**b) < 100.0);
-            far.map(|(a, b)| f64::from((a - b).abs()))
-                .fold(0.0, f64::max)
-        };
-        let differences = [difference(&convolution), difference(&distance)];
-        let swelling = {
-            let by = |index: usize| self.thickness(|at| sample::one(&[&fields[index]], at));
-            let far = |parts: &[Skeleton]| self.thickness(|at| self.by_distance(parts, at));
-            [by(1) / by(0).max(1e-9), far(&parts) / far(&whole).max(1e-9)]
-        };
-        let insides = [&convolution[1], &distance[1]].map(|grid| grid.inside(THRESHOLD as f32));
-        let outline = |grids: [Grid; 2]| grids.map(|grid| grid.line(THRESHOLD as f32));
+        });
+        let by_integral = [0, 1].map(|i| self.thickness(|at| sample::one(&[&fields[i]], at)));
+        let by_distance =
+            [&whole[..], &parts].map(|parts| self.thickness(|at| self.by_distance(parts, at)));
+        let level = THRESHOLD as f32;
         Fields {
-            convolution: outline(convolution),
-            distance: outline(distance),
-            insides,
-            differences,
-            swelling,
+            insides: [&convolution[1], &distance[1]].map(|grid| grid.inside(level)),
+            differences: [&convolution, &distance].map(difference),
+            swelling: [by_integral, by_distance].map(|[one, two]| two / one.max(1e-9)),
+            convolution: convolution.map(|grid| grid.line(level)),
+            distance: distance.map(|grid| grid.line(level)),
         }
     }
 }
 
+/// Returns the largest difference of two grids.
+fn difference([a, b]: &[Grid; 2]) -> f64 {
+    let both = a.values.iter().zip(&b.values);
+    // At poles of a kernel both are infinite, or nearly.
+    let finite = both.filter(|(a, b)| a.max(**b) < 100.0);
+    let differences = finite.map(|(a, b)| f64::from((a - b).abs()));
+    differences.fold(0.0, f64::max)
+}
+
 impl Superposition {
-    /// The bone whole and cut, one above the other.
+    /// Writes the bone whole and cut, one above the other, as a dataset.
     fn text(&self) -> String {
         let key = self.key;
         let name = key.kernel.name();
-        let at = |share: f64| {
-            let p = key.place(share);
-            format!("<{:.4} {:.4} 0>", p.x, p.y)
-        };
         let mut text = format!(
-            "# A bone in one piece (above) and the same bone in two (below): no seam is to be seen.\n\
+            "# A bone in one piece (above) and the same bone \
+             in two (below): no seam is to be seen.\n\
              # From the lab, lesson 7. Drag the cut.\n\n\
              eyep 0 0 11\nvrp 0 0 0\nvup 0 1 0\nfov 34\nframesize 640 480\nsample 3\n\
              light White point, position 4 6 8, intensity 0.9\n\
@@ -349,8 +348,10 @@ impl Superposition {
              var cut        = {cut:.3} hot    # where, 0 to 1\n\
              var radius     = {radius:.3} hot\n\
              var blobbiness = {blob:.3} hot\n\n\
-             surface whole, diffuse SummerSky, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}\n\
-             surface parts, diffuse Coral, specular 0.5 0.5 0.5, shine 40, blobbiness blobbiness, kernel {name}\n\n",
+             surface whole, diffuse SummerSky, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness, kernel {name}\n\
+             surface parts, diffuse Coral, specular 0.5 0.5 0.5, shine \
+             40, blobbiness blobbiness, kernel {name}\n\n",
             cut = key.cut,
             radius = key.radius,
             blob = -key.blobbiness,
@@ -369,14 +370,16 @@ impl Superposition {
                 let (sweep, opening) = ARC;
                 let from = (PI / 2.0 - opening).to_degrees();
                 let whole = (2.0 * opening).to_degrees();
+                let ends = [0.0, 1.0].map(|share| key.place(share));
+                let ends = ends.map(|p| format!("<{:.4} {:.4} 0>", p.x, p.y));
                 text.push_str(&format!(
                     "# its ends: {} {}\n\
                      arc whole {sweep} radius, <0 -0.6 0> <0 0 1> {from:.3} {whole:.3}\n\n\
                      var first = {whole:.3}*(1-cut)\n\
                      arc parts {sweep} radius, <0 -2.4 0> <0 0 1> {from:.3} first\n\
-                     arc parts {sweep} radius, <0 -2.4 0> <0 0 1> {from:.3}+first {whole:.3}-first\n",
-                    at(0.0),
-                    at(1.0),
+                     arc parts {sweep} radius, <0 -2.4 0> <0 0 1> {from:.3}+first \
+                     {whole:.3}-first\n",
+                    ends[0], ends[1],
                 ));
             }
         }
@@ -410,17 +413,17 @@ impl Map {
         DVec3::new(f64::from(by.x), f64::from(-by.y), 0.0)
     }
 
-    /// Makes it from samples.
+    /// Converts a place in units of samples.
     fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
-        let world = |sample: f32, axis: usize| {
+        let [x, y] = [(x, 0), (y, 1)].map(|(sample, axis)| {
             let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;
             HALF[axis] * (2.0 * share - 1.0)
-        };
-        self.at(DVec3::new(world(x, 0), world(y, 1), 0.0))
+        });
+        self.at(DVec3::new(x, y, 0.0))
     }
 }
 
-/// One of the two figures: the flesh, its outline, the outline without the cut, and the bone.
+/// Draws one of the two figures: the flesh, its outline, the outline without the cut, and the bone.
 fn outline(
     ui: &Ui,
     place: Rect,

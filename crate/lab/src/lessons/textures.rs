@@ -1,7 +1,7 @@
-//! Lesson 9: two balls, each with a map of u and v of its own, and how their textures mix where
+//! Lesson 12: two balls, each with a map of u and v of its own, and how their textures mix where
 //! their flesh does.
 
-use super::grid::refused;
+use super::grid::note_refusal;
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::lesson::{Figure, Words};
@@ -18,12 +18,12 @@ const VIEW: f64 = 2.1;
 /// Radius of each ball.
 const RADIUS: f64 = 0.8;
 
-/// How the balls are textured.
+/// Texture of the balls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cloth {
     /// Stripes on one, rings on the other, each by its own u and v.
     Maps,
-    /// One block of marble, out of which both are cut.
+    /// A block of marble, out of which both are cut.
     Solid,
     /// A colour each.
     Colours,
@@ -37,10 +37,9 @@ pub static WORDS: Words = Words {
     short: "Textures",
     about: "patterns that cross-dissolve",
     sentences: "Each element has its own map of u and v, so two balls that blend have two \
-                patterns. At a point of the surface each is looked up for itself, and the results \
-                are mixed by the shares of the field that the elements have there. A solid \
-                texture fills space and needs no map, so it runs through both as through one \
-                block.",
+                patterns. At a point of the surface each pattern is evaluated on its own, and the \
+                results are mixed by the elements' shares of the field there. A solid texture \
+                fills space and needs no map, so it runs through both as through one block.",
 };
 
 /// The lesson's state.
@@ -84,7 +83,7 @@ impl Figure for Textures {
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
         places::note(ui.ctx(), "lab textures", picture);
         let shown = bench.pictures.show(ui, "textures", &text, picture);
-        refused(ui, picture, &shown);
+        note_refusal(ui, picture, &shown);
         let clicked = response
             .on_hover_cursor(CursorIcon::PointingHand)
             .on_hover_text("Open in the editor")
@@ -96,7 +95,7 @@ impl Figure for Textures {
             });
         }
         let fields = self.fields();
-        // Of the plane that the picture shows, as much as it is wide.
+        // The width of the plane that the picture shows.
         let reach = VIEW * f64::from(picture.width() / (2.0 * picture.height())).max(1.0);
         let reach = if picture.width() >= picture.height() {
             VIEW
@@ -144,13 +143,14 @@ impl Figure for Textures {
         let palette = theme::palette(controls.visuals());
         reading(
             controls,
-            "Width in which both count",
+            "Width of the zone where both count",
             &plot::number(zone),
             palette.strong,
         );
         remark(
             controls,
-            "The lines are the shares of the two balls: field of one over the sum of both.",
+            "The lines are the shares of the two balls: the \
+             field of one, divided by the sum of both.",
         );
         bench.readings.insert("zone", zone);
         stage.finish(ui);
@@ -162,7 +162,7 @@ impl Figure for Textures {
 }
 
 impl Textures {
-    /// The text of the picture.
+    /// Writes the balls as a dataset.
     fn text(&self) -> String {
         // From far away, so that the picture and the curve below it stand in line.
         let eye = 30.0;
@@ -170,32 +170,39 @@ impl Textures {
         let cloth = match self.cloth {
             Cloth::Maps => format!(
                 "# u runs around a ball and v up\n\
-                 texture Left  pigment step one, scale {waves:.1} 1 1, bounds OrangeRed Wheat, replace\n\
-                 texture Right pigment one step, scale 1 {rings:.1} 1, bounds Navy PaleTurquoise, replace\n",
+                 texture Left  pigment step one, scale {waves:.1} 1 1, \
+                 bounds OrangeRed Wheat, replace\n\
+                 texture Right pigment one step, scale 1 {rings:.1} 1, \
+                 bounds Navy PaleTurquoise, replace\n",
                 waves = self.waves,
                 rings = 0.5 * self.waves,
             ),
             Cloth::Solid => format!(
                 "# one block of stone, out of which both are cut\n\
-                 texture Left  pigment marble, scale {scale:.2} 1 1, bounds SteelBlue White, replace\n\
+                 texture Left  pigment marble, scale {scale:.2} \
+                 1 1, bounds SteelBlue White, replace\n\
                  texture Right = Left\n",
                 scale = 0.2 * self.waves,
             ),
             Cloth::Colours => String::from(
-                "# a colour each\ntexture Left  pigment OrangeRed, replace\ntexture Right pigment Navy, replace\n",
+                "# a colour each\ntexture Left  pigment OrangeRed, replace\n\
+                 texture Right pigment Navy, replace\n",
             ),
         };
         format!(
-            "# Two balls with a texture each: where their flesh mixes, the textures do, by the same shares.\n\
-             # From the lab, lesson 9.\n\n\
+            "# Two balls with a texture each: where their flesh \
+             mixes, so do the textures, by the same shares.\n\
+             # From the lab, lesson 12.\n\n\
              var apart      = {apart:.3} hot 0.3 1.4    # half the distance of the balls\n\
              var blobbiness = {blob:.3} hot -8 -0.3\n\n\
              eyep 0 0 {eye}\nvrp 0 0 0\nvup 0 1 0\nfov {angle:.3}\nframesize 640 320\nsample 3\n\
              light White point, position -8 14 20, intensity 0.9, noshadow\n\
              light SlateBlue point, position 16 -4 10, intensity 0.4, noshadow\n\n\
              {cloth}\n\
-             surface one   {{ diffuse White, specular 40%, shine 40, blob blobbiness, kernel {kernel}, texture Left }}\n\
-             surface other {{ diffuse White, specular 40%, shine 40, blob blobbiness, kernel {kernel}, texture Right }}\n\n\
+             surface one   {{ diffuse White, specular 40%, shine 40, blob \
+             blobbiness, kernel {kernel}, texture Left }}\n\
+             surface other {{ diffuse White, specular 40%, shine 40, blob \
+             blobbiness, kernel {kernel}, texture Right }}\n\n\
              sphere one   {RADIUS}, -apart 0 0\n\
              sphere other {RADIUS},  apart 0 0\n",
             apart = self.apart,
@@ -204,7 +211,7 @@ impl Textures {
         )
     }
 
-    /// The fields of the two balls.
+    /// Returns the fields of the two balls.
     fn fields(&self) -> [Sum; 2] {
         let shaping = sample::shaping(self.kernel, RADIUS, self.blobbiness);
         [-1.0, 1.0].map(|side| {
@@ -215,8 +222,8 @@ impl Textures {
         })
     }
 
-    /// The share of the first ball at a place of the line through both; `None` where neither is
-    /// felt.
+    /// Returns the share of the first ball at a place of the line through both; `None` where
+    /// neither is felt.
     fn share(fields: &[Sum; 2], x: f64) -> Option<f64> {
         let [one, other] =
             [0, 1].map(|i| sample::one(&[&fields[i]], DVec3::new(x, 0.0, 0.0)).min(1e30));
@@ -224,12 +231,12 @@ impl Textures {
         (whole > 1e-12).then(|| one / whole)
     }
 
-    /// The width of the zone in which both have more than a tenth.
+    /// Returns the width of the zone in which both have more than a tenth.
     fn zone(fields: &[Sum; 2]) -> f64 {
         let steps = 800;
-        let at = |i: i32| VIEW * (2.0 * f64::from(i) / f64::from(steps) - 1.0);
         let mixed = (0..=steps).filter(|&i| {
-            Self::share(fields, at(i)).is_some_and(|share| (0.1..=0.9).contains(&share))
+            let x = VIEW * (2.0 * f64::from(i) / f64::from(steps) - 1.0);
+            Self::share(fields, x).is_some_and(|share| (0.1..=0.9).contains(&share))
         });
         mixed.count() as f64 * 2.0 * VIEW / f64::from(steps)
     }

@@ -7,16 +7,19 @@ use super::waves::Factor;
 use field::{Kink, Primitive, THRESHOLD};
 use glam::DVec3;
 
-/// Relative error of the terms of a field, and of coordinates.
+/// Relative error of the terms of a field.
 pub(super) const FIELD_ERROR: f64 = 1e-10;
+/// Relative error of coordinates.
 pub(super) const ULP: f64 = 4e-16;
 
-/// The function less T at a point, its gradient, and how far rounding may have moved them.
+/// The function less T at a point, its gradient, and bounds on their rounding.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evaluation {
     pub excess: f64,
     pub gradient: DVec3,
+    /// Bound on the rounding of `excess`.
     pub noise: f64,
+    /// Bound on the rounding of `gradient`.
     pub slope_noise: f64,
 }
 
@@ -38,6 +41,7 @@ pub(super) struct FieldTerms {
 }
 
 impl Function {
+    /// Evaluates the function at a point.
     pub fn sample(&self, point: DVec3) -> Evaluation {
         match self {
             Self::Sum(terms) => terms.sample(point),
@@ -45,7 +49,7 @@ impl Function {
             Self::SmoothMaximum(parts, k) => {
                 let [a, b] = parts.each_ref().map(|part| part.sample(point));
                 let noise = a.noise.max(b.noise) + 4.0 * f64::EPSILON * k;
-                let (excess, share) = mixed(a.excess, b.excess, *k);
+                let (excess, share) = mix(a.excess, b.excess, *k);
                 // The share changes by at most 1/(2k) where the difference changes by 1.
                 let turned = (a.noise + b.noise) / (2.0 * k) * a.gradient.distance(b.gradient);
                 Evaluation {
@@ -58,12 +62,12 @@ impl Function {
         }
     }
 
-    /// Bounds in a ball; of the second derivative along a unit vector, if one is given, else in any
-    /// direction.
+    /// Returns bounds in a ball; that on the second derivative is along a unit vector, if one is
+    /// given, else in any direction.
     pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
         match self {
             Self::Sum(terms) => terms.extent(center, radius, along),
-            // Of these the range alone is known.
+            // Only the range is known.
             Self::Touching(_) => Magnitudes {
                 above: f64::INFINITY,
                 below: f64::INFINITY,
@@ -77,7 +81,7 @@ impl Function {
                 let both = a.slope + b.slope;
                 Magnitudes {
                     // It grows with both parts, and is above each.
-                    above: mixed(a.above, b.above, *k).0,
+                    above: mix(a.above, b.above, *k).0,
                     below: a.below.min(b.below),
                     slope: a.slope.max(b.slope),
                     // f″ = s·a″ + (1−s)·b″ + (a′−b′)²·k²/(2·√((a−b)² + k²)³), 0 < s < 1.
@@ -87,7 +91,7 @@ impl Function {
         }
     }
 
-    /// The range of values in a ball, of functions with creases; `None` of others.
+    /// Returns the range of values in a ball, for functions with creases; `None` for others.
     pub fn range(&mut self, center: DVec3, radius: f64) -> Option<Range> {
         match self {
             Self::Touching(bodies) => Some(bodies.range(center, radius)),
@@ -95,7 +99,7 @@ impl Function {
         }
     }
 
-    /// Kinks of all terms.
+    /// Returns the kinks of all terms.
     pub fn kinks(&self) -> Vec<Kink> {
         let parts = match self {
             Self::Sum(terms) => core::slice::from_ref(terms),
@@ -108,9 +112,9 @@ impl Function {
     }
 }
 
-/// The smooth maximum of two values and the share of the first in its derivative. It may be taken
-/// of values less T as well.
-fn mixed(a: f64, b: f64, k: f64) -> (f64, f64) {
+/// Returns the smooth maximum of two values and the share of the first in its derivative. The
+/// values may be less T as well.
+fn mix(a: f64, b: f64, k: f64) -> (f64, f64) {
     let root = libm::hypot(a - b, k);
     (0.5 * (a + b + root), 0.5 * (1.0 + (a - b) / root))
 }

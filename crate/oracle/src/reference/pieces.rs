@@ -1,25 +1,25 @@
 //! Bounds of the reference on the field in a ball, from bones cut into pieces, each in a ball of
 //! its own.
 //!
-//! All of a piece is at least as far from a point as its ball's near side and at most as far as its
-//! far side, so that its part of the field, its slope and its curvature are at most the piece's
-//! mass times those of the kernel in that shell ([`largest`]). A piece whose ball is large compared
-//! to its distance is halved. Halves are made at first use and kept.
+//! A piece is at least as far from a point as its ball's near side and at most as far as its far
+//! side, so that its part of the field, its slope and its curvature are at most the piece's mass
+//! times those of the kernel in that shell ([`largest`]). A piece whose ball is large compared to
+//! its distance is halved. Halves are made at first use and kept.
 use super::shell::largest;
 use super::waves::Factor;
 use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton};
 use glam::DVec3;
 
-/// Bounds of magnitudes of some terms of the field in a ball.
+/// Bounds on magnitudes of some terms of the field in a ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Magnitudes {
     /// Bound on the sum of the positive terms.
     pub above: f64,
     /// Bound on the sum of the sizes of the negative terms.
     pub below: f64,
-    /// The first derivative in any direction (where no profile jumps).
+    /// Bound on the first derivative in any direction (where no profile jumps).
     pub slope: f64,
-    /// The second derivative in any direction (where all profiles are smooth).
+    /// Bound on the second derivative in any direction (where all profiles are smooth).
     pub curvature: f64,
 }
 
@@ -46,28 +46,31 @@ struct Node {
     measure: f64,
     /// Start and end on the bone, as fractions of its length.
     share: [f64; 2],
-    /// Smallest and largest width parameter, and largest |height|.
+    /// Smallest and largest width parameter.
     widths: [f64; 2],
+    /// Largest |height|.
     height: f64,
     depth: u8,
-    /// First part and number of parts; [`UNCUT`] if not yet made.
+    /// First part and number of parts; [`UNCUT`] until they are made.
     parts: (u32, u32),
 }
 
+/// Number in place of the first part of a node whose parts are not made yet.
 const UNCUT: u32 = u32::MAX;
 
 /// Largest number of halvings: kernels with a pole need balls as small as 10⁻⁵.
 const DEEPEST_PIECE: u8 = 48;
-/// A ball is small enough if its radius is less than this times its distance …
+/// Ratio of a ball's radius to its distance up to which the ball is small enough.
 const SMALL_BALL: f64 = 0.2;
-/// … or than this times the kernel's width, unless the kernel has a pole.
+/// Ratio of a ball's radius to the kernel's width up to which the ball is small enough, unless the
+/// kernel has a pole.
 const SMALL_WIDTH: f64 = 0.08;
 /// Most pieces of all bones together.
 const MOST_PIECES: usize = 1 << 21;
-/// Bounds are computed in floating point, and tapers are fitted within 10⁻⁹.
+/// Factor on bounds for their rounding, and for tapers, which are fitted within 10⁻⁹.
 const BOUND_SLACK: f64 = 1.0 + 1e-6;
 
-/// One term of the field.
+/// A term of the field.
 #[derive(Clone, Debug)]
 struct Body {
     kernel: Kernel,
@@ -75,9 +78,9 @@ struct Body {
     factor: Factor,
     taper: Option<Shaping>,
     skeleton: Skeleton,
-    /// Its first piece; none of a plane.
+    /// The bone's first piece; `None` for a plane.
     root: Option<u32>,
-    /// For a triangle or a polygon: its normal and the first pieces of its edges.
+    /// Normal and first pieces of the edges, for a triangle or a polygon.
     rim: Option<(DVec3, Vec<u32>)>,
     primitive: usize,
 }
@@ -135,24 +138,28 @@ impl Pieces {
                 let (widths, height) = ([p.width; 2], p.height.abs());
                 let node = body.node(piece, [0.0, 1.0], 0, widths, height);
                 body.root = Some(pieces.keep(node));
-                body.rim = flat(&p.skeleton).map(|(normal, edges)| {
-                    let edge = |(a, b)| body.node(Piece::Line(a, b), [0.0, 1.0], 0, widths, height);
-                    let nodes = edges.into_iter().map(edge);
-                    (normal, nodes.map(|node| pieces.keep(node)).collect())
-                });
+                if let Some((normal, edges)) = flat(&p.skeleton) {
+                    let mut rim = Vec::with_capacity(edges.len());
+                    for (a, b) in edges {
+                        let node = body.node(Piece::Line(a, b), [0.0, 1.0], 0, widths, height);
+                        rim.push(pieces.keep(node));
+                    }
+                    body.rim = Some((normal, rim));
+                }
             }
             pieces.bodies.push(body);
         }
         pieces
     }
 
+    /// Adds a node; returns its number.
     fn keep(&mut self, node: Node) -> u32 {
         self.nodes.push(node);
         self.nodes.len() as u32 - 1
     }
 
-    /// Bounds of the whole field in a ball; of its second derivative along a unit vector, if one is
-    /// given, else in any direction.
+    /// Returns bounds on the whole field in a ball; that on the second derivative is along a unit
+    /// vector, if one is given, else in any direction.
     pub fn extent(
         &mut self,
         primitives: &[Primitive],
@@ -170,7 +177,7 @@ impl Pieces {
                 }
             };
             if let Some(along) = along {
-                most[2] = most[2].min(self.over_flat(number, center, radius, along, most[2]));
+                most[2] = most[2].min(self.flat_curvature(number, center, radius, along, most[2]));
             }
             let body = &self.bodies[number];
             let [size, slope, bend] = body.factor.largest;
@@ -189,11 +196,11 @@ impl Pieces {
         sum
     }
 
-    /// The second derivative of a flat bone's term along a vector with the cosine c to its normal:
-    /// in its plane derivatives are integrals of first derivatives over the rim alone (Gauss'
-    /// theorem), so that it is at most `c²·curvature + (2c+1)·(slopes over the rim)`. Rays along a
-    /// face need this bound.
-    fn over_flat(
+    /// Bounds the second derivative of a flat bone's term along a vector with the cosine c to its
+    /// normal: in its plane derivatives are integrals of first derivatives over the rim alone
+    /// (Gauss' theorem), so that it is at most `c²·curvature + (2c+1)·(slopes over the rim)`. Rays
+    /// along a face need this bound.
+    fn flat_curvature(
         &mut self,
         number: usize,
         center: DVec3,
@@ -216,7 +223,7 @@ impl Pieces {
         cosine * cosine * curvature + (2.0 * cosine + 1.0) * rim
     }
 
-    /// Magnitude, slope and curvature of one term, before its factor.
+    /// Bounds magnitude, slope and curvature of one term, before its factor.
     fn gather(&mut self, number: usize, root: u32, center: DVec3, radius: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         let has_pole = self.bodies[number].kernel.has_pole();
@@ -252,6 +259,7 @@ impl Pieces {
         sum
     }
 
+    /// Returns the first part of a node and the number of its parts, made at first use.
     fn parts(&mut self, number: usize, index: u32) -> (u32, u32) {
         let node = &self.nodes[index as usize];
         if node.parts.0 != UNCUT {
@@ -267,6 +275,7 @@ impl Pieces {
 }
 
 impl Body {
+    /// Makes the node of a piece, given the parameters of the node that it is a part of.
     fn node(
         &self,
         piece: Piece,
@@ -292,6 +301,7 @@ impl Body {
         }
     }
 
+    /// Divides a node.
     fn halves(&self, node: &Node) -> Vec<Node> {
         let depth = node.depth + 1;
         let [from, to] = node.share;
@@ -312,15 +322,15 @@ impl Body {
             }
             Piece::Arc(c, axes, [a, b]) => {
                 let m = 0.5 * (a + b);
-                let part = |turn| Piece::Arc(*c, *axes, turn);
-                two(part([*a, m]), part([m, *b]), [middle; 2])
+                let [left, right] = [[*a, m], [m, *b]].map(|turn| Piece::Arc(*c, *axes, turn));
+                two(left, right, [middle; 2])
             }
             Piece::Triangle([a, b, c]) => {
                 // Across the longest side.
                 let sides = [(a, b, c), (b, c, a), (c, a, b)];
                 let longest = sides.into_iter().max_by(|p, q| {
-                    let square = |s: &(&DVec3, &DVec3, &DVec3)| s.0.distance_squared(*s.1);
-                    square(p).total_cmp(&square(q))
+                    let [p, q] = [p, q].map(|side| side.0.distance_squared(*side.1));
+                    p.total_cmp(&q)
                 });
                 let (p, q, r) = longest.unwrap_or((a, b, c));
                 let m = p.lerp(*q, 0.5);
@@ -370,7 +380,7 @@ impl Body {
 }
 
 impl Piece {
-    /// Centre and radius of a ball around it, and its length or area (or more).
+    /// Returns centre and radius of a ball around the piece, and its length or area (or more).
     fn hull(&self) -> (DVec3, f64, f64) {
         let furthest = |c: DVec3, points: &[DVec3]| {
             let far = points.iter().map(|p| p.distance(c));
@@ -413,7 +423,7 @@ impl Piece {
     }
 }
 
-/// Length of a control polygon.
+/// Returns the length of a control polygon.
 fn outline(control: &[DVec3; 4]) -> f64 {
     control.windows(2).map(|w| w[0].distance(w[1])).sum()
 }
@@ -422,22 +432,18 @@ fn outline(control: &[DVec3; 4]) -> f64 {
 fn around(rings: &[Vec<DVec3>]) -> Piece {
     let mut points = rings.iter().flatten();
     let origin = points.next().copied().unwrap_or_default();
-    let far = |from: DVec3| {
-        let all = rings.iter().flatten().copied();
-        all.max_by(|a, b| {
-            (*a - from)
-                .length_squared()
-                .total_cmp(&(*b - from).length_squared())
-        })
-        .unwrap_or(from)
-    };
-    let x = (far(origin) - origin).try_normalize().unwrap_or(DVec3::X);
+    let x = rings
+        .iter()
+        .flatten()
+        .map(|p| *p - origin)
+        .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+        .and_then(DVec3::try_normalize)
+        .unwrap_or(DVec3::X);
     // The corner furthest from the line along x determines the plane.
-    let off = |p: DVec3| (p - origin) - x * x.dot(p - origin);
     let y = rings
         .iter()
         .flatten()
-        .map(|p| off(*p))
+        .map(|p| (*p - origin) - x * x.dot(*p - origin))
         .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
         .and_then(DVec3::try_normalize)
         .unwrap_or_else(|| x.any_orthonormal_vector());
@@ -453,7 +459,7 @@ fn around(rings: &[Vec<DVec3>]) -> Piece {
     Piece::Cell(origin + x * cx + y * cy, [x * hx, y * hy], false)
 }
 
-/// Normal and edges of a triangle or polygon; `None` for other bones.
+/// Returns normal and edges of a triangle or polygon; `None` for other bones.
 fn flat(skeleton: &Skeleton) -> Option<(DVec3, Vec<(DVec3, DVec3)>)> {
     match skeleton {
         Skeleton::Triangle { corners: [a, b, c] } => {
@@ -477,7 +483,7 @@ fn edges(rings: &[Vec<DVec3>]) -> impl Iterator<Item = (DVec3, DVec3)> {
         .flat_map(|ring| (0..ring.len()).map(move |i| (ring[i], ring[(i + 1) % ring.len()])))
 }
 
-/// Distance of a point from a polygon's edges.
+/// Returns the distance of a point from a polygon's edges.
 fn edge_distance(rings: &[Vec<DVec3>], point: DVec3) -> f64 {
     edges(rings)
         .map(|(a, b)| {
@@ -488,9 +494,9 @@ fn edge_distance(rings: &[Vec<DVec3>], point: DVec3) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Width parameters and largest height of a taper between two shares of its length. Both follow
-/// from radius and relative blobbiness alone: the width falls with the one and rises with the
-/// other.
+/// Returns the smallest and the largest width parameter and the largest height of a taper between
+/// two shares of its length. Both follow from radius and relative blobbiness alone: the width falls
+/// with the one and rises with the other.
 fn range(
     shaping: &Shaping,
     skeleton: &Skeleton,
@@ -529,9 +535,9 @@ fn range(
     )
 }
 
-/// Magnitude, slope and curvature of a plane's term in a ball. With `P(z) = π∫G` from z² on, the
-/// slope is `2πzG` and the curvature at most `2πG + 4πz²|G′|`; along a vector that is not its
-/// normal by the cosine and its square less.
+/// Bounds magnitude, slope and curvature of a plane's term in a ball. With `P(z) = π∫G` from z² on,
+/// the slope is `2πzG` and the curvature at most `2πG + 4πz²|G′|`; along a vector with the cosine c
+/// to the normal they are c and c² times that.
 fn plane(primitive: &Primitive, center: DVec3, radius: f64, along: Option<DVec3>) -> [f64; 3] {
     let Skeleton::Plane { point, normal } = primitive.skeleton else {
         return [f64::INFINITY; 3];

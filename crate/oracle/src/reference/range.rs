@@ -1,4 +1,4 @@
-//! Ranges of values in a ball, and functions that bodies in contact are deformed by.
+//! Ranges of values in a ball, and the functions that deform bodies in contact.
 use std::sync::Arc;
 
 /// The least and the largest value of a function in a ball.
@@ -9,7 +9,7 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// The largest of two functions.
+    /// Returns the range of the larger of two functions.
     pub fn or(self, other: Self) -> Self {
         Self {
             low: self.low.max(other.low),
@@ -22,7 +22,7 @@ impl Range {
 /// start, 1 − f where it is above 1, and a bulge between.
 #[derive(Clone)]
 pub struct Deformation {
-    /// Value of the field from which on it is not 0.
+    /// Value of the field from which on g is not 0.
     pub start: f64,
     formula: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
     /// The largest slope in the bulge.
@@ -35,18 +35,22 @@ impl core::fmt::Debug for Deformation {
     }
 }
 
-/// Samples of a bulge from which its slope is taken, and by how much that is enlarged.
+/// Number of samples of a bulge from which its slope is taken.
 const SAMPLES: u32 = 4096;
+/// Factor on the largest slope between samples.
 const ENLARGED: f64 = 1.05;
-/// Parts of an interval of f whose values bound those between.
+/// Number of parts of an interval of f; the values at their ends bound those between.
 const PARTS: u32 = 16;
 
 impl Deformation {
     /// Returns a deformation by a formula that holds between its start and 1.
     #[must_use]
     pub fn new(start: f64, formula: Arc<dyn Fn(f64) -> f64 + Send + Sync>) -> Self {
-        let at = |i: u32| start + (1.0 - start) * f64::from(i) / f64::from(SAMPLES);
-        let changes = (0..SAMPLES).map(|i| (formula(at(i + 1)) - formula(at(i))).abs());
+        let changes = (0..SAMPLES).map(|i| {
+            let [before, after] = [i, i + 1]
+                .map(|i| formula(start + (1.0 - start) * f64::from(i) / f64::from(SAMPLES)));
+            (after - before).abs()
+        });
         let step = (1.0 - start) / f64::from(SAMPLES);
         Self {
             start,
@@ -64,13 +68,13 @@ impl Deformation {
         }
     }
 
-    /// Returns its slope, by a difference.
+    /// Returns the slope of g, by a difference.
     pub(super) fn slope(&self, f: f64) -> f64 {
         const STEP: f64 = 1e-6;
         (self.value(f + STEP) - self.value(f - STEP)) / (2.0 * STEP)
     }
 
-    /// Returns its range over an interval of f.
+    /// Returns the range of g over an interval of f.
     pub(super) fn range(&self, of: Range) -> Range {
         let mut all = Range {
             low: f64::INFINITY,

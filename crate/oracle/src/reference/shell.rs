@@ -1,6 +1,6 @@
 //! Bounds on a kernel, its slope and its curvature in a shell of distances.
 //!
-//! With q the squared distance in kernel widths a kernel is G(q). Of `h(r) = G(r²)` the slope is
+//! A kernel is G(q) with q the squared distance in kernel widths. The slope of `h(r) = G(r²)` is
 //! `2rG′`, and the matrix of second derivatives of `h(|x|)` has the eigenvalues `2G′` (across) and
 //! `2G′ + 4qG″` (outward). G and −G′ fall; `√q·G′` and `q·G″` rise to one peak and fall, so that
 //! their largest value in a shell is at the peak, or at the end of the shell that is nearer to it.
@@ -76,7 +76,7 @@ fn peak(f: &dyn Fn(f64) -> f64) -> f64 {
     if f(low) < f(high) { high } else { low }
 }
 
-/// The bounds between two distances in units of the kernel's width.
+/// Returns the bounds between two distances in units of the kernel's width.
 pub fn largest(of: Kernel, near: f64, far: f64) -> Largest {
     let (p, q) = (near * near, far * far);
     let [steepest, most_bent] = peaks(of).map(|peak| peak.clamp(p, q));

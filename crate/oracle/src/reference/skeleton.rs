@@ -1,6 +1,6 @@
-//! The reference's local convolution: places by a search of its own, bounds from pieces, distances
-//! by Floyd and Warshall. It shares the sum of a place's window with [`field::Local`], and nothing
-//! else.
+//! Local convolution of the reference: places are found by a search of its own, bounds come from
+//! pieces, distances from Floyd and Warshall's method. It shares the sum of a place's window with
+//! [`field::Local`], and nothing else.
 use super::function::{Evaluation, FIELD_ERROR};
 use super::pieces::{Magnitudes, Pieces};
 use super::range::{Deformation, Range};
@@ -30,7 +30,7 @@ struct Stalk {
     length: f64,
     /// Whether the next segment goes on from its end, with the same plane.
     joined: bool,
-    /// Whether an end is one of the skeleton, or a branch.
+    /// Whether the ends are ends of the skeleton, or branches.
     loose: [bool; 2],
 }
 
@@ -38,7 +38,7 @@ struct Stalk {
 #[derive(Clone, Debug)]
 struct Part {
     limb: usize,
-    /// Arc lengths of its ends.
+    /// Arc lengths of the piece's ends.
     stretch: [f64; 2],
     primitive: [Primitive; 1],
     bounds: Pieces,
@@ -48,12 +48,15 @@ struct Part {
 #[derive(Clone, Copy, Debug)]
 struct Cluster {
     limb: usize,
-    /// Parts of it.
+    /// Interval of the limb, as fractions of its length.
     parts: [f64; 2],
-    /// Sides of the ball on which the planes before and behind it are; 0 at an end of the limb.
+    /// Sides of the ball on which the planes before and behind the interval are; 0 at an end of the
+    /// limb.
     sides: [i8; 2],
-    /// Whether there is a place for every point of the ball, here or in those that it goes on in.
+    /// Whether there is a place for every point of the ball, in this cluster or in the others of
+    /// its chain.
     lasting: bool,
+    /// First of the clusters that continue each other from limb to limb.
     chain: usize,
     range: Range,
 }
@@ -62,6 +65,7 @@ struct Cluster {
 const STEEP: f64 = 1.5 * 3.0;
 
 impl SkeletonTerms {
+    /// Prepares a skeleton.
     pub fn new(
         points: &[DVec3],
         limbs: &[Limb],
@@ -135,7 +139,7 @@ impl SkeletonTerms {
         })
     }
 
-    /// Distance along the skeleton between two places.
+    /// Returns the distance along the skeleton between two places.
     fn distance(&self, a: Place, b: Place) -> f64 {
         let [one, other] = [a, b].map(|place| &self.limbs[place.segment as usize]);
         let mut least = f64::INFINITY;
@@ -179,6 +183,7 @@ impl SkeletonTerms {
         found
     }
 
+    /// Evaluates the field at a point.
     pub fn sample(&self, point: DVec3) -> Evaluation {
         let places = self.places(point);
         let jets: Vec<_> = places
@@ -192,8 +197,8 @@ impl SkeletonTerms {
         let own = jets[first];
         let (mut value, mut gradient) = (own.value, DVec3::from_array(own.gradient));
         if let Some(fold) = &self.fold {
-            let far = |i: &usize| self.distance(places[first], places[*i]) > 2.0 * self.reach;
-            let second = (0..jets.len()).filter(far);
+            let second = (0..jets.len())
+                .filter(|i| self.distance(places[first], places[*i]) > 2.0 * self.reach);
             let second = second.max_by(|a, b| jets[*a].value.total_cmp(&jets[*b].value));
             if let Some(second) = second {
                 let other = jets[second];
@@ -209,7 +214,7 @@ impl SkeletonTerms {
         evaluation(value, gradient)
     }
 
-    /// The least and the largest value in a ball.
+    /// Returns the least and the largest value in a ball.
     pub fn range(&mut self, center: DVec3, radius: f64) -> Range {
         let clusters = self.clusters(center, radius);
         let mut floor = 0.0f64;
@@ -243,7 +248,7 @@ impl SkeletonTerms {
                 if apart + half + about > far {
                     second.high = second.high.max(cluster.range.high);
                 }
-                // Those of a chain of one member are there wherever they are lasting.
+                // The only cluster of a chain is there wherever it is lasting.
                 let alone = clusters.iter().filter(|c| c.chain == cluster.chain).count() == 1;
                 if apart - half - about > far && cluster.lasting && alone {
                     least = least.max(cluster.range.low);
@@ -267,7 +272,7 @@ impl SkeletonTerms {
         }
     }
 
-    /// The places whose planes may meet a ball, with the ranges of their fields.
+    /// Returns the places whose planes may meet a ball, with the ranges of their fields.
     fn clusters(&mut self, center: DVec3, radius: f64) -> Vec<Cluster> {
         let mut found: Vec<Cluster> = Vec::new();
         for (number, limb) in self.limbs.iter().enumerate() {
@@ -286,7 +291,7 @@ impl SkeletonTerms {
                 });
             });
         }
-        // Those that go on in the next limb: a plane on either side of the ball means one through
+        // Clusters that go on in the next limb: planes on both sides of the ball mean one through
         // each of its points.
         let mut i = 0;
         while i < found.len() {
@@ -331,7 +336,7 @@ impl SkeletonTerms {
         found
     }
 
-    /// The range of the fields of a cluster's places.
+    /// Returns the range of the fields of a cluster's places.
     fn field(
         &mut self,
         cluster: &Cluster,
@@ -384,7 +389,7 @@ impl SkeletonTerms {
 }
 
 impl Stalk {
-    /// `d(u)·(p − r(u))` as a polynomial `au² + bu + c`.
+    /// Returns `d(u)·(p − r(u))` as a polynomial `au² + bu + c`.
     fn polynomial(&self, point: DVec3) -> [f64; 3] {
         let [first, last] = self.normals;
         let (turn, away) = (last - first, point - self.base);
@@ -395,8 +400,8 @@ impl Stalk {
         ]
     }
 
-    /// Calls `tell` with the intervals of parts whose planes may meet a ball, in order, and on
-    /// which sides of the ball the planes before and behind them are.
+    /// Calls `tell` with the intervals of parts whose planes may meet a ball, in order, and the
+    /// sides of the ball on which the planes before and behind them are.
     fn clusters(&self, center: DVec3, radius: f64, mut tell: impl FnMut([f64; 2], [i8; 2])) {
         let [a, b, c] = self.polynomial(center);
         let steepest = b.abs() + 2.0 * a.abs();
@@ -431,6 +436,7 @@ impl Stalk {
     }
 }
 
+/// Returns the evaluation of a value and gradient with their rounding.
 fn evaluation(value: f64, gradient: DVec3) -> Evaluation {
     Evaluation {
         excess: value - 1.0,

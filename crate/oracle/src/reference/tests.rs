@@ -1,4 +1,4 @@
-//! The reference against steps so small that they need no bounds.
+//! Tests of the reference against steps so small that they need no bounds.
 use super::{Near, Reference};
 use field::{Kernel, Profile, Wave};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use scene::{Element, Scene, Shape};
 use trials::scenes::{clothe, element, empty, soft};
 use trials::{Random, count};
 
-/// Some elements of one kernel; every other scene carves, tapers or has a profile.
+/// Returns some elements of one kernel; every other scene carves, tapers or has a profile.
 fn scene(kernel: Kernel, seed: u64) -> Scene {
     let mut n = Random::new(seed * 8 + kernel as u64);
     let mut scene = empty();
@@ -108,7 +108,7 @@ fn crossings_are_those_of_small_steps() {
     assert!(seen > count(75), "{seen} crossings");
 }
 
-/// Without profiles, as those with kinks have no second derivative there.
+/// The scenes' profiles are smooth, as there is no second derivative at kinks.
 #[test]
 fn slopes_change_no_faster_than_the_bound() {
     let mut tight = 0;
@@ -203,7 +203,7 @@ fn a_ball_is_found_to_the_last_digits() {
 }
 
 #[test]
-fn wrong_reports_are_told() {
+fn wrong_reports_are_noticed() {
     use super::Fault;
     let scene = scene(Kernel::Cauchy, 0);
     let mut reference = reference(&scene);

@@ -1,4 +1,4 @@
-//! Bodies that touch, as one function: the largest of theirs, each as the others press it.
+//! Bodies that touch, as one function: the largest of the bodies' own, each as the others press it.
 use super::function::{Evaluation, FieldTerms};
 use super::range::{Deformation, Range};
 use super::skeleton::SkeletonTerms;
@@ -6,20 +6,20 @@ use field::Primitive;
 use field::local::{Limb, LocalError};
 use glam::DVec3;
 
-/// What a body is made of.
+/// The substance of a body.
 #[derive(Clone, Debug)]
 pub enum Substance {
     /// The sum of primitives.
     Sum(Vec<Primitive>),
     /// A skeleton that is convolved locally.
     Skeleton {
-        /// Its points.
+        /// Points of the skeleton.
         points: Vec<DVec3>,
-        /// Segments between them.
+        /// Segments between the points.
         limbs: Vec<Limb>,
         /// The reach D.
         reach: f64,
-        /// How its folds press each other, if they do.
+        /// Deformation by which the folds press each other, if they do.
         fold: Option<Deformation>,
     },
 }
@@ -27,9 +27,9 @@ pub enum Substance {
 /// A body that touches others.
 #[derive(Clone, Debug)]
 pub struct TouchingBody {
-    /// Its own function.
+    /// Substance of the body.
     pub substance: Substance,
-    /// The numbers of the bodies that press it, and how.
+    /// Numbers of the bodies that press it, and the deformations.
     pub partners: Vec<(usize, Deformation)>,
 }
 
@@ -99,7 +99,7 @@ impl Touching {
         })
     }
 
-    /// The least and the largest value in a ball.
+    /// Returns the least and the largest value in a ball.
     pub fn range(&mut self, center: DVec3, radius: f64) -> Range {
         let alone: Vec<Range> = (self.bodies.iter_mut())
             .map(|(terms, _)| match terms {

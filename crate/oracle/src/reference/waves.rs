@@ -5,16 +5,16 @@ use field::{Kink, Primitive, Skeleton, Wave, kinks};
 /// Bounds on a primitive's profile.
 #[derive(Clone, Debug)]
 pub struct Factor {
-    /// Upper bounds of the factor's magnitude and of its first and second derivatives by length.
+    /// Upper bounds on the factor's magnitude and on its first and second derivatives by length.
     pub largest: [f64; 3],
-    /// Whether it may be negative.
+    /// Whether the factor may be negative.
     pub turns: bool,
-    /// Its kinks.
+    /// Kinks of the factor.
     pub kinks: Vec<Kink>,
 }
 
 impl Factor {
-    /// The bounds for a primitive.
+    /// Returns the bounds for a primitive.
     pub fn of(primitive: &Primitive) -> Self {
         let Some(profile) = &primitive.profile else {
             return Self {

@@ -38,7 +38,7 @@ struct Crowd {
     hanging: HashSet<usize>,
     /// Evaluations that a tile takes.
     effort: fn(&Tile) -> u64,
-    /// Its pixels that get more rays.
+    /// Number of a tile's pixels that get more rays.
     edges: fn(&Tile) -> u64,
     restarts: usize,
     done: Vec<Order>,
@@ -100,7 +100,7 @@ impl Crowd {
         self.obey();
     }
 
-    /// Every worker does one job, which takes a millisecond. Returns whether anyone had one.
+    /// Lets every worker do one job, which takes a millisecond. Returns whether anyone had one.
     fn work(&mut self) -> bool {
         let mut any = false;
         self.now += 1e-3;
@@ -113,15 +113,15 @@ impl Crowd {
         any
     }
 
-    /// A worker does one job, if it has one.
+    /// Lets a worker do one job. Returns that job, if there was one.
     fn work_one(&mut self, i: usize) -> Option<Job> {
         let job = self.desks[i].pop_front()?;
         match job {
-            Job::Start => self.scheduler.started(i, self.now),
-            Job::Note(number) => self.scheduler.noted(i, number, self.now),
-            Job::Prepare(number) => self.scheduler.prepared(i, number, self.now),
+            Job::Start => self.scheduler.note_start(i, self.now),
+            Job::Note(number) => self.scheduler.note_picture(i, number, self.now),
+            Job::Prepare(number) => self.scheduler.note_preparation(i, number, self.now),
             Job::Tile(order) if self.deadly.contains(&order) => {
-                self.scheduler.died(i, "deadly", self.now);
+                self.scheduler.note_death(i, "deadly", self.now);
             }
             Job::Tile(order) => {
                 let stats = Stats {
@@ -129,7 +129,7 @@ impl Crowd {
                     edges: (self.edges)(&order.tile),
                     ..STATS
                 };
-                if self.scheduler.traced(i, order, &stats, 1e-3, self.now) {
+                if self.scheduler.take_tile(i, order, &stats, 1e-3, self.now) {
                     self.done.push(order);
                 }
             }
@@ -144,7 +144,7 @@ impl Crowd {
         }
     }
 
-    /// Time passes without any work; the pool looks at the clock now and then.
+    /// Lets time pass without any work; the pool looks at the clock now and then.
     fn wait(&mut self, seconds: f64) {
         let end = self.now + seconds;
         while self.now < end {
@@ -240,8 +240,10 @@ fn worker_smooths_its_own_tiles_then_helps() {
     for workers in [1, 2, 3] {
         let by = run(workers, None);
         // Only the last tiles, with which a finished worker helps, change hands.
-        let moved = |tile: &&Tile| by[&(**tile, Pass::Full)] != by[&(**tile, Pass::Smooth)];
-        let moved = tiles.iter().filter(moved).count();
+        let moved = tiles
+            .iter()
+            .filter(|tile| by[&(**tile, Pass::Full)] != by[&(**tile, Pass::Smooth)])
+            .count();
         assert!(
             16 * moved <= tiles.len() && (workers > 1 || moved == 0),
             "{moved}"
@@ -259,13 +261,15 @@ fn worker_smooths_its_own_tiles_then_helps() {
     assert!(parted <= 18, "{parted}");
     // A slow worker is helped.
     let by = run(2, Some(0));
-    let slow = |pass| tiles.iter().filter(|tile| by[&(**tile, pass)] == 0).count();
-    assert!(slow(Pass::Full) + slow(Pass::Smooth) < tiles.len() / 2 + 2);
+    let slow = by
+        .iter()
+        .filter(|((_, pass), worker)| *pass != Pass::Coarse && **worker == 0);
+    assert!(slow.count() < tiles.len() / 2 + 2);
 }
 
-/// How many tiles are made smooth by another worker than the one that has sampled them, with two
-/// workers and a picture of which each has a half.
-fn helped(edges: fn(&Tile) -> u64) -> usize {
+/// Returns the number of tiles made smooth by another worker than the one that has sampled them,
+/// with two workers and a picture of which each has a half.
+fn count_help(edges: fn(&Tile) -> u64) -> usize {
     let mut crowd = Crowd::new(2);
     crowd.edges = edges;
     // Both are awake.
@@ -290,18 +294,18 @@ fn helped(edges: fn(&Tile) -> u64) -> usize {
             }
         }
     }
-    let moved = |(tile, pass): &&(Tile, Pass)| {
-        *pass == Pass::Smooth && by[&(*tile, Pass::Full)] != by[&(*tile, *pass)]
-    };
-    by.keys().filter(moved).count()
+    let smooth = by.iter().filter(|((_, pass), _)| *pass == Pass::Smooth);
+    smooth
+        .filter(|((tile, _), worker)| by[&(*tile, Pass::Full)] != **worker)
+        .count()
 }
 
 #[test]
 fn idle_worker_helps_only_where_it_pays() {
     // Nothing would be gained with tiles that take a tenth of the time of their samples, …
-    assert_eq!(helped(|tile| if tile.x < 256 { 15 } else { 0 }), 0);
+    assert_eq!(count_help(|tile| if tile.x < 256 { 15 } else { 0 }), 0);
     // … but much with those that take ten times as long.
-    let many = helped(|tile| if tile.x < 256 { 1500 } else { 0 });
+    let many = count_help(|tile| if tile.x < 256 { 1500 } else { 0 });
     assert!((10..=16).contains(&many), "{many} of 32");
 }
 
@@ -318,7 +322,7 @@ fn tiles_of_a_lost_worker_go_to_the_others() {
             }
             crowd.hanging.insert(0);
             while crowd.scheduler.slots[0].life.is_running() {
-                crowd.scheduler.died(0, "gone", crowd.now);
+                crowd.scheduler.note_death(0, "gone", crowd.now);
                 crowd.obey();
             }
             crowd.work_off();
@@ -353,8 +357,7 @@ fn idle_worker_is_reconsidered_when_costs_are_known() {
     let size = [128, 192];
     crowd.scheduler.start(Plan { size, ..plan(1) }, 0.0);
     crowd.obey();
-    let coarse = |crowd: &Crowd| crowd.progress().pass_seconds[0].is_none();
-    while coarse(&crowd) {
+    while crowd.progress().pass_seconds[0].is_none() {
         crowd.work();
     }
     // The second one does all that it is given; then it is the first one's turn.
@@ -409,7 +412,7 @@ fn every_picture_ends() {
             assert!(step < 100_000, "endless: {case}");
             let worker = random.below(workers);
             if random.below(200) == 0 {
-                crowd.scheduler.died(worker, "by chance", crowd.now);
+                crowd.scheduler.note_death(worker, "by chance", crowd.now);
                 crowd.obey();
             }
             crowd.now += 1e-3;
@@ -553,7 +556,7 @@ fn dead_worker_is_replaced_and_its_tiles_repeated() {
         crowd.work();
     }
     crowd.desks[1].clear();
-    crowd.scheduler.died(1, "killed", crowd.now);
+    crowd.scheduler.note_death(1, "killed", crowd.now);
     crowd.obey();
     crowd.work_off();
     let progress = crowd.progress();
@@ -586,7 +589,7 @@ fn hanging_worker_is_replaced() {
 
 #[test]
 fn slow_tiles_get_more_time() {
-    let limits = |seconds: f64, failures: u32| {
+    fn limit(seconds: f64, failures: u32) -> f64 {
         let mut crowd = Crowd::new(1);
         crowd.start(1);
         for _ in 0..3 {
@@ -595,18 +598,20 @@ fn slow_tiles_get_more_time() {
         let Some(Job::Tile(order)) = crowd.desks[0].pop_front() else {
             panic!("no tile");
         };
-        crowd.scheduler.traced(0, order, &STATS, seconds, crowd.now);
+        crowd
+            .scheduler
+            .take_tile(0, order, &STATS, seconds, crowd.now);
         let run = crowd.scheduler.run.as_mut().unwrap();
         let last = 11; // of the coarse pass
         for _ in 0..failures {
-            run.failed(last);
+            run.fail(last);
         }
         run.limit(last)
-    };
-    assert_eq!(limits(1e-3, 0), TILE_LIMIT);
-    assert_eq!(limits(1e-3, 2), TILE_LIMIT * RETRY * RETRY);
-    assert_eq!(limits(3.0, 0), SLACK * 3.0);
-    assert_eq!(limits(100.0, 0), LONGEST_LIMIT);
+    }
+    assert_eq!(limit(1e-3, 0), TILE_LIMIT);
+    assert_eq!(limit(1e-3, 2), TILE_LIMIT * RETRY * RETRY);
+    assert_eq!(limit(3.0, 0), SLACK * 3.0);
+    assert_eq!(limit(100.0, 0), LONGEST_LIMIT);
 }
 
 #[test]
@@ -670,7 +675,7 @@ fn attempts_are_limited() {
         for command in commands {
             if let Command::Restart(i) = command {
                 restarts += 1;
-                scheduler.died(i, "no such file", 0.0);
+                scheduler.note_death(i, "no such file", 0.0);
             }
         }
     }
@@ -684,8 +689,8 @@ fn attempts_are_limited() {
     scheduler.launch(0.0);
     scheduler.start(plan(1), 0.0);
     for _ in 0..ATTEMPTS {
-        scheduler.started(0, 0.0);
-        scheduler.died(0, "too big", 0.0);
+        scheduler.note_start(0, 0.0);
+        scheduler.note_death(0, "too big", 0.0);
     }
     let progress = scheduler.progress(0.0);
     assert!(progress.error.unwrap().contains("too big"));
@@ -704,6 +709,6 @@ fn pictures_wait_until_workers_can_be_started() {
     assert!(scheduler.commands().is_empty());
     scheduler.launch(1.0);
     assert_eq!(scheduler.commands(), [Command::Restart(0)]);
-    scheduler.started(0, 1.1);
+    scheduler.note_start(0, 1.1);
     assert_eq!(scheduler.commands()[0], Command::Begin(0));
 }

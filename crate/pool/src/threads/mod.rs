@@ -20,9 +20,9 @@ pub type Outlet<'a> = dyn Fn(Vec<u8>) -> bool + 'a;
 /// The program that threads run.
 #[derive(Clone, Copy)]
 pub struct Program {
-    /// Serves requests until its inbox is closed, or what it sends is not taken any more. The
-    /// number is that of the work wanted from it, as the last request said; it changes when the
-    /// present work is given up.
+    /// Serves requests until its inbox is closed or its answers are not taken any more. The number
+    /// is that of the work wanted from it, as the last request said; it changes when the present
+    /// work is given up.
     pub serve: fn(&Receiver<Vec<u8>>, &AtomicU64, &Outlet<'_>),
     /// Reads the number of the work that a packed request wants.
     pub number: fn(&[u8]) -> Option<u64>,
@@ -43,7 +43,7 @@ pub const TOOLS: Program = Program {
     number: |_| None,
 };
 
-/// Returns the picture that a request begins or ends.
+/// Returns the number of the picture that a request begins or ends.
 fn generation(request: &[u8]) -> Option<u64> {
     match unpack(request) {
         Ok(Request::Begin { generation, .. } | Request::Stop { generation }) => Some(generation),
@@ -77,10 +77,11 @@ fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
                 Err(error) => listened = answer(Answer::Failed(error.to_string())),
             },
             Err(TryRecvError::Empty) => {
-                let stop = || wanted.load(Ordering::Relaxed) != generation;
-                let seconds = || clock.elapsed().as_secs_f64();
-                if let Step::Answer(made) = engine.step(&stop, &seconds) {
-                    listened = answer(made);
+                let step = engine.step(&|| wanted.load(Ordering::Relaxed) != generation, &|| {
+                    clock.elapsed().as_secs_f64()
+                });
+                if let Step::Answer(message) = step {
+                    listened = answer(message);
                 }
             }
             Err(TryRecvError::Disconnected) => return,
@@ -150,7 +151,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         }
     }
 
-    /// Has the workers' program loaded; a thread has it.
+    /// Loads the workers' program; a thread has it.
     pub fn load(&self) {}
 
     /// Whether the workers' program is there, as it always is.

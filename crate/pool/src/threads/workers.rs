@@ -10,13 +10,14 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 struct Thread {
     requests: Sender<Vec<u8>>,
     wanted: Arc<AtomicU64>,
+    /// Number that no other thread has.
     incarnation: u64,
 }
 
-/// A message with the index of its thread, and which thread of that index it was.
+/// A message with the index of its thread and its [`Thread::incarnation`].
 type Report = (usize, u64, Message);
 
-/// No work has this number.
+/// Number of no work.
 pub const NONE: u64 = u64::MAX;
 
 /// Threads that run the same program.
@@ -83,8 +84,10 @@ impl Workers for Threads {
                     repaint();
                     sent
                 };
-                let work = || serve(&inbox, &shared, &|bytes| send(Message::Bytes(bytes)));
-                if let Err(panic) = catch_unwind(AssertUnwindSafe(work)) {
+                let outcome = catch_unwind(AssertUnwindSafe(|| {
+                    serve(&inbox, &shared, &|bytes| send(Message::Bytes(bytes)));
+                }));
+                if let Err(panic) = outcome {
                     let reason = panic
                         .downcast_ref::<String>()
                         .cloned()

@@ -59,7 +59,7 @@ fn job_that_panics_fails_and_the_next_one_is_run() {
 }
 
 #[test]
-fn cancelled_job_does_not_delay_the_next() {
+fn next_job_does_not_wait_for_a_cancelled_one() {
     let tools = unreliable();
     let slow = tools.submit(read("slow.obj"));
     let mut quick = tools.submit(read("a.obj"));
@@ -89,7 +89,7 @@ fn long_job_keeps_no_hand_waiting() {
 }
 
 #[test]
-fn broken_file_is_an_error_not_a_failure_of_the_worker() {
+fn worker_does_not_fail_at_a_broken_file() {
     let tools = Tools::new(|| {});
     let mut ticket = tools.submit(ReadMesh {
         name: "a.ply".into(),

@@ -106,7 +106,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         Self { inner }
     }
 
-    /// Has the workers' program loaded, unless that was done.
+    /// Loads the workers' program, unless that was done.
     pub fn load(&self) {
         let inner = &mut *self.inner.borrow_mut();
         if inner.is_loading || inner.manager.workers().has_module() {

@@ -5,15 +5,15 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 use web_sys::{Response, Window};
 
-/// How often hanging workers are looked for while something is being done, milliseconds.
+/// Milliseconds between two searches for hanging workers while something is being done.
 const TICK: i32 = 120;
 
-/// The page's window.
+/// Returns the page's window.
 pub fn window() -> Option<Window> {
     web_sys::window()
 }
 
-/// Seconds since the page was opened.
+/// Returns the seconds since the page was opened.
 pub fn now() -> f64 {
     window()
         .and_then(|window| window.performance())

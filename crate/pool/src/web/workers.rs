@@ -123,8 +123,8 @@ impl Workers for WebWorkers {
     }
 }
 
-/// The message of an error event. A worker whose script cannot be loaded sends one without a
-/// message.
+/// Returns the message of an error event. A worker whose script cannot be loaded sends one without
+/// a message.
 fn reason(event: &JsValue, script: &str) -> String {
     event
         .dyn_ref::<ErrorEvent>()
@@ -133,7 +133,7 @@ fn reason(event: &JsValue, script: &str) -> String {
         .unwrap_or_else(|| format!("{script} could not be loaded"))
 }
 
-/// The message of an exception.
+/// Returns the message of an exception.
 pub fn describe(error: JsValue) -> String {
     error.dyn_ref::<js_sys::Error>().map_or_else(
         || format!("{error:?}"),

@@ -1,12 +1,9 @@
 //! Makes rows of the table of commands.
 //!
 //! ```text
-//! pub static SPHERE: CommandSpec = row(
-//!     "sphere",
-//!     "sphere; a point when soft",
-//!     takes!(sphere, SN, length("r", "the radius"), vector("POS", "the centre")),
-//! )
-//! .example(flesh!("sphere Flesh 0.6, 0 0 0"));
+//! pub static SPHERE: CommandSpec = row("sphere", "sphere; a point when soft")
+//!     .with(takes!(sphere, SN, length("r", "the radius"), vector("POS", "the centre")))
+//!     .example(flesh!("sphere Flesh 0.6, 0 0 0"));
 //!
 //! fn sphere<'a>(
 //!     run: &mut Evaluator<'a>,
@@ -23,7 +20,7 @@ use crate::evaluator::state::Evaluator;
 use crate::limits;
 use crate::syntax::Command;
 
-/// The text of an example: a light, a material to be seen by it, and the shapes.
+/// Makes the text of an example: a light, a material `Clay`, and the commands.
 macro_rules! clay {
     ($text:literal) => {
         concat!(
@@ -34,7 +31,7 @@ macro_rules! clay {
     };
 }
 
-/// As `clay`, with a soft material.
+/// Makes the text of an example: a light, a soft material `Flesh`, and the commands.
 macro_rules! flesh {
     ($text:literal) => {
         concat!(
@@ -47,69 +44,85 @@ macro_rules! flesh {
 }
 
 /// Makes a routine that reads operands and hands their values, in this order, to a function; a list
-/// of options in brackets is handed on before them.
+/// of options in brackets is handed on before them. In place of a function may stand a closure,
+/// `|run, command, name, shift| …`.
 ///
 /// All is read first; the function is only called if nothing was wrong.
 macro_rules! reads {
+    (|$run:ident, $command:ident $(, $value:ident)+| $does:expr, $($slot:expr),+ $(,)?) => {
+        |$run, $command| {
+            let given = $run.read_given($command)?;
+            let mut values = given.values();
+            let ($($value,)+) = ($(values.take(|| $slot)?,)+);
+            $does
+        }
+    };
     ($run:path) => {
         |run, command| {
-            run.given(command)?;
+            run.read_given(command)?;
             $run(run, command)
         }
     };
     ($run:path, [$options:expr]) => {
         |run, command| {
-            let given = run.given(command)?;
+            let given = run.read_given(command)?;
             $run(run, command, &given.options)
         }
     };
     ($run:path, [$options:expr], $($slot:expr),+ $(,)?) => {
         |run, command| {
-            let given = run.given(command)?;
+            let given = run.read_given(command)?;
             let mut values = given.values();
             $run(run, command, &given.options, $(values.take(|| $slot)?),+)
         }
     };
     ($run:path, $($slot:expr),+ $(,)?) => {
         |run, command| {
-            let given = run.given(command)?;
+            let given = run.read_given(command)?;
             let mut values = given.values();
             $run(run, command, $(values.take(|| $slot)?),+)
         }
     };
 }
 
-/// The operands of a command and the function that runs it with their values (see `reads!`):
+/// Makes the form of a command from the function that runs it (see `reads!`) and its operands:
 /// `takes!(light, [LIGHT_OPTIONS], colour("Color", "the light's colour"))`.
 macro_rules! takes {
+    (|$run:ident, $command:ident $(, $value:ident)+| $does:expr, $($slot:expr),+ $(,)?) => {
+        $crate::commands::build::by_itself(
+            $crate::commands::build::reads!(
+                |$run, $command $(, $value)+| $does, $($slot),+
+            ),
+            $crate::commands::build::plain![$($slot),+],
+            &[],
+        )
+    };
     ($run:path, [$options:expr] $(, $slot:expr)* $(,)?) => {
         $crate::commands::build::by_itself(
             $crate::commands::build::reads!($run, [$options] $(, $slot)*),
-            &[$($slot.plain),*],
+            $crate::commands::build::plain![$($slot),*],
             $options,
         )
     };
     ($run:path $(, $slot:expr)* $(,)?) => {
         $crate::commands::build::by_itself(
             $crate::commands::build::reads!($run $(, $slot)*),
-            &[$($slot.plain),*],
+            $crate::commands::build::plain![$($slot),*],
             &[],
         )
     };
 }
 
-/// The operand of a command that sets something to its value:
+/// Makes the form of a command that sets something to the values of its operands:
 /// `sets!(|run, gamma| run.settings.gamma = gamma as f32, number("value", "gamma"))`.
 macro_rules! sets {
-    (|$run:ident, $value:ident| $set:expr, $slot:expr $(,)?) => {
-        $crate::commands::build::by_itself(
-            |$run, command| {
-                let $value = $run.given(command)?.values().take(|| $slot)?;
+    (|$run:ident $(, $value:ident)+| $set:expr, $($slot:expr),+ $(,)?) => {
+        $crate::commands::build::takes!(
+            |$run, command $(, $value)+| {
                 $set;
                 Ok($crate::evaluator::state::Flow::Next)
             },
-            &[$slot.plain],
-            &[],
+            $($slot),+
         )
     };
 }
@@ -119,46 +132,61 @@ macro_rules! plain {
     ($($slot:expr),* $(,)?) => { &[$($slot.plain),*] };
 }
 
-/// Makes an option of its name, default, meaning and operands.
+/// Makes options and the list of them. Each has the type of its operands, its word, its default,
+/// its meaning and the operands, at most three:
+/// `options! { LIST: ANGLE: f64 = ("angle", "30", "the angle", degrees("a", "the angle")); }`.
+macro_rules! options {
+    ($(#[$doc:meta])* $list:ident: $($name:ident: $kind:ty = ($($choice:tt)+);)+) => {
+        $(
+            const $name: $crate::commands::slot::Choice<$kind> =
+                $crate::commands::build::choice!($($choice)+);
+        )+
+        $(#[$doc])*
+        pub static $list: &[$crate::commands::OptionSpec] =
+            $crate::commands::build::plain![$($name),+];
+    };
+}
+
+/// Makes an option of its word, default, meaning and operands.
 macro_rules! choice {
-    ($name:literal, $default:literal, $meaning:expr) => {
-        $crate::commands::slot::Choice::none($crate::commands::build::option(
+    (@option $name:literal, $default:literal, $meaning:expr $(, $slot:expr)*) => {
+        $crate::commands::build::option(
             $name,
             $default,
             $meaning,
-            &[],
-        ))
+            $crate::commands::build::plain![$($slot),*],
+        )
+    };
+    ($name:literal, $default:literal, $meaning:expr) => {
+        $crate::commands::slot::Choice::none(
+            $crate::commands::build::choice!(@option $name, $default, $meaning),
+        )
     };
     ($name:literal, $default:literal, $meaning:expr, $a:expr) => {
         $crate::commands::slot::Choice::one(
-            $crate::commands::build::option($name, $default, $meaning, &[$a.plain]),
+            $crate::commands::build::choice!(@option $name, $default, $meaning, $a),
             || $a,
         )
     };
     ($name:literal, $default:literal, $meaning:expr, $a:expr, $b:expr) => {
         $crate::commands::slot::Choice::two(
-            $crate::commands::build::option($name, $default, $meaning, &[$a.plain, $b.plain]),
+            $crate::commands::build::choice!(@option $name, $default, $meaning, $a, $b),
             || $a,
             || $b,
         )
     };
     ($name:literal, $default:literal, $meaning:expr, $a:expr, $b:expr, $c:expr) => {
         $crate::commands::slot::Choice::three(
-            $crate::commands::build::option(
-                $name,
-                $default,
-                $meaning,
-                &[$a.plain, $b.plain, $c.plain],
-            ),
+            $crate::commands::build::choice!(@option $name, $default, $meaning, $a, $b, $c),
             || $a,
             || $b,
             || $c,
         )
     };
 }
-pub(crate) use {choice, clay, flesh, plain, reads, sets, takes};
+pub(crate) use {choice, clay, flesh, options, plain, reads, sets, takes};
 
-/// The way a command is written and carried out.
+/// The way in which a command is written and carried out.
 pub struct Form {
     pub parameters: &'static [Parameter],
     pub options: &'static [OptionSpec],
@@ -204,28 +232,36 @@ pub const LIBRARY: Form = Form {
     action: Action::Library,
 };
 
-/// Makes a row of the table.
-pub const fn row(name: &'static str, meaning: &'static str, form: Form) -> CommandSpec {
-    let Form {
-        parameters,
-        options,
-        action,
-    } = form;
-    CommandSpec {
-        name,
-        parameters,
-        meaning,
-        details: "",
-        default: "",
-        options,
-        example: "",
-        bracket: None,
-        includes: false,
-        is_newer: false,
-        interrupts: false,
-        most_operands: limits::MAX_OPERANDS,
-        action,
-        mark_failed: None,
+/// Name and meaning of a command, from which [`Opcode::with`] makes its row.
+pub struct Opcode {
+    name: &'static str,
+    meaning: &'static str,
+}
+
+/// Begins a row of the table.
+pub const fn row(name: &'static str, meaning: &'static str) -> Opcode {
+    Opcode { name, meaning }
+}
+
+impl Opcode {
+    /// Makes the row of a command that is written and carried out so.
+    pub const fn with(self, form: Form) -> CommandSpec {
+        CommandSpec {
+            name: self.name,
+            parameters: form.parameters,
+            meaning: self.meaning,
+            details: "",
+            default: "",
+            options: form.options,
+            example: "",
+            bracket: None,
+            includes: false,
+            is_newer: false,
+            interrupts: false,
+            most_operands: limits::MAX_OPERANDS,
+            action: form.action,
+            mark_failed: None,
+        }
     }
 }
 
@@ -240,7 +276,7 @@ impl CommandSpec {
         self
     }
 
-    /// Newer than the first published texts: one's own command of this name hides it.
+    /// Marks it as newer than the first published texts: one's own command of this name hides it.
     pub(crate) const fn newer(mut self) -> Self {
         self.is_newer = true;
         self
@@ -251,19 +287,19 @@ impl CommandSpec {
         self
     }
 
-    /// Ends or undoes the run of the text it stands in.
+    /// Marks it as one that ends or undoes the run of the text it stands in.
     pub(crate) const fn interrupts(mut self) -> Self {
         self.interrupts = true;
         self
     }
 
-    /// Begins or ends a group of shapes.
+    /// Lets it begin or end a group of shapes.
     pub(crate) const fn bracket(mut self, bracket: Bracket) -> Self {
         self.bracket = Some(bracket);
         self
     }
 
-    /// Runs the texts of the files that it names.
+    /// Marks it as one that runs the texts of the files that it names.
     pub(crate) const fn includes(mut self) -> Self {
         self.includes = true;
         self
@@ -275,7 +311,7 @@ impl CommandSpec {
         self
     }
 
-    /// Runs this where the command fails.
+    /// Lets this be run where the command fails.
     pub(crate) const fn mark_failed(
         mut self,
         mark: for<'a> fn(&mut Evaluator<'a>, &'a Command),

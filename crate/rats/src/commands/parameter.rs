@@ -20,9 +20,9 @@ pub enum Kind {
         /// The largest.
         high: u32,
     },
-    /// Three numbers, or a vector.
+    /// A vector, or three numbers.
     Vector,
-    /// Three numbers that are not all 0.
+    /// A vector that is not 0.
     Direction,
     /// A colour's name, a colour or three numbers.
     Colour,
@@ -34,7 +34,7 @@ pub enum Kind {
     Value,
     /// A truth: a comparison of numbers.
     Condition,
-    /// One of these words.
+    /// A word of a list.
     Word(&'static [OptionSpec]),
     /// A name that the command makes.
     New(Names),
@@ -42,7 +42,7 @@ pub enum Kind {
     Known(Names),
     /// `=` and a name that was made before, which is copied.
     Copy(Names),
-    /// How to texture: a solid, two waves, a colour or an image.
+    /// A way to texture: a solid, two waves, a colour or an image.
     Method,
     /// A colour, or an image of the project.
     Backdrop,
@@ -74,7 +74,7 @@ pub enum Names {
 }
 
 impl Names {
-    /// As messages call it.
+    /// Returns the word by which messages call it.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -88,7 +88,7 @@ impl Names {
     }
 }
 
-/// In what a number is measured.
+/// Unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Nothing: a count, a factor, a share.
@@ -102,7 +102,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// As the manual says it; empty for a plain number.
+    /// Returns the word of the manual; empty for a plain number.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -135,33 +135,33 @@ pub enum Role {
     Side(usize),
 }
 
-/// How often a parameter is given.
+/// Number of times that a parameter is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arity {
-    /// Once.
+    /// Exactly once.
     One,
     /// Once or not at all.
     Optional,
     /// Once or more.
     Many,
-    /// As often as one likes.
+    /// Never, once or more.
     Any,
 }
 
 /// A parameter of a command or option.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// Its name in the synopsis; UPPERCASE is a triple.
+    /// The name in the synopsis; UPPERCASE is a triple.
     pub name: &'static str,
     /// The kind of value it takes.
     pub kind: Kind,
-    /// Its meaning: `the tube radius`. Messages say that this was expected.
+    /// The meaning: `the tube radius`. Messages say that this was expected.
     pub meaning: &'static str,
-    /// In what it is measured.
+    /// The unit.
     pub unit: Unit,
-    /// Its value if it is left out; empty if it cannot be, or if there is none.
+    /// The value if it is left out; empty if it cannot be, or if there is none.
     pub default: &'static str,
-    /// How often it is given.
+    /// The number of times that it is given.
     pub arity: Arity,
     /// Whether it is the material of a shape, which shapes leave out in a `chain`, as the chain
     /// gives it.
@@ -171,7 +171,7 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Its range as a sentence's end; empty if any value will do.
+    /// Returns the range as a sentence's end; empty if any value will do.
     #[must_use]
     pub fn range(&self) -> String {
         match self.kind {
@@ -183,7 +183,7 @@ impl Parameter {
         }
     }
 
-    /// As the synopsis shows it.
+    /// Returns the parameter as the synopsis shows it.
     #[must_use]
     pub fn synopsis(&self) -> String {
         let name = match self.kind {
@@ -209,30 +209,30 @@ impl Parameter {
 pub struct OptionSpec {
     /// The whole word.
     pub name: &'static str,
-    /// Its operands, which follow it.
+    /// The operands, which follow it.
     pub parameters: &'static [Parameter],
-    /// Its meaning, a few words.
+    /// The meaning, a few words.
     pub meaning: &'static str,
-    /// Its value if it is left out.
+    /// The value if it is left out.
     pub default: &'static str,
 }
 
 impl OptionSpec {
-    /// Whether its name begins with a word, in any case: options may be shortened.
+    /// Returns whether its name begins with a word, in any case: options may be shortened.
     #[must_use]
     pub fn begins(&self, word: &str) -> bool {
         let start = self.name.get(..word.len());
         start.is_some_and(|start| start.eq_ignore_ascii_case(word))
     }
 
-    /// The word and what follows it.
+    /// Returns the word and what follows it.
     #[must_use]
     pub fn synopsis(&self) -> String {
         join(self.name, self.parameters)
     }
 }
 
-/// A name followed by the synopses of what it takes.
+/// Joins a name and the synopses of what it takes.
 pub(super) fn join(name: &str, parameters: &[Parameter]) -> String {
     let mut text = name.to_owned();
     for parameter in parameters {

@@ -108,7 +108,7 @@ impl Slot<f64> {
     }
 }
 
-/// The material of a shape, which shapes leave out in a `chain`.
+/// Material of a shape, which shapes leave out in a `chain`.
 pub const SN: Slot<Named> = {
     let slot: Slot<Named> = existing("sn", Names::Material, "the material's name");
     let plain = slot.plain;
@@ -118,7 +118,7 @@ pub const SN: Slot<Named> = {
     })
 };
 
-/// `on` or `off`.
+/// Operand `on` or `off`.
 pub const ON_OFF: Slot<bool> = slot("on|off", Kind::Switch, "`on` or `off`");
 
 /// Takes a number of any size.
@@ -264,7 +264,7 @@ impl<A, B, C> Choice<(A, B, C)> {
 }
 
 impl<K: Values> Choice<K> {
-    /// The operands of an option that was given, if it is this one.
+    /// Returns the operands of an option that was given, if it is this one.
     pub fn of<'a>(&self, chosen: &Chosen<'a>) -> Option<K::Of<'a>> {
         if self.is(chosen) {
             chosen.values().next::<K>()
@@ -273,7 +273,7 @@ impl<K: Values> Choice<K> {
         }
     }
 
-    /// Whether this is the option that was given.
+    /// Returns whether this is the option that was given.
     pub fn is(&self, chosen: &Chosen<'_>) -> bool {
         chosen.option.name == self.plain.name
     }

@@ -33,7 +33,7 @@ pub enum Group {
 /// Runs one command on the state of a running text.
 pub(crate) type Routine = for<'a> fn(&mut Evaluator<'a>, &'a Command) -> Outcome<Flow>;
 
-/// How a command is carried out.
+/// Way in which a command is carried out.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Action {
     /// A function runs it, fully or as far as the function itself says.
@@ -42,7 +42,7 @@ pub(crate) enum Action {
     Structure,
     /// A file of the library defines it.
     Library,
-    /// It never changes the picture, for the reason given.
+    /// Nothing runs it, as it never changes the picture; the reason.
     NoEffect(&'static str),
 }
 
@@ -59,14 +59,14 @@ pub enum Bracket {
 
 /// A command.
 pub struct CommandSpec {
-    /// Its opcode.
+    /// The opcode.
     pub name: &'static str,
-    /// Its operands, in order. Those of a command of the library stand in its file (see
+    /// The operands, in order. Those of a command of the library stand in its file (see
     /// [`crate::library`]).
     pub parameters: &'static [Parameter],
-    /// Its option words, which follow the operands in any order.
+    /// The option words, which follow the operands in any order.
     pub options: &'static [OptionSpec],
-    /// Its meaning, one line.
+    /// The meaning, one line.
     pub meaning: &'static str,
     /// More about it; empty if there is no more.
     pub details: &'static str,
@@ -84,7 +84,7 @@ pub struct CommandSpec {
     pub(crate) interrupts: bool,
     /// Words, numbers and signs that may stand behind it at most.
     pub(crate) most_operands: usize,
-    /// How it is carried out.
+    /// The way in which it is carried out.
     pub(crate) action: Action,
     /// Leaves a mark where the command fails, so that what builds on it is not reported, too.
     pub(crate) mark_failed: Option<for<'a> fn(&mut Evaluator<'a>, &'a Command)>,
@@ -99,13 +99,13 @@ impl std::fmt::Debug for CommandSpec {
 }
 
 impl CommandSpec {
-    /// How it is written, as a hint.
+    /// Returns a hint on how it is written.
     #[must_use]
     pub fn usage(&self) -> String {
         format!("it is written `{}`", self.synopsis())
     }
 
-    /// Its opcode and operands.
+    /// Returns opcode and operands.
     #[must_use]
     pub fn synopsis(&self) -> String {
         if matches!(self.action, Action::Library) {
@@ -122,7 +122,7 @@ impl CommandSpec {
         synopsis
     }
 
-    /// Whether it is carried out: `None` if it is, else the reason why it changes nothing.
+    /// Returns the reason why it changes nothing; `None` if it is carried out.
     #[must_use]
     pub fn idle(&self) -> Option<&'static str> {
         match self.action {
@@ -131,35 +131,36 @@ impl CommandSpec {
         }
     }
 
-    /// Whether a command of the same name that a text defines hides it, so that texts from before
-    /// it still run: those of the library, and those that are newer than the first published texts.
+    /// Returns whether a command of the same name that a text defines hides it, so that texts from
+    /// before it still run: those of the library, and those that are newer than the first published
+    /// texts.
     #[must_use]
     pub fn yields(&self) -> bool {
         self.is_newer || self.is_library()
     }
 
-    /// Whether it makes a shape from a file.
+    /// Returns whether it makes a shape from a file.
     #[must_use]
     pub fn reads_shape(&self) -> bool {
-        let is_file = |parameter: &Parameter| matches!(parameter.kind, Kind::File);
+        let mut kinds = self.parameters.iter().map(|parameter| parameter.kind);
         self.parameters.first().is_some_and(|first| first.in_chain)
-            && self.parameters.iter().any(is_file)
+            && kinds.any(|kind| matches!(kind, Kind::File))
     }
 
-    /// Whether its name may be copied from an old one: `surface new = old`.
+    /// Returns whether its name may be copied from an old one: `surface new = old`.
     #[must_use]
     pub fn copies(&self) -> bool {
-        let is_copy = |parameter: &Parameter| matches!(parameter.kind, Kind::Copy(_));
-        self.parameters.iter().any(is_copy)
+        let mut kinds = self.parameters.iter().map(|parameter| parameter.kind);
+        kinds.any(|kind| matches!(kind, Kind::Copy(_)))
     }
 
-    /// Whether the parser makes it part of the tree: `for`, `if`, `else`, `define`.
+    /// Returns whether the parser makes it part of the tree: `for`, `if`, `else`, `define`.
     #[must_use]
     pub fn is_structure(&self) -> bool {
         matches!(self.action, Action::Structure)
     }
 
-    /// Whether a file of the library defines it.
+    /// Returns whether a file of the library defines it.
     #[must_use]
     pub fn is_library(&self) -> bool {
         matches!(self.action, Action::Library)

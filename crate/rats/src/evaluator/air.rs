@@ -1,12 +1,9 @@
-//! What is around the shapes: background, sky, ground, fog and clouds of light.
+//! The surroundings of the shapes: background, sky, ground, fog and clouds of light.
 
 use super::state::{Evaluator, Flow};
-use crate::Severity;
-use crate::commands::build::{choice, clay, flesh, row, takes};
-use crate::commands::slot::{
-    Choice, Named, backdrop, colour, existing, length, number, vector, whole,
-};
-use crate::commands::{CommandSpec, Names, OptionSpec};
+use crate::commands::build::{clay, flesh, options, row, takes};
+use crate::commands::slot::{Named, backdrop, colour, existing, length, number, vector, whole};
+use crate::commands::{CommandSpec, Names};
 use crate::given::{Behind, Options};
 use crate::limits::{MAX_BACKDROPS, MAX_CLOUDS};
 use crate::problem::{Outcome, Problem};
@@ -14,32 +11,30 @@ use crate::syntax::Command;
 use glam::DVec3;
 use scene::{Background, Cloud, Fog, Ground, Rgb, Sky, extent};
 
-/// Directions in which a ray looks for the sky, if the text does not say.
+/// Directions in which a ray looks for the sky, if the text gives no number.
 const SKY_SAMPLES: u32 = 4;
 
-const BACKGROUND_TO: Choice<Rgb> = choice!(
-    "to",
-    "",
-    "another colour below the first: they change over around the horizon (ours)",
-    colour("Color", "the colour below")
-);
-
-/// `background`.
-pub static BACKGROUND_OPTIONS: &[OptionSpec] = &[BACKGROUND_TO.plain];
+options! {
+    /// Options of `background`.
+    BACKGROUND_OPTIONS:
+    BACKGROUND_TO: Rgb = ("to", "",
+        "another colour below the first: they change over around the horizon (ours)",
+        colour("Color", "the colour below"));
+}
 
 /// `background Color [to Color …]`, `background fn`
 pub static BACKGROUND: CommandSpec = row(
     "background",
     "what is behind everything: a colour, colours or an image",
-    takes!(
-        background,
-        [BACKGROUND_OPTIONS],
-        backdrop(
-            "Color|fn",
-            "the background's colour, or the name of an image"
-        )
-    ),
 )
+.with(takes!(
+    background,
+    [BACKGROUND_OPTIONS],
+    backdrop(
+        "Color|fn",
+        "the background's colour, or the name of an image"
+    )
+))
 .default("a dark slate, or the `sky`")
 .details(
     "With `to` it goes from the first colour, above, to the last, below; they change over around \
@@ -49,8 +44,8 @@ pub static BACKGROUND: CommandSpec = row(
 )
 .example(clay!(
     "background SteelBlue to White to SaddleBrown\n\
-     surface Chrome, diffuse Gray10, reflective 80%\n\
-     sphere Chrome 2, 0 0 0\nsphere Clay 0.7, 2.4 -1 2"
+     surface Chrome, diffuse Gray10, reflective 80%\nsphere Chrome 2, 0 0 0\n\
+     sphere Clay 0.7, 2.4 -1 2"
 ));
 
 fn background<'a>(
@@ -65,7 +60,7 @@ fn background<'a>(
             colours.extend(options.all(&BACKGROUND_TO));
             if colours.len() > MAX_BACKDROPS {
                 return Err(Problem::new(
-                    command.span.clone(),
+                    &command.span,
                     format!("a background has at most {MAX_BACKDROPS} colours"),
                 )
                 .hint("use an image: `background file.png`"));
@@ -77,12 +72,11 @@ fn background<'a>(
         }
         Behind::Image(name) => {
             if let Some(to) = options.find(&BACKGROUND_TO) {
-                run.say(Severity::Warning, to.span.clone(), || {
-                    (
-                        String::from("`to` says nothing about a background that is an image"),
-                        None,
-                    )
-                });
+                run.warn(
+                    &to.span,
+                    "`to` says nothing about a background that is an image",
+                    "",
+                );
             }
             Background::Image(run.image(&name)? as u32)
         }
@@ -90,49 +84,33 @@ fn background<'a>(
     Ok(Flow::Next)
 }
 
-const SKY_TO: Choice<Rgb> = choice!(
-    "to",
-    "as above",
-    "light from the horizon and below",
-    colour("Color", "the horizon's colour")
-);
-const INTENSITY: Choice<f64> = choice!(
-    "intensity",
-    "1",
-    "multiplies its light, not what is seen of it",
-    number("k", "the intensity").from(0.0, 1e6)
-);
-const SAMPLES: Choice<u32> = choice!(
-    "samples",
-    "4",
-    "directions in which each ray looks for the sky",
-    whole("n", 1, scene::Sky::MAX_SAMPLES, "the number of directions")
-);
+options! {
+    /// Options of `sky`.
+    SKY_OPTIONS:
+    SKY_TO: Rgb = ("to", "as above", "light from the horizon and below",
+        colour("Color", "the horizon's colour"));
+    INTENSITY: f64 = ("intensity", "1", "multiplies its light, not what is seen of it",
+        number("k", "the intensity").from(0.0, 1e6));
+    SAMPLES: u32 = ("samples", "4", "directions in which each ray looks for the sky",
+        whole("n", 1, scene::Sky::MAX_SAMPLES, "the number of directions"));
+}
 
-/// `sky`.
-pub static SKY_OPTIONS: &[OptionSpec] = &[SKY_TO.plain, INTENSITY.plain, SAMPLES.plain];
-
-/// `sky Color [to Color] [intensity k] [samples n]`
-pub static SKY: CommandSpec = row(
-    "sky",
-    "light from everywhere",
-    takes!(
+pub static SKY: CommandSpec = row("sky", "light from everywhere")
+    .with(takes!(
         sky,
         [SKY_OPTIONS],
         colour("Color", "the light's colour from straight above")
-    ),
-)
-.default("none")
-.details(
-    "Every place gets the light of the part of the sky that it sees: hollows and what touches the \
-     ground get darker, as on a cloudy day. Materials whose `ambient` is not given have none \
-     under a sky. The sky is seen behind everything unless there is a `background`.",
-)
-.example(flesh!(
-    "sky White to SteelBlue, intensity 0.8\n\
-     ground Gray80\neyep 0 3 9\nsphere Flesh 0.6, -0.6 0 0\n\
-     sphere Flesh 0.6, 0.6 0 0"
-));
+    ))
+    .default("none")
+    .details(
+        "Every place gets the light of the part of the sky that it sees: hollows and what touches \
+         the ground get darker, as on a cloudy day. Materials whose `ambient` is not given have \
+         none under a sky. The sky is seen behind everything unless there is a `background`.",
+    )
+    .example(flesh!(
+        "sky White to SteelBlue, intensity 0.8\nground Gray80\neyep 0 3 9\n\
+         sphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+    ));
 
 fn sky<'a>(
     run: &mut Evaluator<'a>,
@@ -152,34 +130,27 @@ fn sky<'a>(
     Ok(Flow::Next)
 }
 
-const GROUND_HEIGHT: Choice<f64> = choice!(
-    "height",
-    "just below everything",
-    "where it is, along the direction up",
-    length("h", "the height")
-);
+options! {
+    /// Options of `ground`.
+    GROUND_OPTIONS:
+    GROUND_HEIGHT: f64 = ("height", "just below everything", "where it is, along the direction up",
+        length("h", "the height"));
+}
 
-/// `ground`.
-pub static GROUND_OPTIONS: &[OptionSpec] = &[GROUND_HEIGHT.plain];
-
-/// `ground Color [height h]`
-pub static GROUND: CommandSpec = row(
-    "ground",
-    "a plane to stand on",
-    takes!(
+pub static GROUND: CommandSpec = row("ground", "a plane to stand on")
+    .with(takes!(
         ground,
         [GROUND_OPTIONS],
         colour("Color", "the ground's colour")
-    ),
-)
-.default("none")
-.details(
-    "An endless plane across the direction up (`vup`) that receives light and shadows. Without a \
-     height it touches the lowest shape.",
-)
-.example(clay!(
-    "ground Wheat\nlight White, distant, direction -1 -2 -1\neyep 0 3 9\nsphere Clay 2, 0 0 0"
-));
+    ))
+    .default("none")
+    .details(
+        "An endless plane across the direction up (`vup`) that receives light and shadows. \
+         Without a height it touches the lowest shape.",
+    )
+    .example(clay!(
+        "ground Wheat\nlight White, distant, direction -1 -2 -1\neyep 0 3 9\nsphere Clay 2, 0 0 0"
+    ));
 
 fn ground<'a>(
     run: &mut Evaluator<'a>,
@@ -194,39 +165,33 @@ fn ground<'a>(
     Ok(Flow::Next)
 }
 
-const FOG_DISTANCE: Choice<f64> = choice!(
-    "distance",
-    "twice as far as vrp",
-    "where 37% of the light is left, 14% at twice that (ours)",
-    length("d", "the distance").at_least(1e-9)
-);
-const FOG_HEIGHT: Choice<f64> = choice!(
-    "height",
-    "as dense everywhere",
-    "over which the fog thins out to 37%, upwards from 0 (ours)",
-    length("h", "the height").at_least(1e-9)
-);
+options! {
+    /// Options of `fog`.
+    FOG_OPTIONS:
+    FOG_DISTANCE: f64 = ("distance", "twice as far as vrp",
+        "where 37% of the light is left, 14% at twice that (ours)",
+        length("d", "the distance").at_least(1e-9));
+    FOG_HEIGHT: f64 = ("height", "as dense everywhere",
+        "over which the fog thins out to 37%, upwards from 0 (ours)",
+        length("h", "the height").at_least(1e-9));
+}
 
-/// `fog`.
-pub static FOG_OPTIONS: &[OptionSpec] = &[FOG_DISTANCE.plain, FOG_HEIGHT.plain];
-
-/// `fog Color [distance d] [height h]`
-pub static FOG: CommandSpec = row(
-    "fog",
-    "fog over everything",
-    takes!(fog, [FOG_OPTIONS], colour("Color", "the fog's colour")),
-)
-.default("none")
-.details(
-    "Of light that comes from the distance x the share e^(−x/d) is left; the rest is the fog's \
-     own colour. With a `height` it lies low: thinner the higher, and as dense below 0 as at 0. \
-     What is high is said by `vup`. One fog at a time: the last one counts.",
-)
-.example(clay!(
-    "fog LightSteelBlue, distance 12\n\
-     background LightSteelBlue\neyep 0 2 9\n\
-     for i = 0 to 5 { sphere Clay 1, 3-2*i, 0, 3-4*i }"
-));
+pub static FOG: CommandSpec = row("fog", "fog over everything")
+    .with(takes!(
+        fog,
+        [FOG_OPTIONS],
+        colour("Color", "the fog's colour")
+    ))
+    .default("none")
+    .details(
+        "Of light that comes from the distance x the share e^(−x/d) is left; the rest is the \
+         fog's own colour. With a `height` it lies low: thinner the higher, and as dense below 0 \
+         as at 0. What is high is said by `vup`. One fog at a time: the last one counts.",
+    )
+    .example(clay!(
+        "fog LightSteelBlue, distance 12\nbackground LightSteelBlue\neyep 0 2 9\n\
+         for i = 0 to 5 { sphere Clay 1, 3-2*i, 0, 3-4*i }"
+    ));
 
 fn fog<'a>(
     run: &mut Evaluator<'a>,
@@ -244,57 +209,37 @@ fn fog<'a>(
     Ok(Flow::Next)
 }
 
-const POSITION: Choice<DVec3> = choice!(
-    "position",
-    "0 0 0",
-    "its middle (ours)",
-    vector("XYZ", "the cloud's middle")
-);
-const OBJECT: Choice<Named> = choice!(
-    "object",
-    "",
-    "an object in the middle of it, in place of a position: a halo (ours)",
-    existing("name", Names::Object, "the object's name")
-);
-const RADIUS: Choice<f64> = choice!(
-    "radius",
-    "1; of a halo, twice the object's",
-    "how far it reaches (ours)",
-    length("r", "the cloud's radius").at_least(1e-9)
-);
-const DENSITY: Choice<f64> = choice!(
-    "density",
-    "1",
-    "multiplies its light (ours)",
-    number("k", "the density").from(0.0, 1e6)
-);
+options! {
+    /// Options of `cloud`.
+    CLOUD_OPTIONS:
+    POSITION: DVec3 = ("position", "0 0 0", "its middle (ours)",
+        vector("XYZ", "the cloud's middle"));
+    OBJECT: Named = ("object", "",
+        "an object in the middle of it, in place of a position: a halo (ours)",
+        existing("name", Names::Object, "the object's name"));
+    RADIUS: f64 = ("radius", "1; of a halo, twice the object's", "how far it reaches (ours)",
+        length("r", "the cloud's radius").at_least(1e-9));
+    DENSITY: f64 = ("density", "1", "multiplies its light (ours)",
+        number("k", "the density").from(0.0, 1e6));
+}
 
-/// `cloud`.
-pub static CLOUD_OPTIONS: &[OptionSpec] =
-    &[POSITION.plain, OBJECT.plain, RADIUS.plain, DENSITY.plain];
-
-/// `cloud Color [position P | object name] [radius r] [density k]`
-pub static CLOUD: CommandSpec = row(
-    "cloud",
-    "a cloud of light, or a halo",
-    takes!(
+pub static CLOUD: CommandSpec = row("cloud", "a cloud of light, or a halo")
+    .with(takes!(
         cloud,
         [CLOUD_OPTIONS],
         colour("Color", "the cloud's colour")
-    ),
-)
-.default("none")
-.details(
-    "A glowing ball of mist without a surface: it hides nothing and casts no shadow. At the \
-     distance r from its middle its density is k·(1 − (r/radius)²)², and a ray gets the integral \
-     of that along its way, in units of the radius, times the colour.",
-)
-.example(clay!(
-    "background Black\nobject LAMP\n  \
-     sphere Clay 0.6, 0 1 0\nclose\n\
-     cloud Gold, object LAMP, radius 2.5\n\
-     cloud SlateBlue, position -2 -1 0, radius 2, density 0.5"
-));
+    ))
+    .default("none")
+    .details(
+        "A glowing ball of mist without a surface: it hides nothing and casts no shadow. At the \
+         distance r from its middle its density is k·(1 − (r/radius)²)², and a ray gets the \
+         integral of that along its way, in units of the radius, times the colour.",
+    )
+    .example(clay!(
+        "background Black\nobject LAMP\n  sphere Clay 0.6, 0 1 0\nclose\n\
+         cloud Gold, object LAMP, radius 2.5\n\
+         cloud SlateBlue, position -2 -1 0, radius 2, density 0.5"
+    ));
 
 fn cloud<'a>(
     run: &mut Evaluator<'a>,
@@ -304,7 +249,7 @@ fn cloud<'a>(
 ) -> Outcome<Flow> {
     if run.air.clouds.len() >= MAX_CLOUDS {
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             format!("there are more than {MAX_CLOUDS} clouds"),
         ));
     }
@@ -313,7 +258,7 @@ fn cloud<'a>(
     if let Some(name) = options.last(&OBJECT) {
         if let Some(place) = options.find(&POSITION) {
             return Err(Problem::new(
-                place.span.clone(),
+                &place.span,
                 "a cloud has a position or an object in its middle, not both",
             )
             .hint("leave one out"));
@@ -323,7 +268,7 @@ fn cloud<'a>(
         let parts = run.model.parts[range].iter();
         let (middle, reach) = extent(parts.map(|part| &part.element.shape)).ok_or_else(|| {
             Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!(
                     "the object `{}` has no middle: it is empty or endless",
                     name.text

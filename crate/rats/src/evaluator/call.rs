@@ -9,7 +9,7 @@ use crate::syntax::{Command, Define, Formal, Takes};
 use crate::value::Value;
 
 impl<'a> Evaluator<'a> {
-    /// The value that a call gives each parameter; `None` where the default is to be taken.
+    /// Reads the value that a call gives each parameter; `None` where the default is to be taken.
     pub(super) fn arguments(
         &mut self,
         command: &'a Command,
@@ -38,14 +38,14 @@ impl<'a> Evaluator<'a> {
         let mut surfaces = Vec::new();
         let mut named = false;
         while read.more() {
-            let index = match read.named_argument() {
+            let index = match read.peek_parameter() {
                 Some((symbol, word)) => {
                     named = true;
-                    named_parameter(&mut read, define, &values, symbol, word)?
+                    take_parameter(&mut read, define, &values, symbol, word)?
                 }
                 None if named => {
                     return Err(Problem::new(
-                        read.here(),
+                        &read.here(),
                         "what follows a named parameter must be named too",
                     )
                     .hint(usage(read.scope, define)));
@@ -78,7 +78,7 @@ impl<'a> Evaluator<'a> {
         for (parameter, (_, value)) in define.parameters.iter().zip(&values) {
             if value.is_none() && parameter.default.is_empty() {
                 return Err(read
-                    .expected(&parameter.shown)
+                    .missing(&parameter.shown)
                     .hint(usage(read.scope, define)));
             }
         }
@@ -101,7 +101,7 @@ impl<'a> Evaluator<'a> {
             let mut command = define.head.clone();
             command.items = parameter.default.clone();
             command.span = parameter.span.clone();
-            let mut read = self.reader(&command).unlisted();
+            let mut read = self.reader(&command).joining();
             let value = argument(&mut read, parameter)?;
             self.scope.set(*name, value);
         }
@@ -109,8 +109,8 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// Takes `word =`; returns the index of the parameter of that name.
-fn named_parameter(
+/// Takes `word =` and returns the index of the parameter of that name.
+fn take_parameter(
     read: &mut Reader<'_, '_>,
     define: &Define,
     values: &[(Symbol, Option<Value>)],
@@ -124,16 +124,16 @@ fn named_parameter(
         let names = define.parameters.iter().map(|p| symbols.word(p.name));
         let hint = crate::suggest::hint(word, names).unwrap_or_else(|| usage(read.scope, define));
         let name = symbols.word(define.name);
-        return Err(Problem::new(span, format!("`{name}` has no parameter `{word}`")).hint(hint));
+        return Err(Problem::new(&span, format!("`{name}` has no parameter `{word}`")).hint(hint));
     };
     if values[index].1.is_some() {
-        return Err(Problem::new(span, format!("`{word}` is given twice")));
+        return Err(Problem::new(&span, format!("`{word}` is given twice")));
     }
     read.at += 2;
     Ok(index)
 }
 
-/// How a call of a defined command is written, as a hint.
+/// Returns a hint on how a call of a defined command is written.
 fn usage(scope: &Scope<'_>, define: &Define) -> String {
     let mut usage = scope.symbols.word(define.name).to_owned();
     for parameter in &define.parameters {
@@ -147,22 +147,22 @@ fn usage(scope: &Scope<'_>, define: &Define) -> String {
     format!("it is written `{usage}`")
 }
 
-/// One argument of a call.
+/// Reads one argument of a call.
 fn argument(read: &mut Reader<'_, '_>, parameter: &Formal) -> Outcome<Value> {
     let what = parameter.shown.as_str();
     match parameter.takes {
         Takes::Number => Ok(Value::Scalar(read.number(what)?)),
         Takes::Triple => read.triple(what),
         Takes::Surface => {
-            let name = read.known_name(what)?;
+            let name = read.old_name(what)?;
             match read.scope.symbols.find(name.text) {
                 Some(symbol) => Ok(Value::Name(symbol)),
                 None if name.text.parse::<f64>().is_ok() => Err(Problem::new(
-                    name.span,
+                    &name.span,
                     format!("expected {what}, found `{}`", name.text),
                 )),
                 None => Err(Problem::new(
-                    name.span,
+                    &name.span,
                     format!("`{}` cannot be a material's name here", name.text),
                 )
                 .hint("a name with `^` cannot be handed on")),

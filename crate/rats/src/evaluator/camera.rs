@@ -10,40 +10,27 @@ use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
 
-/// `eyep XYZ`
-pub static EYEP: CommandSpec = row(
-    "eyep",
-    "position of the eye",
-    takes!(eyep, vector("XYZ", "the eye's position")),
-)
-.default("0 0 10")
-.example(clay!("eyep 5 5 8\nsphere Clay 2, 0 0 0"));
+pub static EYEP: CommandSpec = row("eyep", "position of the eye")
+    .with(takes!(eyep, vector("XYZ", "the eye's position")))
+    .default("0 0 10")
+    .example(clay!("eyep 5 5 8\nsphere Clay 2, 0 0 0"));
 
 fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command, eye: DVec3) -> Outcome<Flow> {
     run.camera.eye = eye;
     let before = std::mem::take(&mut run.view_plane);
     if before.cp.is_some() || before.normal.is_some() || before.window.is_some() {
-        run.say(Severity::Note, command.word_span.clone(), || {
-            (
-                String::from("`cp`, `vpn` and `window` from before do not count any more"),
-                Some(String::from(
-                    "there are two kinds of camera; the last one counts",
-                )),
-            )
-        });
+        let message = "`cp`, `vpn` and `window` from before do not count any more";
+        let hint = "there are two kinds of camera; the last one counts";
+        run.note(&command.word_span, message, hint);
     }
     run.aimed_at = (run.file, command.span.clone());
     Ok(Flow::Next)
 }
 
-/// `vrp XYZ`
-pub static VRP: CommandSpec = row(
-    "vrp",
-    "view reference point, in the middle of the picture",
-    takes!(vrp, vector("XYZ", "the view reference point")),
-)
-.default("0 0 0")
-.example(clay!("vrp 0 1 0\nsphere Clay 2, 0 0 0"));
+pub static VRP: CommandSpec = row("vrp", "view reference point, in the middle of the picture")
+    .with(takes!(vrp, vector("XYZ", "the view reference point")))
+    .default("0 0 0")
+    .example(clay!("vrp 0 1 0\nsphere Clay 2, 0 0 0"));
 
 fn vrp<'a>(run: &mut Evaluator<'a>, command: &'a Command, target: DVec3) -> Outcome<Flow> {
     run.camera.target = target;
@@ -51,37 +38,29 @@ fn vrp<'a>(run: &mut Evaluator<'a>, command: &'a Command, target: DVec3) -> Outc
     Ok(Flow::Next)
 }
 
-/// `vup XYZ`
-pub static VUP: CommandSpec = row(
-    "vup",
-    "direction that is up in the picture",
-    sets!(
+pub static VUP: CommandSpec = row("vup", "direction that is up in the picture")
+    .with(sets!(
         |run, up| run.camera.up = up,
         direction("XYZ", "the direction up")
-    ),
-)
-.default("0 1 0")
-.example(clay!(
-    "vup 0 0 1\neyep 8 4 4\ncylinder Clay 1, <0 0 -2>, <0 0 2>"
-));
+    ))
+    .default("0 1 0")
+    .example(clay!(
+        "vup 0 0 1\neyep 8 4 4\ncylinder Clay 1, <0 0 -2>, <0 0 2>"
+    ));
 
-/// `fov hor [vert]`
-pub static FOV: CommandSpec = row(
-    "fov",
-    "angle of view",
-    takes!(
+pub static FOV: CommandSpec = row("fov", "angle of view")
+    .with(takes!(
         fov,
         degrees("hor", "the horizontal angle of view").from(0.01, 179.0),
         degrees("vert", "the vertical angle of view")
             .from(0.01, 179.0)
             .optional("as the frame's sides")
-    ),
-)
-.default("45")
-.details(
-    "Pixels are square, so the vertical angle follows from the horizontal one and `framesize`.",
-)
-.example(clay!("fov 30\nsphere Clay 2, 0 0 0"));
+    ))
+    .default("45")
+    .details(
+        "Pixels are square, so the vertical angle follows from the horizontal one and `framesize`.",
+    )
+    .example(clay!("fov 30\nsphere Clay 2, 0 0 0"));
 
 fn fov<'a>(
     run: &mut Evaluator<'a>,
@@ -97,84 +76,67 @@ fn fov<'a>(
     Ok(Flow::Next)
 }
 
-/// `aperture radius`
-pub static APERTURE: CommandSpec = row(
-    "aperture",
-    "radius of the lens",
-    sets!(
+pub static APERTURE: CommandSpec = row("aperture", "radius of the lens")
+    .with(sets!(
         |run, radius| run.lens.aperture = radius,
         length("radius", "the radius of the lens").at_least(0.0)
-    ),
-)
-.default("0")
-.details(
-    "0 is a pinhole, which draws everything sharp. A lens draws sharp what is as far away as \
-     `focus` says, measured along the direction of view; a point at another distance z becomes a \
-     disc, of the radius radius·|focus − z|/z where it is sharp. More samples (`sample`) make the \
-     blur smoother.",
-)
-.example(clay!(
-    "aperture 0.3\nfocus 8\nsample 3\n\
-     sphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\n\
-     sphere Clay 0.7, 1.2 0 5"
-));
+    ))
+    .default("0")
+    .details(
+        "0 is a pinhole, which draws everything sharp. A lens draws sharp what is as far away as \
+         `focus` says, measured along the direction of view; a point at another distance z \
+         becomes a disc, of the radius radius·|focus − z|/z where it is sharp. More samples \
+         (`sample`) make the blur smoother.",
+    )
+    .example(clay!(
+        "aperture 0.3\nfocus 8\nsample 3\nsphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\n\
+         sphere Clay 0.7, 1.2 0 5"
+    ));
 
-/// `focus distance`
-pub static FOCUS: CommandSpec = row(
-    "focus",
-    "distance that the lens draws sharp",
-    sets!(
+pub static FOCUS: CommandSpec = row("focus", "distance that the lens draws sharp")
+    .with(sets!(
         |run, distance| run.lens.focus = Some(distance),
         length("distance", "the distance of the focal plane").at_least(1e-9)
-    ),
-)
-.default("to vrp")
-.details("It only shows when the lens has an `aperture`.")
-.example(clay!(
-    "aperture 0.3\nfocus 5\nsample 3\n\
-     sphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\n\
-     sphere Clay 0.7, 1.2 0 5"
-));
+    ))
+    .default("to vrp")
+    .details("It only shows when the lens has an `aperture`.")
+    .example(clay!(
+        "aperture 0.3\nfocus 5\nsample 3\nsphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\n\
+         sphere Clay 0.7, 1.2 0 5"
+    ));
 
-/// `shutter fraction`
-pub static SHUTTER: CommandSpec = row(
-    "shutter",
-    "how long the shutter is open",
-    sets!(
+pub static SHUTTER: CommandSpec = row("shutter", "how long the shutter is open")
+    .with(sets!(
         |run, fraction| run.shutter = fraction,
         number("fraction", "the fraction of time").from(0.0, 1.0)
-    ),
-)
-.default("0")
-.details(
-    "A share of the time from one frame of an animation to the next: 0 is no blur, with 1 \
-     whatever moves is blurred along its whole way. What moves is what is made of variables that \
-     change with every frame; `transform` holds an object still meanwhile. More samples \
-     (`sample`) make the blur smoother.",
-)
-.example(clay!(
-    "var x = -1 += 2\nshutter 1\nsample 4\nsphere Clay 1, 0 1.5 0\nsphere Clay 1, x -1 0"
-));
+    ))
+    .default("0")
+    .details(
+        "A share of the time from one frame of an animation to the next: 0 is no blur, with 1 \
+         whatever moves is blurred along its whole way. What moves is what is made of variables \
+         that change with every frame; `transform` holds an object still meanwhile. More samples \
+         (`sample`) make the blur smoother.",
+    )
+    .example(clay!(
+        "var x = -1 += 2\nshutter 1\nsample 4\nsphere Clay 1, 0 1.5 0\nsphere Clay 1, x -1 0"
+    ));
 
-/// `cp x y z [w]`
-pub static CP: CommandSpec = row(
-    "cp",
-    "centre of projection, view coordinates",
-    takes!(
+pub static CP: CommandSpec = row("cp", "centre of projection, view coordinates")
+    .with(takes!(
         cp,
         length("x", "the place to the right"),
         length("y", "the place upwards"),
         length("z", "the distance before the view plane").at_least(1e-9),
         number("w", "the weight").optional("1")
-    ),
-)
-.details(
-    "The camera of Foley et al.: the view plane goes through `vrp` with normal `vpn`; `window` is \
-     the part of it that the picture shows, seen from `cp`. The weight divides the others.",
-)
-.example(clay!(
-    "vrp 0 0 0\nvpn 0 0 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0"
-));
+    ))
+    .details(
+        "The camera of Foley et al.: the view plane goes through `vrp` with normal `vpn`; \
+         `window` is the part of it that the picture shows, seen from `cp`. The weight divides \
+         the others.",
+    )
+    .example(clay!(
+        "vrp 0 0 0\nvpn 0 0 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0"
+    ));
 
 fn cp<'a>(
     run: &mut Evaluator<'a>,
@@ -187,22 +149,26 @@ fn cp<'a>(
     let weight = weight.unwrap_or(1.0);
     if weight == 0.0 {
         return Err(Problem::new(
-            command.span.clone(),
-            "the weight of a centre of projection must not be 0: parallel projections are not drawn",
+            &command.span,
+            "the weight of a centre of projection must not be 0: parallel projections are not \
+             drawn",
         )
         .hint("put the eye far away and make the window's angle small"));
     }
     let point = DVec3::new(x, y, z) / weight;
     if !(point.is_finite() && point.abs().max_element() <= MAX_MAGNITUDE) {
         return Err(Problem::new(
-            command.span.clone(),
-            format!("divided by the weight, the centre of projection is further away than {MAX_MAGNITUDE:e}"),
+            &command.span,
+            format!(
+                "divided by the weight, the centre of projection is further away than \
+                 {MAX_MAGNITUDE:e}"
+            ),
         )
         .hint("leave the weight out: it is 1 then"));
     }
     if point.z <= 0.0 {
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             "the centre of projection must lie before the view plane: z / w above 0",
         ));
     }
@@ -211,16 +177,15 @@ fn cp<'a>(
     Ok(Flow::Next)
 }
 
-/// `vpn XYZ`
-pub static VPN: CommandSpec = row(
-    "vpn",
-    "normal of the view plane, towards the eye",
-    takes!(vpn, direction("XYZ", "the normal of the view plane")),
-)
-.default("0 0 1")
-.example(clay!(
-    "vpn 1 1 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0"
-));
+pub static VPN: CommandSpec = row("vpn", "normal of the view plane, towards the eye")
+    .with(takes!(
+        vpn,
+        direction("XYZ", "the normal of the view plane")
+    ))
+    .default("0 0 1")
+    .example(clay!(
+        "vpn 1 1 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0"
+    ));
 
 fn vpn<'a>(run: &mut Evaluator<'a>, command: &'a Command, normal: DVec3) -> Outcome<Flow> {
     run.view_plane.normal = Some(normal);
@@ -228,18 +193,17 @@ fn vpn<'a>(run: &mut Evaluator<'a>, command: &'a Command, normal: DVec3) -> Outc
     Ok(Flow::Next)
 }
 
-/// `window x X y Y`
 pub static WINDOW: CommandSpec = row(
     "window",
     "the part of the view plane that the picture shows",
-    takes!(
-        window,
-        length("x", "the left edge"),
-        length("X", "the right edge"),
-        length("y", "the lower edge"),
-        length("Y", "the upper edge")
-    ),
 )
+.with(takes!(
+    window,
+    length("x", "the left edge"),
+    length("X", "the right edge"),
+    length("y", "the lower edge"),
+    length("Y", "the upper edge")
+))
 .details(
     "In view coordinates, as for `cp`. Pixels are square: the width counts, the height follows \
      from `framesize`.",
@@ -256,7 +220,7 @@ fn window<'a>(
 ) -> Outcome<Flow> {
     if left >= right || lower >= upper {
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             "the window's first edge must be less than the second, its third less than the fourth",
         )
         .hint("it is written `window left right lower upper`"));
@@ -267,11 +231,11 @@ fn window<'a>(
 }
 
 impl Evaluator<'_> {
-    /// The camera that `cp`, `vpn` and `window` describe, or the one of `eyep` and `fov`.
+    /// Returns the camera that `cp`, `vpn` and `window` describe, or the one of `eyep` and `fov`.
     ///
     /// In Foley's terms the view plane goes through the reference point; u points right, v up, n is
     /// the normal, towards the eye.
-    pub(super) fn settled_camera(&mut self) -> scene::Camera {
+    pub(super) fn camera_of_picture(&mut self) -> scene::Camera {
         let mut camera = self.camera;
         let plane = self.view_plane.clone();
         if plane.cp.is_none() && plane.normal.is_none() && plane.window.is_none() {
@@ -307,30 +271,20 @@ impl Evaluator<'_> {
             if !camera.shift.iter().all(|shift| shift.abs() <= 1e3) {
                 camera.shift = [0.0; 2];
                 let (file, span) = plane.place.clone();
-                self.say_at(file, Severity::Error, span, || {
-                    (
-                        String::from(
-                            "the window is too small, or too far from the centre of projection",
-                        ),
-                        Some(String::from(
-                            "put the middle of the window nearer to `cp`'s x and y",
-                        )),
-                    )
-                });
+                let message = "the window is too small, or too far from the centre of projection";
+                let hint = "put the middle of the window nearer to `cp`'s x and y";
+                self.say_at(file, Severity::Error, &span, message, hint);
             }
             let [width, height] = self.settings.frame.map(f64::from);
             let shown = (rightmost - left) * height / width;
             if (shown / (high - low) - 1.0).abs() > 0.05 {
                 let (file, span) = plane.place;
-                self.say_at(file, Severity::Note, span, || {
-                    (
-                        format!(
-                            "pixels are square, so the picture shows a height of {shown:.4}, not {:.4}",
-                            high - low
-                        ),
-                        Some(String::from("choose a framesize of the window's proportions")),
-                    )
-                });
+                let height = high - low;
+                let shows =
+                    format_args!("the picture shows a height of {shown:.4}, not {height:.4}");
+                let message = format_args!("pixels are square, so {shows}");
+                let hint = "choose a framesize of the window's proportions";
+                self.say_at(file, Severity::Note, &span, message, hint);
             }
         }
         camera
@@ -343,16 +297,11 @@ impl Evaluator<'_> {
             let half = libm::tan(self.camera.fov.to_radians() * 0.5) * height / width;
             let drawn = 2.0 * libm::atan(half).to_degrees();
             if (drawn / vertical - 1.0).abs() > 0.05 {
-                self.say_at(file, Severity::Note, span, || {
-                    (
-                        format!(
-                            "pixels are square, so the vertical angle of view is {drawn:.1} degrees, not {vertical}"
-                        ),
-                        Some(String::from(
-                            "choose a framesize of the same proportions, or leave the second angle out",
-                        )),
-                    )
-                });
+                let angle = format_args!("angle of view is {drawn:.1} degrees, not {vertical}");
+                let message = format_args!("pixels are square, so the vertical {angle}");
+                let hint = "choose a framesize of the same proportions, or leave the second angle \
+                            out";
+                self.say_at(file, Severity::Note, &span, message, hint);
             }
         }
     }

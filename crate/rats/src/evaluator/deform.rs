@@ -3,10 +3,10 @@
 use super::model::{Model, Part};
 use super::objects::target;
 use super::state::{Evaluator, Flow};
-use super::watch::written_out;
-use crate::commands::build::{choice, clay, row, takes};
-use crate::commands::slot::{Choice, Placed, existing, vector};
-use crate::commands::{CommandSpec, Names, OptionSpec};
+use super::watch::literals;
+use crate::commands::build::{clay, options, row, takes};
+use crate::commands::slot::{Placed, existing, vector};
+use crate::commands::{CommandSpec, Names};
 use crate::compiled::{Control, Deform};
 use crate::given::Options;
 use crate::limits::{MAX_CONTROL_OPERANDS, MAX_DEFORMED, STEPS_PER_VERTEX};
@@ -22,10 +22,10 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Deformations that are kept: a text is compiled at every keystroke, and while a control point is
-/// dragged only its move changes.
+/// Most deformations that are kept: a text is compiled at every keystroke, and while a control
+/// point is dragged only its move changes.
 const KEPT: usize = 4;
-/// Deformations that are told of, at most: a loop may carry out many.
+/// Most deformations that a run reports: a loop may carry out many.
 const MOST_KEPT: usize = 64;
 
 /// Coordinates of vertices with respect to controls.
@@ -39,11 +39,12 @@ thread_local! {
     static CACHE: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
 }
 
-/// The deformation of these vertices, computed or kept.
+/// Computes the deformation of these vertices, or finds it where it is kept.
 fn deformation(vertices: &[DVec3], controls: &[DVec3]) -> Result<Rc<Deformation>, fit::Error> {
     CACHE.with_borrow_mut(|cache| {
-        let is_it = |kept: &Kept| kept.controls == controls && kept.vertices == vertices;
-        if let Some(index) = cache.iter().position(is_it) {
+        let mut all = cache.iter();
+        let found = all.position(|kept| kept.controls == controls && kept.vertices == vertices);
+        if let Some(index) = found {
             cache[index..].rotate_left(1);
         } else {
             if cache.len() >= KEPT {
@@ -59,45 +60,34 @@ fn deformation(vertices: &[DVec3], controls: &[DVec3]) -> Result<Rc<Deformation>
     })
 }
 
-const CONTROL: Choice<Placed<DVec3>> = choice!(
-    "control",
-    "",
-    "a control point",
-    vector("XYZ", "the control point").with_place()
-);
-const MOVE: Choice<Placed<DVec3>> = choice!(
-    "move",
-    "0 0 0",
-    "by how much it moves what is near",
-    vector("XYZ", "the way").with_place()
-);
+options! {
+    /// Options of `deform`.
+    DEFORM_OPTIONS:
+    CONTROL: Placed<DVec3> = ("control", "", "a control point",
+        vector("XYZ", "the control point").with_place());
+    MOVE: Placed<DVec3> = ("move", "0 0 0", "by how much it moves what is near",
+        vector("XYZ", "the way").with_place());
+}
 
-/// `deform`.
-pub static DEFORM_OPTIONS: &[OptionSpec] = &[CONTROL.plain, MOVE.plain];
-
-/// `deform [object] { control XYZ [move XYZ] … }`
-pub static DEFORM: CommandSpec = row(
-    "deform",
-    "bend a mesh by control points",
-    takes!(
+pub static DEFORM: CommandSpec = row("deform", "bend a mesh by control points")
+    .with(takes!(
         deform,
         [DEFORM_OPTIONS],
         existing("object", Names::Object, "an object's name").optional("the last one")
-    ),
-)
-.newer()
-.most_operands(MAX_CONTROL_OPERANDS)
-.details(
-    "Control points may lie anywhere, at most 4096; each takes along what is near when it moves, \
-     and one without `move` holds it. All that is between follows smoothly (by natural \
-     neighbours), and far away nothing moves. Triangles, patches and meshes can be deformed, soft \
-     surfaces around meshes too.",
-)
-.example(clay!(
-    "eyep 3 4 3\nfov 30\nvup 0 0 1\n\
-     mesh Clay gem.obj\ndeform { control <0 0 1> move <0.4 0 0.6>\n  \
-     control <0 0 0>\n  control <0 0 -1> move <-0.4 0 0> }"
-));
+    ))
+    .newer()
+    .most_operands(MAX_CONTROL_OPERANDS)
+    .details(
+        "Control points may lie anywhere, at most 4096; each takes along what is near when it \
+         moves, and one without `move` holds it. All that is between follows smoothly (by natural \
+         neighbours), and far away nothing moves. Triangles, patches and meshes can be deformed, \
+         soft surfaces around meshes too.",
+    )
+    .example(clay!(
+        "eyep 3 4 3\nfov 30\nvup 0 0 1\nmesh Clay gem.obj\n\
+         deform { control <0 0 1> move <0.4 0 0.6>\n  control <0 0 0>\n  \
+         control <0 0 -1> move <-0.4 0 0> }"
+    ));
 
 fn deform<'a>(
     run: &mut Evaluator<'a>,
@@ -109,11 +99,10 @@ fn deform<'a>(
     let text = run.sources.all[run.file].text;
     let points = controls(text, options)?;
     if points.is_empty() {
-        return Err(Problem::new(
-            command.span.clone(),
-            "there are no control points to deform with",
-        )
-        .hint("write them as `deform { control <0 0 0> move <0 0 1> }`"));
+        return Err(
+            Problem::new(&command.span, "there are no control points to deform with")
+                .hint("write them as `deform { control <0 0 0> move <0 0 1> }`"),
+        );
     }
     let vertices = Vertices::of(&run.model, range.clone(), &command.word_span)?;
     let work = vertices.places.len() as u64 * STEPS_PER_VERTEX + range.len() as u64;
@@ -121,7 +110,7 @@ fn deform<'a>(
     run.deformed += vertices.places.len();
     if run.deformed > MAX_DEFORMED {
         return Err(Problem::new(
-            command.word_span.clone(),
+            &command.word_span,
             format!("the deformations move more than {MAX_DEFORMED} vertices together"),
         )
         .hint("deform a mesh of fewer triangles, or fewer objects"));
@@ -129,7 +118,7 @@ fn deform<'a>(
     let controls: Vec<DVec3> = points.iter().map(|control| control.place).collect();
     let moves: Vec<DVec3> = points.iter().map(|control| control.way).collect();
     let deformation = deformation(&vertices.places, &controls)
-        .map_err(|error| Problem::new(command.span.clone(), error.to_string()))?;
+        .map_err(|error| Problem::new(&command.span, error.to_string()))?;
     let moved = deformation.apply(&vertices.places, &moves);
     let triangles = vertices.triangles(&run.model.parts[range.clone()]);
     let mut of: Vec<_> = run.model.parts[range.clone()]
@@ -151,7 +140,7 @@ fn deform<'a>(
     Ok(Flow::Next)
 }
 
-/// The control points with their moves; those without one stay.
+/// Reads the control points with their moves; points without one stay.
 fn controls(text: &str, options: &Options<'_>) -> Outcome<Vec<Control>> {
     let mut controls: Vec<Control> = Vec::new();
     for chosen in options.iter() {
@@ -159,7 +148,7 @@ fn controls(text: &str, options: &Options<'_>) -> Outcome<Vec<Control>> {
             controls.push(Control {
                 place,
                 way: DVec3::ZERO,
-                span: closed(text, span),
+                span: with_brackets(text, span),
                 way_span: None,
                 is_literal: true,
             });
@@ -167,15 +156,15 @@ fn controls(text: &str, options: &Options<'_>) -> Outcome<Vec<Control>> {
         let Some((way, span)) = MOVE.of(chosen) else {
             continue;
         };
-        let span = closed(text, span);
+        let span = with_brackets(text, span);
         if let Some(last) = controls.last_mut().filter(|c| c.way_span.is_none()) {
             last.way = way;
             last.is_literal =
-                written_out(text, span.clone()).is_some_and(|numbers| numbers.len() == 3);
+                literals(text, span.clone()).is_some_and(|numbers| numbers.len() == 3);
             last.way_span = Some(span);
         } else {
             return Err(Problem::new(
-                chosen.span.clone(),
+                &chosen.span,
                 if controls.is_empty() {
                     "there is no control point before this `move`"
                 } else {
@@ -188,9 +177,9 @@ fn controls(text: &str, options: &Options<'_>) -> Outcome<Vec<Control>> {
     Ok(controls)
 }
 
-/// The range of a vector in a text, enlarged to the signs that open and close it where they are
+/// Widens the range of a vector in a text to the signs that open and close it, where they are
 /// written.
-fn closed(text: &str, span: Range<usize>) -> Range<usize> {
+fn with_brackets(text: &str, span: Range<usize>) -> Range<usize> {
     let parts = (
         text.get(..span.start),
         text.get(span.clone()),
@@ -214,22 +203,27 @@ fn closed(text: &str, span: Range<usize>) -> Range<usize> {
     }
 }
 
-/// The vertices of some shapes, each once.
+/// Vertices of some shapes, each once.
 struct Vertices {
     places: Vec<DVec3>,
-    /// For each shape in turn, the numbers of its corners.
+    /// The numbers of the corners of each shape, in turn.
     numbers: Vec<u32>,
 }
 
 impl Vertices {
+    /// Collects the vertices of shapes.
+    ///
+    /// # Errors
+    /// If a shape has none that could be moved.
     fn of(model: &Model<'_>, range: Range<usize>, span: &Range<usize>) -> Outcome<Self> {
         let (mut places, mut numbers) = (Vec::new(), Vec::new());
         let mut known = HashMap::new();
         for part in &model.parts[range] {
             let corners = corners(&part.element.shape).ok_or_else(|| {
                 Problem::new(
-                    span.clone(),
-                    "only triangles, patches and meshes can be deformed, and this object has other shapes",
+                    span,
+                    "only triangles, patches and meshes can be deformed, and this object has \
+                     other shapes",
                 )
                 .hint("put the mesh into an object of its own")
             })?;
@@ -245,7 +239,7 @@ impl Vertices {
         Ok(Self { places, numbers })
     }
 
-    /// The triangles between the vertices.
+    /// Returns the triangles between the vertices.
     fn triangles(&self, parts: &[Part]) -> Vec<[u32; 3]> {
         let mut triangles = Vec::new();
         let mut first = 0;
@@ -312,16 +306,16 @@ impl Vertices {
     }
 }
 
-/// The corners of a shape that can be deformed.
+/// Returns the corners of a shape that can be deformed.
 fn corners(shape: &Shape) -> Option<Vec<DVec3>> {
     match shape {
         Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => Some(corners.to_vec()),
         Shape::Function(function) => match &function.form {
             Form::Mesh(mesh) => {
-                let places = mesh.positions.iter();
+                let places = mesh.positions.iter().copied();
                 Some(
                     places
-                        .map(|p| function.to_world.transform_point3(*p))
+                        .map(|p| function.to_world.transform_point3(p))
                         .collect(),
                 )
             }
@@ -345,20 +339,24 @@ impl Normals {
         [a, b, c, x, y, z]
     }
 
+    /// Turns the normals of a patch as its plane turns, and adds them to those of its corners.
     fn turn(&mut self, before: &[DVec3; 3], after: &[DVec3; 3], normals: &[DVec3; 3]) {
-        let plane = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).try_normalize();
+        let planes = [before, after].map(|[a, b, c]| (*b - *a).cross(*c - *a).try_normalize());
         // The shortest turn from one plane's normal to the other's, made of two reflections.
-        let mirrors = match (plane(before), plane(after)) {
-            (Some(from), Some(to)) => (from + to).try_normalize().map(|half| [from, half]),
+        let mirrors = match planes {
+            [Some(from), Some(to)] => (from + to).try_normalize().map(|half| [from, half]),
             _ => None,
         };
         for (corner, normal) in after.iter().zip(normals) {
-            let mirror = |n: DVec3, mirror: &DVec3| n - *mirror * (2.0 * mirror.dot(n));
-            let turned = mirrors.iter().flatten().fold(*normal, mirror);
+            let mut turned = *normal;
+            for mirror in mirrors.iter().flatten() {
+                turned -= *mirror * (2.0 * mirror.dot(turned));
+            }
             *self.sums.entry(Self::key(*corner, *normal)).or_default() += turned;
         }
     }
 
+    /// Gives a patch the mean normals of its corners.
     fn mean(&self, corners: &[DVec3; 3], normals: &mut [DVec3; 3]) {
         for (corner, normal) in corners.iter().zip(normals) {
             let mean = self.sums.get(&Self::key(*corner, *normal)).copied();

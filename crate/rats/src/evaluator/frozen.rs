@@ -1,4 +1,4 @@
-//! What `transform` holds still while a shutter stays open.
+//! The shapes that `transform` holds still while a shutter stays open.
 
 use super::model::{Model, Part};
 use glam::DAffine3;
@@ -8,13 +8,13 @@ use std::ops::Range;
 /// Shapes as `transform` commands found them, command by command.
 #[derive(Clone, Debug, Default)]
 pub struct Frozen {
-    /// What the commands of this run have found.
+    /// The shapes that the commands of this run have found.
     found: Vec<Vec<Still>>,
-    /// What those of the frame's own run found, which counts here.
+    /// The shapes that those of the frame's own run found, to which shapes go back.
     given: Option<Vec<Vec<Still>>>,
 }
 
-/// Where a shape is.
+/// Shape and its place.
 #[derive(Clone, Debug)]
 struct Still {
     shape: Shape,
@@ -33,8 +33,7 @@ impl Still {
 }
 
 impl Frozen {
-    /// For another moment of a frame whose own run froze these: nothing found yet, and where the
-    /// frame's shapes are.
+    /// Makes the shapes for another moment of a frame whose own run froze these.
     pub fn of_frame(&self) -> Self {
         Self {
             found: Vec::new(),
@@ -42,8 +41,8 @@ impl Frozen {
         }
     }
 
-    /// Holds these shapes still: in the run of a frame it notes where they are, in that of another
-    /// moment it puts them back there.
+    /// Holds these shapes still: notes their places in the run of a frame, and puts them back there
+    /// in that of another moment.
     pub fn hold(&mut self, model: &mut Model<'_>, range: Range<usize>) {
         let parts = &mut model.parts[range];
         let number = self.found.len();

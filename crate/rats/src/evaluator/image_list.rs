@@ -12,7 +12,7 @@ pub struct Images {
 }
 
 impl Images {
-    /// The index of the image of a name.
+    /// Finds the index of the image of a name.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|known| known == name)
     }

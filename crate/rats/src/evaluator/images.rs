@@ -8,7 +8,7 @@ use crate::reader::Name;
 use texture::Rgb8;
 
 impl<'a> Evaluator<'a> {
-    /// The index of an image of the project.
+    /// Finds the index of an image of the project.
     ///
     /// # Errors
     /// If there is no such file, it is no picture, or all together are too large.
@@ -18,13 +18,13 @@ impl<'a> Evaluator<'a> {
             return Ok(index);
         }
         self.scope.step(assets::cost(asset), &name.span)?;
-        let image = assets::image(asset)
-            .map_err(|error| Problem::new(name.span.clone(), error.to_string()))?;
+        let image =
+            assets::image(asset).map_err(|error| Problem::new(&name.span, error.to_string()))?;
         let pixels = |image: &Rgb8| u64::from(image.size[0]) * u64::from(image.size[1]);
         let total: u64 = self.images.all.iter().map(|image| pixels(image)).sum();
         if total + pixels(&image) > MAX_IMAGE_PIXELS {
             return Err(Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("the images have more than {MAX_IMAGE_PIXELS} pixels together"),
             )
             .hint("make them smaller"));

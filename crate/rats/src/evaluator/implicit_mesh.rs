@@ -1,11 +1,9 @@
 //! `mesh … metaballs`: meshes as soft shapes.
 
 use super::state::{Evaluator, Flow};
-use crate::Severity;
-use crate::commands::OptionSpec;
-use crate::commands::build::choice;
-use crate::commands::slot::{Choice, length, number};
-use crate::given::{Chosen, Options};
+use crate::commands::build::options;
+use crate::commands::slot::{length, number};
+use crate::given::Options;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
@@ -17,34 +15,24 @@ use scene::{Form, Function, ImplicitMesh, Shape};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The least product of k and the mean edge: below it the balls of many facets add up, and the
-/// surface bulges.
+/// Least product of k and the mean edge: below it the balls of many facets add up, and the surface
+/// bulges.
 const LEAST: f64 = 10.0;
 
-const METABALLS: Choice<()> = choice!(
-    "metaballs",
-    "",
-    "a soft surface around the mesh, of one metaball a facet: `spherical` or `triangular` (ours)"
-);
-const SPHERICAL: Choice<f64> = choice!(
-    "spherical",
-    "",
-    "of balls around the circumcircles of the facets",
-    number("k", "how sharply the field falls")
-);
-const TRIANGULAR: Choice<(f64, f64)> = choice!(
-    "triangular",
-    "",
-    "of shells of this thickness around the facets",
-    length("d0", "the thickness").at_least(0.0),
-    number("k", "how sharply the field falls")
-);
+options! {
+    /// `mesh` as an implicit surface.
+    MESH_OPTIONS:
+    METABALLS: () = ("metaballs", "",
+        "a soft surface around the mesh, of one metaball a facet: `spherical` \
+         or `triangular` (ours)");
+    SPHERICAL: f64 = ("spherical", "", "of balls around the circumcircles of the facets",
+        number("k", "how sharply the field falls"));
+    TRIANGULAR: (f64, f64) = ("triangular", "", "of shells of this thickness around the facets",
+        length("d0", "the thickness").at_least(0.0), number("k", "how sharply the field falls"));
+}
 
-/// `mesh` as an implicit surface.
-pub static MESH_OPTIONS: &[OptionSpec] = &[METABALLS.plain, SPHERICAL.plain, TRIANGULAR.plain];
-
-/// What surrounds the facets, and k, with the place of the numbers in the text; `None` if the mesh
-/// is to be drawn as it is.
+/// Returns the surroundings of the facets, k, and the place of the two in the text; `None` if the
+/// mesh is to be drawn as it is.
 ///
 /// # Errors
 /// If `metaballs` has no kind, or two, or a kind stands alone.
@@ -56,7 +44,7 @@ pub fn metaballs(options: &Options<'_>) -> Outcome<Option<(Kind, f64, Range<usiz
             Some(chosen) => {
                 let kind = chosen.option.name;
                 Err(Problem::new(
-                    chosen.span.clone(),
+                    &chosen.span,
                     format!("`{kind}` is a kind of `metaballs`, which is missing"),
                 )
                 .hint(format!("write `metaballs {kind}`")))
@@ -65,31 +53,22 @@ pub fn metaballs(options: &Options<'_>) -> Outcome<Option<(Kind, f64, Range<usiz
     };
     if let (Some(_), Some(second)) = (spherical, triangular) {
         return Err(Problem::new(
-            second.span.clone(),
+            &second.span,
             "metaballs are spherical or triangular, not both",
         ));
     }
-    let of = |chosen: &Chosen<'_>| {
-        let (kind, k) = match SPHERICAL.of(chosen) {
-            Some(k) => (Kind::Spherical, k),
-            None => {
-                let (thickness, k) = TRIANGULAR.of(chosen)?;
-                (Kind::Triangular { thickness }, k)
-            }
-        };
-        Some((kind, k, chosen.span.clone()))
-    };
-    spherical
-        .or(triangular)
-        .and_then(of)
-        .map(Some)
-        .ok_or_else(|| {
-            Problem::new(
-                word.span.clone(),
-                "expected the kind of metaballs behind this",
-            )
-            .hint("write `metaballs triangular d0 k` or `metaballs spherical k`")
-        })
+    if let Some((chosen, k)) = spherical.and_then(|c| Some((c, SPHERICAL.of(c)?))) {
+        return Ok(Some((Kind::Spherical, k, chosen.span.clone())));
+    }
+    if let Some((chosen, (thickness, k))) = triangular.and_then(|c| Some((c, TRIANGULAR.of(c)?))) {
+        return Ok(Some((
+            Kind::Triangular { thickness },
+            k,
+            chosen.span.clone(),
+        )));
+    }
+    let problem = Problem::new(&word.span, "expected the kind of metaballs behind this");
+    Err(problem.hint("write `metaballs triangular d0 k` or `metaballs spherical k`"))
 }
 
 /// Adds the implicit surface of a mesh as one soft shape.
@@ -106,7 +85,7 @@ pub fn add<'a>(
         .step(mesh.triangles.len() as u64, &command.word_span)?;
     if k <= 0.0 {
         return Err(Problem::new(
-            span,
+            &span,
             format!("k must be a number above 0, not {k}"),
         ));
     }
@@ -115,50 +94,42 @@ pub fn add<'a>(
         form: Form::Mesh(Arc::new(own)),
         to_world: DAffine3::IDENTITY,
     };
-    tell_bulges(run, mesh, k, span);
-    tell_topology(run, topology, command.span.clone());
-    run.add_of(
-        command,
-        material,
-        Shape::Function(Box::new(function)),
-        Kernel::Cauchy,
-    )
+    warn_of_bulges(run, mesh, k, &span);
+    note_topology(run, topology, &command.span);
+    let shape = Shape::Function(Box::new(function));
+    run.add_of(command, material, shape, Kernel::Cauchy)
 }
 
 /// Warns where k is small for the mesh.
-fn tell_bulges(run: &mut Evaluator<'_>, mesh: &TriangleMesh, k: f64, span: Range<usize>) {
+fn warn_of_bulges(run: &mut Evaluator<'_>, mesh: &TriangleMesh, k: f64, span: &Range<usize>) {
     let edge = fit::mean_edge(&mesh.positions, &mesh.triangles);
     let product = k * edge;
     if product < LEAST && edge > 0.0 {
-        run.say(Severity::Warning, span, || {
-            (
-                format!(
-                    "k times the mean edge is {product:.2}: below {LEAST} the surface bulges where facets are small"
-                ),
-                Some(format!("a k of {} would do", rounded_up(LEAST / edge))),
-            )
-        });
+        let bulges = format_args!("below {LEAST} the surface bulges where facets are small");
+        let message = format_args!("k times the mean edge is {product:.2}: {bulges}");
+        let hint = format_args!("a k of {} would do", round_up(LEAST / edge));
+        run.warn(span, message, hint);
     }
 }
 
-/// Notes what an open mesh or one that is no manifold looks like.
-fn tell_topology(run: &mut Evaluator<'_>, topology: Option<Topology>, span: Range<usize>) {
+/// Notes what an open mesh, or one that is no manifold, looks like.
+fn note_topology(run: &mut Evaluator<'_>, topology: Option<Topology>, span: &Range<usize>) {
     let Some(topology) = topology.filter(|t| !t.is_closed_manifold()) else {
         return;
     };
     let edges = topology.boundary_edges;
-    run.say(Severity::Note, span, || {
-        let text = if edges > 0 {
-            format!("this mesh is open ({edges} edges have one facet only), so its soft surface is a shell with a rim, not a solid")
-        } else {
-            String::from("this mesh is no manifold; its soft surface is around all of its facets all the same")
-        };
-        (text, None)
-    });
+    if edges > 0 {
+        let open = format_args!("this mesh is open ({edges} edges have one facet only)");
+        let shell = "its soft surface is a shell with a rim, not a solid";
+        run.note(span, format_args!("{open}, so {shell}"), "");
+    } else {
+        let around = "its soft surface is around all of its facets all the same";
+        run.note(span, format_args!("this mesh is no manifold; {around}"), "");
+    }
 }
 
-/// A number rounded up to two digits.
-fn rounded_up(value: f64) -> f64 {
+/// Rounds a number up to two digits.
+fn round_up(value: f64) -> f64 {
     let mut unit = 1.0;
     while unit * 10.0 <= value {
         unit *= 10.0;
@@ -177,7 +148,7 @@ fn rounded_up(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::rounded_up;
+    use super::round_up;
 
     #[test]
     fn numbers_are_rounded_up_to_two_digits() {
@@ -188,7 +159,7 @@ mod tests {
             (9.99, 10.0),
             (20.0, 20.0),
         ] {
-            assert_eq!(rounded_up(value), up);
+            assert_eq!(round_up(value), up);
         }
     }
 }

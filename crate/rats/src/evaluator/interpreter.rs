@@ -95,7 +95,7 @@ impl<'a> Evaluator<'a> {
         if spec.yields() && self.definitions.contains_key(&command.word) {
             return self.call(command, command.word);
         }
-        self.tell_after_shot(command);
+        self.warn_after_shot(command);
         match spec.action {
             Action::Run(run) => run(self, command).inspect_err(|_| {
                 if let Some(mark) = spec.mark_failed {
@@ -106,13 +106,9 @@ impl<'a> Evaluator<'a> {
             Action::Structure => Ok(Flow::Next),
             Action::Library => self.call_library(command, spec.name),
             Action::NoEffect(reason) => {
-                self.given(command)?;
-                self.say(Severity::Note, command.word_span.clone(), || {
-                    (
-                        format!("`{}` changes nothing here: {reason}", spec.name),
-                        None,
-                    )
-                });
+                self.read_given(command)?;
+                let message = format_args!("`{}` changes nothing here: {reason}", spec.name);
+                self.note(&command.word_span, message, "");
                 Ok(Flow::Next)
             }
         }
@@ -120,17 +116,17 @@ impl<'a> Evaluator<'a> {
 
     fn repeat(&mut self, node: &'a For) -> Outcome<Flow> {
         self.scope.step(1, &node.head.word_span)?;
-        let mut read = self.reader(&node.head).unlisted();
+        let mut read = self.reader(&node.head).joining();
         let (name, word) = read
             .peek_word()
-            .ok_or_else(|| read.expected("the name of the loop's variable"))?;
+            .ok_or_else(|| read.missing("the name of the loop's variable"))?;
         read.at += 1;
         if !read.sign(b'=') {
-            return Err(read.expected(&format!("`=` after `{word}`")));
+            return Err(read.missing(&format!("`=` after `{word}`")));
         }
         let from = read.number("the first value")?;
         if !read.keyword("to") {
-            return Err(read.expected("`to`"));
+            return Err(read.missing("`to`"));
         }
         let to = read.number("the last value")?;
         let mut step = 1.0;
@@ -138,7 +134,7 @@ impl<'a> Evaluator<'a> {
         if read.keyword("step") {
             step = read.number("the step")?;
             if step == 0.0 {
-                return Err(Problem::new(read.since(start), "the step must not be 0"));
+                return Err(Problem::new(&read.since(start), "the step must not be 0"));
             }
         }
         read.end()?;
@@ -170,7 +166,7 @@ impl<'a> Evaluator<'a> {
 
     fn choose(&mut self, node: &'a If) -> Outcome<Flow> {
         self.scope.step(1, &node.head.word_span)?;
-        let branch = if self.reader(&node.head).unlisted().condition()? {
+        let branch = if self.reader(&node.head).joining().condition()? {
             &node.then
         } else {
             &node.otherwise
@@ -210,7 +206,7 @@ impl<'a> Evaluator<'a> {
         let values = self.arguments(command, define)?;
         if self.scope.calls() >= limits::MAX_NESTED_CALLS {
             return Err(Problem::new(
-                command.word_span.clone(),
+                &command.word_span,
                 format!(
                     "stopped here: commands call each other more than {} deep",
                     limits::MAX_NESTED_CALLS
@@ -248,7 +244,7 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// Runs another text; what is said about one of the library or an example is said here.
+    /// Runs another text; messages about one of the library or an example go here.
     pub(super) fn run_inner(&mut self, command: &'a Command, file: usize) -> Outcome<Flow> {
         self.enter(&command.word_span)?;
         let leaves_own = self.is_own() && file >= self.sources.own;
@@ -263,7 +259,7 @@ impl<'a> Evaluator<'a> {
         Ok(flow)
     }
 
-    /// The file of a name, of the project or the library.
+    /// Finds the file of a name, of the project or the library.
     pub(super) fn find_file(&self, name: &Name<'_>) -> Outcome<usize> {
         let places = places(&self.sources.all[self.file].name, name.text);
         let found = places.iter().find_map(|place| self.sources.find(place));
@@ -278,7 +274,7 @@ impl<'a> Evaluator<'a> {
             let hint = suggest::hint(bare, known.iter().copied())
                 .unwrap_or_else(|| format!("the files are {}", known.join(", ")));
             Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("there is no file `{}` in the project", name.text),
             )
             .hint(hint)

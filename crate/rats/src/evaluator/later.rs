@@ -1,13 +1,15 @@
-//! Finds what is made further down in a text, for hints about what is used too soon.
+//! Finds materials that are made further down in a text, for hints about materials that are used
+//! too soon.
 
 use crate::reader::Name;
 use crate::sources::Source;
 use crate::syntax::{Block, Command, Node};
 use std::ops::Range;
 
-/// The place of the first command after `name` that makes a material of that name in the same file.
+/// Finds the place of the first command after `name` that makes a material of that name in the same
+/// file.
 pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<usize>> {
-    let makes = |command: &Command| {
+    let command = find(&source.syntax.block, &|command| {
         let item = source.syntax.items.get(command.items.start);
         command.span.start > name.span.end
             && !command.items.is_empty()
@@ -15,12 +17,11 @@ pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<u
                 .spec
                 .is_some_and(|spec| matches!(spec.name, "surface" | "material"))
             && item.is_some_and(|item| &source.text[item.span()] == name.text)
-    };
-    let command = find(&source.syntax.block, &makes)?;
+    })?;
     Some(source.syntax.items[command.items.start].span())
 }
 
-/// The first command with a property.
+/// Finds the first command with a property.
 fn find<'s>(block: &'s Block, property: &dyn Fn(&Command) -> bool) -> Option<&'s Command> {
     block.iter().find_map(|node| match node {
         Node::Command(command) => property(command).then_some(command),

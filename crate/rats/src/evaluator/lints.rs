@@ -45,13 +45,9 @@ impl Evaluator<'_> {
                 continue;
             }
             let [Some(own), Some(other)] = [of(a), of(b)] else {
-                self.say_at(file, Severity::Warning, span, || {
-                    let hint = "only soft shapes touch: give a material a `blobbiness`";
-                    (
-                        String::from("one of these bodies has no soft shapes"),
-                        Some(hint.to_owned()),
-                    )
-                });
+                let message = "one of these bodies has no soft shapes";
+                let hint = "only soft shapes touch: give a material a `blobbiness`";
+                self.say_at(file, Severity::Warning, &span, message, hint);
                 continue;
             };
             let coated = [(own, other, b), (other, own, a)]
@@ -61,14 +57,9 @@ impl Evaluator<'_> {
                 });
             if let Some((_, _, body)) = coated {
                 let name = scene.bodies[body as usize].name.clone();
-                self.say_at(file, Severity::Warning, span, || {
-                    (
-                        format!("the bulge of this contact coats `{name}`"),
-                        Some(String::from(
-                            "let it begin nearer, with a larger c, or make it lower",
-                        )),
-                    )
-                });
+                let message = format_args!("the bulge of this contact coats `{name}`");
+                let hint = "let it begin nearer, with a larger c, or make it lower";
+                self.say_at(file, Severity::Warning, &span, message, hint);
             }
         }
     }
@@ -87,25 +78,19 @@ impl Evaluator<'_> {
         let Some(first) = outside.first() else { return };
         let count = outside.len();
         let origin = first.origin;
-        let span = origin.start as usize..origin.end as usize;
         if count == scene.elements.len() {
-            self.say_at(origin.file as usize, Severity::Warning, span, || {
-                (
-                    String::from("nothing of the model is in the picture"),
-                    Some(String::from(
-                        "look at it with `eyep` and `vrp`, or press “See the whole model”",
-                    )),
-                )
-            });
+            let message = "nothing of the model is in the picture";
+            let hint = "look at it with `eyep` and `vrp`, or press “See the whole model”";
+            self.warn_of(origin, message, hint);
         } else {
-            self.say_at(origin.file as usize, Severity::Note, span, || {
-                let more = match count - 1 {
-                    0 => String::new(),
-                    1 => String::from(", and so is one more"),
-                    n => format!(", and so are {n} more"),
-                };
-                (format!("this shape is outside the picture{more}"), None)
-            });
+            let more = match count - 1 {
+                0 => String::new(),
+                1 => String::from(", and so is one more"),
+                n => format!(", and so are {n} more"),
+            };
+            let message = format_args!("this shape is outside the picture{more}");
+            let span = origin.start as usize..origin.end as usize;
+            self.say_at(origin.file as usize, Severity::Note, &span, message, "");
         }
     }
 
@@ -117,12 +102,13 @@ impl Evaluator<'_> {
             .any(|s| s.function().jet(scene.camera.eye).value >= THRESHOLD)
         {
             let (file, span) = self.aimed_at.clone();
-            self.say_at(file, Severity::Warning, span, || {
-                (
-                    String::from("the eye is inside the surface"),
-                    Some(String::from("move `eyep` away from the model")),
-                )
-            });
+            self.say_at(
+                file,
+                Severity::Warning,
+                &span,
+                "the eye is inside the surface",
+                "move `eyep` away from the model",
+            );
         }
         let mut left = MOST_EVALUATIONS;
         for surface in &surfaces {
@@ -135,8 +121,8 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Warns of flesh of one body that never reaches the threshold. Gives `false` when `left`, the
-    /// evaluations that may still be made, is used up.
+    /// Warns of flesh of one body that never reaches the threshold. Returns `false` when `left`,
+    /// the evaluations that may still be made, is used up.
     fn lint_body(&mut self, scene: &Scene, surface: &SoftSurface, left: &mut usize) -> bool {
         let terms = &surface.sum.primitives;
         let mut term = 0;
@@ -162,18 +148,12 @@ impl Evaluator<'_> {
             };
             *left = rest;
             if points.iter().all(|p| value(terms, *p) < THRESHOLD) {
-                let origin = element.origin;
-                let span = origin.start as usize..origin.end as usize;
-                self.say_at(origin.file as usize, Severity::Warning, span, || {
-                    (
-                        String::from(
-                            "this soft shape cannot be seen: its field never reaches the threshold",
-                        ),
-                        Some(String::from(
-                            "raise the `strength` or `radius` of its material, make it larger, or put it nearer to others",
-                        )),
-                    )
-                });
+                self.warn_of(
+                    element.origin,
+                    "this soft shape cannot be seen: its field never reaches the threshold",
+                    "raise the `strength` or `radius` of its material, make it larger, or put it \
+                     nearer to others",
+                );
             }
         }
         true
@@ -184,7 +164,7 @@ fn value(terms: &[Primitive], p: DVec3) -> f64 {
     field::sum(terms, p.to_array()).value
 }
 
-/// Points on a shape's skeleton, where its own field is strongest.
+/// Returns points on a shape's skeleton, where its own field is strongest.
 fn bone(shape: &Shape) -> Vec<DVec3> {
     match shape {
         Shape::Sphere { center, .. } => vec![*center],
@@ -232,7 +212,7 @@ fn bone(shape: &Shape) -> Vec<DVec3> {
     }
 }
 
-/// A ball around a shape as it is drawn: soft flesh reaches a little farther than its radius.
+/// Finds a ball around a shape as it is drawn: soft flesh reaches a little farther than its radius.
 /// `None` for a plane, which is everywhere.
 fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
     if matches!(element.shape, Shape::Plane { .. }) {
@@ -263,7 +243,7 @@ fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
     Some((centre, reach + flesh))
 }
 
-/// Whether a ball is wholly outside the pyramid that the picture shows.
+/// Returns whether a ball is wholly outside the pyramid that the picture shows.
 fn is_outside(projection: &scene::Projection, centre: DVec3, radius: f64) -> bool {
     let view = projection.world_from_view.transpose() * (centre - projection.eye);
     let beyond = |across: f64, tangent: f64| {

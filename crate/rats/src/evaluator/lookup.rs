@@ -1,4 +1,4 @@
-//! Looks up what commands name: operands as the table describes them, materials, images and meshes.
+//! Looks up operands as the table describes them, materials, images and meshes.
 
 use super::later;
 use super::state::Evaluator;
@@ -10,17 +10,15 @@ use crate::value::Value;
 use crate::{Asset, commands, library, limits, places, suggest};
 
 impl<'a> Evaluator<'a> {
+    /// Makes the problem that there is no such command.
     pub(super) fn unknown(&self, command: &Command) -> Box<Problem> {
         let word = self.scope.symbols.word(command.word);
-        let problem = Problem::new(
-            command.word_span.clone(),
-            format!("there is no command `{word}`"),
-        );
+        let problem = Problem::new(&command.word_span, format!("there is no command `{word}`"));
         let defined = self.definitions.keys().map(|s| self.scope.symbols.word(*s));
         problem.maybe_hint(commands::suggestion(word, defined))
     }
 
-    /// The index of a material. If it is made further down, the hint says so.
+    /// Finds the index of a material. If it is made further down, the hint says so.
     pub(super) fn material(&self, name: &Name<'a>) -> Outcome<usize> {
         self.palette.find(name).map_err(|problem| {
             if problem.quiet {
@@ -34,16 +32,16 @@ impl<'a> Evaluator<'a> {
                         .hint(format!(
                             "it is made further down, in line {line}: move that up"
                         ))
-                        .related(None, span, format!("`{}` is made here", name.text))
+                        .with_place(None, span, format!("`{}` is made here", name.text))
                 }
                 None => problem,
             }
         })
     }
 
-    /// All operands and options of a command, read as the table says. Within a chain its shapes
+    /// Reads the operands and options of a command as the table says. Within a chain its shapes
     /// leave out the material's name, which is that of the chain.
-    pub(super) fn given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
+    pub(super) fn read_given(&mut self, command: &'a Command) -> Outcome<Given<'a>> {
         let Some(spec) = command.spec else {
             return Ok(Given::default());
         };
@@ -56,14 +54,14 @@ impl<'a> Evaluator<'a> {
             let mut read = self.reader(command);
             read.more();
             let (at, datum, here) = (read.at, read.datum(), read.here());
-            let found = read.found().unwrap_or_default();
+            let found = read.next_text().unwrap_or_default();
             match datum {
                 Some(Datum::Word(symbol)) if in_chain => match self.scope.get(symbol) {
                     // A parameter of a defined command that stands for the material.
                     Some(Value::Name(_)) => skipped = at + 1,
                     None if self.palette.has(self.scope.symbols.word(symbol)) => {
                         return Err(Problem::new(
-                            here,
+                            &here,
                             "shapes of a chain leave out the material's name: the chain gives it",
                         ));
                     }
@@ -72,7 +70,7 @@ impl<'a> Evaluator<'a> {
                 // `sphere 1 0 0 0`: better say this than that a coordinate is missing at the end.
                 Some(Datum::Number(_)) if !in_chain && !self.palette.has(found) => {
                     return Err(Problem::new(
-                        here,
+                        &here,
                         format!("expected the material's name, found `{found}`"),
                     )
                     .hint(spec.usage()));
@@ -83,33 +81,32 @@ impl<'a> Evaluator<'a> {
         let chain = self.model.chain.clone().filter(|_| is_shape);
         let mut read = self.reader(command);
         read.at = skipped;
-        let given = read.given(spec.parameters, spec.options, chain)?;
+        let given = read.read_given(spec.parameters, spec.options, chain)?;
         if is_shape {
             self.watch_shape(command, &given);
         }
         Ok(given)
     }
 
-    /// A mesh file that a text of the project names, if there is one.
-    pub(super) fn mesh_beside(&self, file: usize, name: &str) -> Option<&'a Asset> {
-        let assets: &'a [Asset] = self.assets;
-        let places = places(&self.sources.all[file].name, name);
-        let find = |place: &String| {
-            let mut all = assets.iter().chain(library::assets());
-            all.find(|asset| asset.name == *place)
-        };
-        places.iter().find_map(find)
+    /// Finds an image or mesh of the project or the library that a text of the project names.
+    pub(super) fn find_asset(&self, file: usize, name: &str) -> Option<&'a Asset> {
+        let all = self.assets.iter().chain(library::assets());
+        places(&self.sources.all[file].name, name)
+            .iter()
+            .find_map(|place| all.clone().find(|asset| asset.name == *place))
     }
 
-    /// The index of a text of strokes of the project.
+    /// Finds the index of a text of strokes of the project.
     ///
     /// # Errors
     /// If there is none of this name.
     pub(super) fn strokes(&self, name: &Name<'_>) -> Outcome<usize> {
         let own = &self.sources.all[..self.sources.own];
-        let find = |place: &String| own.iter().position(|source| source.name == *place);
         let places = places(&self.sources.all[self.file].name, name.text);
-        places.iter().find_map(find).ok_or_else(|| {
+        let found = places
+            .iter()
+            .find_map(|place| own.iter().position(|source| source.name == *place));
+        found.ok_or_else(|| {
             let texts = own.iter().map(|source| source.name.as_str());
             let known: Vec<&str> = texts.filter(|name| crate::is_strokes(name)).collect();
             let hint = suggest::hint(name.text, known.iter().copied()).unwrap_or_else(|| {
@@ -118,21 +115,19 @@ impl<'a> Evaluator<'a> {
                 )
             });
             let message = format!("there is no text of strokes `{}` in the project", name.text);
-            Problem::new(name.span.clone(), message).hint(hint)
+            Problem::new(&name.span, message).hint(hint)
         })
     }
 
-    /// An image or mesh of the project.
+    /// Finds an image or mesh of the project or the library.
     pub(super) fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
-        let assets: &'a [Asset] = self.assets;
         let bare = name.text.strip_prefix("./").unwrap_or(name.text);
-        let find = |place: &String| {
-            let mut all = assets.iter().chain(library::assets());
-            all.find(|asset| asset.name == *place)
-        };
-        let places = places(&self.sources.all[self.file].name, name.text);
-        places.iter().find_map(find).ok_or_else(|| {
-            let known: Vec<_> = assets.iter().map(|asset| asset.name.as_str()).collect();
+        self.find_asset(self.file, name.text).ok_or_else(|| {
+            let known: Vec<_> = self
+                .assets
+                .iter()
+                .map(|asset| asset.name.as_str())
+                .collect();
             let hint = if known.is_empty() {
                 String::from("drop the file onto the page, or put it beside the dataset")
             } else {
@@ -140,7 +135,7 @@ impl<'a> Evaluator<'a> {
                     .unwrap_or_else(|| format!("the files are {}", known.join(", ")))
             };
             Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("there is no image or mesh `{bare}` in the project"),
             )
             .hint(hint)

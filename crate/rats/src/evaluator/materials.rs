@@ -4,10 +4,8 @@ use super::palette::{Colours, Surface};
 use super::state::{Evaluator, Flow};
 use super::textures::LAYERS;
 use crate::Severity;
-use crate::commands::build::{Form, choice, row, takes, word_of};
-use crate::commands::slot::{
-    Choice, Named, Placed, Word, colour, copy, length, new, number, share, word,
-};
+use crate::commands::build::{Form, options, row, takes, word_of};
+use crate::commands::slot::{Named, Placed, Word, colour, copy, length, new, number, share, word};
 use crate::commands::{CommandSpec, Names, OptionSpec};
 use crate::given::Options;
 use crate::operands::Share;
@@ -36,137 +34,49 @@ const RAYS: &[OptionSpec] = &[
     word_of("transmitted", "rays let through"),
 ];
 
-const BODY: Choice<Rgb> = choice!(
-    "body",
-    "as diffuse",
-    "main colour, of which `N%` are taken",
-    colour("RGB", "the body's colour")
-);
-const AMBIENT: Choice<Share> = choice!(
-    "ambient",
-    "15% of diffuse",
-    "light given off",
-    share("the ambient colour")
-);
-const DIFFUSE: Choice<Share> = choice!(
-    "diffuse",
-    "as body",
-    "light scattered evenly",
-    share("the diffuse colour")
-);
-const SPECULAR: Choice<Share> = choice!(
-    "specular",
-    "0 0 0",
-    "colour of the highlight",
-    share("the specular colour")
-);
-const REFLECTIVE: Choice<Share> = choice!(
-    "reflective",
-    "0 0 0",
-    "light reflected as by a mirror",
-    share("the share of light mirrored")
-);
-const TRANSPARENT: Choice<Share> = choice!(
-    "transparent",
-    "0 0 0",
-    "light let through",
-    share("the share of light let through")
-);
-const INDEX: Choice<f64> = choice!(
-    "index",
-    "1",
-    "index of refraction",
-    number("k", "the index of refraction").from(0.01, 100.0)
-);
-const DISPERSION: Choice<f64> = choice!(
-    "dispersion",
-    "0",
-    "how the index varies with colour",
-    number("d", "the dispersion").from(0.0, 100.0)
-);
-const SHINE: Choice<f64> = choice!(
-    "shine",
-    "0",
-    "Phong's exponent: the larger, the smaller the highlight",
-    number("p", "the shine").from(0.0, 1e6)
-);
-const RADIUS: Choice<(Placed<f64>, Option<f64>)> = choice!(
-    "radius",
-    "0",
-    "radius in isolation of soft shapes; a second one at the other end of lines, arcs, curves \
-     (ours)",
-    length("r", "the radius").at_least(0.0).with_place(),
-    length("end", "the radius at the other end")
-        .at_least(0.0)
-        .optional("")
-);
-const BLOBBINESS: Choice<(f64, Option<Placed<f64>>)> = choice!(
-    "blobbiness",
-    "0",
-    "softness: negative; near 0 is blobby, far from 0 crisp; 0 is hard; a second one at the other \
-     end (ours)",
-    number("b", "the blobbiness"),
-    number("end", "the blobbiness at the other end")
-        .with_place()
-        .optional("")
-);
-const DEPTH: Choice<f64> = choice!(
-    "depth",
-    "0",
-    "depth of influence, from which the radius follows (ours)",
-    length("d", "the depth").at_least(0.0)
-);
-const STRENGTH: Choice<f64> = choice!(
-    "strength",
-    "1",
-    "multiplies the field; negative carves",
-    number("s", "the strength")
-);
-const RESTRICTION: Choice<f64> = choice!(
-    "restriction",
-    "0",
-    "share of a triangle's field taken away at its edges: 1 creases a mesh (ours)",
-    number("f", "the restriction").from(0.0, 1.0)
-);
-const SKIP: Choice<Vec<Word>> = choice!(
-    "skip",
-    "",
-    "rays that do not see it",
-    word(
-        "RAYTYPE",
-        RAYS,
-        "`pixel`, `shadow`, `reflected` or `transmitted`"
-    )
-    .many()
-);
-const TEXTURE: Choice<Vec<Named>> = choice!("texture", "", "layers of textures", LAYERS);
-const KERNEL: Choice<Word> = choice!(
-    "kernel",
-    "the command's own: cauchy, or as it says",
-    "the kernel of soft shapes (ours)",
-    word("name", KERNELS, "the kernel's name")
-);
-
-/// `surface`, `material`.
-pub static SURFACE_OPTIONS: &[OptionSpec] = &[
-    BODY.plain,
-    AMBIENT.plain,
-    DIFFUSE.plain,
-    SPECULAR.plain,
-    REFLECTIVE.plain,
-    TRANSPARENT.plain,
-    INDEX.plain,
-    DISPERSION.plain,
-    SHINE.plain,
-    RADIUS.plain,
-    BLOBBINESS.plain,
-    DEPTH.plain,
-    STRENGTH.plain,
-    RESTRICTION.plain,
-    SKIP.plain,
-    TEXTURE.plain,
-    KERNEL.plain,
-];
+options! {
+    /// Options of `surface` and `material`.
+    SURFACE_OPTIONS:
+    BODY: Rgb = ("body", "as diffuse", "main colour, of which `N%` are taken",
+        colour("RGB", "the body's colour"));
+    AMBIENT: Share = ("ambient", "15% of diffuse", "light given off", share("the ambient colour"));
+    DIFFUSE: Share = ("diffuse", "as body", "light scattered evenly", share("the diffuse colour"));
+    SPECULAR: Share = ("specular", "0 0 0", "colour of the highlight",
+        share("the specular colour"));
+    REFLECTIVE: Share = ("reflective", "0 0 0", "light reflected as by a mirror",
+        share("the share of light mirrored"));
+    TRANSPARENT: Share = ("transparent", "0 0 0", "light let through",
+        share("the share of light let through"));
+    INDEX: f64 = ("index", "1", "index of refraction",
+        number("k", "the index of refraction").from(0.01, 100.0));
+    DISPERSION: f64 = ("dispersion", "0", "how the index varies with colour",
+        number("d", "the dispersion").from(0.0, 100.0));
+    SHINE: f64 = ("shine", "0", "Phong's exponent: the larger, the smaller the highlight",
+        number("p", "the shine").from(0.0, 1e6));
+    RADIUS: (Placed<f64>, Option<f64>) = ("radius", "0",
+        "radius in isolation of soft shapes; a second one at the other \
+         end of lines, arcs, curves (ours)",
+        length("r", "the radius").at_least(0.0).with_place(),
+        length("end", "the radius at the other end").at_least(0.0).optional(""));
+    BLOBBINESS: (f64, Option<Placed<f64>>) = ("blobbiness", "0",
+        "softness: negative; near 0 is blobby, far from 0 crisp; 0 is hard; \
+         a second one at the other end (ours)",
+        number("b", "the blobbiness"),
+        number("end", "the blobbiness at the other end").with_place().optional(""));
+    DEPTH: f64 = ("depth", "0", "depth of influence, from which the radius follows (ours)",
+        length("d", "the depth").at_least(0.0));
+    STRENGTH: f64 = ("strength", "1", "multiplies the field; negative carves",
+        number("s", "the strength"));
+    RESTRICTION: f64 = ("restriction", "0",
+        "share of a triangle's field taken away at its edges: 1 creases a mesh (ours)",
+        number("f", "the restriction").from(0.0, 1.0));
+    SKIP: Vec<Word> = ("skip", "", "rays that do not see it",
+        word("RAYTYPE", RAYS, "`pixel`, `shadow`, `reflected` or `transmitted`").many());
+    TEXTURE: Vec<Named> = ("texture", "", "layers of textures", LAYERS);
+    KERNEL: Word = ("kernel", "the command's own: cauchy, or as it says",
+        "the kernel of soft shapes (ours)",
+        word("name", KERNELS, "the kernel's name"));
+}
 
 /// `surface`, `material`.
 const FORM: Form = takes!(
@@ -179,31 +89,26 @@ const FORM: Form = takes!(
 /// `surface { alias option … }`, `surface new = old`
 ///
 /// Of our own: `surface new = old option …` changes some fields of the copy.
-pub static SURFACE: CommandSpec = row(
-    "surface",
-    "make a material",
-    FORM,
-)
-.mark_failed(insert_broken)
-.details(
-    "All fields are optional; braces around them let them run over several lines. A material with \
-     a blobbiness is soft: its shapes are skeletons, and their flesh melts together; all fields \
-     are mixed where two materials meet, the index and the shine too. A colour is a name, three \
-     numbers or N%: of the body's colour for `ambient` and `diffuse`, of the light that comes for \
-     `specular`, `reflective` and `transparent`. Light that goes into a transparent material is \
-     bent by its `index`: glass 1.5, water 1.33, diamond 2.42; it colours the shadow. \
-     `dispersion` is how much larger the index is for blue than for red. `surface new = old` \
-     copies a material; options behind it change the copy (ours).",
-)
-.example(
-    "light White, position 4 8 10\nbackground SteelBlue to White to SaddleBrown\n\
-     surface { Red, body OrangeRed\n  \
-     specular 50%, shine 40\n  radius 0.8, blobbiness -1 }\n\
-     surface Blue = Red, diffuse RoyalBlue\n\
-     surface Glass, diffuse Black, transparent 90%, reflective 10%, index 1.5, specular White, \
-     shine 200\nsphere Red 1, -1 0 0\n\
-     sphere Blue 1, 1 0 0\nsphere Glass 0.8, 0 -1 3",
-);
+pub static SURFACE: CommandSpec = row("surface", "make a material")
+    .with(FORM)
+    .mark_failed(insert_broken)
+    .details(
+        "All fields are optional; braces around them let them run over several lines. A material \
+         with a blobbiness is soft: its shapes are skeletons, and their flesh melts together; all \
+         fields are mixed where two materials meet, the index and the shine too. A colour is a \
+         name, three numbers or N%: of the body's colour for `ambient` and `diffuse`, of the \
+         light that comes for `specular`, `reflective` and `transparent`. Light that goes into a \
+         transparent material is bent by its `index`: glass 1.5, water 1.33, diamond 2.42; it \
+         colours the shadow. `dispersion` is how much larger the index is for blue than for red. \
+         `surface new = old` copies a material; options behind it change the copy (ours).",
+    )
+    .example(
+        "light White, position 4 8 10\nbackground SteelBlue to White to SaddleBrown\n\
+         surface { Red, body OrangeRed\n  specular 50%, shine 40\n  radius 0.8, blobbiness -1 }\n\
+         surface Blue = Red, diffuse RoyalBlue\nsurface Glass, diffuse Black, transparent 90%, \
+         reflective 10%, index 1.5, specular White, shine 200\nsphere Red 1, -1 0 0\n\
+         sphere Blue 1, 1 0 0\nsphere Glass 0.8, 0 -1 3",
+    );
 
 fn surface<'a>(
     run: &mut Evaluator<'a>,
@@ -243,7 +148,7 @@ fn surface<'a>(
         surface.finish.layers = texture.layers;
         surface.flesh.profile = texture.profile;
     }
-    if let Some(earlier) = run.palette.idle(name.text).cloned() {
+    if let Some(earlier) = run.palette.idle_place(name.text).cloned() {
         run.say_made_twice(Severity::Warning, &name, earlier, || {
             format!(
                 "nothing was made of the `{0}` above: this `{0}` takes its place",
@@ -279,10 +184,11 @@ fn set_flesh(options: &Options<'_>, flesh: &mut Flesh) -> Outcome<()> {
         if let Some((at_end, span)) = end {
             flesh.end_blobbiness = Some(at_end);
             if at_end == 0.0 || blobbiness == 0.0 {
-                return Err(
-                    Problem::new(span, "a blobbiness that varies must not be 0 at an end")
-                        .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"),
-                );
+                return Err(Problem::new(
+                    &span,
+                    "a blobbiness that varies must not be 0 at an end",
+                )
+                .hint("0 makes a material hard; near 0 is blobby, far from 0 crisp"));
             }
         }
     }
@@ -359,22 +265,20 @@ impl Evaluator<'_> {
         }
         let unused: Vec<_> = self
             .palette
-            .unused()
+            .idle_surfaces()
             .map(|surface| (surface.origin.clone(), surface.finish.name.clone()))
             .collect();
         for ((file, span), name) in unused {
             self.file = file;
-            self.say(Severity::Note, span, || {
-                (format!("nothing is made of `{name}`"), None)
-            });
+            self.note(&span, format_args!("nothing is made of `{name}`"), "");
         }
     }
 }
 
-/// `material`
-pub static MATERIAL: CommandSpec = row("material", "the same as surface", FORM)
+pub static MATERIAL: CommandSpec = row("material", "the same as surface")
+    .with(FORM)
     .mark_failed(insert_broken)
     .example(
         "light White, position 4 8 10\nmaterial Gold { diffuse Gold, specular White, shine 80 }\n\
-     sphere Gold 2, 0 0 0",
+         sphere Gold 2, 0 0 0",
     );

@@ -1,5 +1,5 @@
-//! Messages of the evaluator, and where they are shown: those about the library and its examples go
-//! to the place of the user's text that uses them.
+//! Messages of the evaluator. Those about the library and its examples go to the place of the
+//! user's text that uses them.
 
 use super::state::Evaluator;
 use crate::Severity;
@@ -7,7 +7,25 @@ use crate::commands;
 use crate::problem::Problem;
 use crate::reader::Name;
 use crate::syntax::Command;
+use scene::Origin;
+use std::fmt::Display;
 use std::ops::Range;
+
+/// Options that change the picture.
+const SETTINGS: [&str; 12] = [
+    "soft",
+    "double",
+    "gamma",
+    "framesize",
+    "contrast",
+    "fragile",
+    "sample",
+    "mesh",
+    "penumbra",
+    "epsilon",
+    "vanish",
+    "maxdepth",
+];
 
 impl Evaluator<'_> {
     /// Adds a message about the present file. One about the library goes to where it was used.
@@ -18,7 +36,7 @@ impl Evaluator<'_> {
                 && let Some((file, span)) = self.uses.last()
                 && self.scope.calls() > 0
             {
-                problem = problem.related(Some(*file), span.clone(), "called here");
+                problem = problem.with_place(Some(*file), span.clone(), "called here");
             }
             self.report.add(self.file, severity, problem);
         } else if let Some((file, span)) = self.uses.last() {
@@ -33,18 +51,21 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Adds a message that is no error; it is made only if it is the first about its place.
-    pub(super) fn say(
-        &mut self,
-        severity: Severity,
-        span: Range<usize>,
-        message: impl FnOnce() -> (String, Option<String>),
-    ) {
-        if self.is_news(severity, &span) {
-            let (message, hint) = message();
-            let problem = Problem::new(span, message).maybe_hint(hint);
-            self.tell(severity, problem);
-        }
+    /// Warns of something in the present file, if nothing was said of this place; an empty hint is
+    /// none.
+    pub(super) fn warn(&mut self, span: &Range<usize>, message: impl Display, hint: impl Display) {
+        self.say_at(self.file, Severity::Warning, span, message, hint);
+    }
+
+    /// Notes something in the present file, as [`Self::warn`] warns of it.
+    pub(super) fn note(&mut self, span: &Range<usize>, message: impl Display, hint: impl Display) {
+        self.say_at(self.file, Severity::Note, span, message, hint);
+    }
+
+    /// Warns of something in the command of an element, as [`Self::warn`] does.
+    pub(super) fn warn_of(&mut self, of: Origin, message: impl Display, hint: impl Display) {
+        let span = of.start as usize..of.end as usize;
+        self.say_at(of.file as usize, Severity::Warning, &span, message, hint);
     }
 
     /// Whether a message about this place would be the first, and wanted.
@@ -56,8 +77,8 @@ impl Evaluator<'_> {
         self.report.is_new(file, severity, place)
     }
 
-    /// Tells that something is made anew under a name, so that what was made `earlier` was in vain.
-    /// In a loop, a branch or another file that may be meant, so nothing is said there.
+    /// Says that something is made anew under a name, so that it was made in vain at the place
+    /// `earlier`. In a loop, a branch or another file that may be meant, so nothing is said there.
     pub(super) fn say_made_twice(
         &mut self,
         severity: Severity,
@@ -68,27 +89,34 @@ impl Evaluator<'_> {
         let in_block = self.repeating > 0 || self.depth + 1 > self.reading.len();
         let is_here = self.file == file && self.is_own();
         if !in_block && is_here && span != name.span && self.is_news(severity, &name.span) {
-            let problem = Problem::new(name.span.clone(), message())
+            let problem = Problem::new(&name.span, message())
                 .hint("give one of them another name, or leave one out")
-                .related(None, span, "first made here");
+                .with_place(None, span, "first made here");
             self.tell(severity, problem);
         }
     }
 
-    /// As [`Self::say`], about another file.
+    /// Says something about a place of a file, if nothing as severe was said of it; an empty hint
+    /// is none.
     pub(super) fn say_at(
         &mut self,
         file: usize,
         severity: Severity,
-        span: Range<usize>,
-        message: impl FnOnce() -> (String, Option<String>),
+        span: &Range<usize>,
+        message: impl Display,
+        hint: impl Display,
     ) {
         let before = std::mem::replace(&mut self.file, file);
-        self.say(severity, span, message);
+        if self.is_news(severity, span) {
+            let hint = Some(hint.to_string()).filter(|hint| !hint.is_empty());
+            let problem = Problem::new(span, message.to_string()).maybe_hint(hint);
+            self.tell(severity, problem);
+        }
         self.file = before;
     }
 
-    pub(super) fn tell_after_shot(&mut self, command: &Command) {
+    /// Warns once of a command behind `shoot` that changes the picture.
+    pub(super) fn warn_after_shot(&mut self, command: &Command) {
         use commands::Group;
         if self.shot.is_none() || self.told_after_shot {
             return;
@@ -96,35 +124,18 @@ impl Evaluator<'_> {
         let Some(spec) = command.spec else { return };
         let changes = match spec.group() {
             Group::Run | Group::Tools => spec.is_library() || spec.name == "test",
-            Group::Options => matches!(
-                spec.name,
-                "soft"
-                    | "double"
-                    | "gamma"
-                    | "framesize"
-                    | "contrast"
-                    | "fragile"
-                    | "sample"
-                    | "mesh"
-                    | "penumbra"
-                    | "epsilon"
-                    | "vanish"
-                    | "maxdepth"
-            ),
+            Group::Options => SETTINGS.contains(&spec.name),
             Group::Scene => spec.name != "report",
             Group::Extensions => spec.name != "seed",
             _ => true,
         };
         if changes {
             self.told_after_shot = true;
-            self.say(Severity::Warning, command.word_span.clone(), || {
-                (
-                    String::from(
-                        "what follows the first `shoot` is not in the picture in this version",
-                    ),
-                    Some(String::from("put `shoot` last")),
-                )
-            });
+            self.warn(
+                &command.word_span,
+                "what follows the first `shoot` is not in the picture in this version",
+                "put `shoot` last",
+            );
         }
     }
 }

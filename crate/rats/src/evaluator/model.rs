@@ -16,15 +16,15 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// A shape and what the language must remember of it.
+/// Shape and all that the language must remember of it.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The shape; its material is an index of the palette.
     pub element: Element,
-    /// By how much it has been scaled, which its material's radius must follow.
+    /// The factor by which it has been scaled, which its material's radius must follow.
     pub growth: f64,
-    /// From the coordinates of its command to those of the world, if they differ. (In a box, as
-    /// there may be very many shapes and few of them are moved.)
+    /// The map from the coordinates of its command to those of the world, if they differ. (In a
+    /// box, as there may be very many shapes and few of them are moved.)
     pub moved: Option<Box<DAffine3>>,
     /// Whether its command may have made other shapes too.
     pub repeated: bool,
@@ -39,7 +39,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// As how many shapes it counts.
+    /// Returns the number of shapes as which it counts.
     fn weight(&self) -> usize {
         match &self.element.shape {
             Shape::Polygon { rings, .. } => rings.iter().map(Vec::len).sum(),
@@ -81,18 +81,18 @@ struct Object<'a> {
 /// An object that has been closed.
 #[derive(Debug)]
 struct Closed {
-    /// Its shapes.
+    /// The shapes.
     range: Range<usize>,
     /// The file and place of its name; none for a copy.
     place: Option<(usize, Range<usize>)>,
     /// Whether a command has named it.
-    named: Cell<bool>,
+    is_named: Cell<bool>,
 }
 
-/// All shapes and objects.
+/// The shapes and objects.
 #[derive(Debug, Default)]
 pub struct Model<'a> {
-    /// All shapes.
+    /// The shapes.
     pub parts: Vec<Part>,
     /// Objects and chains that could not be begun, whose `close` is still to come.
     pub refused: usize,
@@ -105,11 +105,11 @@ pub struct Model<'a> {
     last: Option<Range<usize>>,
     /// The material of the chain that is open.
     pub chain: Option<Name<'a>>,
-    /// All bodies but the one without a name, which is body 0.
+    /// The bodies but the one without a name, which is body 0.
     pub bodies: Vec<Body>,
     /// The body that is open; 0 for none.
     open_body: u32,
-    /// Which bodies touch.
+    /// The pairs of bodies that touch.
     pub contacts: Vec<Contact>,
     /// The file and place of each contact's command.
     pub contact_places: Vec<(usize, Range<usize>)>,
@@ -132,7 +132,7 @@ impl<'a> Model<'a> {
                 String::from("make fewer shapes, or fewer turns of a loop")
             };
             return Err(Problem::new(
-                span.clone(),
+                span,
                 format!("stopped here: there are more than {MAX_ELEMENTS} shapes"),
             )
             .hint(hint)
@@ -144,18 +144,19 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
-    /// Makes all shapes from `first` on one nameless object: what transforms without a name move.
+    /// Makes all shapes from `first` on one object without a name, which transforms without a name
+    /// move.
     pub fn group(&mut self, first: usize) {
         self.last = Some(first..self.parts.len());
     }
 
-    /// The body that shapes made now belong to.
+    /// Returns the body that shapes made now belong to.
     #[must_use]
     pub fn body(&self) -> u32 {
         self.open_body
     }
 
-    /// A new body of this name.
+    /// Adds a body.
     fn new_body(&mut self, name: &str) -> u32 {
         self.bodies.push(Body {
             name: name.to_owned(),
@@ -170,22 +171,21 @@ impl<'a> Model<'a> {
     pub fn open(&mut self, file: usize, name: &Name<'a>, group: Group<'a>) -> Outcome<()> {
         if self.open.len() >= MAX_NESTED_OBJECTS {
             return Err(Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("objects can stand inside each other {MAX_NESTED_OBJECTS} deep at most"),
             ));
         }
         if self.chain.is_some() {
-            let mut problem =
-                Problem::new(name.span.clone(), "a chain holds shapes only, no objects")
-                    .hint("`close` the chain first");
+            let mut problem = Problem::new(&name.span, "a chain holds shapes only, no objects")
+                .hint("`close` the chain first");
             if let Some((_, (file, span))) = self.innermost() {
-                problem = problem.related(Some(*file), span.clone(), "the chain begins here");
+                problem = problem.with_place(Some(*file), span.clone(), "the chain begins here");
             }
             return Err(problem);
         }
         if self.count >= MAX_OBJECTS {
             return Err(Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("there are more than {MAX_OBJECTS} objects"),
             ));
         }
@@ -207,22 +207,22 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
-    /// An error if a body is open.
+    /// Returns an error if a body is open.
     fn refuse_body_in_body(&self, span: &Range<usize>) -> Outcome<()> {
-        let is_body = |object: &&Object<'_>| matches!(object.group, Group::Body);
-        let Some(outer) = self.open.iter().find(is_body) else {
+        let mut open = self.open.iter();
+        let Some(outer) = open.find(|object| matches!(object.group, Group::Body)) else {
             return Ok(());
         };
         let (file, place) = outer.place.clone();
         Err(Problem::new(
-            span.clone(),
+            span,
             format!("a body cannot stand in another; `{}` is open", outer.name),
         )
         .hint(format!("`close {}` first, or use `object`", outer.name))
-        .related(Some(file), place, "it begins here"))
+        .with_place(Some(file), place, "it begins here"))
     }
 
-    /// Ends the innermost object; gives the name it was begun with, or `None` if there is none.
+    /// Ends the innermost object; returns its name, or `None` if there is none.
     pub fn close(&mut self) -> Option<&'a str> {
         let object = self.open.pop()?;
         match object.group {
@@ -235,102 +235,95 @@ impl<'a> Model<'a> {
         let closed = Closed {
             range,
             place: Some(object.place),
-            named: Cell::new(false),
+            is_named: Cell::new(false),
         };
         self.closed.insert(object.name, closed);
         Some(object.name)
     }
 
-    /// The name of the innermost object that is open, and the file and place where it begins.
+    /// Returns the name of the innermost object that is open, and the file and place where it
+    /// begins.
     #[must_use]
     pub fn innermost(&self) -> Option<(&'a str, &(usize, Range<usize>))> {
         self.open.last().map(|object| (object.name, &object.place))
     }
 
-    /// Where an object of this name was begun, if no command has named it since.
+    /// Returns the place where an object of this name was begun, if no command has named it since.
     #[must_use]
-    pub fn unnamed(&self, name: &str) -> Option<&(usize, Range<usize>)> {
+    pub fn idle_place(&self, name: &str) -> Option<&(usize, Range<usize>)> {
         let object = self.closed.get(name)?;
-        object.place.as_ref().filter(|_| !object.named.get())
+        object.place.as_ref().filter(|_| !object.is_named.get())
     }
 
-    /// The shapes of an object.
+    /// Finds the shapes of an object.
     ///
     /// # Errors
     /// If there is none of this name.
     pub fn find(&self, name: &Name<'_>) -> Outcome<Range<usize>> {
         if let Some(object) = self.closed.get(name.text) {
-            object.named.set(true);
+            object.is_named.set(true);
             return Ok(object.range.clone());
         }
         if let Some(object) = self.open.iter().find(|object| object.name == name.text) {
             let (file, span) = object.place.clone();
             return Err(Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("the object `{}` is not complete yet", name.text),
             )
             .hint("put this after its `close`")
-            .related(Some(file), span, "it begins here"));
+            .with_place(Some(file), span, "it begins here"));
         }
         let suggestion = suggest::hint(name.text, self.closed.keys().copied());
-        Err(Problem::new(
-            name.span.clone(),
-            format!("there is no object `{}`", name.text),
+        Err(
+            Problem::new(&name.span, format!("there is no object `{}`", name.text))
+                .maybe_hint(suggestion),
         )
-        .maybe_hint(suggestion))
     }
 
-    /// Whether a body has a skeleton that is convolved locally.
+    /// Returns whether a body has a skeleton that is convolved locally.
     pub fn has_local(&self, body: u32) -> bool {
-        let mut own = self.parts.iter().filter(|part| part.element.body == body);
-        own.any(|part| {
-            part.element
-                .shape
-                .curves()
-                .is_some_and(|c| c.local.is_some())
-        })
+        let elements = self.parts.iter().map(|part| &part.element);
+        let mut curves = elements
+            .filter(|own| own.body == body)
+            .filter_map(|own| own.shape.curves());
+        curves.any(|curves| curves.local.is_some())
     }
 
-    /// The number of the last body of a name.
+    /// Finds the number of the last body of a name.
     ///
     /// # Errors
     /// If there is none, or it is still open.
     pub fn find_body(&self, name: &Name<'_>) -> Outcome<u32> {
-        let is_open = |object: &&Object<'_>| object.name == name.text;
-        if self.open.iter().any(|object| is_open(&object)) {
+        if self.open.iter().any(|object| object.name == name.text) {
             self.find(name)?;
         }
         if let Some(index) = self.bodies.iter().rposition(|body| body.name == name.text) {
             if let Some(closed) = self.closed.get(name.text) {
-                closed.named.set(true);
+                closed.is_named.set(true);
             }
             return Ok(index as u32 + 1);
         }
         let problem = if self.closed.contains_key(name.text) {
             Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("`{}` is an object, not a body", name.text),
             )
             .hint(format!("begin it with `body {}`", name.text))
         } else {
             let names = self.bodies.iter().map(|body| body.name.as_str());
-            Problem::new(
-                name.span.clone(),
-                format!("there is no body `{}`", name.text),
-            )
-            .maybe_hint(suggest::hint(name.text, names))
+            Problem::new(&name.span, format!("there is no body `{}`", name.text))
+                .maybe_hint(suggest::hint(name.text, names))
         };
         Err(problem)
     }
 
-    /// The last shape or closed object.
+    /// Returns the last shape or closed object.
     ///
     /// # Errors
     /// If there is none.
     pub fn last(&self, span: &Range<usize>) -> Outcome<Range<usize>> {
         self.last.clone().ok_or_else(|| {
-            Problem::new(span.clone(), "there is no object yet")
-                .hint("make an object or a shape first")
+            Problem::new(span, "there is no object yet").hint("make an object or a shape first")
         })
     }
 
@@ -376,13 +369,13 @@ impl<'a> Model<'a> {
         let closed = Closed {
             range,
             place: None,
-            named: Cell::new(false),
+            is_named: Cell::new(false),
         };
         self.closed.insert(name.text, closed);
         Ok(())
     }
 
-    /// New bodies for copies of some shapes, by the bodies that these are of.
+    /// Makes bodies for copies of some shapes; returns the number of each by that of the old body.
     fn bodies_of(&mut self, range: Range<usize>, name: &Name<'a>) -> Outcome<BTreeMap<u32, u32>> {
         let parts = self.parts[range].iter();
         let old: BTreeSet<u32> = parts.map(|part| part.element.body).collect();
@@ -405,13 +398,14 @@ impl<'a> Model<'a> {
         Ok(new)
     }
 
-    /// As how many shapes they count.
+    /// Returns the number of shapes as which they count.
     #[must_use]
     pub fn weight(&self) -> usize {
         self.weight
     }
 
-    /// Whether some of these shapes are round, so that only a uniform scale keeps their kind.
+    /// Returns whether some of these shapes are round, so that only a uniform scale keeps their
+    /// kind.
     #[must_use]
     pub fn has_round(&self, range: Range<usize>) -> bool {
         self.parts[range].iter().any(|part| {

@@ -17,19 +17,19 @@ pub struct Exposure<'s, 'a> {
     pub sources: &'s Sources<'a>,
     pub assets: &'s [Asset],
     pub symbols: Symbols<'a>,
-    /// When the shutter opens, in frames.
+    /// The time when the shutter opens, in frames.
     pub from: f64,
-    /// How long it is open, in frames.
+    /// The time for which it is open, in frames.
     pub length: f64,
-    /// What the frame's own run has frozen.
+    /// The shapes that the frame's own run has frozen.
     pub frozen: Frozen,
-    /// The steps that it took.
+    /// The steps that this run took.
     pub steps: u64,
 }
 
 impl<'s, 'a: 's> Exposure<'s, 'a> {
-    /// The scenes at the middles of equal shares of the exposure: as many as the samples of a pixel
-    /// if that is not too much work. None if nothing moves.
+    /// Makes the scenes at the middles of equal shares of the exposure: as many as the samples of a
+    /// pixel if that is not too much work. None if nothing moves.
     pub fn moments(self, frame: &Scene) -> Vec<Scene> {
         let rays = (frame.settings.samples * frame.settings.samples) as usize;
         let in_time = 4 * MAX_STEPS / self.steps.max(1);
@@ -50,6 +50,7 @@ impl<'s, 'a: 's> Exposure<'s, 'a> {
         scenes
     }
 
+    /// Makes the scene at a moment.
     fn at(&self, moment: f64) -> Scene {
         let scope = Scope::new(self.symbols.clone());
         let mut state = Evaluator::new(self.sources, self.assets, moment, scope);

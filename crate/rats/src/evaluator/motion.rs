@@ -1,22 +1,22 @@
 //! `motion`: skeletons that fall, swing and touch.
 //!
 //! The state in a frame follows from that in the frame before, so that frames are computed in order
-//! from frame 0 on. They are kept, and a text that is compiled again goes on from them. What a text
-//! says in frame 0 is what moves: in another frame a text whose variables change is run again for
-//! it, and for the places of pinned nodes in all frames up to the present one.
+//! from frame 0 on. They are kept, and a text that is compiled again goes on from them. The shapes
+//! of frame 0 are the ones that move: in another frame a text whose variables change is run again
+//! for them, and for the places of pinned nodes in all frames up to the present one.
 
 use super::model::Part;
 use super::state::{Evaluator, Flow};
-use crate::commands::build::{choice, row, takes};
-use crate::commands::slot::{Choice, Named, direction, existing, number, triple, vector, whole};
-use crate::commands::{CommandSpec, Names, OptionSpec};
+use crate::commands::build::{options, row, takes};
+use crate::commands::slot::{Named, direction, existing, number, triple, vector, whole};
+use crate::commands::{CommandSpec, Names};
 use crate::given::Options;
 use crate::limits::{MAX_MOTION_WORK, MAX_MOTIONS, MAX_PIN_STEPS};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::scope::Scope;
+use crate::suggest;
 use crate::syntax::Command;
-use crate::{Severity, suggest};
 use glam::{DAffine3, DVec3};
 use motion::{Body, MOST_FRAMES, Obstacle, Settings, Setup, Simulation};
 use scene::{Curves, Form, Shape};
@@ -25,60 +25,62 @@ use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Motions that are kept: all of one text, before and after an edit.
+/// Most motions that are kept: all of one text, before and after an edit.
 const KEPT: usize = 2 * MAX_MOTIONS;
 
-/// Places of nodes that are kept, of 24 bytes: more than one text can have.
+/// Most places of nodes that are kept, of 24 bytes each: more than one text can have.
 const MOST_PLACES: usize = 4_000_000;
-/// Operations that the room for a node's place counts as.
+/// Depth of flesh in obstacles that is not worth a warning.
+const THIN: f64 = 1e-3;
+/// Operations as which the room for a node's place counts.
 const WORK_PER_NODE: u64 = 100;
 
-/// What `motion` has done in this run.
+/// Work of `motion` in this run.
 #[derive(Debug, Default)]
 pub struct Moving {
-    /// How many motions there were.
+    /// The number of motions.
     count: usize,
-    /// Their operations up to this frame.
+    /// The operations up to this frame.
     work: u64,
     /// Frames of a second of the last one.
     rate: Option<f64>,
-    /// Whether the run is only asked for setups, which it puts into `found`.
-    asked: bool,
+    /// Whether the run only collects setups, in `found`.
+    collects: bool,
     found: Vec<Setup>,
 }
 
 impl Moving {
-    /// Whether anything moves.
+    /// Returns whether anything moves.
     pub fn is_any(&self) -> bool {
         self.count > 0
     }
 
-    /// Frames of a second, as the last motion says.
+    /// Returns the frames of a second, as the last motion says.
     pub fn rate(&self) -> Option<f64> {
         self.rate
     }
 }
 
-/// A motion and its frames.
+/// Motion and its frames.
 struct Kept {
     setup: Setup,
-    /// Where pinned nodes are in each frame from frame 1 on; none if they stay.
+    /// The places of pinned nodes in each frame from frame 1 on; none if they stay.
     pins: Vec<Vec<DVec3>>,
     simulation: Simulation,
     /// The nodes' places in each frame.
     frames: Vec<Vec<DVec3>>,
     /// The first frame in which something was too fast.
     hurried: Option<usize>,
-    /// How far the flesh is in obstacles in frame 0.
+    /// The depth of the flesh in obstacles in frame 0.
     sunk: f64,
 }
 
-/// What a text says in its frames.
-struct Told {
+/// Motions of a text in all its frames.
+struct Frames {
     texts: Vec<String>,
-    /// Its motions in frame 0.
+    /// The motions in frame 0.
     first: Vec<Setup>,
-    /// For each frame the places of the pinned nodes of each motion.
+    /// The places of the pinned nodes of each motion, frame by frame.
     pins: Vec<Vec<Vec<DVec3>>>,
     /// Steps of one run.
     steps: u64,
@@ -86,122 +88,65 @@ struct Told {
 
 thread_local! {
     static KEEP: RefCell<Vec<Kept>> = const { RefCell::new(Vec::new()) };
-    static TOLD: RefCell<Option<Told>> = const { RefCell::new(None) };
+    static FRAMES: RefCell<Option<Frames>> = const { RefCell::new(None) };
 }
 
-const GRAVITY: Choice<DVec3> = choice!(
-    "gravity",
-    "0 -9.81 0",
-    "acceleration of all that falls, lengths per second²",
-    triple("V", "the acceleration")
-);
-const DAMPING: Choice<f64> = choice!(
-    "damping",
-    "0.2",
-    "share of the speed that air takes in a second",
-    number("d", "the damping").at_least(0.0)
-);
-const STIFFNESS: Choice<f64> = choice!(
-    "stiffness",
-    "1000",
-    "force that stretches a curve to twice its length, for nodes of a mean mass of 1",
-    number("k", "the stiffness").at_least(0.0)
-);
-const BENDING: Choice<f64> = choice!(
-    "bending",
-    "0.2",
-    "share of the stiffness with which curves resist bending and twisting",
-    number("b", "the share").at_least(0.0)
-);
-const STEPS: Choice<u32> = choice!(
-    "steps",
-    "16",
-    "steps of a frame",
-    whole("n", 1, motion::MOST_STEPS, "the steps of a frame")
-);
-const RATE: Choice<f64> = choice!(
-    "rate",
-    "25",
-    "frames of a second",
-    number("f", "frames of a second").from(0.1, 1000.0)
-);
-const FLOOR: Choice<(DVec3, DVec3)> = choice!(
-    "floor",
-    "none",
-    "a floor or wall; the normal points to where there is room; there may be several",
-    vector("P", "a point of the floor"),
-    direction("N", "the floor's normal")
-);
-const BOUNCE: Choice<f64> = choice!(
-    "bounce",
-    "0",
-    "share of the speed that is left after a blow",
-    number("e", "the share").from(0.0, 1.0)
-);
-const FRICTION: Choice<f64> = choice!(
-    "friction",
-    "0.4",
-    "friction: 0 is ice, 1 is rubber",
-    number("m", "the coefficient").from(0.0, 1000.0)
-);
-const PIN: Choice<Vec<Named>> = choice!(
-    "pin",
-    "",
-    "nodes that stay where the text has them, frame by frame",
-    existing("A", Names::Node, "the name of a node").many()
-);
-const AGAINST: Choice<Vec<Named>> = choice!(
-    "against",
-    "",
-    "objects that stand in the way: boxes, spheres, cylinders, cones, pipes, planes, skeletons",
-    existing("object", Names::Object, "an object's name").many()
-);
+options! {
+    /// Options of `motion`.
+    MOTION_OPTIONS:
+    GRAVITY: DVec3 = ("gravity", "0 -9.81 0", "acceleration of all that falls, lengths per second²",
+        triple("V", "the acceleration"));
+    DAMPING: f64 = ("damping", "0.2", "share of the speed that air takes in a second",
+        number("d", "the damping").at_least(0.0));
+    STIFFNESS: f64 = ("stiffness", "1000",
+        "force that stretches a curve to twice its length, for nodes of a mean mass of 1",
+        number("k", "the stiffness").at_least(0.0));
+    BENDING: f64 = ("bending", "0.2",
+        "share of the stiffness with which curves resist bending and twisting",
+        number("b", "the share").at_least(0.0));
+    STEPS: u32 = ("steps", "16", "steps of a frame",
+        whole("n", 1, motion::MOST_STEPS, "the steps of a frame"));
+    RATE: f64 = ("rate", "25", "frames of a second",
+        number("f", "frames of a second").from(0.1, 1000.0));
+    FLOOR: (DVec3, DVec3) = ("floor", "none",
+        "a floor or wall; the normal points to where there is room; there may be several",
+        vector("P", "a point of the floor"), direction("N", "the floor's normal"));
+    BOUNCE: f64 = ("bounce", "0", "share of the speed that is left after a blow",
+        number("e", "the share").from(0.0, 1.0));
+    FRICTION: f64 = ("friction", "0.4", "friction: 0 is ice, 1 is rubber",
+        number("m", "the coefficient").from(0.0, 1000.0));
+    PIN: Vec<Named> = ("pin", "", "nodes that stay where the text has them, frame by frame",
+        existing("A", Names::Node, "the name of a node").many());
+    AGAINST: Vec<Named> = ("against", "",
+        "objects that stand in the way: boxes, spheres, cylinders, cones, pipes, planes, skeletons",
+        existing("object", Names::Object, "an object's name").many());
+}
 
-/// `motion`.
-pub static MOTION_OPTIONS: &[OptionSpec] = &[
-    GRAVITY.plain,
-    DAMPING.plain,
-    STIFFNESS.plain,
-    BENDING.plain,
-    STEPS.plain,
-    RATE.plain,
-    FLOOR.plain,
-    BOUNCE.plain,
-    FRICTION.plain,
-    PIN.plain,
-    AGAINST.plain,
-];
-
-/// `motion [A B …] { gravity V damping d stiffness k steps n floor P N … }`
-pub static MOTION: CommandSpec = row(
-    "motion",
-    "let skeletons fall, swing and touch",
-    takes!(
+pub static MOTION: CommandSpec = row("motion", "let skeletons fall, swing and touch")
+    .with(takes!(
         motion,
         [MOTION_OPTIONS],
         existing("object", Names::Object, "an object's name").any()
-    ),
-)
-.newer()
-.details(
-    "Stands behind skeletons, and moves the last one or those of the objects it names, together. \
-     Nodes are masses and curves are springs; frame 0 has them where the text has them, and each \
-     further frame follows from the one before. Floors, the objects of `against` and the flesh of \
-     all that moves together, own folds too, push back. A chain of n nodes that hangs is \
-     stretched by a share of n·gravity/stiffness at its upper end. Flesh moves at most half its \
-     thickness in a step, so that it passes through nothing: fast things need more `steps`. A \
-     node that is pinned follows variables that change with the frames. At most 200 nodes move \
-     together, 3000 frames long.",
-)
-.example(
-    "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
-     Gray50, shine 40, radius 0.4, blobbiness -2\n\
-     skeleton Flesh, TAIL {\n  node ROOT <-3 2 0> radius 0.6\n  \
-     node A <-1.5 2.2 0> node B <0 2 0> node C <1.5 2.2 0>\n  \
-     node TIP <3 2 0> radius 0.2\n  \
-     curve ROOT A B C TIP\n}\nmotion TAIL { gravity 0 -10 0, stiffness 400, steps 20, pin ROOT, \
-     floor <0 -2 0> <0 1 0> }",
-);
+    ))
+    .newer()
+    .details(
+        "Stands behind skeletons, and moves the last one or those of the objects it names, \
+         together. Nodes are masses and curves are springs; frame 0 has them where the text has \
+         them, and each further frame follows from the one before. Floors, the objects of \
+         `against` and the flesh of all that moves together, own folds too, push back. A chain of \
+         n nodes that hangs is stretched by a share of n·gravity/stiffness at its upper end. \
+         Flesh moves at most half its thickness in a step, so that it passes through nothing: \
+         fast things need more `steps`. A node that is pinned follows variables that change with \
+         the frames. At most 200 nodes move together, 3000 frames long.",
+    )
+    .example(
+        "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
+         Gray50, shine 40, radius 0.4, blobbiness -2\nskeleton Flesh, TAIL {\n  \
+         node ROOT <-3 2 0> radius 0.6\n  \
+         node A <-1.5 2.2 0> node B <0 2 0> node C <1.5 2.2 0>\n  node TIP <3 2 0> radius 0.2\n  \
+         curve ROOT A B C TIP\n}\nmotion TAIL { gravity 0 -10 0, stiffness 400, steps 20, pin \
+         ROOT, floor <0 -2 0> <0 1 0> }",
+    );
 
 fn motion<'a>(
     run: &mut Evaluator<'a>,
@@ -212,7 +157,7 @@ fn motion<'a>(
     let wanted = Wanted::read(run, command, &objects, options)?;
     if run.moving.count >= MAX_MOTIONS {
         return Err(Problem::new(
-            command.word_span.clone(),
+            &command.word_span,
             format!("there are more than {MAX_MOTIONS} motions"),
         )
         .hint("name several skeletons in one motion"));
@@ -220,22 +165,23 @@ fn motion<'a>(
     let number = run.moving.count;
     run.moving.count += 1;
     run.moving.rate = Some(wanted.setup.settings.rate);
-    if run.moving.asked {
+    if run.moving.collects {
         run.moving.found.push(wanted.setup);
         return Ok(Flow::Next);
     }
     let Wanted { setup, parts } = wanted;
     let frame = run.moment.ceil().min(f64::from(MOST_FRAMES)) as usize;
     let (setup, pins) = if run.animated && frame > 0 {
-        run.told(number, frame).unwrap_or((setup, Vec::new()))
+        run.motion_and_pins(number, frame)
+            .unwrap_or((setup, Vec::new()))
     } else {
         (setup, Vec::new())
     };
     let left = MAX_MOTION_WORK - run.moving.work;
-    let moved = moved(setup, pins, run.moment, left)
-        .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
+    let moved = advance(setup, pins, run.moment, left)
+        .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
     run.moving.work += moved.work;
-    run.warn(command, &moved);
+    run.warn_of_motion(&command.word_span, &moved);
     let mut places = moved.places.iter().copied();
     for index in parts {
         let part = &mut run.model.parts[index];
@@ -248,14 +194,13 @@ fn motion<'a>(
         let own: Vec<DVec3> = places.by_ref().take(count).collect();
         // Frame 0 is the text's to the last bit.
         if run.moment > 0.0 && own.len() == count {
-            put(part, &own)
-                .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
+            put(part, &own).map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
         }
     }
     Ok(Flow::Next)
 }
 
-/// What a command asks for.
+/// Motion that a command asks for.
 struct Wanted {
     setup: Setup,
     /// The shapes that move, in the order of the setup's bodies.
@@ -298,7 +243,7 @@ impl Wanted {
                 }
             }
             if parts.is_empty() {
-                return Err(Problem::new(span, "only skeletons move, and here is none")
+                return Err(Problem::new(&span, "only skeletons move, and here is none")
                     .hint("make one with `skeleton` before, and name it: `motion TAIL { … }`"));
             }
         }
@@ -317,13 +262,15 @@ impl Wanted {
     }
 }
 
+/// Makes the problem that something cannot be moved twice.
 fn moves_already(span: Range<usize>) -> Box<Problem> {
-    Problem::new(span, "this moves already, or is a copy of what does").hint(
-        "name all skeletons that move together in one `motion`, and copy what is to move before it moves",
+    Problem::new(&span, "this moves already, or is a copy of what does").hint(
+        "name all skeletons that move together in one `motion`, and copy what is to move before \
+         it moves",
     )
 }
 
-/// A skeleton in coordinates of the world.
+/// Returns a skeleton in coordinates of the world.
 fn body(part: &Part, curves: &Curves) -> Body {
     let to_world = to_world(part);
     let nodes = curves.skeleton.nodes.iter().map(|node| Node {
@@ -340,6 +287,7 @@ fn body(part: &Part, curves: &Curves) -> Body {
     }
 }
 
+/// Returns the map from a skeleton's coordinates to those of the world.
 fn to_world(part: &Part) -> DAffine3 {
     match &part.element.shape {
         Shape::Function(function) => function.to_world,
@@ -359,6 +307,7 @@ fn put(part: &mut Part, places: &[DVec3]) -> Result<(), skeleton::Error> {
     Ok(())
 }
 
+/// Returns the settings that the options give.
 fn settings(options: &Options<'_>) -> Settings {
     let usual = Settings::default();
     Settings {
@@ -401,16 +350,14 @@ fn pin<'a>(
     Ok(())
 }
 
+/// Makes the problem that no node of a name moves.
 fn no_such_node<'n>(name: &Name<'_>, all: impl Iterator<Item = &'n Vec<String>>) -> Box<Problem> {
     let names: Vec<&str> = all.flatten().map(String::as_str).collect();
-    Problem::new(
-        name.span.clone(),
-        format!("no node `{}` moves here", name.text),
-    )
-    .maybe_hint(suggest::hint(name.text, names.iter().copied()))
+    Problem::new(&name.span, format!("no node `{}` moves here", name.text))
+        .maybe_hint(suggest::hint(name.text, names.iter().copied()))
 }
 
-/// Floors, walls, and the shapes of objects that stand in the way.
+/// Collects floors, walls, and the shapes of objects that stand in the way.
 fn obstacles<'a>(
     run: &mut Evaluator<'a>,
     options: &Options<'a>,
@@ -430,22 +377,26 @@ fn obstacles<'a>(
                     continue;
                 }
                 if part.moves || parts.contains(&index) {
-                    return Err(Problem::new(
-                        name.span.clone(),
-                        format!("`{}` moves itself", name.text),
-                    )
-                    .hint("skeletons that move together touch anyway: name both in one `motion`"));
+                    return Err(
+                        Problem::new(&name.span, format!("`{}` moves itself", name.text)).hint(
+                            "skeletons that move together touch anyway: name both in one `motion`",
+                        ),
+                    );
                 }
                 if !obstacle(part, &mut obstacles) {
                     return Err(Problem::new(
-                        name.span.clone(),
+                        &name.span,
                         format!("`{}` has a shape that cannot stand in the way", name.text),
                     )
-                    .hint("boxes, spheres, cylinders, cones, pipes, planes and skeletons can; put other shapes into an object of their own"));
+                    .hint(
+                        "boxes, spheres, cylinders, cones, \
+                        pipes, planes and skeletons can; put other \
+                           shapes into an object of their own",
+                    ));
                 }
                 if obstacles.len() > motion::MOST_OBSTACLES {
                     let error = motion::Error::Obstacles(obstacles.len());
-                    return Err(Problem::new(name.span.clone(), error.to_string()));
+                    return Err(Problem::new(&name.span, error.to_string()));
                 }
             }
         }
@@ -453,7 +404,7 @@ fn obstacles<'a>(
     Ok(obstacles)
 }
 
-/// Adds a shape to what stands in the way; false if it cannot.
+/// Adds a shape to what stands in the way; returns false if it cannot stand there.
 fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
     let rod = |a, b, from, to| Obstacle::Rod {
         ends: [a, b],
@@ -486,7 +437,7 @@ fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
     true
 }
 
-/// Where a motion is at a moment.
+/// Motion at a moment.
 struct Moved {
     places: Vec<DVec3>,
     work: u64,
@@ -495,12 +446,12 @@ struct Moved {
     /// The first frame in which something was too fast.
     hurried: Option<usize>,
     speed_limit: f64,
-    /// How far the flesh is in obstacles in frame 0.
+    /// The depth of the flesh in obstacles in frame 0.
     sunk: f64,
 }
 
-/// The places of nodes at a moment, computed or kept.
-fn moved(
+/// Computes the places of nodes at a moment, or finds them where they are kept.
+fn advance(
     setup: Setup,
     pins: Vec<Vec<DVec3>>,
     moment: f64,
@@ -508,7 +459,7 @@ fn moved(
 ) -> Result<Moved, motion::Error> {
     KEEP.with_borrow_mut(|keep| {
         // Frames that are computed must be of the same pins, as far as they are wanted.
-        let is_it = |kept: &Kept| {
+        let found = keep.iter().position(|kept| {
             let both = kept.pins.len().min(pins.len());
             let same = if pins.is_empty() {
                 kept.pins.is_empty()
@@ -516,8 +467,8 @@ fn moved(
                 kept.pins[..both] == pins[..both] && kept.pins.len() >= kept.frames.len() - 1
             };
             kept.setup == setup && (moment <= 0.0 || same)
-        };
-        match keep.iter().position(is_it) {
+        });
+        match found {
             Some(index) => keep[index..].rotate_left(1),
             None => {
                 let simulation = Simulation::new(&setup)?;
@@ -541,16 +492,21 @@ fn moved(
             kept.pins = pins;
         }
         let moved = kept.at(moment, left);
-        let places = |kept: &Kept| kept.frames.len() * kept.simulation.positions().len();
-        let mut all: usize = keep.iter().map(places).sum();
+        let mut all: usize = keep.iter().map(Kept::places).sum();
         while all > MOST_PLACES && keep.len() > 1 {
-            all -= places(&keep.remove(0));
+            all -= keep.remove(0).places();
         }
         Ok(moved)
     })
 }
 
 impl Kept {
+    /// Returns the number of places that it keeps.
+    fn places(&self) -> usize {
+        self.frames.len() * self.simulation.positions().len()
+    }
+
+    /// Returns the motion at a moment; computes its frames as far as `left` operations suffice.
     fn at(&mut self, moment: f64, left: u64) -> Moved {
         // Frames that are kept take room.
         let each =
@@ -570,9 +526,9 @@ impl Kept {
         }
         let share = reached - before as f64;
         let between = self.frames[before].iter().zip(&self.frames[behind]);
-        let at = |(a, b): (&DVec3, &DVec3)| if share > 0.0 { a.lerp(*b, share) } else { *a };
+        let places = between.map(|(a, b)| if share > 0.0 { a.lerp(*b, share) } else { *a });
         Moved {
-            places: between.map(at).collect(),
+            places: places.collect(),
             work: each * behind as u64,
             stopped: (moment > most as f64).then_some(most),
             hurried: self.hurried.filter(|&number| number <= behind),
@@ -583,16 +539,16 @@ impl Kept {
 }
 
 impl Evaluator<'_> {
-    /// What the motion of this number is in frame 0, and where its pinned nodes are in the frames
+    /// Finds the motion of this number in frame 0, and the places of its pinned nodes in the frames
     /// up to this one. `None` if there is none in frame 0.
-    fn told(&mut self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
-        TOLD.with_borrow_mut(|told| {
+    fn motion_and_pins(&mut self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
+        FRAMES.with_borrow_mut(|told| {
             let texts = self.sources.all[..self.sources.own].iter();
-            let is_same = |told: &Told| {
+            let same = told.take().filter(|told| {
                 told.texts.len() == self.sources.own
                     && texts.clone().zip(&told.texts).all(|(a, b)| a.text == b)
-            };
-            let mut now = told.take().filter(is_same).unwrap_or_else(|| Told {
+            });
+            let mut now = same.unwrap_or_else(|| Frames {
                 texts: texts.clone().map(|s| s.text.to_owned()).collect(),
                 first: Vec::new(),
                 pins: Vec::new(),
@@ -606,7 +562,7 @@ impl Evaluator<'_> {
                 }
                 let scope = Scope::new(self.scope.symbols.clone());
                 let mut other = Evaluator::new(self.sources, self.assets, count as f64, scope);
-                other.moving.asked = true;
+                other.moving.collects = true;
                 other.run_all();
                 now.steps = now.steps.max(other.scope.steps());
                 now.pins.push(other.moving.found.iter().map(pins).collect());
@@ -620,50 +576,33 @@ impl Evaluator<'_> {
         })
     }
 
-    fn warn(&mut self, command: &Command, moved: &Moved) {
-        let span = command.word_span.clone();
-        let thin = 1e-3;
-        if moved.sunk > thin {
-            self.say(Severity::Warning, span.clone(), || {
-                (
-                    format!(
-                        "the flesh begins {:.3} deep in what stands in its way, and is put out at once",
-                        moved.sunk
-                    ),
-                    Some(String::from("begin farther away")),
-                )
-            });
+    /// Warns where a motion is not what the text asks for.
+    fn warn_of_motion(&mut self, span: &Range<usize>, moved: &Moved) {
+        if moved.sunk > THIN {
+            let depth = format_args!("{:.3} deep in what stands in its way", moved.sunk);
+            let message = format_args!("the flesh begins {depth}, and is put out at once");
+            self.warn(span, message, "begin farther away");
         } else if let Some(frame) = moved.stopped {
-            self.say(Severity::Warning, span, || {
-                (
-                    format!("this motion is too much work, so it stops in frame {frame}"),
-                    Some(String::from("take fewer nodes or steps")),
-                )
-            });
+            let message =
+                format_args!("this motion is too much work, so it stops in frame {frame}");
+            self.warn(span, message, "take fewer nodes or steps");
         } else if self.moment > f64::from(MOST_FRAMES) {
-            self.say(Severity::Warning, span, || {
-                (
-                    format!(
-                        "this motion ends with frame {MOST_FRAMES}: later frames are as that one"
-                    ),
-                    None,
-                )
-            });
+            let message = format_args!(
+                "this motion ends with frame {MOST_FRAMES}: later frames are as that one"
+            );
+            self.warn(span, message, "");
         } else if let Some(frame) = moved.hurried {
-            self.say(Severity::Warning, span, || {
-                (
-                    format!(
-                        "something is faster than {:.0} units a second from frame {frame} on, and is slowed down to it",
-                        moved.speed_limit
-                    ),
-                    Some(String::from("take more `steps`")),
-                )
-            });
+            let speed = format_args!("faster than {:.0} units a second", moved.speed_limit);
+            let slowed = "and is slowed down to it";
+            let message = format_args!("something is {speed} from frame {frame} on, {slowed}");
+            self.warn(span, message, "take more `steps`");
         }
     }
 }
 
-impl Told {
+impl Frames {
+    /// Returns the motion of a number in frame 0, and the places of its pinned nodes in the frames
+    /// up to one.
     fn at(&self, number: usize, frame: usize) -> Option<(Setup, Vec<Vec<DVec3>>)> {
         let first = self.first.get(number)?.clone();
         let mut last = pins(&first);
@@ -683,13 +622,12 @@ impl Told {
     }
 }
 
-/// The places of the pinned nodes, body by body.
+/// Returns the places of the pinned nodes, body by body.
 fn pins(setup: &Setup) -> Vec<DVec3> {
-    let of = |body: &Body| -> Vec<DVec3> {
-        let nodes = body.pinned.iter();
-        nodes
-            .map(|&node| body.skeleton.nodes[node].position)
-            .collect()
-    };
-    setup.bodies.iter().flat_map(of).collect()
+    let mut places = Vec::new();
+    for body in &setup.bodies {
+        let nodes = body.pinned.iter().map(|&node| &body.skeleton.nodes[node]);
+        places.extend(nodes.map(|node| node.position));
+    }
+    places
 }

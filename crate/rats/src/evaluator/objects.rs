@@ -14,20 +14,19 @@ use glam::DVec3;
 use scene::Shape;
 use std::ops::Range;
 
-/// The object that a transform is for.
+/// Object that a transform is for.
 pub(super) const TARGET: Slot<Option<Named>> =
     existing("object", Names::Object, "an object's name").optional("the last one");
 
-/// `chain sn, name`
 pub static CHAIN: CommandSpec = row(
     "chain",
     "begin shapes of one material, whose name they leave out",
-    takes!(
-        chain,
-        existing("material", Names::Material, "the material's name"),
-        new("name", Names::Object, "the chain's name")
-    ),
 )
+.with(takes!(
+    chain,
+    existing("material", Names::Material, "the material's name"),
+    new("name", Names::Object, "the chain's name")
+))
 .bracket(Bracket::Chain)
 .mark_failed(refuse)
 .example(flesh!(
@@ -45,54 +44,45 @@ fn chain<'a>(
     Ok(Flow::Next)
 }
 
-/// Expects the `close` of an object that was refused.
+/// Notes that the `close` of an object that was refused is still to come.
 fn refuse<'a>(run: &mut Evaluator<'a>, _: &'a Command) {
     run.model.refused += 1;
 }
 
-/// `object name`
-pub static OBJECT: CommandSpec = row(
-    "object",
-    "begin an object",
-    takes!(object, new("name", Names::Object, "the object's name")),
-)
-.bracket(Bracket::Object)
-.mark_failed(refuse)
-.details("Objects can stand inside each other, 16 deep at most.")
-.example(clay!(
-    "object PAIR\n  sphere Clay 1, -1.5 0 0\n  \
-     sphere Clay 1, 1.5 0 0\nclose\n\
-     rotate 0 0 1 30, PAIR"
-));
-
-fn object<'a>(run: &mut Evaluator<'a>, _: &'a Command, name: Name<'a>) -> Outcome<Flow> {
-    begin(run, &name, Group::Object)
-}
+pub static OBJECT: CommandSpec = row("object", "begin an object")
+    .with(takes!(
+        |run, _command, name| begin(run, &name, Group::Object),
+        new("name", Names::Object, "the object's name")
+    ))
+    .bracket(Bracket::Object)
+    .mark_failed(refuse)
+    .details("Objects can stand inside each other, 16 deep at most.")
+    .example(clay!(
+        "object PAIR\n  sphere Clay 1, -1.5 0 0\n  sphere Clay 1, 1.5 0 0\nclose\n\
+         rotate 0 0 1 30, PAIR"
+    ));
 
 /// `body name`: an object whose shapes blend with one another and with no others.
-pub static BODY: CommandSpec = row(
-    "body",
-    "begin a body, whose shapes blend with no others",
-    takes!(body, new("name", Names::Object, "the body's name")),
-)
-.bracket(Bracket::Object)
-.mark_failed(refuse)
-.details(
-    "Soft shapes of a body flow together; those of two bodies do not, however near they are: legs \
-     that touch stay legs. Shapes that stand in no body make one together. A body is an object: \
-     it is moved, turned and copied by its name, and a copy is a new body. Objects can stand in \
-     bodies and bodies in objects, but no body in a body.",
-)
-.example(flesh!(
-    "body LEFT\n  sphere Flesh 1, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1, 0.9 0 0\nclose"
-));
-
-fn body<'a>(run: &mut Evaluator<'a>, _: &'a Command, name: Name<'a>) -> Outcome<Flow> {
-    begin(run, &name, Group::Body)
-}
+pub static BODY: CommandSpec = row("body", "begin a body, whose shapes blend with no others")
+    .with(takes!(
+        |run, _command, name| begin(run, &name, Group::Body),
+        new("name", Names::Object, "the body's name")
+    ))
+    .bracket(Bracket::Object)
+    .mark_failed(refuse)
+    .details(
+        "Soft shapes of a body flow together; those of two bodies do not, however near they are: \
+         legs that touch stay legs. Shapes that stand in no body make one together. A body is an \
+         object: it is moved, turned and copied by its name, and a copy is a new body. Objects \
+         can stand in bodies and bodies in objects, but no body in a body.",
+    )
+    .example(flesh!(
+        "body LEFT\n  sphere Flesh 1, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1, 0.9 0 0\n\
+         close"
+    ));
 
 fn begin<'a>(run: &mut Evaluator<'a>, name: &Name<'a>, group: Group<'a>) -> Outcome<Flow> {
-    if let Some(earlier) = run.model.unnamed(name.text).cloned() {
+    if let Some(earlier) = run.model.idle_place(name.text).cloned() {
         run.say_made_twice(Severity::Note, name, earlier, || {
             format!(
                 "the object `{0}` above stays, but the name `{0}` now means this one",
@@ -104,17 +94,13 @@ fn begin<'a>(run: &mut Evaluator<'a>, name: &Name<'a>, group: Group<'a>) -> Outc
     Ok(Flow::Next)
 }
 
-/// `close [name]`
-pub static CLOSE: CommandSpec = row(
-    "close",
-    "end an object or chain",
-    takes!(
+pub static CLOSE: CommandSpec = row("close", "end an object or chain")
+    .with(takes!(
         close,
         existing("name", Names::Object, "the object's name").optional("the one that is open")
-    ),
-)
-.bracket(Bracket::Close)
-.example(clay!("object BALL\n  sphere Clay 2, 0 0 0\nclose BALL"));
+    ))
+    .bracket(Bracket::Close)
+    .example(clay!("object BALL\n  sphere Clay 2, 0 0 0\nclose BALL"));
 
 fn close<'a>(
     run: &mut Evaluator<'a>,
@@ -129,34 +115,31 @@ fn close<'a>(
         && name.text != innermost
     {
         return Err(Problem::new(
-            name.span.clone(),
+            &name.span,
             format!("the object that is open here is `{innermost}`"),
         )
         .hint(format!("write `close` or `close {innermost}`"))
-        .related(Some(*file), span.clone(), "it begins here"));
+        .with_place(Some(*file), span.clone(), "it begins here"));
     }
     if run.model.close().is_none() {
         return Err(
-            Problem::new(command.word_span.clone(), "there is no object to close")
+            Problem::new(&command.word_span, "there is no object to close")
                 .hint("begin one with `object name`"),
         );
     }
     Ok(Flow::Next)
 }
 
-/// `instance name [new name]`
-pub static INSTANCE: CommandSpec = row(
-    "instance",
-    "copy an object",
-    takes!(
+pub static INSTANCE: CommandSpec = row("instance", "copy an object")
+    .with(takes!(
         instance,
         existing("name", Names::Object, "the object's name"),
         new("copy", Names::Object, "the copy's name").optional("the same name")
-    ),
-)
-.example(clay!(
-    "object BALL\n  sphere Clay 1, -1.5 0 0\nclose\ninstance BALL, OTHER\ntranslate 3 0 0, OTHER"
-));
+    ))
+    .example(clay!(
+        "object BALL\n  sphere Clay 1, -1.5 0 0\nclose\ninstance BALL, OTHER\n\
+         translate 3 0 0, OTHER"
+    ));
 
 fn instance<'a>(
     run: &mut Evaluator<'a>,
@@ -170,58 +153,37 @@ fn instance<'a>(
     Ok(Flow::Next)
 }
 
-/// `translate x y z [object]`
-pub static TRANSLATE: CommandSpec = row(
-    "translate",
-    "move an object",
-    takes!(translate, vector("x y z", "the shift"), TARGET),
-)
-.example(clay!("sphere Clay 1, 0 0 0\ntranslate 1 1 0"));
+pub static TRANSLATE: CommandSpec = row("translate", "move an object")
+    .with(takes!(
+        |run, command, shift, object| {
+            transform_by(run, command, object, &Transform::translation(shift))
+        },
+        vector("x y z", "the shift"),
+        TARGET
+    ))
+    .example(clay!("sphere Clay 1, 0 0 0\ntranslate 1 1 0"));
 
-fn translate<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    shift: DVec3,
-    object: Option<Name<'a>>,
-) -> Outcome<Flow> {
-    let transform = Transform::translation(shift);
-    transform_by(run, command, object, &transform)
-}
-
-/// `rotate x y z angle [object]`
-pub static ROTATE: CommandSpec = row(
-    "rotate",
-    "turn an object about an axis through the origin",
-    takes!(
-        rotate,
+pub static ROTATE: CommandSpec = row("rotate", "turn an object about an axis through the origin")
+    .with(takes!(
+        |run, command, axis, angle, object| {
+            transform_by(run, command, object, &Transform::rotation(axis, angle))
+        },
         direction("x y z", "the axis"),
         degrees("angle", "the angle"),
         TARGET
-    ),
-)
-.example(clay!(
-    "cylinder Clay 0.6, <-2 0 0>, <2 0 0>\nrotate 0 0 1 30"
-));
+    ))
+    .example(clay!(
+        "cylinder Clay 0.6, <-2 0 0>, <2 0 0>\nrotate 0 0 1 30"
+    ));
 
-fn rotate<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    axis: DVec3,
-    angle: f64,
-    object: Option<Name<'a>>,
-) -> Outcome<Flow> {
-    let transform = Transform::rotation(axis, angle);
-    transform_by(run, command, object, &transform)
-}
-
-/// `scale x y z [object]`
-pub static SCALE: CommandSpec = row(
-    "scale",
-    "scale an object",
-    takes!(scale, triple("x y z", "the scale").with_place(), TARGET),
-)
-.details("Radii grow by the mean of the three factors: round shapes stay round.")
-.example(clay!("sphere Clay 1, 0 0 0\nscale 2 2 2"));
+pub static SCALE: CommandSpec = row("scale", "scale an object")
+    .with(takes!(
+        scale,
+        triple("x y z", "the scale").with_place(),
+        TARGET
+    ))
+    .details("Radii grow by the mean of the three factors: round shapes stay round.")
+    .example(clay!("sphere Clay 1, 0 0 0\nscale 2 2 2"));
 
 fn scale<'a>(
     run: &mut Evaluator<'a>,
@@ -230,26 +192,22 @@ fn scale<'a>(
     object: Option<Name<'a>>,
 ) -> Outcome<Flow> {
     if factors.to_array().iter().any(|f| f.abs() < 1e-9) {
-        return Err(Problem::new(span, "a scale factor must not be 0"));
+        return Err(Problem::new(&span, "a scale factor must not be 0"));
     }
     transform_by(run, command, object, &Transform::scaling(factors))
 }
 
 /// `explode x y z [object]`: each shape moves away from the middle of the object.
-pub static EXPLODE: CommandSpec = row(
-    "explode",
-    "move the parts of an object apart",
-    takes!(explode, triple("x y z", "the shares"), TARGET),
-)
-.details(
-    "Each shape moves away from the middle of the object, by the share x, y, z of its distance \
-     along each axis: 0 leaves it, 1 doubles the distance.",
-)
-.example(clay!(
-    "object PARTS\n  sphere Clay 0.8, -0.5 0 0\n  \
-     sphere Clay 0.8, 0.5 0 0\n  sphere Clay 0.8, 0 0.8 0\n\
-     close\nexplode 2 2 0, PARTS"
-));
+pub static EXPLODE: CommandSpec = row("explode", "move the parts of an object apart")
+    .with(takes!(explode, triple("x y z", "the shares"), TARGET))
+    .details(
+        "Each shape moves away from the middle of the object, by the share x, y, z of its \
+         distance along each axis: 0 leaves it, 1 doubles the distance.",
+    )
+    .example(clay!(
+        "object PARTS\n  sphere Clay 0.8, -0.5 0 0\n  sphere Clay 0.8, 0.5 0 0\n  \
+         sphere Clay 0.8, 0 0.8 0\nclose\nexplode 2 2 0, PARTS"
+    ));
 
 fn explode<'a>(
     run: &mut Evaluator<'a>,
@@ -261,12 +219,11 @@ fn explode<'a>(
     charge(run, command, &range)?;
     let parts = &run.model.parts[range.clone()];
     let centres: Vec<DVec3> = parts.iter().map(|p| middle(&p.element.shape)).collect();
-    let Some(centre) = (!centres.is_empty())
-        .then(|| centres.iter().sum::<DVec3>() / centres.len() as f64)
-        .filter(|centre| centre.is_finite())
-    else {
+    let centre = centres.iter().sum::<DVec3>() / centres.len() as f64;
+    // Without shapes there is no middle.
+    if !centre.is_finite() {
         return Ok(Flow::Next);
-    };
+    }
     for (index, place) in range.zip(centres) {
         let shift = Transform::translation((place - centre) * shares);
         run.model.transform(index..index + 1, &shift);
@@ -274,7 +231,7 @@ fn explode<'a>(
     Ok(Flow::Next)
 }
 
-/// The middle of a shape's skeleton.
+/// Returns the middle of a shape's skeleton.
 fn middle(shape: &Shape) -> DVec3 {
     match shape {
         Shape::Sphere { center, .. } => *center,
@@ -308,18 +265,16 @@ fn middle(shape: &Shape) -> DVec3 {
 pub static TRANSFORM: CommandSpec = row(
     "transform",
     "hold an object still while the shutter is open",
-    takes!(transform, TARGET),
 )
+.with(takes!(transform, TARGET))
 .details(
     "Transforms are applied at once. What variables that change with every frame have done to the \
      object so far is then the same for the whole time of the `shutter`; what comes after this is \
      blurred.",
 )
 .example(clay!(
-    "var x = -1.5 += 3\nshutter 1\nsample 3\n\
-     object STILL\n  sphere Clay 1, x 1.2 0\n\
-     close\ntransform STILL\nobject MOVING\n  \
-     sphere Clay 1, x -1.2 0\nclose"
+    "var x = -1.5 += 3\nshutter 1\nsample 3\nobject STILL\n  sphere Clay 1, x 1.2 0\nclose\n\
+     transform STILL\nobject MOVING\n  sphere Clay 1, x -1.2 0\nclose"
 ));
 
 fn transform<'a>(
@@ -333,18 +288,14 @@ fn transform<'a>(
     Ok(Flow::Next)
 }
 
-/// `remove object`
-pub static REMOVE: CommandSpec = row(
-    "remove",
-    "remove an object",
-    takes!(
+pub static REMOVE: CommandSpec = row("remove", "remove an object")
+    .with(takes!(
         remove,
         existing("object", Names::Object, "the object's name")
-    ),
-)
-.example(clay!(
-    "sphere Clay 2, 0 0 0\nobject EXTRA\n  sphere Clay 2, 1 0 0\nclose\nremove EXTRA"
-));
+    ))
+    .example(clay!(
+        "sphere Clay 2, 0 0 0\nobject EXTRA\n  sphere Clay 2, 1 0 0\nclose\nremove EXTRA"
+    ));
 
 fn remove<'a>(run: &mut Evaluator<'a>, command: &'a Command, object: Name<'a>) -> Outcome<Flow> {
     let range = run.model.find(&object)?;
@@ -362,20 +313,14 @@ fn transform_by<'a>(
     let range = target(run, command, object.as_ref())?;
     charge(run, command, &range)?;
     if !transform.uniform && run.model.has_round(range.clone()) {
-        run.say(Severity::Warning, command.span.clone(), || {
-            (
-                String::from(
-                    "round shapes cannot be stretched: their radii grow by the mean factor",
-                ),
-                Some(String::from("use three equal factors")),
-            )
-        });
+        let message = "round shapes cannot be stretched: their radii grow by the mean factor";
+        run.warn(&command.span, message, "use three equal factors");
     }
     run.model.transform(range, transform);
     Ok(Flow::Next)
 }
 
-/// The shapes that a transform is for: the object it names, else the last one.
+/// Returns the shapes that a transform is for: the object it names, else the last one.
 pub(super) fn target<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
@@ -387,7 +332,7 @@ pub(super) fn target<'a>(
     }
 }
 
-/// Work on many shapes counts as many steps.
+/// Counts work on shapes: a step for each.
 fn charge(run: &mut Evaluator<'_>, command: &Command, range: &Range<usize>) -> Outcome<()> {
     run.scope.step(1 + range.len() as u64, &command.word_span)
 }
@@ -398,12 +343,14 @@ impl Evaluator<'_> {
         while let Some((name, (file, span))) = self.model.innermost() {
             let (name, file, span) = (name.to_owned(), *file, span.clone());
             self.model.close();
-            self.say_at(file, Severity::Warning, span, || {
-                (
-                    format!("the object `{name}` is never closed"),
-                    Some(String::from("end it with `close`")),
-                )
-            });
+            let message = format_args!("the object `{name}` is never closed");
+            self.say_at(
+                file,
+                Severity::Warning,
+                &span,
+                message,
+                "end it with `close`",
+            );
         }
     }
 }

@@ -1,7 +1,6 @@
 //! OPTIONS: settings of the whole picture.
 
 use super::state::{Evaluator, Flow};
-use crate::Severity;
 use crate::commands::build::{choice, clay, flesh, idle, plain, row, sets, takes, word_of};
 use crate::commands::slot::{ON_OFF, colour, new_file, number, text, whole, word};
 use crate::commands::{CommandSpec, OptionSpec, Unit};
@@ -42,7 +41,8 @@ pub static PACKINGS: &[OptionSpec] = &[
 
 /// `echo on|off`: nothing is echoed anyway, and every published dataset says it, so nothing is
 /// said.
-pub static ECHO: CommandSpec = row("echo", "echo commands", takes!(silent_switch, ON_OFF))
+pub static ECHO: CommandSpec = row("echo", "echo commands")
+    .with(takes!(silent_switch, ON_OFF))
     .default("on")
     .example("echo off");
 
@@ -50,93 +50,64 @@ fn silent_switch<'a>(_: &mut Evaluator<'a>, _: &'a Command, _: bool) -> Outcome<
     Ok(Flow::Next)
 }
 
-/// `warning on|off`
-pub static WARNING: CommandSpec = row(
-    "warning",
-    "show warnings",
-    sets!(|run, is_on| run.report.no_warnings = !is_on, ON_OFF),
-)
-.default("on")
-.example("warning off");
+pub static WARNING: CommandSpec = row("warning", "show warnings")
+    .with(sets!(|run, is_on| run.report.no_warnings = !is_on, ON_OFF))
+    .default("on")
+    .example("warning off");
 
-/// `verbose on|off`
-pub static VERBOSE: CommandSpec = row(
-    "verbose",
-    "show notes",
-    sets!(|run, is_on| run.report.no_notes = !is_on, ON_OFF),
-)
-.default("on")
-.example("verbose off");
+pub static VERBOSE: CommandSpec = row("verbose", "show notes")
+    .with(sets!(|run, is_on| run.report.no_notes = !is_on, ON_OFF))
+    .default("on")
+    .example("verbose off");
 
-/// `soft on|off`
-pub static SOFT: CommandSpec = row(
-    "soft",
-    "blend soft shapes; off draws their offset surfaces",
-    sets!(|run, is_on| run.settings.soft = is_on, ON_OFF),
-)
-.default("on")
-.example(flesh!(
-    "soft off\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
-));
+pub static SOFT: CommandSpec = row("soft", "blend soft shapes; off draws their offset surfaces")
+    .with(sets!(|run, is_on| run.settings.soft = is_on, ON_OFF))
+    .default("on")
+    .example(flesh!(
+        "soft off\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+    ));
 
-/// `double on|off`
-pub static DOUBLE: CommandSpec = row(
-    "double",
-    "draw both sides of faces",
-    sets!(|run, is_on| run.settings.double_sided = is_on, ON_OFF),
-)
-.default("on")
-.details(
-    "Off hides the faces of triangles, polygons, patches and meshes that are seen from behind; \
-     the front of a face is the side from which its corners run counterclockwise. RATS had \
-     `double` off unless a dataset said otherwise; here it is on.",
-)
-.example(clay!(
-    "double off\ntriangle Clay, <-2 -1 0> <2 -1 0> <0 2 0>"
-));
+pub static DOUBLE: CommandSpec = row("double", "draw both sides of faces")
+    .with(sets!(
+        |run, is_on| run.settings.double_sided = is_on,
+        ON_OFF
+    ))
+    .default("on")
+    .details(
+        "Off hides the faces of triangles, polygons, patches and meshes that are seen from \
+         behind; the front of a face is the side from which its corners run counterclockwise. \
+         RATS had `double` off unless a dataset said otherwise; here it is on.",
+    )
+    .example(clay!(
+        "double off\ntriangle Clay, <-2 -1 0> <2 -1 0> <0 2 0>"
+    ));
 
-/// `gamma value`
-pub static GAMMA: CommandSpec = row(
-    "gamma",
-    "gamma correction",
-    sets!(
+pub static GAMMA: CommandSpec = row("gamma", "gamma correction")
+    .with(sets!(
         |run, value| run.settings.gamma = value as f32,
         number("value", "gamma").from(0.1, 10.0)
-    ),
-)
-.default("1")
-.example(clay!("gamma 1.8\nsphere Clay 2, 0 0 0"));
+    ))
+    .default("1")
+    .example(clay!("gamma 1.8\nsphere Clay 2, 0 0 0"));
 
-/// `framesize w h`
-pub static FRAMESIZE: CommandSpec = row(
-    "framesize",
-    "size of the picture",
-    takes!(
-        framesize,
+pub static FRAMESIZE: CommandSpec = row("framesize", "size of the picture")
+    .with(sets!(
+        |run, width, height| run.settings.frame = [width, height],
         whole("w", 1, Settings::MAX_FRAME, "the width").unit(Unit::Pixels),
         whole("h", 1, Settings::MAX_FRAME, "the height").unit(Unit::Pixels)
-    ),
-)
-.default("128 128")
-.example(clay!("framesize 320 200\nsphere Clay 2, 0 0 0"));
-
-fn framesize<'a>(run: &mut Evaluator<'a>, _: &'a Command, w: u32, h: u32) -> Outcome<Flow> {
-    run.settings.frame = [w, h];
-    Ok(Flow::Next)
-}
+    ))
+    .default("128 128")
+    .example(clay!("framesize 320 200\nsphere Clay 2, 0 0 0"));
 
 /// `filename name`: an ending that is a format counts as `format` too.
-pub static FILENAME: CommandSpec = row(
-    "filename",
-    "name of the saved picture",
-    takes!(filename, new_file("name", "the picture's name")),
-)
-.default("scene")
-.details(
-    "The program saves the picture under this name, and tools such as `collage` know it by this \
-     name and its `format`: `shell.png`.",
-)
-.example("filename shell");
+pub static FILENAME: CommandSpec = row("filename", "name of the saved picture")
+    .with(takes!(filename, new_file("name", "the picture's name")))
+    .default("scene")
+    .details(
+        "The program saves the picture under this name, and tools such as `collage` know it by \
+         this name and its `format`: `shell.png`.",
+    )
+    .example("filename shell");
 
 fn filename<'a>(run: &mut Evaluator<'a>, _: &'a Command, name: Name<'a>) -> Outcome<Flow> {
     let name = name.text;
@@ -164,50 +135,38 @@ pub static FORMATS: &[OptionSpec] = &[
     word_of("png", "PNG (ours)"),
 ];
 
-/// `format tif|tga|mtv|png`
-pub static FORMAT: CommandSpec = row(
-    "format",
-    "format of the saved picture",
-    sets!(
+pub static FORMAT: CommandSpec = row("format", "format of the saved picture")
+    .with(sets!(
         |run, format| run.output.format = Some(format),
         word("format", FORMATS, "a format, such as `tif`")
-    ),
-)
-.default("tif")
-.details("The program writes all of these; the page saves PNG whatever stands here.")
-.example("format png");
+    ))
+    .default("tif")
+    .details("The program writes all of these; the page saves PNG whatever stands here.")
+    .example("format png");
 
-/// `nosave on|off`
-pub static NOSAVE: CommandSpec = row(
-    "nosave",
-    "do not save the picture",
-    sets!(|run, is_on| run.output.saved = !is_on, ON_OFF),
-)
-.default("off")
-.details(
-    "The program that runs the dataset then neither traces nor writes the picture, unless it is \
-     told a name for it with `-o`. In the page, tools do not find the picture among the files; \
-     you can still save it by hand.",
-)
-.example("nosave on");
+pub static NOSAVE: CommandSpec = row("nosave", "do not save the picture")
+    .with(sets!(|run, is_on| run.output.saved = !is_on, ON_OFF))
+    .default("off")
+    .details(
+        "The program that runs the dataset then neither traces nor writes the picture, unless it \
+         is told a name for it with `-o`. In the page, tools do not find the picture among the \
+         files; you can still save it by hand.",
+    )
+    .example("nosave on");
 
-/// `sample n`
-pub static SAMPLE: CommandSpec = row(
-    "sample",
-    "at most n×n rays a pixel",
-    takes!(
+pub static SAMPLE: CommandSpec = row("sample", "at most n×n rays a pixel")
+    .with(takes!(
         sample,
         whole("n", 1, Settings::MAX_SAMPLES, "the number of samples"),
         text("method", "the method").optional("")
-    ),
-)
-.default("1")
-.details(
-    "The first ray of each pixel makes a whole picture; more follow where neighbours differ (see \
-     `contrast`), and everywhere where a lens, the shutter, a light's size or the sky ask for \
-     many; if they do, n is 4 unless it is given.",
-)
-.example(clay!("sample 4\nsphere Clay 2, 0 0 0"));
+    ))
+    .default("1")
+    .details(
+        "The first ray of each pixel makes a whole picture; more follow where neighbours differ \
+         (see `contrast`), and everywhere where a lens, the shutter, a light's size or the sky \
+         ask for many; if they do, n is 4 unless it is given.",
+    )
+    .example(clay!("sample 4\nsphere Clay 2, 0 0 0"));
 
 fn sample<'a>(
     run: &mut Evaluator<'a>,
@@ -218,88 +177,72 @@ fn sample<'a>(
     run.settings.samples = n;
     run.sampled = true;
     if let Some(span) = method {
-        run.say(Severity::Note, span, || {
-            (
-                String::from(
-                    "the method changes nothing here: there is one, which spreads rays evenly",
-                ),
-                None,
-            )
-        });
+        let message = "the method changes nothing here: there is one, which spreads rays evenly";
+        run.note(&span, message, "");
     }
     Ok(Flow::Next)
 }
 
-/// `penumbra on|off`
-pub static PENUMBRA: CommandSpec = row(
-    "penumbra",
-    "soft shadows",
-    sets!(|run, is_on| run.settings.penumbra = is_on, ON_OFF),
-)
-.default("off")
-.details(
-    "Shadows of lights that have a `size` get soft edges: a place gets the share of the light \
-     that it sees. More samples (`sample`) make them smoother.",
-)
-.example(
-    "surface Clay, diffuse SandyBrown, specular Gray50, shine 40\n\
-     penumbra on\nsample 3\nground Gray80\n\
-     eyep 0 4 9\nlight White, position 5 9 4, size 1.5\n\
-     sphere Clay 1.5, 0 0 0",
-);
+pub static PENUMBRA: CommandSpec = row("penumbra", "soft shadows")
+    .with(sets!(|run, is_on| run.settings.penumbra = is_on, ON_OFF))
+    .default("off")
+    .details(
+        "Shadows of lights that have a `size` get soft edges: a place gets the share of the light \
+         that it sees. More samples (`sample`) make them smoother.",
+    )
+    .example(
+        "surface Clay, diffuse SandyBrown, specular Gray50, shine 40\npenumbra on\nsample 3\n\
+         ground Gray80\neyep 0 4 9\nlight White, position 5 9 4, size 1.5\nsphere Clay 1.5, 0 0 0",
+    );
 
-/// `epsilon value`
 pub static EPSILON: CommandSpec = row(
     "epsilon",
     "how far mirrored and refracted rays start from hard surfaces",
-    sets!(
-        |run, value| run.settings.epsilon = value,
-        number("value", "the precision").from(1e-12, 0.1)
-    ),
 )
+.with(sets!(
+    |run, value| run.settings.epsilon = value,
+    number("value", "the precision").from(1e-12, 0.1)
+))
 .default("1e-4")
 .details(
     "A share of the scene's size. Rays from soft surfaces start as near as their own error allows.",
 )
 .example(clay!(
-    "epsilon 1e-4\nsurface Chrome, diffuse Gray20, reflective 70%\n\
-     sphere Chrome 1.5, -1 0 0\nsphere Clay 1, 1.5 0 1"
+    "epsilon 1e-4\nsurface Chrome, diffuse Gray20, reflective 70%\nsphere Chrome 1.5, -1 0 0\n\
+     sphere Clay 1, 1.5 0 1"
 ));
 
-/// `vanish value`
 pub static VANISH: CommandSpec = row(
     "vanish",
     "least share of light that a mirrored or refracted ray must bring",
-    sets!(
-        |run, value| run.settings.vanish = value as f32,
-        number("value", "the least colour").from(0.0, 1.0)
-    ),
 )
+.with(sets!(
+    |run, value| run.settings.vanish = value as f32,
+    number("value", "the least colour").from(0.0, 1.0)
+))
 .default("4e-3")
 .details("A ray that would change each of red, green and blue of its pixel by less is not sent.")
 .example(clay!(
-    "vanish 0.01\nsurface Chrome, diffuse Gray20, reflective 70%\n\
-     sphere Chrome 1.5, -1 0 0\nsphere Clay 1, 1.5 0 1"
+    "vanish 0.01\nsurface Chrome, diffuse Gray20, reflective 70%\nsphere Chrome 1.5, -1 0 0\n\
+     sphere Clay 1, 1.5 0 1"
 ));
 
-/// `maxdepth number`
 pub static MAXDEPTH: CommandSpec = row(
     "maxdepth",
     "how many surfaces may mirror or refract a ray, one after the other",
-    sets!(
-        |run, number| run.settings.max_depth = number,
-        whole("number", 0, Settings::MAX_DEPTH, "the depth")
-    ),
 )
+.with(sets!(
+    |run, number| run.settings.max_depth = number,
+    whole("number", 0, Settings::MAX_DEPTH, "the depth")
+))
 .default("5")
 .details(
     "Light goes into a glass and out again at two surfaces, and through a hollow one at four. 0: \
      nothing mirrors or is seen through.",
 )
 .example(clay!(
-    "maxdepth 2\nsurface Chrome, diffuse Gray20, reflective 70%\n\
-     sphere Chrome 1.5, -1.6 0 0\nsphere Chrome 1.5, 1.6 0 0\n\
-     sphere Clay 0.6, 0 0 2"
+    "maxdepth 2\nsurface Chrome, diffuse Gray20, reflective 70%\nsphere Chrome 1.5, -1.6 0 0\n\
+     sphere Chrome 1.5, 1.6 0 0\nsphere Clay 0.6, 0 0 2"
 ));
 
 /// `tone`.
@@ -308,37 +251,32 @@ pub static TONES: &[OptionSpec] = &[
     word_of("filmic", "bright light fades softly into white, as on film"),
 ];
 
-/// `tone none|filmic`
-pub static TONE: CommandSpec = row(
-    "tone",
-    "how bright light becomes colours of the screen",
-    sets!(
+pub static TONE: CommandSpec = row("tone", "how bright light becomes colours of the screen")
+    .with(sets!(
         |run, what| run.settings.tone = if what == "filmic" {
             Tone::Filmic
         } else {
             Tone::None
         },
         word("what", TONES, "`none` or `filmic`")
-    ),
-)
-.default("none")
-.details(
-    "Filmic: light up to 0.6 stays as it is; above that 0.6 + 0.4·t/(1 + t), where t = (x − \
-     0.6)/0.4, so that what glares keeps its form.",
-)
-.example(clay!(
-    "tone filmic\nlight White, position -4 8 10, intensity 1.5\nsphere Clay 2, 0 0 0"
-));
+    ))
+    .default("none")
+    .details(
+        "Filmic: light up to 0.6 stays as it is; above that 0.6 + 0.4·t/(1 + t), where t = (x − \
+         0.6)/0.4, so that what glares keeps its form.",
+    )
+    .example(clay!(
+        "tone filmic\nlight White, position -4 8 10, intensity 1.5\nsphere Clay 2, 0 0 0"
+    ));
 
-/// `contrast r g b`
 pub static CONTRAST: CommandSpec = row(
     "contrast",
     "contrast above which a pixel is sampled further",
-    sets!(
-        |run, contrast| run.settings.contrast = contrast,
-        colour("r g b", "the contrast")
-    ),
 )
+.with(sets!(
+    |run, contrast| run.settings.contrast = contrast,
+    colour("r g b", "the contrast")
+))
 .default(".25 .2 .4")
 .example(clay!(
     "contrast 0.1 0.1 0.1\nsample 4\nsphere Clay 2, 0 0 0"
@@ -358,16 +296,16 @@ pub static FRAGILE_WORDS: &[OptionSpec] = &[
 pub static FRAGILE: CommandSpec = row(
     "fragile",
     "soft shapes whose own radius is overruled by their material's",
-    takes!(
-        fragile,
-        word(
-            "what",
-            FRAGILE_WORDS,
-            "`all`, `none` or the names of primitives"
-        )
-        .many()
-    ),
 )
+.with(takes!(
+    fragile,
+    word(
+        "what",
+        FRAGILE_WORDS,
+        "`all`, `none` or the names of primitives"
+    )
+    .many()
+))
 .default("none")
 .example(flesh!(
     "fragile all\nsphere Flesh 2, -0.6 0 0\nsphere Flesh 0.1, 0.6 0 0"
@@ -395,32 +333,27 @@ pub static BLOB_SCALES: &[OptionSpec] = &[
     word_of("absolute", "the width is |B|"),
 ];
 
-/// `blobscale relative|absolute`
-pub static BLOBSCALE: CommandSpec = row(
-    "blobscale",
-    "how blobbiness is read",
-    sets!(
+pub static BLOBSCALE: CommandSpec = row("blobscale", "how blobbiness is read")
+    .with(sets!(
         |run, what| run.settings.blob_scale = if what == "absolute" {
             BlobScale::Absolute
         } else {
             BlobScale::Relative
         },
         word("what", BLOB_SCALES, "`relative` or `absolute`")
-    ),
-)
-.default("relative")
-.details("relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read.")
-.example(flesh!("blobscale absolute\nsphere Flesh 0.6, 0 0 0"));
+    ))
+    .default("relative")
+    .details("relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read.")
+    .example(flesh!("blobscale absolute\nsphere Flesh 0.6, 0 0 0"));
 
-/// `influence e`
 pub static INFLUENCE: CommandSpec = row(
     "influence",
     "share of the threshold below which the draft ignores a soft shape",
-    sets!(
-        |run, e| run.settings.influence = e,
-        number("e", "the share of the threshold").from(1e-9, 0.5)
-    ),
 )
+.with(sets!(
+    |run, e| run.settings.influence = e,
+    number("e", "the share of the threshold").from(1e-9, 0.5)
+))
 .default("0.001")
 .details(
     "Counts for the draft and for every digger but hermite: traced pictures ignore nothing that \
@@ -449,11 +382,8 @@ pub static DIGGERS: &[OptionSpec] = &[
     word_of("sphere", "sphere tracing (Hart)"),
 ];
 
-/// `digger name [n]`
-pub static DIGGER: CommandSpec = row(
-    "digger",
-    "what finds where a ray meets the soft surface",
-    takes!(
+pub static DIGGER: CommandSpec = row("digger", "what finds where a ray meets the soft surface")
+    .with(takes!(
         digger,
         word("name", DIGGERS, "the digger's name"),
         whole(
@@ -464,17 +394,16 @@ pub static DIGGER: CommandSpec = row(
         )
         .with_place()
         .optional("2")
-    ),
-)
-.default("hermite")
-.details(
-    "Only `hermite` is certified, and it is the fastest. The others are there to compare with: \
-     they follow rays one by one, and what they miss or misplace is missing or misplaced in the \
-     picture.",
-)
-.example(flesh!(
-    "digger hermite2 4\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
-));
+    ))
+    .default("hermite")
+    .details(
+        "Only `hermite` is certified, and it is the fastest. The others are there to compare \
+         with: they follow rays one by one, and what they miss or misplace is missing or \
+         misplaced in the picture.",
+    )
+    .example(flesh!(
+        "digger hermite2 4\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+    ));
 
 fn digger<'a>(
     run: &mut Evaluator<'a>,
@@ -495,125 +424,87 @@ fn digger<'a>(
     if let Some((_, span)) = spans
         && !matches!(run.settings.digger, Digger::Spans(_))
     {
-        run.say(Severity::Warning, span, || {
-            (
-                String::from("only `hermite2` has a number of spans"),
-                Some(String::from("leave the number out")),
-            )
-        });
+        run.warn(
+            &span,
+            "only `hermite2` has a number of spans",
+            "leave the number out",
+        );
     }
     Ok(Flow::Next)
 }
 
-/// `map on|off [N]`
-pub static MAP: CommandSpec = row(
-    "map",
-    "show what each pixel costs instead of its colour",
-    takes!(
-        map,
+pub static MAP: CommandSpec = row("map", "show what each pixel costs instead of its colour")
+    .with(sets!(
+        |run, is_on, gamma| {
+            run.settings.map = is_on.then_some(gamma.unwrap_or(1.0) as f32);
+        },
         ON_OFF,
         number("N", "the gamma of the map")
             .from(0.1, 10.0)
             .optional("1")
-    ),
-)
-.default("off")
-.details(
-    "Black is no work, white the dearest pixel of a sample (a packet of rays in every 16×16 \
-     pixels); N above 1 lifts what is dark. Work is counted, not timed, so that a map is the same \
-     everywhere: an evaluation of one shape's field at one point counts 1, and so does each ray \
-     to the eye or to a light. Rays of a packet share the work that is done for all of them, and \
-     a pixel shows the mean of its rays.",
-)
-.example(flesh!(
-    "map on 1.5\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
-));
+    ))
+    .default("off")
+    .details(
+        "Black is no work, white the dearest pixel of a sample (a packet of rays in every 16×16 \
+         pixels); N above 1 lifts what is dark. Work is counted, not timed, so that a map is the \
+         same everywhere: an evaluation of one shape's field at one point counts 1, and so does \
+         each ray to the eye or to a light. Rays of a packet share the work that is done for all \
+         of them, and a pixel shows the mean of its rays.",
+    )
+    .example(flesh!(
+        "map on 1.5\nsphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+    ));
 
-fn map<'a>(
-    run: &mut Evaluator<'a>,
-    _: &'a Command,
-    is_on: bool,
-    gamma: Option<f64>,
-) -> Outcome<Flow> {
-    run.settings.map = is_on.then_some(gamma.unwrap_or(1.0) as f32);
-    Ok(Flow::Next)
-}
+pub static BOUNDS: CommandSpec = row("bounds", "use bounding volumes")
+    .with(idle(PACKING, plain![ON_OFF]))
+    .default("on")
+    .example("bounds on");
 
-/// `bounds`
-pub static BOUNDS: CommandSpec = row(
-    "bounds",
-    "use bounding volumes",
-    idle(PACKING, plain![ON_OFF]),
-)
-.default("on")
-.example("bounds on");
-
-/// `timer`
-pub static TIMER: CommandSpec = row("timer", "report times", idle(REPORTS, plain![ON_OFF]))
+pub static TIMER: CommandSpec = row("timer", "report times")
+    .with(idle(REPORTS, plain![ON_OFF]))
     .default("on")
     .example("timer on");
 
-/// `dither`
-pub static DITHER: CommandSpec = row(
-    "dither",
-    "dither pictures for viewing",
-    idle("screens show all colours now", plain![ON_OFF]),
-)
-.default("on")
-.example("dither on");
+pub static DITHER: CommandSpec = row("dither", "dither pictures for viewing")
+    .with(idle("screens show all colours now", plain![ON_OFF]))
+    .default("on")
+    .example("dither on");
 
-/// `compress`
-pub static COMPRESS: CommandSpec = row(
-    "compress",
-    "compress saved pictures",
-    idle(SAVING, plain![ON_OFF]),
-)
-.default("on")
-.example("compress on");
+pub static COMPRESS: CommandSpec = row("compress", "compress saved pictures")
+    .with(idle(SAVING, plain![ON_OFF]))
+    .default("on")
+    .example("compress on");
 
-/// `stat`
-pub static STAT: CommandSpec = row("stat", "report statistics", idle(REPORTS, plain![ON_OFF]))
+pub static STAT: CommandSpec = row("stat", "report statistics")
+    .with(idle(REPORTS, plain![ON_OFF]))
     .default("off")
     .example("stat on");
 
-/// `noview`
-pub static NOVIEW: CommandSpec = row(
-    "noview",
-    "do not display the picture",
-    idle(WINDOWS, plain![ON_OFF]),
-)
-.default("off")
-.example("noview on");
+pub static NOVIEW: CommandSpec = row("noview", "do not display the picture")
+    .with(idle(WINDOWS, plain![ON_OFF]))
+    .default("off")
+    .example("noview on");
 
-/// `maxmol`
-pub static MAXMOL: CommandSpec = row(
-    "maxmol",
-    "largest group of soft shapes",
-    idle(
+pub static MAXMOL: CommandSpec = row("maxmol", "largest group of soft shapes")
+    .with(idle(
         "groups can have any size",
         plain![whole("number", 1, 1_000_000_000, "the number of shapes")],
-    ),
-)
-.default("300")
-.example("maxmol 300");
+    ))
+    .default("300")
+    .example("maxmol 300");
 
-/// `pack`
-pub static PACK: CommandSpec = row(
-    "pack",
-    "how shapes are sorted",
-    idle(PACKING, plain![word("what", PACKINGS, "`none` or `grid`")]),
-)
-.default("grid")
-.example("pack none");
+pub static PACK: CommandSpec = row("pack", "how shapes are sorted")
+    .with(idle(
+        PACKING,
+        plain![word("what", PACKINGS, "`none` or `grid`")],
+    ))
+    .default("grid")
+    .example("pack none");
 
-/// `indicator`
-pub static INDICATOR: CommandSpec = row(
-    "indicator",
-    "how progress is shown",
-    idle(
+pub static INDICATOR: CommandSpec = row("indicator", "how progress is shown")
+    .with(idle(
         REPORTS,
         plain![word("what", INDICATORS, "what to show, such as `bar`").many()],
-    ),
-)
-.default("bar")
-.example("indicator bar");
+    ))
+    .default("bar")
+    .example("indicator bar");

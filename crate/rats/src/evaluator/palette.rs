@@ -13,12 +13,12 @@ use scene::{Finish, Flesh, Rgb};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// A material and what the language must remember of it.
+/// Material and all that the language must remember of it.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// Its colours.
+    /// The colours.
     pub finish: Finish,
-    /// Its softness; hard with a blobbiness of 0.
+    /// The softness; hard with a blobbiness of 0.
     pub flesh: Flesh,
     /// The colours it was made with, which a copy goes on from.
     pub colours: Colours,
@@ -50,10 +50,10 @@ pub struct Texture {
     pub profile: Option<Profile>,
 }
 
-/// All materials and textures.
+/// The materials and textures.
 #[derive(Debug, Default)]
 pub struct Palette<'a> {
-    /// All materials ever made that are or may be used.
+    /// The materials ever made that are or may be used.
     pub surfaces: Vec<Surface>,
     by_name: HashMap<&'a str, usize>,
     textures: HashMap<&'a str, Texture>,
@@ -81,7 +81,7 @@ impl<'a> Palette<'a> {
     ///
     /// # Errors
     /// If there are too many.
-    pub fn tinted(&mut self, name: &Name<'_>, material: usize, tint: Rgb) -> Outcome<usize> {
+    pub fn add_tint(&mut self, name: &Name<'_>, material: usize, tint: Rgb) -> Outcome<usize> {
         self.refuse_more(name)?;
         let mut surface = self.surfaces[material].clone();
         let finish = &mut surface.finish;
@@ -94,20 +94,20 @@ impl<'a> Palette<'a> {
         Ok(self.surfaces.len() - 1)
     }
 
-    /// An error at a name if there are as many materials as there can be.
+    /// Returns an error at a name if there are as many materials as there can be.
     fn refuse_more(&self, name: &Name<'_>) -> Outcome<()> {
         if self.surfaces.len() < MAX_MATERIALS {
             return Ok(());
         }
         Err(Problem::new(
-            name.span.clone(),
+            &name.span,
             format!("there are more than {MAX_MATERIALS} materials"),
         ))
     }
 
-    /// Where a material of this name was made, if nothing has come of it yet.
+    /// Returns the place where a material of this name was made, if nothing was made of it.
     #[must_use]
-    pub fn idle(&self, name: &str) -> Option<&(usize, Range<usize>)> {
+    pub fn idle_place(&self, name: &str) -> Option<&(usize, Range<usize>)> {
         let surface = &self.surfaces[*self.by_name.get(name)?];
         (!surface.used && !surface.copied).then_some(&surface.origin)
     }
@@ -117,24 +117,24 @@ impl<'a> Palette<'a> {
         self.broken.insert(name);
     }
 
-    /// Whether there is a material of this name.
+    /// Returns whether there is a material of this name.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.by_name.contains_key(name)
     }
 
-    /// The index of a material.
+    /// Finds the index of a material.
     ///
     /// # Errors
     /// If there is none of this name.
     pub fn find(&self, name: &Name<'_>) -> Outcome<usize> {
         self.by_name.get(name.text).copied().ok_or_else(|| {
             if self.broken.contains(name.text) {
-                return Problem::follow_up(name.span.clone());
+                return Problem::follow_up(&name.span);
             }
             let suggestion = suggest::hint(name.text, self.by_name.keys().copied());
             Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("there is no material `{}` yet", name.text),
             )
             .hint(
@@ -152,7 +152,7 @@ impl<'a> Palette<'a> {
     pub fn insert_texture(&mut self, name: &Name<'a>, texture: Texture) -> Outcome<()> {
         if self.textures.len() >= MAX_MATERIALS && !self.textures.contains_key(name.text) {
             return Err(Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("there are more than {MAX_MATERIALS} textures"),
             ));
         }
@@ -160,18 +160,18 @@ impl<'a> Palette<'a> {
         Ok(())
     }
 
-    /// A texture.
+    /// Finds a texture.
     ///
     /// # Errors
     /// If there is none of this name.
     pub fn texture(&self, name: &Name<'_>) -> Outcome<&Texture> {
         self.textures.get(name.text).ok_or_else(|| {
             if self.broken.contains(name.text) {
-                return Problem::follow_up(name.span.clone());
+                return Problem::follow_up(&name.span);
             }
             let suggestion = suggest::hint(name.text, self.textures.keys().copied());
             Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("there is no texture `{}` yet", name.text),
             )
             .hint(
@@ -182,7 +182,7 @@ impl<'a> Palette<'a> {
         })
     }
 
-    /// The layers of all `names` upon each other; the first profile counts.
+    /// Puts the layers of all `names` upon each other; the first profile counts.
     ///
     /// # Errors
     /// If one does not exist, or there are more than [`MAX_LAYERS`].
@@ -205,7 +205,7 @@ impl<'a> Palette<'a> {
             let count = together.layers.len() + usize::from(together.profile.is_some());
             if fits.is_err() || count > MAX_LAYERS {
                 return Err(Problem::new(
-                    name.span.clone(),
+                    &name.span,
                     format!("there are more than {MAX_LAYERS} layers of textures"),
                 ));
             }
@@ -221,7 +221,7 @@ impl<'a> Palette<'a> {
         self.by_name.clear();
     }
 
-    /// How many textures there are.
+    /// Returns the number of textures.
     #[must_use]
     pub fn textures(&self) -> usize {
         self.textures.len()
@@ -232,8 +232,8 @@ impl<'a> Palette<'a> {
         self.textures.clear();
     }
 
-    /// The materials that no shape is made of.
-    pub fn unused(&self) -> impl Iterator<Item = &Surface> {
+    /// Returns the materials that no shape is made of.
+    pub fn idle_surfaces(&self) -> impl Iterator<Item = &Surface> {
         self.by_name
             .values()
             .map(|index| &self.surfaces[*index])

@@ -10,18 +10,23 @@ use field::local::LocalError;
 use glam::DVec3;
 use scene::{Body, Element, Finish, Frame, Scene, Settings, Shape};
 use std::collections::HashMap;
+use std::iter;
 
-/// What `sample` is by itself where colours are means over a lens, the shutter, a light or the sky.
+/// Value of `sample`, if the text gives none, where colours are means over a lens, the shutter, a
+/// light or the sky.
 const MEAN_SAMPLES: u32 = 4;
 
+const TOO_FAR: &str = "this shape is too far away, too large or too small, so it is left out";
+const NO_PROFILE: &str =
+    "a texture of the strength does nothing on polygons and curves in this version";
+
 impl Evaluator<'_> {
-    /// The settings, with as many samples as a picture of this kind needs if the text does not say
-    /// how many.
-    fn sampled_settings(&self) -> Settings {
-        let sized = || self.lights.iter().any(|light| light.size > 0.0);
+    /// Returns the settings, with as many samples as a picture of this kind needs if the text does
+    /// not say how many.
+    fn settings_of_picture(&self) -> Settings {
         let has_means = self.lens.aperture > 0.0
             || self.animated && self.shutter > 0.0
-            || self.settings.penumbra && sized()
+            || self.settings.penumbra && self.lights.iter().any(|light| light.size > 0.0)
             || self.air.sky.is_some();
         let mut settings = self.settings;
         if has_means && !self.sampled {
@@ -30,11 +35,16 @@ impl Evaluator<'_> {
         settings
     }
 
-    /// The scene of these shapes as all else is now, and how its elements came there.
+    /// Makes the scene of these shapes with all else as it is now; returns it, and how its elements
+    /// came there.
     pub(super) fn picture(&mut self, parts: Vec<Part>) -> (Scene, Vec<Placement>) {
         let surfaces = self.palette.surfaces.iter();
+        let flesh = surfaces
+            .clone()
+            .map(|surface| surface.flesh.clone())
+            .collect();
         let dark = self.air.sky.is_some();
-        let finishes = surfaces.clone().map(|surface| Finish {
+        let finishes = surfaces.map(|surface| Finish {
             ambient: match surface.colours.ambient {
                 None if dark => [0.0; 3],
                 _ => surface.finish.ambient,
@@ -42,12 +52,10 @@ impl Evaluator<'_> {
             ..surface.finish.clone()
         });
         let finishes = finishes.collect();
-        let flesh = surfaces.map(|surface| surface.flesh.clone()).collect();
-        let camera = self.settled_camera();
+        let camera = self.camera_of_picture();
         let mut scene = Scene {
             elements: Vec::with_capacity(parts.len()),
-            bodies: [Body::default()]
-                .into_iter()
+            bodies: iter::once(Body::default())
                 .chain(self.model.bodies.iter().cloned())
                 .collect(),
             contacts: self.model.contacts.clone(),
@@ -65,13 +73,12 @@ impl Evaluator<'_> {
             camera,
             lens: self.lens,
             moments: Vec::new(),
-            settings: self.sampled_settings(),
+            settings: self.settings_of_picture(),
         };
-        let mut placements = Vec::with_capacity(parts.len());
         if scene.finishes.is_empty() {
             scene.finishes.push(Finish::default());
         }
-        scene.elements.reserve_exact(parts.len());
+        let mut placements = Vec::with_capacity(parts.len());
         let mut frames = HashMap::new();
         let mut warned = false;
         for mut part in parts.into_iter().filter(|part| !part.removed) {
@@ -79,53 +86,35 @@ impl Evaluator<'_> {
                 part.element.frame = frame_of(&part, &mut scene.frames, &mut frames);
                 fault(&scene, &part.element)
             } else {
-                Some((too_far as fn() -> String, None))
+                Some((TOO_FAR, ""))
             };
             let element = part.element;
-            let origin = element.origin;
-            let span = origin.start as usize..origin.end as usize;
-            match fault {
-                None => {
-                    if !warned && ignores_profile(&scene, &element) {
-                        warned = true;
-                        self.say_at(origin.file as usize, Severity::Warning, span, || {
-                            (
-                                String::from(
-                                    "a texture of the strength does nothing on polygons and curves \
-                                     in this version",
-                                ),
-                                None,
-                            )
-                        });
-                    }
-                    scene.elements.push(element);
-                    placements.push(Placement {
-                        to_world: part.moved.as_deref().copied().unwrap_or_default(),
-                        growth: part.growth,
-                        repeated: part.repeated,
-                    });
-                }
-                Some((message, hint)) => {
-                    self.say_at(origin.file as usize, Severity::Warning, span, || {
-                        (message(), hint)
-                    });
-                }
+            if let Some((message, hint)) = fault {
+                self.warn_of(element.origin, message, hint);
+                continue;
             }
+            if !warned && ignores_profile(&scene, &element) {
+                warned = true;
+                self.warn_of(element.origin, NO_PROFILE, "");
+            }
+            scene.elements.push(element);
+            placements.push(Placement {
+                to_world: part.moved.as_deref().copied().unwrap_or_default(),
+                growth: part.growth,
+                repeated: part.repeated,
+            });
         }
         if scene.camera.eye == scene.camera.target {
             let (place, span) = self.aimed_at.clone();
-            self.say_at(place, Severity::Warning, span, || {
-                (
-                    String::from("the eye is at the view reference point, so it looks nowhere"),
-                    Some(String::from("set `eyep` and `vrp` to different points")),
-                )
-            });
+            let message = "the eye is at the view reference point, so it looks nowhere";
+            let hint = "set `eyep` and `vrp` to different points";
+            self.say_at(place, Severity::Warning, &span, message, hint);
         }
         (scene, placements)
     }
 }
 
-/// The index of a part's frame: shapes that were moved alike share one.
+/// Returns the index of a part's frame; shapes that were moved alike share one.
 fn frame_of(
     part: &Part,
     frames: &mut Vec<Frame>,
@@ -157,11 +146,11 @@ fn ignores_profile(scene: &Scene, element: &Element) -> bool {
             .is_some_and(|flesh| scene.flesh[flesh as usize].profile.is_some())
 }
 
-type Fault = (fn() -> String, Option<String>);
+/// Message that an element cannot be drawn, and a hint, which may be empty.
+type Fault = (&'static str, &'static str);
 
-/// Why an element cannot be drawn, if so.
+/// Returns why an element cannot be drawn; `None` if it can be.
 fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
-    let hint = |text: &str| Some(text.to_owned());
     let radius = scene.radius(element);
     let is_soft = element.flesh.is_some() && element.shape.has_skeleton();
     let needs_radius = is_soft
@@ -175,16 +164,15 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
                 | Shape::Curve { .. }
         );
     if needs_radius && radius <= 0.0 {
-        return Some(if is_soft {
-            (
-                || String::from("this soft shape has no radius, so it is left out"),
-                hint("give its material a `radius` above 0"),
-            )
-        } else {
-            (
-                || String::from("this shape's radius is not above 0, so it is left out"),
-                hint("give it a radius above 0"),
-            )
+        return Some(match is_soft {
+            true => (
+                "this soft shape has no radius, so it is left out",
+                "give its material a `radius` above 0",
+            ),
+            false => (
+                "this shape's radius is not above 0, so it is left out",
+                "give it a radius above 0",
+            ),
         });
     }
     let degenerate = match element.shape {
@@ -215,67 +203,43 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     };
     if (is_soft || element.shape.curves().is_some()) && scene.is_too_long(element) {
         return Some((
-            || {
-                String::from(
-                    "this curve or tapering limb is more than 10,000 kernel widths long, so it is \
-                     left out",
-                )
-            },
-            hint("give it a larger radius, or cut it into pieces"),
+            "this curve or tapering limb is more than 10,000 kernel widths long, so it is left out",
+            "give it a larger radius, or cut it into pieces",
         ));
     }
     if let Shape::Function(function) = &element.shape {
         match scene.local(element, function) {
             Some(Err(LocalError::Reach)) => {
                 return Some((
-                    || {
-                        String::from(
-                            "too many pieces of this skeleton are within its `local` length, so it is left out",
-                        )
-                    },
-                    hint("make `local` shorter, or `subdivide` less"),
+                    "too many pieces of this skeleton are within its `local` \
+                     length, so it is left out",
+                    "make `local` shorter, or `subdivide` less",
                 ));
             }
             Some(Err(LocalError::Unusable)) => {
                 return Some((
-                    || String::from("a skeleton with `local` adds flesh, so this one is left out"),
-                    hint("give its material a `strength` above 0, or take `local` out"),
+                    "a skeleton with `local` adds flesh, so this one is left out",
+                    "give its material a `strength` above 0, or take `local` out",
                 ));
             }
             Some(Ok(_)) | None => {}
         }
     }
-    degenerate.then(|| {
-        let message: fn() -> String = match element.shape {
-            Shape::Cylinder { .. } => {
-                || String::from("this cylinder's ends are the same point, so it is left out")
-            }
-            Shape::Pipe { .. } => {
-                || String::from("this pipe's ends are the same point, so it is left out")
-            }
-            Shape::Cone { .. } => {
-                || String::from("this cone's ends are the same point, so it is left out")
-            }
-            Shape::Box { .. } => || String::from("this box has no volume, so it is left out"),
-            Shape::Quadric(_) => || {
-                String::from(
-                    "this quadric is no surface, or its box has no volume, so it is left out",
-                )
-            },
-            Shape::Function(_) => || {
-                String::from("this function's numbers cannot be computed with, so it is left out")
-            },
-            Shape::Arc { .. } => || {
-                String::from("this arc has no length (sweep radius or width 0), so it is left out")
-            },
-            Shape::Curve { .. } => {
-                || String::from("this curve's points are all the same, so it is left out")
-            }
-            Shape::Polygon { .. } => || String::from("this polygon has no area, so it is left out"),
-            _ => || String::from("this triangle has no area, so it is left out"),
-        };
-        (message, None)
-    })
+    let message = match element.shape {
+        Shape::Cylinder { .. } => "this cylinder's ends are the same point, so it is left out",
+        Shape::Pipe { .. } => "this pipe's ends are the same point, so it is left out",
+        Shape::Cone { .. } => "this cone's ends are the same point, so it is left out",
+        Shape::Box { .. } => "this box has no volume, so it is left out",
+        Shape::Quadric(_) => {
+            "this quadric is no surface, or its box has no volume, so it is left out"
+        }
+        Shape::Function(_) => "this function's numbers cannot be computed with, so it is left out",
+        Shape::Arc { .. } => "this arc has no length (sweep radius or width 0), so it is left out",
+        Shape::Curve { .. } => "this curve's points are all the same, so it is left out",
+        Shape::Polygon { .. } => "this polygon has no area, so it is left out",
+        _ => "this triangle has no area, so it is left out",
+    };
+    degenerate.then_some((message, ""))
 }
 
 /// Whether a polygon's outer ring has an area that is more than rounding.
@@ -292,14 +256,10 @@ fn has_area(rings: &[Vec<DVec3>]) -> bool {
     area.length() > 1e-12 * longest * longest
 }
 
-fn too_far() -> String {
-    String::from("this shape is too far away, too large or too small, so it is left out")
-}
-
 /// Whether a shape is still within what a text may write; transforms can take it beyond.
 fn is_in_bounds(part: &Part) -> bool {
     let shape = &part.element.shape;
-    let fits = |v: glam::DVec3| v.abs().max_element() <= MAX_MAGNITUDE && v.is_finite();
+    let fits = |v: DVec3| v.abs().max_element() <= MAX_MAGNITUDE && v.is_finite();
     let places = match *shape {
         Shape::Sphere { center, .. } => fits(center),
         Shape::Cylinder { base, apex, .. }
@@ -314,9 +274,9 @@ fn is_in_bounds(part: &Part) -> bool {
         Shape::Polygon { ref rings, .. } => rings.iter().flatten().copied().all(fits),
         Shape::Curve { control, .. } => control.into_iter().all(fits),
         Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),
-        Shape::Function(ref function) => <[glam::DVec3; 2]>::from(function.corners())
-            .into_iter()
-            .all(fits),
+        Shape::Function(ref function) => {
+            <[DVec3; 2]>::from(function.corners()).into_iter().all(fits)
+        }
     };
     places && shape.radius().abs() <= MAX_MAGNITUDE && (1e-9..=1e9).contains(&part.growth)
 }

@@ -5,9 +5,9 @@ use super::model::Part;
 use super::state::{Evaluator, Flow};
 use super::tints;
 use crate::Severity;
-use crate::commands::build::{by_itself, choice, clay, flesh, plain, reads, row, takes, word_of};
+use crate::commands::build::{by_itself, clay, flesh, options, plain, reads, row, takes, word_of};
 use crate::commands::slot::{
-    Choice, Named, SN, Slot, degrees, direction, file, length, number, triple, vector,
+    Named, SN, Slot, degrees, direction, file, length, number, triple, vector,
 };
 use crate::commands::{CommandSpec, OptionSpec, Role, Routine};
 use crate::geometry::{self, ThreePoints, Transform};
@@ -25,17 +25,18 @@ use scene::{Element, Quadric, Shape};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// Takes the operands of a command that makes one shape, those behind the material, and the shape:
+/// Makes the form of a command that makes one shape: the function that adds the shape, the shape,
+/// and the operands behind the material:
 /// `makes!(add, |radius, center| Shape::Sphere { center, radius }, …)`.
 macro_rules! makes {
-    ($add:path, |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?) => {
+    ($add:ident $(($kernel:expr))?, |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?) => {
         by_itself(
             |run, command| {
-                let given = run.given(command)?;
+                let given = run.read_given(command)?;
                 let mut values = given.values();
                 let sn = values.take(|| SN)?;
                 let ($($value,)+) = ($(values.take(|| $slot)?,)+);
-                $add(run, command, &sn, $shape)
+                $add(run, command, &sn, $($kernel,)? $shape)
             },
             plain![SN, $($slot),+],
             &[],
@@ -60,6 +61,7 @@ fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Shape {
 }
 
 impl<'a> Evaluator<'a> {
+    /// Adds a shape of a material and a kernel.
     pub(super) fn add_of(
         &mut self,
         command: &'a Command,
@@ -97,54 +99,39 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// `sphere sn r POS`
-pub static SPHERE: CommandSpec = row(
-    "sphere",
-    "sphere; a point when soft",
-    makes!(
+pub static SPHERE: CommandSpec = row("sphere", "sphere; a point when soft")
+    .with(makes!(
         add,
         |radius, center| Shape::Sphere { center, radius },
         length("r", "the radius").role(Role::Radius),
         vector("POS", "the centre")
-    ),
-)
-.example(flesh!(
-    "sphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
-));
+    ))
+    .example(flesh!(
+        "sphere Flesh 0.6, -0.6 0 0\nsphere Flesh 0.6, 0.6 0 0"
+    ));
 
-/// `cylinder sn r BASE APEX`
-pub static CYLINDER: CommandSpec = row(
-    "cylinder",
-    "cylinder with lids; a line segment when soft",
-    makes!(
+pub static CYLINDER: CommandSpec = row("cylinder", "cylinder with lids; a line segment when soft")
+    .with(makes!(
         add,
         |radius, base, apex| Shape::Cylinder { base, apex, radius },
         length("r", "the radius").role(Role::Radius),
         vector("BASE", "the base"),
         vector("APEX", "the apex")
-    ),
-)
-.example(flesh!("cylinder Flesh 0.6, <-2 -1 0>, <2 1 0>"));
+    ))
+    .example(flesh!("cylinder Flesh 0.6, <-2 -1 0>, <2 1 0>"));
 
-/// `pipe sn r BASE APEX`
-pub static PIPE: CommandSpec = row(
-    "pipe",
-    "cylinder without lids",
-    makes!(
+pub static PIPE: CommandSpec = row("pipe", "cylinder without lids")
+    .with(makes!(
         add,
         |radius, base, apex| Shape::Pipe { base, apex, radius },
         length("r", "the radius").role(Role::Radius),
         vector("BASE", "the base"),
         vector("APEX", "the apex")
-    ),
-)
-.example(clay!("eyep 3 3 9\npipe Clay 1, <-2 0 0>, <2 0 1>"));
+    ))
+    .example(clay!("eyep 3 3 9\npipe Clay 1, <-2 0 0>, <2 0 1>"));
 
-/// `arc sn a b P N a1 a2`
-pub static ARC: CommandSpec = row(
-    "arc",
-    "arc of a circle",
-    takes!(
+pub static ARC: CommandSpec = row("arc", "arc of a circle")
+    .with(takes!(
         arc,
         SN,
         length("a", "the sweep radius").role(Role::Sweep),
@@ -155,14 +142,13 @@ pub static ARC: CommandSpec = row(
         degrees("a2", "the width, an angle")
             .role(Role::Width)
             .with_place()
-    ),
-)
-.details(
-    "Angles run from the local x axis (the world's, made perpendicular to the normal) towards \
-     normal × x; so they run clockwise when the normal points away. Soft: the arc itself is the \
-     skeleton.",
-)
-.example(flesh!("arc Flesh 2, 0.6, <0 0 0>, <0 0 1>, 30 240"));
+    ))
+    .details(
+        "Angles run from the local x axis (the world's, made perpendicular to the normal) towards \
+         normal × x; so they run clockwise when the normal points away. Soft: the arc itself is \
+         the skeleton.",
+    )
+    .example(flesh!("arc Flesh 2, 0.6, <0 0 0>, <0 0 1>, 30 240"));
 
 #[expect(clippy::too_many_arguments, reason = "the operands of the command")]
 fn arc<'a>(
@@ -177,33 +163,24 @@ fn arc<'a>(
     (width, span): (f64, Range<usize>),
 ) -> Outcome<Flow> {
     if width.abs() > 360.0 {
-        run.say(Severity::Warning, span, || {
-            (
-                format!("an arc of {width} degrees is a full circle"),
-                Some(String::from(
-                    "the last number is the arc's width, not its last angle; 360 is the most",
-                )),
-            )
-        });
+        let message = format_args!("an arc of {width} degrees is a full circle");
+        let hint = "the last number is the arc's width, not its last angle; 360 is the most";
+        run.warn(&span, message, hint);
     }
     let shape = geometry::arc(center, normal, sweep, tube, start, width);
     add(run, command, &sn, shape)
 }
 
-/// `arch sn b P1 P2 P3`
-pub static ARCH: CommandSpec = row(
-    "arch",
-    "arc through three points",
-    takes!(
+pub static ARCH: CommandSpec = row("arch", "arc through three points")
+    .with(takes!(
         arch,
         SN,
         length("b", "the tube radius").role(Role::Radius),
         vector("P1", "the first point"),
         vector("P2", "the second point"),
         vector("P3", "the third point")
-    ),
-)
-.example(flesh!("arch Flesh 0.6, <-2 -1 0>, <0 1.5 0>, <2 -1 0>"));
+    ))
+    .example(flesh!("arch Flesh 0.6, <-2 -1 0>, <0 1.5 0>, <2 -1 0>"));
 
 fn arch<'a>(
     run: &mut Evaluator<'a>,
@@ -217,55 +194,40 @@ fn arch<'a>(
     match geometry::through(a, b, c, radius) {
         ThreePoints::Arc(shape) => add(run, command, &sn, shape),
         ThreePoints::Line(base, apex) => {
-            run.say(Severity::Warning, command.span.clone(), || {
-                (
-                    String::from("the three points lie on a line: a straight cylinder is drawn"),
-                    None,
-                )
-            });
+            let message = "the three points lie on a line: a straight cylinder is drawn";
+            run.warn(&command.span, message, "");
             add(run, command, &sn, Shape::Cylinder { base, apex, radius })
         }
         ThreePoints::Same => Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             "an arch needs three different points",
         )),
     }
 }
 
-/// `torus sn a b POS NORM`
-pub static TORUS: CommandSpec = row(
-    "torus",
-    "ring of a round tube",
-    makes!(
+pub static TORUS: CommandSpec = row("torus", "ring of a round tube")
+    .with(makes!(
         add,
         |sweep, tube, center, normal| geometry::arc(center, normal, sweep, tube, 0.0, 360.0),
         length("a", "the sweep radius").role(Role::Sweep),
         length("b", "the tube radius").role(Role::Radius),
         vector("POS", "the centre"),
         direction("NORM", "the normal")
-    ),
-)
-.example(flesh!("torus Flesh 2, 0.6, <0 0 0>, <0 1 2>"));
+    ))
+    .example(flesh!("torus Flesh 2, 0.6, <0 0 0>, <0 1 2>"));
 
-/// `triangle sn V1 V2 V3`
-pub static TRIANGLE: CommandSpec = row(
-    "triangle",
-    "flat triangle; a Cauchy triangle when soft",
-    makes!(
+pub static TRIANGLE: CommandSpec = row("triangle", "flat triangle; a Cauchy triangle when soft")
+    .with(makes!(
         add,
         |a, b, c| triangle(a, b, c),
         vector("V1", "the first corner"),
         vector("V2", "the second corner"),
         vector("V3", "the third corner")
-    ),
-)
-.example(flesh!("triangle Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>"));
+    ))
+    .example(flesh!("triangle Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>"));
 
-/// `plane sn POS NORM`
-pub static PLANE: CommandSpec = row(
-    "plane",
-    "infinite plane",
-    makes!(
+pub static PLANE: CommandSpec = row("plane", "infinite plane")
+    .with(makes!(
         add,
         |point, normal| Shape::Plane {
             point,
@@ -274,38 +236,31 @@ pub static PLANE: CommandSpec = row(
         },
         vector("POS", "a point of the plane"),
         direction("NORM", "the normal")
-    ),
-)
-.example(clay!("plane Clay, <0 -2 0>, <0 1 0>"));
+    ))
+    .example(clay!("plane Clay, <0 -2 0>, <0 1 0>"));
 
-const HOLE: Choice<Vec<DVec3>> = choice!(
-    "hole",
-    "",
-    "a hole in it (ours)",
-    vector("W1", "a corner of the hole").many()
-);
+options! {
+    /// Options of `polygon`.
+    POLYGON_OPTIONS:
+    HOLE: Vec<DVec3> = ("hole", "", "a hole in it (ours)",
+        vector("W1", "a corner of the hole").many());
+}
 
-/// `polygon`.
-pub static POLYGON_OPTIONS: &[OptionSpec] = &[HOLE.plain];
-
-/// `polygon sn V1 … Vn [hole W1 … Wm …]`
-pub static POLYGON: CommandSpec = row(
-    "polygon",
-    "planar polygon, with holes",
-    takes!(
+pub static POLYGON: CommandSpec = row("polygon", "planar polygon, with holes")
+    .with(takes!(
         polygon,
         [POLYGON_OPTIONS],
         SN,
         vector("V1", "a corner").many()
-    ),
-)
-.details(
-    "At least three corners, at most 800 with those of the holes; edges must not cross. (RATS \
-     stopped at 128; holes are ours.)",
-)
-.example(clay!(
-    "polygon Clay, <-2 -2 0> <2 -2 0> <2 2 0> <-2 2 0> hole <-1 -1 0> <-1 1 0> <1 1 0> <1 -1 0>"
-));
+    ))
+    .details(
+        "At least three corners, at most 800 with those of the holes; edges must not cross. (RATS \
+         stopped at 128; holes are ours.)",
+    )
+    .example(clay!(
+        "polygon Clay, <-2 -2 0> <2 -2 0> <2 2 0> <-2 2 0> hole <-1 -1 0> <-1 1 0> <1 1 0> <1 -1 \
+         0>"
+    ));
 
 fn polygon<'a>(
     run: &mut Evaluator<'a>,
@@ -319,13 +274,13 @@ fn polygon<'a>(
     let corners: usize = rings.iter().map(Vec::len).sum();
     if corners > MAX_CORNERS {
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             format!("a polygon can have {MAX_CORNERS} corners at most, this one has {corners}"),
         ));
     }
     if rings.iter().any(|ring| ring.len() < 3) {
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             "a polygon, and each hole of it, needs at least three corners",
         ));
     }
@@ -334,31 +289,24 @@ fn polygon<'a>(
         .step((corners * corners / 50) as u64, &command.word_span)?;
     let off = geometry::flatten(&mut rings);
     if geometry::crosses_itself(&rings) {
-        return Err(Problem::new(
-            command.span.clone(),
-            "edges of this polygon cross each other",
-        )
-        .hint("list the corners in order around it; holes lie inside, apart from each other"));
+        return Err(
+            Problem::new(&command.span, "edges of this polygon cross each other").hint(
+                "list the corners in order around it; holes lie inside, apart from each other",
+            ),
+        );
     }
     if off > 1e-3 {
-        run.say(Severity::Warning, command.span.clone(), || {
-            (
-                String::from("the corners do not lie in one plane: they are moved onto it"),
-                Some(format!(
-                    "the furthest is {:.1}% of the polygon's size away from it",
-                    100.0 * off
-                )),
-            )
-        });
+        let message = "the corners do not lie in one plane: they are moved onto it";
+        let percent = format_args!("{:.1}%", 100.0 * off);
+        let hint = format_args!("the furthest is {percent} of the polygon's size away from it");
+        run.warn(&command.span, message, hint);
     }
     add(run, command, &sn, Shape::Polygon { rings, radius: 0.0 })
 }
 
 /// `curve sn b P1 P2 P3 P4 [P …]`: cubic Bézier curves, each beginning where the last one ends.
-pub static CURVE: CommandSpec = row(
-    "curve",
-    "cubic Bézier curve",
-    takes!(
+pub static CURVE: CommandSpec = row("curve", "cubic Bézier curve")
+    .with(takes!(
         curve,
         SN,
         length("b", "the tube radius").role(Role::Radius),
@@ -367,12 +315,11 @@ pub static CURVE: CommandSpec = row(
         vector("P3", "the third control point"),
         vector("P4", "the end point"),
         vector("P", "a further control point").any()
-    ),
-)
-.details("More points, three at a time, join more curves: each begins where the last one ends.")
-.example(flesh!(
-    "curve Flesh 0.6, <-3 -1 0> <-1 3 0> <1 -3 0> <3 1 0>"
-));
+    ))
+    .details("More points, three at a time, join more curves: each begins where the last one ends.")
+    .example(flesh!(
+        "curve Flesh 0.6, <-3 -1 0> <-1 3 0> <1 -3 0> <3 1 0>"
+    ));
 
 #[expect(clippy::too_many_arguments, reason = "the operands of the command")]
 fn curve<'a>(
@@ -391,7 +338,7 @@ fn curve<'a>(
     if points.len() % 3 != 1 {
         let missing = 3 - (points.len() - 1) % 3;
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             format!("the last curve lacks {missing} of its three points"),
         )
         .hint("each curve after the first takes two control points and an end point"));
@@ -403,7 +350,7 @@ fn curve<'a>(
     Ok(Flow::Next)
 }
 
-/// A primitive whose kernel the opcode names, and which has no radius of its own: its material's
+/// Adds a shape of a kernel that the opcode names. It has no radius of its own: its material's
 /// counts.
 fn of_kernel<'a>(
     run: &mut Evaluator<'a>,
@@ -423,110 +370,62 @@ fn of_kernel<'a>(
     run.add_of(command, material, shape, kernel)
 }
 
-/// `dot sn POS`
-pub static DOT: CommandSpec = row(
-    "dot",
-    "point with a polynomial kernel",
-    takes!(dot, SN, vector("POS", "the position")),
-)
-.example(flesh!("dot Flesh, -0.5 0 0\ndot Flesh, 0.5 0 0"));
+pub static DOT: CommandSpec = row("dot", "point with a polynomial kernel")
+    .with(makes!(
+        of_kernel(Kernel::Quartic),
+        |center| Shape::Sphere {
+            center,
+            radius: 0.0
+        },
+        vector("POS", "the position")
+    ))
+    .example(flesh!("dot Flesh, -0.5 0 0\ndot Flesh, 0.5 0 0"));
 
-fn dot<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    sn: Name<'a>,
-    center: DVec3,
-) -> Outcome<Flow> {
-    let (kernel, radius) = (Kernel::Quartic, 0.0);
-    of_kernel(run, command, &sn, kernel, Shape::Sphere { center, radius })
-}
+pub static GAUSS: CommandSpec = row("gauss", "point with a Gaussian kernel")
+    .with(makes!(
+        of_kernel(Kernel::Gauss),
+        |center| Shape::Sphere {
+            center,
+            radius: 0.0
+        },
+        vector("POS", "the position")
+    ))
+    .example(flesh!("gauss Flesh, -0.6 0 0\ngauss Flesh, 0.6 0 0"));
 
-/// `gauss sn POS`
-pub static GAUSS: CommandSpec = row(
-    "gauss",
-    "point with a Gaussian kernel",
-    takes!(gauss, SN, vector("POS", "the position")),
-)
-.example(flesh!("gauss Flesh, -0.6 0 0\ngauss Flesh, 0.6 0 0"));
-
-fn gauss<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    sn: Name<'a>,
-    center: DVec3,
-) -> Outcome<Flow> {
-    let (kernel, radius) = (Kernel::Gauss, 0.0);
-    of_kernel(run, command, &sn, kernel, Shape::Sphere { center, radius })
-}
-
-/// `line sn BASE APEX`
-pub static LINE: CommandSpec = row(
-    "line",
-    "line segment with a Gaussian kernel",
-    takes!(
-        line,
-        SN,
+pub static LINE: CommandSpec = row("line", "line segment with a Gaussian kernel")
+    .with(makes!(
+        of_kernel(Kernel::Gauss),
+        |base, apex| Shape::Cylinder {
+            base,
+            apex,
+            radius: 0.0
+        },
         vector("BASE", "the base"),
         vector("APEX", "the apex")
-    ),
-)
-.example(flesh!(
-    "line Flesh, <-2 0 0>, <2 0 0>\nline Flesh, <0 0 0>, <0 2 0>"
-));
+    ))
+    .example(flesh!(
+        "line Flesh, <-2 0 0>, <2 0 0>\nline Flesh, <0 0 0>, <0 2 0>"
+    ));
 
-fn line<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    sn: Name<'a>,
-    base: DVec3,
-    apex: DVec3,
-) -> Outcome<Flow> {
-    let shape = Shape::Cylinder {
-        base,
-        apex,
-        radius: 0.0,
-    };
-    of_kernel(run, command, &sn, Kernel::Gauss, shape)
-}
-
-/// `triad sn V1 V2 V3`
-pub static TRIAD: CommandSpec = row(
-    "triad",
-    "triangle with the Newtonian kernel",
-    takes!(
-        triad,
-        SN,
+pub static TRIAD: CommandSpec = row("triad", "triangle with the Newtonian kernel")
+    .with(makes!(
+        of_kernel(Kernel::Inverse),
+        |a, b, c| triangle(a, b, c),
         vector("V1", "the first corner"),
         vector("V2", "the second corner"),
         vector("V3", "the third corner")
-    ),
-)
-.details(
-    "The potential of a flat mass. Its flesh is as thick as the radius only where the triangle is \
-     many radii wide; smaller ones need more `strength`.",
-)
-.example(
-    "light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine 40, \
-     radius 0.4, blobbiness -2, strength 3\n\
-     triad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>",
-);
+    ))
+    .details(
+        "The potential of a flat mass. Its flesh is as thick as the radius only where the \
+         triangle is many radii wide; smaller ones need more `strength`.",
+    )
+    .example(
+        "light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine \
+         40, radius 0.4, blobbiness -2, strength 3\ntriad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>",
+    );
 
-fn triad<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    sn: Name<'a>,
-    a: DVec3,
-    b: DVec3,
-    c: DVec3,
-) -> Outcome<Flow> {
-    of_kernel(run, command, &sn, Kernel::Inverse, triangle(a, b, c))
-}
-
-/// `cone sn b BASE a APEX`
-pub static CONE: CommandSpec = row(
-    "cone",
-    "cone with lids",
-    makes!(
+pub static CONE: CommandSpec = row("cone", "cone with lids")
+    .with(makes!(
         add,
         |base_radius, base, apex_radius, apex| Shape::Cone {
             base,
@@ -542,12 +441,11 @@ pub static CONE: CommandSpec = row(
             .role(Role::ApexRadius)
             .at_least(0.0),
         vector("APEX", "the apex")
-    ),
-)
-.details("Soft: a line segment whose flesh tapers with the cone.")
-.example(clay!("cone Clay 1.5, <0 -2 0>, 0.2, <0 2 0>"));
+    ))
+    .details("Soft: a line segment whose flesh tapers with the cone.")
+    .example(clay!("cone Clay 1.5, <0 -2 0>, 0.2, <0 2 0>"));
 
-/// A shape that has no skeleton: a soft material makes it no softer.
+/// Adds a shape that has no skeleton; it stays hard where its material is soft.
 fn add_hard<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
@@ -557,12 +455,9 @@ fn add_hard<'a>(
     let material = run.material(name)?;
     if run.palette.surfaces[material].flesh.is_soft() {
         let word = run.scope.symbols.word(command.word);
-        run.say(Severity::Warning, command.word_span.clone(), || {
-            (
-                format!("a {word} is no skeleton: it stays hard, whatever its material"),
-                Some(String::from("give it a material without blobbiness")),
-            )
-        });
+        let message = "is no skeleton: it stays hard, whatever its material";
+        let hint = "give it a material without blobbiness";
+        run.warn(&command.word_span, format_args!("a {word} {message}"), hint);
     }
     add(run, command, name, shape)
 }
@@ -580,40 +475,29 @@ fn box_between(low: DVec3, high: DVec3) -> Shape {
     }
 }
 
-/// `box sn PMIN PMAX`
-pub static BOX: CommandSpec = row(
-    "box",
-    "box between two corners",
-    makes!(
+pub static BOX: CommandSpec = row("box", "box between two corners")
+    .with(makes!(
         add_hard,
         |low, high| box_between(low, high),
         vector("PMIN", "one corner"),
         vector("PMAX", "the opposite corner")
-    ),
-)
-.details("A box is always hard: it is no skeleton.")
-.example(clay!("eyep 6 5 8\nbox Clay, <-2 -1 -1>, <2 1 1>"));
+    ))
+    .details("A box is always hard: it is no skeleton.")
+    .example(clay!("eyep 6 5 8\nbox Clay, <-2 -1 -1>, <2 1 1>"));
 
-/// `brick sn x y z`
-pub static BRICK: CommandSpec = row(
-    "brick",
-    "box around the origin",
-    makes!(
+pub static BRICK: CommandSpec = row("brick", "box around the origin")
+    .with(makes!(
         add_hard,
         |x, y, z| brick(DVec3::new(x, y, z)),
         length("x", "the width").role(Role::Side(0)).at_least(0.0),
         length("y", "the height").role(Role::Side(1)).at_least(0.0),
         length("z", "the depth").role(Role::Side(2)).at_least(0.0)
-    ),
-)
-.details("A brick is always hard: it is no skeleton.")
-.example(clay!("eyep 6 5 8\nbrick Clay, 4 1 2"));
+    ))
+    .details("A brick is always hard: it is no skeleton.")
+    .example(clay!("eyep 6 5 8\nbrick Clay, 4 1 2"));
 
-/// `patch sn V1 N1 V2 N2 V3 N3`
-pub static PATCH: CommandSpec = row(
-    "patch",
-    "triangle shaded as if it were curved",
-    makes!(
+pub static PATCH: CommandSpec = row("patch", "triangle shaded as if it were curved")
+    .with(makes!(
         add,
         |v1, n1, v2, n2, v3, n3| Shape::Patch {
             corners: [v1, v2, v3],
@@ -625,32 +509,23 @@ pub static PATCH: CommandSpec = row(
         direction("N2", "the second normal"),
         vector("V3", "the third corner"),
         direction("N3", "the third normal")
-    ),
-)
-.details("Phong's shading: the normal varies between the corners. Soft: a triangle.")
-.example(clay!(
-    "patch Clay, <-2 -1.5 0> <-1 0 1>, <2 -1.5 0> <1 0 1>, <0 2 0> <0 1 1>"
-));
+    ))
+    .details("Phong's shading: the normal varies between the corners. Soft: a triangle.")
+    .example(clay!(
+        "patch Clay, <-2 -1.5 0> <-1 0 1>, <2 -1.5 0> <1 0 1>, <0 2 0> <0 1 1>"
+    ));
 
-const TRANSLATE: Choice<DVec3> =
-    choice!("translate", "0 0 0", "moves it", vector("XYZ", "the shift"));
-const SCALE: Choice<DVec3> = choice!("scale", "1 1 1", "scales it", triple("XYZ", "the scale"));
-const BOUNDS: Choice<(DVec3, DVec3)> = choice!(
-    "bounds",
-    "-1 -1 -1 1 1 1",
-    "the box it is cut off at",
-    vector("MIN", "the lowest corner"),
-    vector("MAX", "the highest corner")
-);
+options! {
+    /// Options of `quadric`.
+    QUADRIC_OPTIONS:
+    TRANSLATE: DVec3 = ("translate", "0 0 0", "moves it", vector("XYZ", "the shift"));
+    SCALE: DVec3 = ("scale", "1 1 1", "scales it", triple("XYZ", "the scale"));
+    BOUNDS: (DVec3, DVec3) = ("bounds", "-1 -1 -1 1 1 1", "the box it is cut off at",
+        vector("MIN", "the lowest corner"), vector("MAX", "the highest corner"));
+}
 
-/// `quadric`.
-pub static QUADRIC_OPTIONS: &[OptionSpec] = &[TRANSLATE.plain, SCALE.plain, BOUNDS.plain];
-
-/// `quadric sn a b c d e f g h i j [translate XYZ] [scale XYZ] [bounds MIN MAX]`
-pub static QUADRIC: CommandSpec = row(
-    "quadric",
-    "quadric surface",
-    takes!(
+pub static QUADRIC: CommandSpec = row("quadric", "quadric surface")
+    .with(takes!(
         quadric,
         [QUADRIC_OPTIONS],
         SN,
@@ -664,16 +539,15 @@ pub static QUADRIC: CommandSpec = row(
         number("h", "the factor of y"),
         number("i", "the factor of z"),
         number("j", "the constant")
-    ),
-)
-.details(
-    "The points where ax² + by² + cz² + dxy + eyz + fzx + gx + hy + iz + j = 0 in local \
-     coordinates, cut off at the box `bounds`. The printed table leaves its operands open; these \
-     are ours. A quadric is always hard.",
-)
-.example(clay!(
-    "eyep 4 4 8\nquadric Clay, 1 -1 1  0 0 0  0 0 0  -0.2, scale 2 2 2"
-));
+    ))
+    .details(
+        "The points where ax² + by² + cz² + dxy + eyz + fzx + gx + hy + iz + j = 0 in local \
+         coordinates, cut off at the box `bounds`. The printed table leaves its operands open; \
+         these are ours. A quadric is always hard.",
+    )
+    .example(clay!(
+        "eyep 4 4 8\nquadric Clay, 1 -1 1  0 0 0  0 0 0  -0.2, scale 2 2 2"
+    ));
 
 #[expect(clippy::too_many_arguments, reason = "the operands of the command")]
 fn quadric<'a>(
@@ -702,7 +576,7 @@ fn quadric<'a>(
     let mut quadric =
         Quadric::new(square, linear, j, low.min(high), low.max(high)).ok_or_else(|| {
             Problem::new(
-                command.span.clone(),
+                &command.span,
                 "this quadric is no surface: its factors are all 0, or its box has no volume",
             )
         })?;
@@ -714,25 +588,22 @@ fn quadric<'a>(
 }
 
 /// `terra sn fn PMIN PMAX`: an image as a height field, lowest where it is black.
-pub static TERRA: CommandSpec = row(
-    "terra",
-    "height field from an image",
-    takes!(
+pub static TERRA: CommandSpec = row("terra", "height field from an image")
+    .with(takes!(
         terra,
         SN,
         file("fn", "the image's name"),
         vector("PMIN", "one corner"),
         vector("PMAX", "the opposite corner")
-    ),
-)
-.details(
-    "A PNG image of the project (`hills.png` is built in): black lies at the lowest z of the box \
-     between the two corners, white at the highest; the image lies along x and y. The printed \
-     table leaves its operands open; these are ours.",
-)
-.example(clay!(
-    "eyep 4 -5 5\nvup 0 0 1\nterra Clay hills.png, <-3 -3 0> <3 3 1.5>"
-));
+    ))
+    .details(
+        "A PNG image of the project (`hills.png` is built in): black lies at the lowest z of the \
+         box between the two corners, white at the highest; the image lies along x and y. The \
+         printed table leaves its operands open; these are ours.",
+    )
+    .example(clay!(
+        "eyep 4 -5 5\nvup 0 0 1\nterra Clay hills.png, <-3 -3 0> <3 3 1.5>"
+    ));
 
 fn terra<'a>(
     run: &mut Evaluator<'a>,
@@ -745,13 +616,13 @@ fn terra<'a>(
     let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
     let (low, size) = (one.min(other), (other - one).abs());
-    let mesh = assets::terra(asset, size)
-        .map_err(|error| Problem::new(file.span.clone(), error.to_string()))?;
+    let mesh =
+        assets::terra(asset, size).map_err(|error| Problem::new(&file.span, error.to_string()))?;
     let move_there = Transform::translation(low);
     add_mesh(run, command, &sn, &mesh, Some(&move_there))
 }
 
-/// `mesh` as RATS has it.
+/// Words of `mesh` as RATS has it.
 pub static CHECKS: &[OptionSpec] = &[
     word_of("robust", "faces are checked"),
     word_of("fast", "faces are taken as they are"),
@@ -763,8 +634,8 @@ const MESH_FILE: Slot<Named> = file("fn", "the mesh's name");
 pub static MESH: CommandSpec = row(
     "mesh",
     "triangles of a file (ours), or how polygons are checked",
-    by_itself(mesh, plain![SN, MESH_FILE], MESH_OPTIONS),
 )
+.with(by_itself(mesh, plain![SN, MESH_FILE], MESH_OPTIONS))
 .default("robust")
 .details(
     "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB \
@@ -781,25 +652,17 @@ pub static MESH: CommandSpec = row(
 
 fn mesh<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let mut read = run.reader(command);
-    let is_control = read.peek_word().is_some_and(|(_, word)| {
-        CHECKS
-            .iter()
-            .any(|control| control.name.eq_ignore_ascii_case(word))
-    });
+    let is_check = read.is_whole_option_next(CHECKS);
     // A material may be called so: then a file follows.
-    let alone = read.items.len() == read.at + 1;
-    if !is_control || !alone {
+    let is_alone = read.items.len() == read.at + 1;
+    if !is_check || !is_alone {
         let draw: Routine = reads!(mesh_of_file, [MESH_OPTIONS], SN, MESH_FILE);
         return draw(run, command);
     }
     read.at += 1;
     read.end()?;
-    run.say(Severity::Note, command.word_span.clone(), || {
-        (
-            String::from("`mesh` with this word changes nothing here: faces are always checked"),
-            None,
-        )
-    });
+    let message = "`mesh` with this word changes nothing here: faces are always checked";
+    run.note(&command.word_span, message, "");
     Ok(Flow::Next)
 }
 
@@ -812,7 +675,7 @@ fn mesh_of_file<'a>(
     file: Name<'a>,
 ) -> Outcome<Flow> {
     if is_strokes(file.text) {
-        let made = sculpted(run, command, &file)?;
+        let made = sculpt(run, command, &file)?;
         if let Some(metaballs) = implicit_mesh::metaballs(options)? {
             let topology = made.topology().cloned();
             return implicit_mesh::add(run, command, &name, topology, &made.mesh, metaballs);
@@ -821,8 +684,7 @@ fn mesh_of_file<'a>(
     }
     let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
-    let mesh =
-        assets::mesh(asset).map_err(|error| Problem::new(file.span.clone(), error.to_string()))?;
+    let mesh = assets::mesh(asset).map_err(|error| Problem::new(&file.span, error.to_string()))?;
     if let Some(metaballs) = implicit_mesh::metaballs(options)? {
         let topology = assets::topology(asset).ok().map(|own| (*own).clone());
         return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);
@@ -830,33 +692,33 @@ fn mesh_of_file<'a>(
     add_mesh(run, command, &name, &mesh, None)
 }
 
-/// The mesh of a text of strokes. What is wrong with that text is told where it stands.
-fn sculpted(run: &mut Evaluator<'_>, command: &Command, name: &Name<'_>) -> Outcome<Rc<Sculpted>> {
+/// Returns the mesh of a text of strokes. Reports what is wrong with that text where it stands.
+fn sculpt(run: &mut Evaluator<'_>, command: &Command, name: &Name<'_>) -> Outcome<Rc<Sculpted>> {
     let file = run.strokes(name)?;
     let text = run.sources.all[file].text;
     let steps = 1 + text.len() as u64 / 100;
     run.scope.step(steps, &command.word_span)?;
     let start = match crate::start_file(text) {
-        Some(wanted) => run.mesh_beside(file, &wanted),
+        Some(wanted) => run.find_asset(file, &wanted),
         None => None,
     };
     if let Some(asset) = start {
         run.scope.step(assets::cost(asset), &command.word_span)?;
     }
-    strokes::sculpted(text, start).map_err(|told| {
-        for problem in told.iter() {
-            let problem = Problem::new(problem.span.clone(), problem.message.clone()).related(
+    strokes::sculpt(text, start).map_err(|problems| {
+        for problem in problems.iter() {
+            let problem = Problem::new(&problem.span, problem.message.clone()).with_place(
                 Some(run.file),
                 name.span.clone(),
                 "used here",
             );
             run.report.add(file, Severity::Error, problem);
         }
-        Problem::follow_up(name.span.clone())
+        Problem::follow_up(&name.span)
     })
 }
 
-/// Adds the triangles of a mesh as one object, named after nothing: it is the last one.
+/// Adds the triangles of a mesh as one object without a name, which is then the last one.
 fn add_mesh<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,

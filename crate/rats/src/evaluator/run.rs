@@ -8,7 +8,8 @@ use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
-use crate::{Severity, colours, manual};
+use crate::{colours, manual};
+use std::fmt::from_fn;
 
 const REPORTS: &str = "the page and the program report what they do";
 
@@ -19,42 +20,33 @@ pub static STOPWATCH_WORDS: &[OptionSpec] = &[
 ];
 
 /// `pause [message]`: a page cannot wait, so the message is shown.
-pub static PAUSE: CommandSpec = row(
-    "pause",
-    "show a message",
-    by_itself(
+pub static PAUSE: CommandSpec = row("pause", "show a message")
+    .with(by_itself(
         pause,
         plain![text("message", "the message").optional("")],
         &[],
-    ),
-)
-.details("RATS waits for a key. A page cannot, so the message is shown among the notes.")
-.example("pause this stands among the notes");
+    ))
+    .details("RATS waits for a key. A page cannot, so the message is shown among the notes.")
+    .example("pause this stands among the notes");
 
 fn pause<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let source = &run.sources.all[run.file];
     let message = source.text[command.word_span.end..command.span.end].trim();
-    run.say(Severity::Note, command.span.clone(), || {
-        let message = if message.is_empty() { "pause" } else { message };
-        (message.to_owned(), None)
-    });
+    let message = if message.is_empty() { "pause" } else { message };
+    run.note(&command.span, message, "");
     Ok(Flow::Next)
 }
 
-/// `return`
-pub static RETURN: CommandSpec = row(
-    "return",
-    "return from a file, or from a defined command",
-    takes!(return_),
-)
-.example(clay!("sphere Clay 2, 0 0 0\nreturn\nnothing here is run"));
+pub static RETURN: CommandSpec = row("return", "return from a file, or from a defined command")
+    .with(takes!(return_))
+    .example(clay!("sphere Clay 2, 0 0 0\nreturn\nnothing here is run"));
 
 fn return_<'a>(_: &mut Evaluator<'a>, _: &'a Command) -> Outcome<Flow> {
     Ok(Flow::Return)
 }
 
-/// `quit`
-pub static QUIT: CommandSpec = row("quit", "end the run", takes!(quit))
+pub static QUIT: CommandSpec = row("quit", "end the run")
+    .with(takes!(quit))
     .interrupts()
     .example(clay!("sphere Clay 2, 0 0 0\nquit\nnothing here is run"));
 
@@ -62,52 +54,47 @@ fn quit<'a>(_: &mut Evaluator<'a>, _: &'a Command) -> Outcome<Flow> {
     Ok(Flow::Quit)
 }
 
-/// `info`
-pub static INFO: CommandSpec = row("info", "tell the version", takes!(info)).example("info");
+pub static INFO: CommandSpec = row("info", "tell the version")
+    .with(takes!(info))
+    .example("info");
 
 fn info<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.say(Severity::Note, command.word_span.clone(), || {
-        let version = env!("CARGO_PKG_VERSION");
-        (format!("Sinew {version}, the language of RATS 7.31"), None)
-    });
+    let version = env!("CARGO_PKG_VERSION");
+    let message = format_args!("Sinew {version}, the language of RATS 7.31");
+    run.note(&command.word_span, message, "");
     Ok(Flow::Next)
 }
 
-/// `rats`
-pub static RATS: CommandSpec = row("rats", "small talk", takes!(rats)).example("rats");
+pub static RATS: CommandSpec = row("rats", "small talk").with(takes!(rats)).example("rats");
 
 fn rats<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.say(Severity::Note, command.word_span.clone(), || {
-        (String::from("squeak"), None)
-    });
+    run.note(&command.word_span, "squeak", "");
     Ok(Flow::Next)
 }
 
-/// `colors`
-pub static COLORS: CommandSpec =
-    row("colors", "list the colours by name", takes!(colors)).example("colors");
+pub static COLORS: CommandSpec = row("colors", "list the colours by name")
+    .with(takes!(colors))
+    .example("colors");
 
 fn colors<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    run.say(Severity::Note, command.word_span.clone(), || {
+    let list = from_fn(|text| {
         let names: Vec<_> = colours::names().collect();
-        (
-            format!("the colours are {}, and Gray0 to Gray100", names.join(" ")),
-            None,
+        write!(
+            text,
+            "the colours are {}, and Gray0 to Gray100",
+            names.join(" ")
         )
     });
+    run.note(&command.word_span, list, "");
     Ok(Flow::Next)
 }
 
-/// `help [command]`
-pub static HELP: CommandSpec = row(
-    "help",
-    "explain a command, or list all",
-    takes!(
+pub static HELP: CommandSpec = row("help", "explain a command, or list all")
+    .with(takes!(
         help,
         existing("command", Names::Command, "a command").optional("")
-    ),
-)
-.example("help sphere");
+    ))
+    .example("help sphere");
 
 fn help<'a>(
     run: &mut Evaluator<'a>,
@@ -118,25 +105,22 @@ fn help<'a>(
         Some(name) => Some(find_command(run, &name)?),
         None => None,
     };
-    run.say(Severity::Note, command.span.clone(), || {
-        (spec.map_or_else(manual::list, manual::summary), None)
-    });
+    let text = from_fn(|f| f.write_str(&spec.map_or_else(manual::list, manual::summary)));
+    run.note(&command.span, text, "");
     Ok(Flow::Next)
 }
 
-/// `man command`
-pub static MAN: CommandSpec = row(
-    "man",
-    "explain a command and its options",
-    takes!(man, existing("command", Names::Command, "a command")),
-)
-.example("man surface");
+pub static MAN: CommandSpec = row("man", "explain a command and its options")
+    .with(takes!(
+        man,
+        existing("command", Names::Command, "a command")
+    ))
+    .example("man surface");
 
 fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command, name: Name<'a>) -> Outcome<Flow> {
     let spec = find_command(run, &name)?;
-    run.say(Severity::Note, command.span.clone(), || {
-        (manual::page(spec), None)
-    });
+    let page = from_fn(|f| f.write_str(&manual::page(spec)));
+    run.note(&command.span, page, "");
     Ok(Flow::Next)
 }
 
@@ -147,59 +131,43 @@ fn man<'a>(run: &mut Evaluator<'a>, command: &'a Command, name: Name<'a>) -> Out
 fn find_command(run: &mut Evaluator<'_>, name: &Name<'_>) -> Outcome<&'static CommandSpec> {
     run.scope.step(limits::STEPS_PER_LOOKUP, &name.span)?;
     commands::find(name.text).ok_or_else(|| {
-        Problem::new(
-            name.span.clone(),
-            format!("there is no command `{}`", name.text),
-        )
-        .maybe_hint(commands::suggestion(name.text, std::iter::empty()))
+        Problem::new(&name.span, format!("there is no command `{}`", name.text))
+            .maybe_hint(commands::suggestion(name.text, std::iter::empty()))
     })
 }
 
-/// `log`
-pub static LOG: CommandSpec = row(
-    "log",
-    "open or close a log",
-    idle(
+pub static LOG: CommandSpec = row("log", "open or close a log")
+    .with(idle(
         REPORTS,
         plain![new_file("file", "the log's name").optional("")],
-    ),
-)
-.example("log session.txt");
+    ))
+    .example("log session.txt");
 
-/// `stopwatch`
-pub static STOPWATCH: CommandSpec = row(
-    "stopwatch",
-    "measure time",
-    idle(
+pub static STOPWATCH: CommandSpec = row("stopwatch", "measure time")
+    .with(idle(
         REPORTS,
         plain![word("what", STOPWATCH_WORDS, "`start` or `stop`")],
-    ),
-)
-.example("stopwatch start");
+    ))
+    .example("stopwatch start");
 
-/// `read fn1 [fn2 …]`
-pub static READ: CommandSpec = row(
-    "read",
-    "run the commands of other files",
-    takes!(read, file("fn", "a file's name").many()),
-)
-.includes()
-.details(
-    "A file is looked for among the files of the project, then in the library (`tree.rat`, \
-     `shell.rat`, …). A file that reads itself, even by way of others, is refused.",
-)
-.example(
-    "read sphereflake.rat\nlight White, position 4 8 10\n\
-     surface Clay, diffuse SandyBrown\n\
-     sphereflake Clay, 2",
-);
+pub static READ: CommandSpec = row("read", "run the commands of other files")
+    .with(takes!(read, file("fn", "a file's name").many()))
+    .includes()
+    .details(
+        "A file is looked for among the files of the project, then in the library (`tree.rat`, \
+         `shell.rat`, …). A file that reads itself, even by way of others, is refused.",
+    )
+    .example(
+        "read sphereflake.rat\nlight White, position 4 8 10\nsurface Clay, diffuse SandyBrown\n\
+         sphereflake Clay, 2",
+    );
 
 fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command, files: Vec<Name<'a>>) -> Outcome<Flow> {
     for name in files {
         let file = run.find_file(&name)?;
         if run.reading.contains(&file) {
             return Err(Problem::new(
-                name.span,
+                &name.span,
                 format!(
                     "`{}` is being read already: this would never end",
                     name.text
@@ -208,7 +176,7 @@ fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command, files: Vec<Name<'a>>)
         }
         if run.reading.len() >= limits::MAX_NESTED_FILES {
             return Err(Problem::new(
-                name.span,
+                &name.span,
                 format!(
                     "files can read each other {} deep at most",
                     limits::MAX_NESTED_FILES
@@ -225,21 +193,17 @@ fn read<'a>(run: &mut Evaluator<'a>, command: &'a Command, files: Vec<Name<'a>>)
 /// `test`.
 pub static TEST_WORDS: &[OptionSpec] = &[word_of("print", "only show the text")];
 
-/// `test command [print]`
-pub static TEST: CommandSpec = row(
-    "test",
-    "run the example of a command",
-    takes!(
+pub static TEST: CommandSpec = row("test", "run the example of a command")
+    .with(takes!(
         test,
         existing("command", Names::Command, "a command"),
         word("print", TEST_WORDS, "`print`").optional("")
-    ),
-)
-.details(
-    "The example joins the scene as if it had been read from a file. With `print` its text is \
-     only shown.",
-)
-.example("test torus");
+    ))
+    .details(
+        "The example joins the scene as if it had been read from a file. With `print` its text is \
+         only shown.",
+    )
+    .example("test torus");
 
 fn test<'a>(
     run: &mut Evaluator<'a>,
@@ -249,17 +213,16 @@ fn test<'a>(
 ) -> Outcome<Flow> {
     let spec = find_command(run, &name)?;
     if print.is_some() || spec.interrupts {
-        run.say(Severity::Note, command.span.clone(), || {
-            let hint = spec.interrupts.then(|| {
-                String::from("it is only shown, as running it would end or undo what is here")
-            });
-            (spec.example.to_owned(), hint)
-        });
+        let hint = match spec.interrupts {
+            true => "it is only shown, as running it would end or undo what is here",
+            false => "",
+        };
+        run.note(&command.span, spec.example, hint);
         return Ok(Flow::Next);
     }
     let Some(file) = run.sources.find_built_in(&format!("test {}", spec.name)) else {
         return Err(Problem::new(
-            name.span,
+            &name.span,
             format!("the example of `{}` cannot be run from here", spec.name),
         )
         .hint("write the name out after `test`"));

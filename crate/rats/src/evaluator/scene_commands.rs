@@ -27,13 +27,12 @@ pub static RESET_WORDS: &[OptionSpec] = &[
     word_of("var", "variables"),
 ];
 
-/// `report [what …]`
-pub static REPORT: CommandSpec = row(
-    "report",
-    "tell what the scene holds",
-    takes!(report, word("what", RESET_WORDS, "what to report on").any()),
-)
-.example("report");
+pub static REPORT: CommandSpec = row("report", "tell what the scene holds")
+    .with(takes!(
+        report,
+        word("what", RESET_WORDS, "what to report on").any()
+    ))
+    .example("report");
 
 fn report<'a>(
     run: &mut Evaluator<'a>,
@@ -102,25 +101,23 @@ fn report<'a>(
         None if is_named("fog") => lines.push(String::from("no fog")),
         _ => {}
     }
-    run.say(Severity::Note, command.span.clone(), || {
-        (format!("there are here: {}", lines.join(", ")), None)
-    });
+    run.note(
+        &command.span,
+        format_args!("there are here: {}", lines.join(", ")),
+        "",
+    );
     Ok(Flow::Next)
 }
 
-/// `reset all|data|…`
-pub static RESET: CommandSpec = row(
-    "reset",
-    "put things back to what they are at the start",
-    takes!(
+pub static RESET: CommandSpec = row("reset", "put things back to what they are at the start")
+    .with(takes!(
         reset,
         word("what", RESET_WORDS, "what to reset, such as `all`").many()
-    ),
-)
-.interrupts()
-.example(clay!(
-    "sphere Clay 2, 3 0 0\nreset data\nsphere Clay 2, 0 0 0"
-));
+    ))
+    .interrupts()
+    .example(clay!(
+        "sphere Clay 2, 3 0 0\nreset data\nsphere Clay 2, 0 0 0"
+    ));
 
 fn reset<'a>(
     run: &mut Evaluator<'a>,
@@ -180,17 +177,17 @@ fn reset<'a>(
 }
 
 /// `shoot`: the picture is the scene as it is here.
-pub static SHOOT: CommandSpec = row(
-    "shoot",
-    "draw the picture",
-    takes!(shoot, text("options", "the picture's options").optional("")),
-)
-.interrupts()
-.details(
-    "The picture shows what has been made so far. Without `shoot` it shows what there is at the \
-     end.",
-)
-.example(clay!("sphere Clay 2, 0 0 0\nshoot"));
+pub static SHOOT: CommandSpec = row("shoot", "draw the picture")
+    .with(takes!(
+        shoot,
+        text("options", "the picture's options").optional("")
+    ))
+    .interrupts()
+    .details(
+        "The picture shows what has been made so far. Without `shoot` it shows what there is at \
+         the end.",
+    )
+    .example(clay!("sphere Clay 2, 0 0 0\nshoot"));
 
 fn shoot<'a>(
     run: &mut Evaluator<'a>,
@@ -198,12 +195,11 @@ fn shoot<'a>(
     options: Option<Range<usize>>,
 ) -> Outcome<Flow> {
     if let Some(span) = options {
-        run.say(Severity::Note, span, || {
-            (
-                String::from("`shoot` has no options here: the picture is as the commands say"),
-                None,
-            )
-        });
+        run.note(
+            &span,
+            "`shoot` has no options here: the picture is as the commands say",
+            "",
+        );
     }
     if run.shot.is_none() {
         let parts = run.model.parts.clone();
@@ -212,13 +208,9 @@ fn shoot<'a>(
     Ok(Flow::Next)
 }
 
-/// `preview`
-pub static PREVIEW: CommandSpec = row(
-    "preview",
-    "preview",
-    idle(
+pub static PREVIEW: CommandSpec = row("preview", "preview")
+    .with(idle(
         "the draft is always shown",
         plain![text("options", "the preview's options").optional("")],
-    ),
-)
-.example("preview");
+    ))
+    .example("preview");

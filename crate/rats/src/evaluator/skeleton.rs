@@ -2,16 +2,14 @@
 
 use super::model::{Group, Part};
 use super::state::{Evaluator, Flow};
-use crate::commands::build::{choice, row, takes, word_of};
-use crate::commands::slot::{
-    Choice, Named, Placed, SN, Word, existing, length, new, vector, whole, word,
-};
+use crate::commands::build::{options, row, takes, word_of};
+use crate::commands::slot::{Named, Placed, SN, Word, existing, length, new, vector, whole, word};
 use crate::commands::{CommandSpec, Names, OptionSpec, Role};
 use crate::given::{Chosen, Options};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
+use crate::suggest;
 use crate::syntax::Command;
-use crate::{Severity, suggest};
 use field::Kernel;
 use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Form, Function, Shape};
@@ -30,100 +28,60 @@ const SCHEMES: &[OptionSpec] = &[
     word_of("fourpoint", "through every node"),
 ];
 
-/// Levels of subdivision unless the text says so.
+/// Levels of subdivision, if the text gives none.
 const LEVELS: u32 = 3;
 /// Segments that cost as much as a step.
 const SEGMENTS_PER_STEP: usize = 4;
 
-const NODE: Choice<(Named, DVec3)> = choice!(
-    "node",
-    "",
-    "a node, with a name that curves call it by",
-    new("A", Names::Node, "the node's name"),
-    vector("P", "the node's place")
-);
-const RADIUS: Choice<f64> = choice!(
-    "radius",
-    "the material's",
-    "radius of the flesh at the node that stands before it",
-    length("r", "the radius at the node")
-        .at_least(0.0)
-        .role(Role::NodeRadius)
-);
-const CURVE: Choice<Vec<Named>> = choice!(
-    "curve",
-    "",
-    "a curve along nodes, two at least: from the first to the last, drawn towards those between",
-    existing("A B", Names::Node, "the name of a node").many()
-);
-const SUBDIVIDE: Choice<u32> = choice!(
-    "subdivide",
-    "3",
-    "how often curves are refined: each time doubles their segments",
-    whole(
-        "n",
-        0,
-        skeleton::MOST_LEVELS,
-        "how often curves are refined"
-    )
-);
-const SCHEME: Choice<Word> = choice!(
-    "scheme",
-    "cubic",
-    "how curves are refined",
-    word("name", SCHEMES, "the scheme's name")
-);
-const LOCAL: Choice<Placed<f64>> = choice!(
-    "local",
-    "",
-    "folds do not blend: at a point only what is within D along the curves counts",
-    length("D", "the length along the curves within which flesh blends")
-        .at_least(1e-6)
-        .with_place()
-);
+options! {
+    /// Options of `skeleton`.
+    SKELETON_OPTIONS:
+    NODE: (Named, DVec3) = ("node", "", "a node, with a name that curves call it by",
+        new("A", Names::Node, "the node's name"), vector("P", "the node's place"));
+    RADIUS: f64 = ("radius", "the material's",
+        "radius of the flesh at the node that stands before it",
+        length("r", "the radius at the node").at_least(0.0).role(Role::NodeRadius));
+    CURVE: Vec<Named> = ("curve", "",
+        "a curve along nodes, two at least: from the first to the last, \
+         drawn towards those between",
+        existing("A B", Names::Node, "the name of a node").many());
+    SUBDIVIDE: u32 = ("subdivide", "3",
+        "how often curves are refined: each time doubles their segments",
+        whole("n", 0, skeleton::MOST_LEVELS, "how often curves are refined"));
+    SCHEME: Word = ("scheme", "cubic", "how curves are refined",
+        word("name", SCHEMES, "the scheme's name"));
+    LOCAL: Placed<f64> = ("local", "",
+        "folds do not blend: at a point only what is within D along the curves counts",
+        length("D", "the length along the curves within which flesh \
+            blends").at_least(1e-6).with_place());
+}
 
-/// `skeleton`.
-pub static SKELETON_OPTIONS: &[OptionSpec] = &[
-    NODE.plain,
-    RADIUS.plain,
-    CURVE.plain,
-    SUBDIVIDE.plain,
-    SCHEME.plain,
-    LOCAL.plain,
-];
-
-/// `skeleton sn, name [subdivide n] [scheme name] [local D] { node A <x y z> [radius r] … curve A B
-/// … … }`
-pub static SKELETON: CommandSpec = row(
-    "skeleton",
-    "curves that branch, with flesh around them",
-    takes!(
+/// `skeleton sn, name [option …] { node A <x y z> [radius r] … curve A B … … }`
+pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with flesh around them")
+    .with(takes!(
         skeleton,
         [SKELETON_OPTIONS],
         SN,
         new("name", Names::Object, "the skeleton's name")
-    ),
-)
-.newer()
-.details(
-    "Nodes and curves stand in `{ … }`. A curve begins and ends at its end nodes, passes through \
-     nodes that it shares with other curves, which branch there, and is drawn towards all others. \
-     A curve that ends where it begins is closed. The radius varies smoothly from node to node. \
-     The flesh is soft whatever the material's blobbiness; its kernel is `cubed` unless the \
-     material names another. With `local D` only the stretch within D along the curves counts at \
-     a point, so that a fold does not blend with what lies beside it; about four radii suit. A \
-     skeleton is an object: it is moved, turned and copied by its name.",
-)
-.example(
-    "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
-     Gray50, shine 40, radius 0.6, blobbiness -2\n\
-     skeleton Flesh, HAND {\n  node WRIST <-3 -1 0> radius 0.5\n  \
-     node PALM <-0.5 0 0> radius 0.9\n  \
-     node TIP <3 1.2 0> radius 0.3\n  \
-     node THUMB <0.5 2.4 0> radius 0.3\n  \
-     curve WRIST PALM TIP\n  curve PALM THUMB\n\
-     }",
-);
+    ))
+    .newer()
+    .details(
+        "Nodes and curves stand in `{ … }`. A curve begins and ends at its end nodes, passes \
+         through nodes that it shares with other curves, which branch there, and is drawn towards \
+         all others. A curve that ends where it begins is closed. The radius varies smoothly from \
+         node to node. The flesh is soft whatever the material's blobbiness; its kernel is \
+         `cubed` unless the material names another. With `local D` only the stretch within D \
+         along the curves counts at a point, so that a fold does not blend with what lies beside \
+         it; about four radii suit. A skeleton is an object: it is moved, turned and copied by \
+         its name.",
+    )
+    .example(
+        "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
+         Gray50, shine 40, radius 0.6, blobbiness -2\nskeleton Flesh, HAND {\n  \
+         node WRIST <-3 -1 0> radius 0.5\n  node PALM <-0.5 0 0> radius 0.9\n  \
+         node TIP <3 1.2 0> radius 0.3\n  node THUMB <0.5 2.4 0> radius 0.3\n  \
+         curve WRIST PALM TIP\n  curve PALM THUMB\n}",
+    );
 
 fn skeleton<'a>(
     run: &mut Evaluator<'a>,
@@ -148,24 +106,20 @@ fn skeleton<'a>(
     }
     if read.curves.is_empty() {
         return Err(
-            Problem::new(command.word_span.clone(), "this skeleton has no curves")
+            Problem::new(&command.word_span, "this skeleton has no curves")
                 .hint("write `{ node A <0 0 0> node B <1 0 0> curve A B }`"),
         );
     }
     let lonely = read.lonely();
     let names = read.nodes.iter().map(|(name, _)| name.text.to_owned());
     let names = names.collect();
-    let curves = read.refined(command, options)?;
+    let curves = read.refine(command, options)?;
     let segments = curves.polyline().map_or(0, |p| p.segments.len());
     run.scope
         .step((segments / SEGMENTS_PER_STEP) as u64, &command.word_span)?;
     for Name { text, span } in lonely {
-        run.say(Severity::Warning, span, || {
-            (
-                format!("no curve goes along the node `{text}`"),
-                Some(String::from("name it in a `curve`, or take it out")),
-            )
-        });
+        let message = format_args!("no curve goes along the node `{text}`");
+        run.warn(&span, message, "name it in a `curve`, or take it out");
     }
     run.model.open(run.file, &name, Group::Object)?;
     let element = Element {
@@ -196,13 +150,13 @@ fn skeleton<'a>(
     Ok(Flow::Next)
 }
 
-/// The least length along its curves within which flesh may blend, in its largest radius.
+/// Least length along its curves within which flesh may blend, in its largest radii.
 const LEAST_REACH: f64 = 0.2;
 
-/// What a block says.
+/// Content of a block.
 struct Read<'a> {
     nodes: Vec<(Name<'a>, Node)>,
-    /// For each curve where it stands and the indices of its nodes.
+    /// The place of each curve and the indices of its nodes.
     curves: Vec<(Range<usize>, Vec<usize>)>,
     /// The material's name and radius.
     material: &'a str,
@@ -210,7 +164,7 @@ struct Read<'a> {
 }
 
 impl<'a> Read<'a> {
-    /// The nodes and their radii.
+    /// Reads the nodes and their radii.
     fn nodes(&mut self, options: &Options<'a>) -> Outcome<()> {
         let mut is_behind_node = false;
         for chosen in options.iter() {
@@ -222,7 +176,7 @@ impl<'a> Read<'a> {
                     Some((_, node)) if is_behind_node => node.radius = radius,
                     _ => {
                         return Err(Problem::new(
-                            chosen.span.clone(),
+                            &chosen.span,
                             "this `radius` stands behind no node",
                         )
                         .hint("write `node A <0 0 0> radius 0.5`"));
@@ -234,14 +188,14 @@ impl<'a> Read<'a> {
         Ok(())
     }
 
+    /// Adds a node.
     fn node(&mut self, name: Name<'a>, place: DVec3) -> Outcome<()> {
         if let Some((first, _)) = self.nodes.iter().find(|(n, _)| n.text == name.text) {
-            return Err(Problem::new(
-                name.span.clone(),
-                format!("there are two nodes `{}`", name.text),
-            )
-            .hint("give one of them another name")
-            .related(None, first.span.clone(), "the first one"));
+            return Err(
+                Problem::new(&name.span, format!("there are two nodes `{}`", name.text))
+                    .hint("give one of them another name")
+                    .with_place(None, first.span.clone(), "the first one"),
+            );
         }
         let node = Node {
             position: place,
@@ -251,12 +205,13 @@ impl<'a> Read<'a> {
         Ok(())
     }
 
+    /// Adds a curve.
     fn curve(&mut self, chosen: &Chosen<'a>) -> Outcome<()> {
         let names = CURVE.of(chosen).unwrap_or_default();
         let along: Vec<usize> = names.iter().map(|n| self.find(n)).collect::<Outcome<_>>()?;
         if along.len() < 2 {
             return Err(Problem::new(
-                chosen.span.start..names.last().map_or(chosen.span.end, |n| n.span.end),
+                &(chosen.span.start..names.last().map_or(chosen.span.end, |n| n.span.end)),
                 "a curve goes along two nodes or more",
             )
             .hint("write `curve A B`"));
@@ -264,7 +219,7 @@ impl<'a> Read<'a> {
         if along.iter().all(|&index| self.nodes[index].1.radius <= 0.0) {
             let (name, material) = (&names[0], self.material);
             return Err(Problem::new(
-                name.span.clone(),
+                &name.span,
                 format!("the node `{}` has no radius, nor has its curve", name.text),
             )
             .hint(format!(
@@ -275,18 +230,19 @@ impl<'a> Read<'a> {
         Ok(())
     }
 
+    /// Finds the index of a node.
     fn find(&self, name: &Name<'_>) -> Outcome<usize> {
-        let names = || self.nodes.iter().map(|(own, _)| own.text);
-        names().position(|own| own == name.text).ok_or_else(|| {
-            Problem::new(
-                name.span.clone(),
-                format!("this skeleton has no node `{}`", name.text),
-            )
-            .maybe_hint(suggest::hint(name.text, names()))
-        })
+        let names = self.nodes.iter().map(|(own, _)| own.text);
+        names
+            .clone()
+            .position(|own| own == name.text)
+            .ok_or_else(|| {
+                let message = format!("this skeleton has no node `{}`", name.text);
+                Problem::new(&name.span, message).maybe_hint(suggest::hint(name.text, names))
+            })
     }
 
-    /// The names of nodes that are on no curve.
+    /// Returns the names of nodes that are on no curve.
     fn lonely(&self) -> Vec<Name<'a>> {
         let mut used = vec![false; self.nodes.len()];
         for &index in self.curves.iter().flat_map(|(_, along)| along) {
@@ -297,8 +253,8 @@ impl<'a> Read<'a> {
         lonely.map(|((name, _), _)| name.clone()).collect()
     }
 
-    /// The curves, refined as the options say.
-    fn refined(self, command: &Command, options: &Options<'_>) -> Outcome<Curves> {
+    /// Refines the curves as the options say.
+    fn refine(self, command: &Command, options: &Options<'_>) -> Outcome<Curves> {
         let levels = options.last(&SUBDIVIDE).unwrap_or(LEVELS);
         let scheme = match options.last(&SCHEME) {
             Some("chaikin") => Scheme::Chaikin,
@@ -311,17 +267,15 @@ impl<'a> Read<'a> {
             .iter()
             .fold(0.0, |most: f64, node| most.max(node.radius));
         let mut curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
-            .map_err(|error| Problem::new(command.word_span.clone(), error.to_string()))?;
+            .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
         if let Some((reach, span)) = options.last(&LOCAL) {
             // So few of the field's sources count within less that no flesh is left.
             if reach < LEAST_REACH * thickest {
-                return Err(Problem::new(
-                    span,
-                    format!(
-                        "flesh as thick as {thickest} blends along {reach} of its curves only, and vanishes"
-                    ),
-                )
-                .hint("let it blend about as far as it is thick, and a fifth of that at least"));
+                let blends = format_args!("blends along {reach} of its curves only, and vanishes");
+                let message = format!("flesh as thick as {thickest} {blends}");
+                return Err(Problem::new(&span, message).hint(
+                    "let it blend about as far as it is thick, and a fifth of that at least",
+                ));
             }
             curves = curves.within(reach);
         }
@@ -331,7 +285,7 @@ impl<'a> Read<'a> {
         match flat {
             None => Ok(curves),
             Some(index) => Err(Problem::new(
-                places[index].clone(),
+                &places[index],
                 "this curve has no length: its nodes are at the same place",
             )),
         }

@@ -22,7 +22,7 @@ use scene::{Camera, Lens, Light, Origin, Scene, Settings};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// How a run goes on after a command.
+/// Way in which a run goes on after a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// Run the next one.
@@ -54,13 +54,13 @@ pub struct Evaluator<'a> {
     pub(super) lens: Lens,
     /// The share of a frame for which the shutter is open.
     pub(super) shutter: f64,
-    /// What `transform` has frozen, for the other moments of an open shutter.
+    /// The shapes that `transform` has frozen, for the other moments of an open shutter.
     pub(super) frozen: Frozen,
     /// The file and place of the last `eyep` or `vrp`.
     pub(super) aimed_at: (usize, Range<usize>),
-    /// The other way to place the camera.
+    /// The camera of `cp`, `vpn` and `window`.
     pub(super) view_plane: ViewPlane,
-    /// A vertical angle of view that differs from the horizontal one, and where it was given.
+    /// A vertical angle of view that differs from the horizontal one, and the file and place of it.
     pub(super) vertical: Option<(f64, usize, Range<usize>)>,
     pub(super) settings: Settings,
     /// Whether `sample` has been given.
@@ -75,14 +75,14 @@ pub struct Evaluator<'a> {
     pub(super) deformed: usize,
     /// Whether a variable changes with every frame.
     pub(super) animated: bool,
-    /// What `motion` has moved.
+    /// The work of `motion`.
     pub(super) moving: Moving,
     /// The file that is being run.
     pub(super) file: usize,
     /// The files that are being read, the innermost last.
     pub(super) reading: Vec<usize>,
-    /// Where the texts of the project use the library, the innermost last: what is to be said about
-    /// a text of the library is said there.
+    /// The places where the texts of the project use the library, the innermost last: messages
+    /// about a text of the library go there.
     pub(super) uses: Vec<(usize, Range<usize>)>,
     /// Files whose mistakes of form have been reported.
     pub(super) reported: Vec<bool>,
@@ -93,12 +93,12 @@ pub struct Evaluator<'a> {
     /// The picture that `shoot` took.
     pub(super) shot: Option<(Scene, Vec<Placement>)>,
     pub(super) told_after_shot: bool,
-    /// Whether, and for which command, the run is watched.
+    /// The notes of a run that is watched for a command.
     pub(super) watch: Option<Box<Watch<'a>>>,
 }
 
 impl<'a> Evaluator<'a> {
-    /// The state before anything has run.
+    /// Makes the state before anything has run.
     #[must_use]
     pub fn new(
         sources: &'a Sources<'a>,
@@ -148,16 +148,19 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Whether the text that is being run is one of the user's.
+    /// Returns whether the text that is being run is one of the user's.
     pub(super) fn is_own(&self) -> bool {
         self.file < self.sources.own
     }
 
-    /// One level deeper.
+    /// Goes one level deeper.
+    ///
+    /// # Errors
+    /// Fatally, if that is too deep.
     pub(super) fn enter(&mut self, span: &Range<usize>) -> Outcome<()> {
         if self.depth >= limits::MAX_NESTED {
             return Err(Problem::new(
-                span.clone(),
+                span,
                 format!(
                     "stopped here: files, blocks and calls are more than {} deep",
                     limits::MAX_NESTED
@@ -169,14 +172,14 @@ impl<'a> Evaluator<'a> {
         Ok(())
     }
 
-    /// Reads the operands of a command of the present file.
+    /// Makes the reader of the operands of a command of the present file.
     pub(super) fn reader(&mut self, command: &Command) -> Reader<'_, 'a> {
         let source = &self.sources.all[self.file];
         Reader::new(command, &source.syntax.items, source.text, &mut self.scope)
     }
 
-    /// Where an element of this command comes from: in the user's text, even if the library makes
-    /// it.
+    /// Returns the origin of an element of this command: a place in the user's text, even if the
+    /// library makes it.
     pub(super) fn origin(&self, command: &Command) -> Origin {
         let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let (file, span) = match self.uses.last() {

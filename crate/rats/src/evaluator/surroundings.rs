@@ -1,4 +1,4 @@
-//! What is around the shapes, as far as the text has given it.
+//! The surroundings of the shapes, as far as the text has given them.
 
 use scene::{Background, Cloud, Fog, Ground, Rgb, Sky};
 
@@ -7,28 +7,29 @@ use scene::{Background, Cloud, Fog, Ground, Rgb, Sky};
 pub struct Air {
     /// `background`
     pub background: Option<Background>,
-    /// `sky`: its light, and the colours that are seen of it, above and at the horizon.
+    /// `sky`: its light, and the colours in which it is seen, above and at the horizon.
     pub sky: Option<(Sky, [Rgb; 2])>,
     /// `ground`
     pub ground: Option<Ground>,
-    /// `fog`; its distance is still to be found where the text gives none.
+    /// `fog`, and whether the text gives its distance.
     pub fog: Option<(Fog, bool)>,
     /// `cloud`
     pub clouds: Vec<Cloud>,
 }
 
 impl Air {
-    /// What is seen behind everything: the sky, if the text gives no background.
+    /// Returns the background: the sky, if the text gives none.
     #[must_use]
     pub fn background(&self) -> Background {
-        let seen = || {
-            let (_, colours) = self.sky.as_ref()?;
-            Some(Background::Gradient(colours.to_vec()))
-        };
-        self.background.clone().or_else(seen).unwrap_or_default()
+        match (&self.background, &self.sky) {
+            (Some(background), _) => background.clone(),
+            (None, Some((_, colours))) => Background::Gradient(colours.to_vec()),
+            (None, None) => Background::default(),
+        }
     }
 
-    /// The fog; without a distance of its own, one of twice this.
+    /// Returns the fog, which without a distance of its own has twice that of the view reference
+    /// point.
     #[must_use]
     pub fn fog(&self, to_target: f64) -> Option<Fog> {
         let (fog, is_given) = self.fog?;

@@ -2,10 +2,9 @@
 
 use super::palette::Texture;
 use super::state::{Evaluator, Flow};
-use crate::Severity;
-use crate::commands::build::{by_itself, choice, option, plain, row, word_of};
+use crate::commands::build::{by_itself, choice, option, options, plain, row, word_of};
 use crate::commands::slot::{
-    Choice, Named, Slot, copy, existing, new, number, triple, unread, vector, whole, word,
+    Named, Slot, copy, existing, new, number, triple, unread, vector, whole, word,
 };
 use crate::commands::{CommandSpec, Kind, Names, OptionSpec};
 use crate::given::{Chosen, One};
@@ -18,7 +17,7 @@ use glam::DVec3;
 use std::ops::Range;
 use texture::{Fault, Mapping, Region, Solid, Target};
 
-/// The ways in which an image lies on a surface.
+/// Ways in which an image lies on a surface.
 pub static MAPPINGS: &[OptionSpec] = &[
     word_of("plain", "by u and v, over the whole shape"),
     option(
@@ -63,7 +62,7 @@ pub static SOLIDS: &[OptionSpec] = &[
     word_of("paint", "paint"),
 ];
 
-/// The waves of the table, for profiles and for textures.
+/// Waves of the table, for profiles and for textures.
 #[rustfmt::skip]
 const WAVE_KINDS: [(field::Wave, texture::Wave); 9] = [
     (field::Wave::One, texture::Wave::One),
@@ -85,7 +84,7 @@ fn index_of(list: &[OptionSpec], word: &str) -> Option<usize> {
         .position(|one| one.name.eq_ignore_ascii_case(word))
 }
 
-/// A target of the table; `None` is `strength`.
+/// Returns the target of a word; `None` is `strength`.
 fn target(name: &str) -> Option<Target> {
     Some(match name {
         "diffuse" => Target::Diffuse,
@@ -104,74 +103,30 @@ fn target(name: &str) -> Option<Target> {
 /// Layers of textures, joined by `+`.
 pub const LAYERS: Slot<Vec<Named>> = existing("t1 +", Names::Texture, "the texture's name").many();
 
-const TRANSLATE: Choice<DVec3> = choice!(
-    "translate",
-    "0 0 0",
-    "moves the texture, in units of the object; of waves and images in shares of u and v",
-    vector("XYZ", "the shift")
-);
-const SCALE: Choice<DVec3> = choice!(
-    "scale",
-    "1 1 1",
-    "factors on the place: the larger, the finer the texture",
-    triple("XYZ", "the scale")
-);
-const TIMES: Choice<DVec3> = choice!(
-    "times",
-    "1 1 1",
-    "scales its values, and the height of bumps",
-    triple("RGB", "the factor")
-);
-const BOUNDS: Choice<(DVec3, DVec3)> = choice!(
-    "bounds",
-    "0 0 0 1 1 1",
-    "its lowest and highest value: two colours between which it goes",
-    triple("RGB", "the lowest value"),
-    triple("RGB", "the highest value")
-);
-const TURBULENCE: Choice<f64> = choice!(
-    "turbulence",
-    "1",
-    "noise of solids: 0 is none",
-    number("t", "the turbulence").at_least(0.0)
-);
-const OCTAVES: Choice<f64> = choice!(
-    "octaves",
-    "5",
-    "detail of the noise of solids",
-    number("r", "the octaves").from(0.0, 32.0)
-);
-const MASK: Choice<Vec<u32>> = choice!(
-    "mask",
-    "",
-    "tiles shown (1) and left out (0), row by row: as many as the scale has tiles along x, times \
-     those along y",
-    whole("1 0", 0, 1, "an entry of the mask").many()
-);
-const REPLACE: Choice<()> = choice!(
-    "replace",
-    "",
-    "values take the place of the target's, instead of scaling them"
-);
-const UPON: Choice<Vec<Named>> = choice!(
-    "texture",
-    "",
-    "layers of other textures, upon this one",
-    LAYERS
-);
-
-/// `texture`.
-pub static TEXTURE_OPTIONS: &[OptionSpec] = &[
-    TRANSLATE.plain,
-    SCALE.plain,
-    TIMES.plain,
-    BOUNDS.plain,
-    TURBULENCE.plain,
-    OCTAVES.plain,
-    MASK.plain,
-    REPLACE.plain,
-    UPON.plain,
-];
+options! {
+    /// Options of `texture`.
+    TEXTURE_OPTIONS:
+    TRANSLATE: DVec3 = ("translate", "0 0 0",
+        "moves the texture, in units of the object; of waves and images in shares of u and v",
+        vector("XYZ", "the shift"));
+    SCALE: DVec3 = ("scale", "1 1 1", "factors on the place: the larger, the finer the texture",
+        triple("XYZ", "the scale"));
+    TIMES: DVec3 = ("times", "1 1 1", "scales its values, and the height of bumps",
+        triple("RGB", "the factor"));
+    BOUNDS: (DVec3, DVec3) = ("bounds", "0 0 0 1 1 1",
+        "its lowest and highest value: two colours between which it goes",
+        triple("RGB", "the lowest value"), triple("RGB", "the highest value"));
+    TURBULENCE: f64 = ("turbulence", "1", "noise of solids: 0 is none",
+        number("t", "the turbulence").at_least(0.0));
+    OCTAVES: f64 = ("octaves", "5", "detail of the noise of solids",
+        number("r", "the octaves").from(0.0, 32.0));
+    MASK: Vec<u32> = ("mask", "",
+        "tiles shown (1) and left out (0), row by row: as many as the scale \
+         has tiles along x, times those along y",
+        whole("1 0", 0, 1, "an entry of the mask").many());
+    REPLACE: () = ("replace", "", "values take the place of the target's, instead of scaling them");
+    UPON: Vec<Named> = ("texture", "", "layers of other textures, upon this one", LAYERS);
+}
 
 /// Properties of a material that a texture changes.
 pub static TARGETS: &[OptionSpec] = &[
@@ -191,10 +146,8 @@ pub static TARGETS: &[OptionSpec] = &[
 /// `texture { alias target method option … }`, `texture new = old`
 ///
 /// Of our own: `texture new = old option …` changes the copy.
-pub static TEXTURE: CommandSpec = row(
-    "texture",
-    "make a texture",
-    by_itself(
+pub static TEXTURE: CommandSpec = row("texture", "make a texture")
+    .with(by_itself(
         texture,
         plain![
             new("alias", Names::Texture, "the texture's name"),
@@ -207,30 +160,29 @@ pub static TEXTURE: CommandSpec = row(
             unread("Method", Kind::Method, WHAT),
         ],
         TEXTURE_OPTIONS,
-    ),
-)
-.mark_failed(insert_broken)
-.details(
-    "A method is a solid (`wood`), which fills the space of the object; a pair of waves along u \
-     and v (`sin one`; their x is u or v times the scale, in radians for sines); a colour; or an \
-     image (`face.png plain`). Its values go from the first of the `bounds` to the second, and \
-     scale the target: black leaves nothing of it, white all. Textures move, turn and scale with \
-     their object. `normal` makes bumps. u and v run from 0 to 1: along a limb and around it, \
-     around a ball and up; each shape of a blend is textured by itself, and the results are \
-     mixed. With the target `strength` waves are a profile: they model the flesh along the \
-     skeleton (thesis, section 3.4). `texture t1 + t2` puts layers upon each other, at most 12; \
-     `texture new = old` copies a texture. Options behind these change each of the layers (ours).",
-)
-.example(
-    "light White, position 4 8 10\nlight White, position -8 2 6, intensity 0.3, noshadow\n\
-     texture Rings, pigment wood, scale 2 2 1, bounds SaddleBrown BurlyWood, replace\n\
-     texture Veins, pigment marble, bounds SteelBlue White\n\
-     texture Dimples, normal ripples, scale 1.5 1.5 1.5\n\
-     surface Wood, diffuse White, texture Rings\n\
-     surface Stone, diffuse White, specular Gray50, shine 60, radius 0.8, blobbiness -3, texture \
-     Veins + Dimples\nsphere Wood 1.2, -1.8 0 0\n\
-     sphere Stone 1, 1.2 0.7 0\nsphere Stone 1, 2 -0.7 0",
-);
+    ))
+    .mark_failed(insert_broken)
+    .details(
+        "A method is a solid (`wood`), which fills the space of the object; a pair of waves along \
+         u and v (`sin one`; their x is u or v times the scale, in radians for sines); a colour; \
+         or an image (`face.png plain`). Its values go from the first of the `bounds` to the \
+         second, and scale the target: black leaves nothing of it, white all. Textures move, turn \
+         and scale with their object. `normal` makes bumps. u and v run from 0 to 1: along a limb \
+         and around it, around a ball and up; each shape of a blend is textured by itself, and \
+         the results are mixed. With the target `strength` waves are a profile: they model the \
+         flesh along the skeleton (thesis, section 3.4). `texture t1 + t2` puts layers upon each \
+         other, at most 12; `texture new = old` copies a texture. Options behind these change \
+         each of the layers (ours).",
+    )
+    .example(
+        "light White, position 4 8 10\nlight White, position -8 2 6, intensity 0.3, noshadow\n\
+         texture Rings, pigment wood, scale 2 2 1, bounds SaddleBrown BurlyWood, replace\n\
+         texture Veins, pigment marble, bounds SteelBlue White\n\
+         texture Dimples, normal ripples, scale 1.5 1.5 1.5\n\
+         surface Wood, diffuse White, texture Rings\nsurface Stone, diffuse White, specular \
+         Gray50, shine 60, radius 0.8, blobbiness -3, texture Veins + Dimples\n\
+         sphere Wood 1.2, -1.8 0 0\nsphere Stone 1, 1.2 0.7 0\nsphere Stone 1, 2 -0.7 0",
+    );
 
 fn texture<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     make(run, command)?;
@@ -244,10 +196,10 @@ fn insert_broken<'a>(run: &mut Evaluator<'a>, command: &'a Command) {
     }
 }
 
-/// Where a texture's values come from, as the text says it.
+/// Source of a texture's values, as the text gives it.
 #[derive(Debug)]
 enum Method<'a> {
-    /// Two waves, by their indices in [`WAVE_KINDS`].
+    /// Waves along u and v, by their indices in [`WAVE_KINDS`].
     Waves([usize; 2]),
     Colour(DVec3),
     Solid(Solid),
@@ -258,14 +210,14 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let mut read = run.reader(command);
     let name = read.new_name("the texture's name")?;
     if read.sign(b'=') {
-        let old = read.known_name("the name of the old texture")?;
-        let options = read.chosen(TEXTURE_OPTIONS)?;
+        let old = read.old_name("the name of the old texture")?;
+        let options = read.read_options(TEXTURE_OPTIONS)?;
         read.end()?;
         let texture = run.palette.texture(&old)?.clone();
         return finish(run, &name, texture, options);
     }
     let Some((word, _)) = read.option(TARGETS)? else {
-        return Err(read.expected("what the texture changes, such as `pigment`"));
+        return Err(read.missing("what the texture changes, such as `pigment`"));
     };
     let below = read.operands(word.parameters, TEXTURE_OPTIONS)?;
     let start = read.start();
@@ -274,7 +226,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         _ => Some(method(&mut read)?),
     };
     let span = read.since(start);
-    let options = read.chosen(TEXTURE_OPTIONS)?;
+    let options = read.read_options(TEXTURE_OPTIONS)?;
     read.end()?;
     let texture = match method {
         None => {
@@ -286,7 +238,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     finish(run, &name, texture, options)
 }
 
-/// A texture of one layer, or a profile where there is no target.
+/// Makes a texture of one layer, or a profile where there is no target.
 fn own_layer<'a>(
     run: &mut Evaluator<'a>,
     target: Option<Target>,
@@ -299,7 +251,7 @@ fn own_layer<'a>(
             Method::Colour(colour) => ([field::Wave::One; 2], colour.x),
             Method::Solid(_) | Method::Image(..) => {
                 return Err(Problem::new(
-                    span,
+                    &span,
                     "a strength varies along the bone only: it takes two waves",
                 )
                 .hint(
@@ -350,15 +302,13 @@ fn finish<'a>(
             mask = Some(chosen.span.clone());
         }
         if let Some(message) = set(&mut texture, &chosen) {
-            run.say(Severity::Warning, chosen.span, || {
-                (message, Some(String::from("leave it out")))
-            });
+            run.warn(&chosen.span, message, "leave it out");
         }
     }
     for layer in &texture.layers {
         layer.check().map_err(|fault| {
             let span = mask.clone().unwrap_or(name.span.clone());
-            let problem = Problem::new(span, fault.to_string());
+            let problem = Problem::new(&span, fault.to_string());
             match fault {
                 Fault::Mask(..) => problem.hint(format!("it has {}", layer.mask.len())),
                 _ => problem,
@@ -369,8 +319,7 @@ fn finish<'a>(
     run.palette.insert_texture(name, texture)
 }
 
-/// Sets an option of every layer and of the profile. Returns what is to be said if it changes
-/// nothing.
+/// Sets an option of every layer and of the profile. Returns a warning if it changes nothing.
 fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
     let name = chosen.option.name;
     let layers = &mut texture.layers;
@@ -388,10 +337,10 @@ fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
             ));
         }
     }
-    let is_solid = |layer: &texture::Texture| matches!(layer.method, texture::Method::Solid(_));
+    let mut methods = layers.iter().map(|layer| layer.method);
     if (TURBULENCE.is(chosen) || OCTAVES.is(chosen))
         && !layers.is_empty()
-        && !layers.iter().any(is_solid)
+        && !methods.any(|method| matches!(method, texture::Method::Solid(_)))
     {
         return Some(format!(
             "`{name}` says nothing here: it is the noise of solids such as `wood`"
@@ -419,7 +368,7 @@ fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
     None
 }
 
-/// A solid texture, a pair of waves, an image or a colour.
+/// Reads a method: a solid texture, a pair of waves, an image or a colour.
 fn method<'a>(read: &mut Reader<'_, 'a>) -> Outcome<Method<'a>> {
     if read.peek_word().is_none() {
         return Ok(Method::Colour(colour(read)?));
@@ -431,7 +380,7 @@ fn method<'a>(read: &mut Reader<'_, 'a>) -> Outcome<Method<'a>> {
         let v = index_of(WAVES, second.text).ok_or_else(|| {
             let names: Vec<_> = WAVES.iter().map(|wave| wave.name).collect();
             let names = names.join(", ");
-            Problem::new(second.span, format!("there is no wave `{}`", second.text))
+            Problem::new(&second.span, format!("there is no wave `{}`", second.text))
                 .hint(format!("the waves are {names}"))
         })?;
         return Ok(Method::Waves([u, v]));
@@ -445,7 +394,7 @@ fn method<'a>(read: &mut Reader<'_, 'a>) -> Outcome<Method<'a>> {
     if crate::reads::is_image(word.text) {
         let names: Vec<_> = MAPPINGS.iter().map(|m| format!("`{}`", m.name)).collect();
         return Err(read
-            .expected(&format!("how the image lies: {}", names.join(" or ")))
+            .missing(&format!("how the image lies: {}", names.join(" or ")))
             .hint(format!("write `{} plain`", word.text)));
     }
     if let Some(index) = index_of(SOLIDS, word.text) {
@@ -466,7 +415,7 @@ fn colour(read: &mut Reader<'_, '_>) -> Outcome<DVec3> {
     Ok(DVec3::from_array(read.colour(WHAT)?.map(f64::from)))
 }
 
-/// The box and the rectangle of an image that is thrown onto a part.
+/// Reads the box and the rectangle of an image that is thrown onto a part.
 fn region(read: &mut Reader<'_, '_>) -> Outcome<Region> {
     let start = read.start();
     let mut points = [DVec3::ZERO; 6];
@@ -482,6 +431,10 @@ fn region(read: &mut Reader<'_, '_>) -> Outcome<Region> {
     if region.is_rectangle() {
         return Ok(region);
     }
-    Err(Problem::new(read.since(start), Fault::Region.to_string())
-        .hint("two corners of the box, then the lower left, lower right, upper right and upper left corner of the rectangle"))
+    Err(
+        Problem::new(&read.since(start), Fault::Region.to_string()).hint(
+            "two corners of the box, then the lower left, \
+            lower right, upper right and upper left corner of the rectangle",
+        ),
+    )
 }

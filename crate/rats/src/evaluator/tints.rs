@@ -7,18 +7,19 @@ use crate::problem::Outcome;
 use crate::reader::Name;
 use mesh::TriangleMesh;
 use scene::{Paint, Rgb};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Steps of a channel. A mesh with too many colours for the first is rounded to the next.
+/// Numbers of steps of a channel. A mesh with too many tints in the first is rounded to the next.
 const STEPS: [f32; 3] = [32.0, 16.0, 8.0];
 /// Most tints of a mesh; with the last of [`STEPS`] there are no more.
 const MOST: usize = 1000;
 
-/// A rounded colour: steps of the channels' square roots, which are about as even to the eye.
+/// Colour in steps of the channels' square roots, which are about as even to the eye.
 type Tint = [u8; 3];
 
-fn rounded(mesh: &TriangleMesh, colors: &[Rgb], steps: f32) -> Option<Vec<Tint>> {
-    let mut seen = std::collections::BTreeSet::new();
+/// Rounds the mean colour of each triangle; `None` if there are more than [`MOST`] tints.
+fn round(mesh: &TriangleMesh, colors: &[Rgb], steps: f32) -> Option<Vec<Tint>> {
+    let mut seen = BTreeSet::new();
     let mut tints = Vec::with_capacity(mesh.triangles.len());
     for triangle in &mesh.triangles {
         let corners = triangle.map(|i| colors.get(i as usize).copied().unwrap_or([1.0; 3]));
@@ -36,8 +37,8 @@ fn rounded(mesh: &TriangleMesh, colors: &[Rgb], steps: f32) -> Option<Vec<Tint>>
     Some(tints)
 }
 
-/// The material of each triangle of a mesh with colours; `None` if it has none, or nothing but
-/// white.
+/// Makes the material of each triangle of a mesh with colours; `None` if it has none, or nothing
+/// but white.
 ///
 /// # Errors
 /// If there are too many materials.
@@ -52,7 +53,7 @@ pub fn materials(
     };
     let found = STEPS
         .into_iter()
-        .find_map(|steps| Some((steps, rounded(mesh, colors, steps)?)));
+        .find_map(|steps| Some((steps, round(mesh, colors, steps)?)));
     let Some((steps, tints)) = found else {
         return Ok(None);
     };
@@ -70,7 +71,7 @@ pub fn materials(
                     let root = f32::from(step) / steps;
                     root * root
                 });
-                let index = palette.tinted(name, material, color)?;
+                let index = palette.add_tint(name, material, color)?;
                 made.insert(tint, index);
                 index
             }
@@ -80,7 +81,7 @@ pub fn materials(
     Ok(Some(all))
 }
 
-/// The colours at a triangle's corners, which multiply those of a material.
+/// Returns the colours at a triangle's corners, which multiply those of a material.
 pub fn paint(material: usize, mesh: &TriangleMesh, triangle: usize) -> Option<Box<Paint>> {
     let colors = mesh.colors.as_ref()?;
     let color = |corner: u32| {
@@ -108,15 +109,14 @@ mod tests {
         );
         let sides = [34, 35, 36];
         let step = |i: u32, k: usize| i / [1, 34, 34 * 35][k] % sides[k];
-        let channel = |i: u32, k: usize| step(i, k) as f32 / 36.0;
         let colors: Vec<Rgb> = (0..count)
-            .map(|i| [0, 1, 2].map(|k| channel(i, k)))
+            .map(|i| [0, 1, 2].map(|k| step(i, k) as f32 / 36.0))
             .collect();
-        assert!(rounded(&mesh, &colors, STEPS[0]).is_none());
-        assert!(rounded(&mesh, &colors, STEPS[2]).is_some());
+        assert!(round(&mesh, &colors, STEPS[0]).is_none());
+        assert!(round(&mesh, &colors, STEPS[2]).is_some());
         mesh.triangles.truncate(3);
         let strange = [[f32::NAN, 2.0, -1.0], [1.0; 3], [0.25; 3]];
-        let tints = rounded(&mesh, &strange, 32.0).unwrap();
+        let tints = round(&mesh, &strange, 32.0).unwrap();
         assert_eq!(tints, [[0, 32, 0], [32; 3], [16; 3]]);
     }
 }

@@ -3,11 +3,11 @@
 
 use super::state::{Evaluator, Flow};
 use crate::colours;
-use crate::commands::build::{choice, idle, plain, row, takes};
+use crate::commands::build::{idle, options, plain, row, takes};
 use crate::commands::slot::{
-    Choice, Named, Placed, Slot, Text, colour, file, new_file, number, text, whole,
+    Named, Placed, Slot, Text, colour, file, new_file, number, text, whole,
 };
-use crate::commands::{CommandSpec, OptionSpec, Unit};
+use crate::commands::{CommandSpec, Unit};
 use crate::given::Options;
 use crate::limits::MAX_TOOLS;
 use crate::problem::{Outcome, Problem};
@@ -19,16 +19,17 @@ use scene::Rgb;
 const FILE: Slot<Named> = file("fn", "a picture's name");
 const OTHER: Slot<Named> = file("fn2", "another picture's name");
 const WINDOW: Slot<Option<Text>> = text("w", "a window").optional("");
-/// The place of the pictures, for the details of all commands.
+/// Details of all commands: the place of the pictures.
 const WORK: &str = "The program works on files of the dataset's folder when it runs the dataset. \
-    The page works on the images of the work and on its own picture (`scene.png`, or as `filename` and \
+    The page works on the images of the work and on its own picture \
+    (`scene.png`, or as `filename` and \
     `format` say), and shows the results below the picture.";
 
 /// Lists a job.
 fn job<'a>(run: &mut Evaluator<'a>, command: &'a Command, tool: Tool) -> Outcome<Flow> {
     if run.tools.len() >= MAX_TOOLS {
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             format!("there are more than {MAX_TOOLS} jobs on files"),
         ));
     }
@@ -37,26 +38,28 @@ fn job<'a>(run: &mut Evaluator<'a>, command: &'a Command, tool: Tool) -> Outcome
     Ok(Flow::Next)
 }
 
-/// The files' names.
-fn texts(names: &[Name<'_>]) -> Vec<String> {
-    names.iter().map(|name| name.text.to_owned()).collect()
+/// Returns the text of a name.
+fn text_of(name: &Name<'_>) -> String {
+    name.text.to_owned()
 }
 
-const LOOP: Choice<()> = choice!("loop", "", "again and again");
-const MIRROR: Choice<()> = choice!("mirror", "", "there and back");
-const DITHER: Choice<()> = choice!("dither", "", "fewer colours");
+/// Returns the texts of names.
+fn texts(names: &[Name<'_>]) -> Vec<String> {
+    names.iter().map(text_of).collect()
+}
 
-/// `animate`, `play`.
-pub static ANIMATE_OPTIONS: &[OptionSpec] = &[LOOP.plain, MIRROR.plain, DITHER.plain];
+options! {
+    /// Options of `animate` and `play`.
+    ANIMATE_OPTIONS:
+    LOOP: () = ("loop", "", "again and again");
+    MIRROR: () = ("mirror", "", "there and back");
+    DITHER: () = ("dither", "", "fewer colours");
+}
 
-/// `animate fn1 … [loop|mirror|dither]`
-pub static ANIMATE: CommandSpec = row(
-    "animate",
-    "make a film of pictures",
-    takes!(animate, [ANIMATE_OPTIONS], FILE.many()),
-)
-.details(WORK)
-.example("animate one.png two.png loop");
+pub static ANIMATE: CommandSpec = row("animate", "make a film of pictures")
+    .with(takes!(animate, [ANIMATE_OPTIONS], FILE.many()))
+    .details(WORK)
+    .example("animate one.png two.png loop");
 
 fn animate<'a>(
     run: &mut Evaluator<'a>,
@@ -76,66 +79,45 @@ fn animate<'a>(
     job(run, command, tool)
 }
 
-/// `play fn`
-pub static PLAY: CommandSpec = row("play", "play a film", takes!(play, FILE))
+pub static PLAY: CommandSpec = row("play", "play a film")
+    .with(takes!(
+        |run, command, file| job(
+            run,
+            command,
+            Tool::Play {
+                file: text_of(&file)
+            }
+        ),
+        FILE
+    ))
     .details(WORK)
     .example("play film.gif");
 
-fn play<'a>(run: &mut Evaluator<'a>, command: &'a Command, file: Name<'a>) -> Outcome<Flow> {
-    let file = file.text.to_owned();
-    job(run, command, Tool::Play { file })
-}
-
-/// `split fn [frame.fmt]`
-pub static SPLIT: CommandSpec = row(
-    "split",
-    "split a film into pictures",
-    takes!(
-        split,
+pub static SPLIT: CommandSpec = row("split", "split a film into pictures")
+    .with(takes!(
+        |run, command, file, pattern| {
+            let (file, pattern) = (text_of(&file), pattern.as_ref().map(text_of));
+            job(run, command, Tool::Split { file, pattern })
+        },
         FILE,
         new_file("frame.fmt", "the pictures' name").optional("frame.png")
-    ),
-)
-.details(WORK)
-.example("split film.gif frame.png");
+    ))
+    .details(WORK)
+    .example("split film.gif frame.png");
 
-fn split<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    file: Name<'a>,
-    pattern: Option<Name<'a>>,
-) -> Outcome<Flow> {
-    let tool = Tool::Split {
-        file: file.text.to_owned(),
-        pattern: pattern.map(|name| name.text.to_owned()),
-    };
-    job(run, command, tool)
+options! {
+    /// Options of `collage`.
+    COLLAGE_OPTIONS:
+    COLUMNS: u32 = ("columns", "as many as make it square", "pictures side by side",
+        whole("n", 1, 256, "the number of columns"));
+    GAP: u32 = ("gap", "0", "room between pictures",
+        whole("p", 0, 256, "the gap").unit(Unit::Pixels));
 }
 
-const COLUMNS: Choice<u32> = choice!(
-    "columns",
-    "as many as make it square",
-    "pictures side by side",
-    whole("n", 1, 256, "the number of columns")
-);
-const GAP: Choice<u32> = choice!(
-    "gap",
-    "0",
-    "room between pictures",
-    whole("p", 0, 256, "the gap").unit(Unit::Pixels)
-);
-
-/// `collage`.
-pub static COLLAGE_OPTIONS: &[OptionSpec] = &[COLUMNS.plain, GAP.plain];
-
-/// `collage fn1 fn2 … [columns n]`
-pub static COLLAGE: CommandSpec = row(
-    "collage",
-    "put pictures side by side",
-    takes!(collage, [COLLAGE_OPTIONS], FILE.many()),
-)
-.details(WORK)
-.example("collage one.png two.png columns 2");
+pub static COLLAGE: CommandSpec = row("collage", "put pictures side by side")
+    .with(takes!(collage, [COLLAGE_OPTIONS], FILE.many()))
+    .details(WORK)
+    .example("collage one.png two.png columns 2");
 
 fn collage<'a>(
     run: &mut Evaluator<'a>,
@@ -150,34 +132,23 @@ fn collage<'a>(
     job(run, command, tool)
 }
 
-const SPEED: Choice<u32> = choice!(
-    "speed",
-    "10",
-    "pictures in a second",
-    whole("N", 1, 100, "the pictures in a second")
-);
-const SIZE: Choice<(u32, u32)> = choice!(
-    "size",
-    "of the first",
-    "size of the film",
-    whole("W", 1, 4096, "the width").unit(Unit::Pixels),
-    whole("H", 1, 4096, "the height").unit(Unit::Pixels)
-);
+options! {
+    /// Options of `fli`.
+    FLI_OPTIONS:
+    SPEED: u32 = ("speed", "10", "pictures in a second",
+        whole("N", 1, 100, "the pictures in a second"));
+    SIZE: (u32, u32) = ("size", "of the first", "size of the film",
+        whole("W", 1, 4096, "the width").unit(Unit::Pixels),
+        whole("H", 1, 4096, "the height").unit(Unit::Pixels));
+}
 
-/// `fli`.
-pub static FLI_OPTIONS: &[OptionSpec] = &[SPEED.plain, SIZE.plain];
-
-/// `fli fn1 … [speed N] [size W H]`
-pub static FLI: CommandSpec = row(
-    "fli",
-    "make a film of pictures of one size",
-    takes!(fli, [FLI_OPTIONS], FILE.many()),
-)
-.details(
-    "RATS wrote Autodesk's FLI; ours writes an animated GIF, and `animate` an animated PNG. The \
-     program works on files of the dataset's folder, the page on the images of the work.",
-)
-.example("fli one.png two.png speed 12");
+pub static FLI: CommandSpec = row("fli", "make a film of pictures of one size")
+    .with(takes!(fli, [FLI_OPTIONS], FILE.many()))
+    .details(
+        "RATS wrote Autodesk's FLI; ours writes an animated GIF, and `animate` an animated PNG. \
+         The program works on files of the dataset's folder, the page on the images of the work.",
+    )
+    .example("fli one.png two.png speed 12");
 
 fn fli<'a>(
     run: &mut Evaluator<'a>,
@@ -193,75 +164,49 @@ fn fli<'a>(
     job(run, command, tool)
 }
 
-/// `convert fn1 fn2`
-pub static CONVERT: CommandSpec = row(
-    "convert",
-    "convert a picture",
-    takes!(convert, FILE, new_file("fn2", "the new picture's name")),
-)
-.details(WORK)
-.example("convert one.png one.tga");
+pub static CONVERT: CommandSpec = row("convert", "convert a picture")
+    .with(takes!(
+        |run, command, from, to| {
+            let (from, to) = (text_of(&from), text_of(&to));
+            job(run, command, Tool::Convert { from, to })
+        },
+        FILE,
+        new_file("fn2", "the new picture's name")
+    ))
+    .details(WORK)
+    .example("convert one.png one.tga");
 
-fn convert<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    from: Name<'a>,
-    to: Name<'a>,
-) -> Outcome<Flow> {
-    let tool = Tool::Convert {
-        from: from.text.to_owned(),
-        to: to.text.to_owned(),
-    };
-    job(run, command, tool)
-}
-
-/// `resize fn x y`
-pub static RESIZE: CommandSpec = row(
-    "resize",
-    "resize a picture",
-    takes!(
-        resize,
+pub static RESIZE: CommandSpec = row("resize", "resize a picture")
+    .with(takes!(
+        |run, command, file, width, height| {
+            let file = text_of(&file);
+            job(
+                run,
+                command,
+                Tool::Resize {
+                    file,
+                    width,
+                    height,
+                },
+            )
+        },
         FILE,
         whole("x", 1, 8192, "the width").unit(Unit::Pixels),
         whole("y", 1, 8192, "the height").unit(Unit::Pixels)
-    ),
-)
-.details(WORK)
-.example("resize one.png 320 200");
+    ))
+    .details(WORK)
+    .example("resize one.png 320 200");
 
-fn resize<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    file: Name<'a>,
-    width: u32,
-    height: u32,
-) -> Outcome<Flow> {
-    let tool = Tool::Resize {
-        file: file.text.to_owned(),
-        width,
-        height,
-    };
-    job(run, command, tool)
+options! {
+    /// Options of `diff`, `and` and `xor`.
+    SAVE_OPTIONS:
+    SAVE: Named = ("save", "", "writes the result", new_file("fn", "the new file's name"));
 }
 
-const SAVE: Choice<Named> = choice!(
-    "save",
-    "",
-    "writes the result",
-    new_file("fn", "the new file's name")
-);
-
-/// `diff`, `and`, `xor`.
-pub static SAVE_OPTIONS: &[OptionSpec] = &[SAVE.plain];
-
-/// `diff fn1 fn2 [save fn]`
-pub static DIFF: CommandSpec = row(
-    "diff",
-    "difference of two pictures",
-    takes!(diff, [SAVE_OPTIONS], FILE, OTHER),
-)
-.details(WORK)
-.example("diff one.png two.png save difference.png");
+pub static DIFF: CommandSpec = row("diff", "difference of two pictures")
+    .with(takes!(diff, [SAVE_OPTIONS], FILE, OTHER))
+    .details(WORK)
+    .example("diff one.png two.png save difference.png");
 
 fn diff<'a>(
     run: &mut Evaluator<'a>,
@@ -270,19 +215,15 @@ fn diff<'a>(
     a: Name<'a>,
     b: Name<'a>,
 ) -> Outcome<Flow> {
-    let [a, b] = [a, b].map(|name| name.text.to_owned());
-    let save = options.last(&SAVE).map(|name| name.text.to_owned());
+    let [a, b] = [a, b].map(|name| text_of(&name));
+    let save = options.last(&SAVE).map(|name| text_of(&name));
     job(run, command, Tool::Diff { a, b, save })
 }
 
-/// `and fn1 fn2 [save fn]`
-pub static AND: CommandSpec = row(
-    "and",
-    "AND of two pictures",
-    takes!(and, [SAVE_OPTIONS], FILE, OTHER),
-)
-.details(WORK)
-.example("and one.png two.png save both.png");
+pub static AND: CommandSpec = row("and", "AND of two pictures")
+    .with(takes!(and, [SAVE_OPTIONS], FILE, OTHER))
+    .details(WORK)
+    .example("and one.png two.png save both.png");
 
 fn and<'a>(
     run: &mut Evaluator<'a>,
@@ -291,19 +232,15 @@ fn and<'a>(
     a: Name<'a>,
     b: Name<'a>,
 ) -> Outcome<Flow> {
-    let [a, b] = [a, b].map(|name| name.text.to_owned());
-    let save = options.last(&SAVE).map(|name| name.text.to_owned());
+    let [a, b] = [a, b].map(|name| text_of(&name));
+    let save = options.last(&SAVE).map(|name| text_of(&name));
     job(run, command, Tool::And { a, b, save })
 }
 
-/// `xor fn1 fn2 [save fn]`
-pub static XOR: CommandSpec = row(
-    "xor",
-    "XOR of two pictures",
-    takes!(xor, [SAVE_OPTIONS], FILE, OTHER),
-)
-.details(WORK)
-.example("xor one.png two.png save either.png");
+pub static XOR: CommandSpec = row("xor", "XOR of two pictures")
+    .with(takes!(xor, [SAVE_OPTIONS], FILE, OTHER))
+    .details(WORK)
+    .example("xor one.png two.png save either.png");
 
 fn xor<'a>(
     run: &mut Evaluator<'a>,
@@ -312,45 +249,38 @@ fn xor<'a>(
     a: Name<'a>,
     b: Name<'a>,
 ) -> Outcome<Flow> {
-    let [a, b] = [a, b].map(|name| name.text.to_owned());
-    let save = options.last(&SAVE).map(|name| name.text.to_owned());
+    let [a, b] = [a, b].map(|name| text_of(&name));
+    let save = options.last(&SAVE).map(|name| text_of(&name));
     job(run, command, Tool::Xor { a, b, save })
 }
 
-const PICTURE: Choice<Named> = choice!("file", "", "a picture", file("fn", "a picture's name"));
-const COLOUR: Choice<Placed<Rgb>> = choice!(
-    "color",
-    "",
-    "a colour",
-    colour("Color", "a colour").with_place()
-);
-const PALETTE: Choice<()> = choice!("palette", "", "all colours with a name");
-
-/// `show`.
-pub static SHOW_OPTIONS: &[OptionSpec] = &[PICTURE.plain, COLOUR.plain, PALETTE.plain];
+options! {
+    /// Options of `show`.
+    SHOW_OPTIONS:
+    PICTURE: Named = ("file", "", "a picture", file("fn", "a picture's name"));
+    COLOUR: Placed<Rgb> = ("color", "", "a colour", colour("Color", "a colour").with_place());
+    PALETTE: () = ("palette", "", "all colours with a name");
+}
 
 /// `show file fn`, `show color Color`, `show palette`
-pub static SHOW: CommandSpec = row(
-    "show",
-    "show a file, a colour, a palette",
-    takes!(show, [SHOW_OPTIONS]),
-)
-.details(WORK)
-.example("show color OrangeRed");
+pub static SHOW: CommandSpec = row("show", "show a file, a colour, a palette")
+    .with(takes!(show, [SHOW_OPTIONS]))
+    .details(WORK)
+    .example("show color OrangeRed");
 
 fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command, options: &Options<'a>) -> Outcome<Flow> {
     let source = &run.sources.all[run.file];
     let chosen = match &options.0[..] {
         [] => {
             return Err(
-                Problem::new(command.span.clone(), "`show` needs something to show")
+                Problem::new(&command.span, "`show` needs something to show")
                     .hint("`file`, `color` or `palette`"),
             );
         }
         [chosen] => chosen,
         [_, second, ..] => {
             return Err(Problem::new(
-                second.span.clone(),
+                &second.span,
                 "`show` shows one thing at a time",
             ));
         }
@@ -372,54 +302,38 @@ fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command, options: &Options<'a>
     job(run, command, Tool::Show { what })
 }
 
-/// `table v1 v2 …`
-pub static TABLE: CommandSpec = row(
-    "table",
-    "plot numbers",
-    takes!(table, number("v", "a number").many()),
-)
-.details(
-    "A polyline of 2 to 256 points. The program draws it as a picture `table.png`, and the page \
-     shows it below its own picture.",
-)
-.example("table 1 4 9 16 25");
+pub static TABLE: CommandSpec = row("table", "plot numbers")
+    .with(takes!(table, number("v", "a number").many()))
+    .details(
+        "A polyline of 2 to 256 points. The program draws it as a picture `table.png`, and the \
+         page shows it below its own picture.",
+    )
+    .example("table 1 4 9 16 25");
 
 fn table<'a>(run: &mut Evaluator<'a>, command: &'a Command, values: Vec<f64>) -> Outcome<Flow> {
     if !(2..=256).contains(&values.len()) {
         return Err(Problem::new(
-            command.span.clone(),
+            &command.span,
             format!("a table has from 2 to 256 numbers, not {}", values.len()),
         ));
     }
     job(run, command, Tool::Table { values })
 }
 
-/// `kill`
-pub static KILL: CommandSpec = row(
-    "kill",
-    "close windows",
-    idle(
+pub static KILL: CommandSpec = row("kill", "close windows")
+    .with(idle(
         "results go when the commands that made them go",
         plain![WINDOW],
-    ),
-)
-.example("kill");
+    ))
+    .example("kill");
 
-/// `refresh`
-pub static REFRESH: CommandSpec = row(
-    "refresh",
-    "draw windows again",
-    idle(
+pub static REFRESH: CommandSpec = row("refresh", "draw windows again")
+    .with(idle(
         "results are made again when the text or its pictures change",
         plain![WINDOW],
-    ),
-)
-.example("refresh");
+    ))
+    .example("refresh");
 
-/// `tile`
-pub static TILE: CommandSpec = row(
-    "tile",
-    "arrange windows",
-    idle("results lie side by side anyway", plain![WINDOW]),
-)
-.example("tile");
+pub static TILE: CommandSpec = row("tile", "arrange windows")
+    .with(idle("results lie side by side anyway", plain![WINDOW]))
+    .example("tile");

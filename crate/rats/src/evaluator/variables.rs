@@ -1,7 +1,6 @@
 //! `var` and `seed`.
 
 use super::state::{Evaluator, Flow};
-use crate::Severity;
 use crate::commands::build::{by_itself, choice, clay, plain, row, sets};
 use crate::commands::slot::{new, number, unread};
 use crate::commands::{CommandSpec, Kind, Names, OptionSpec};
@@ -11,12 +10,12 @@ use crate::problem::{Outcome, Problem};
 use crate::random::Random;
 use crate::reader::{Name, Reader};
 use crate::symbol::Symbol;
-use crate::syntax::{Command, Datum};
+use crate::syntax::{Command, Datum, Item};
 use crate::value::Value;
 use glam::DVec3;
 use std::ops::Range;
 
-/// `var`.
+/// Options of `var`.
 pub static VAR_OPTIONS: &[OptionSpec] = &[
     choice!(
         "hot",
@@ -43,19 +42,18 @@ pub static VAR_OPTIONS: &[OptionSpec] = &[
     .plain,
 ];
 
-/// `var name = value [hot] [+= step | *= factor]`
 pub static VAR: CommandSpec = row(
     "var",
     "create or change a variable; `hot` makes it a slider",
-    by_itself(
-        var,
-        plain![
-            new("name", Names::Variable, "the variable's name"),
-            unread("= value", Kind::Value, "a value")
-        ],
-        VAR_OPTIONS,
-    ),
 )
+.with(by_itself(
+    var,
+    plain![
+        new("name", Names::Variable, "the variable's name"),
+        unread("= value", Kind::Value, "a value")
+    ],
+    VAR_OPTIONS,
+))
 .mark_failed(set_broken)
 .details(
     "A value is a number, three numbers or a colour. A colour stays a colour when it is set to \
@@ -77,17 +75,18 @@ fn set_broken<'a>(run: &mut Evaluator<'a>, command: &'a Command) {
     }
 }
 
+/// Carries out `var`.
 fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     let mut read = run.reader(command);
     let (name, spelled) = new_variable(&mut read)?;
     let word = spelled.text;
     let mut animated = per_frame(&mut read)?;
     if animated.is_none() && !read.sign(b'=') {
-        return Err(read.expected("`=`"));
+        return Err(read.missing("`=`"));
     }
     if animated.is_some() && read.scope.get(name).is_none() {
         return Err(
-            Problem::new(spelled.span, format!("`{word}` has no value yet"))
+            Problem::new(&spelled.span, format!("`{word}` has no value yet"))
                 .hint(format!("set it first: `var {word} = …`")),
         );
     }
@@ -104,7 +103,7 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
             } else if let Some(change) = per_frame(&mut read)? {
                 if animated.is_some() {
                     return Err(Problem::new(
-                        change.1,
+                        &change.1,
                         "a variable changes in one way with every frame",
                     ));
                 }
@@ -121,7 +120,7 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         };
         if matches!(value, Value::Name(_)) {
             return Err(Problem::new(
-                spelled.span,
+                &spelled.span,
                 "a variable holds a number, three numbers or a colour, no name",
             ));
         }
@@ -139,21 +138,21 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
     }
 }
 
-/// The name of the variable that is made or changed, and how it is spelled.
+/// Reads the name of the variable that is made or changed.
 fn new_variable<'a>(read: &mut Reader<'_, 'a>) -> Outcome<(Symbol, Name<'a>)> {
     let Some((name, word)) = read.peek_word() else {
-        return Err(read.expected("the variable's name"));
+        return Err(read.missing("the variable's name"));
     };
     let spelled = read.new_name("the variable's name")?;
     if spelled.text != word {
         return Err(Problem::new(
-            spelled.span,
+            &spelled.span,
             "a variable's name cannot hold `^`, which is the power in expressions",
         ));
     }
     if is_taken(word) {
         return Err(
-            Problem::new(spelled.span, format!("`{word}` is a word of the language"))
+            Problem::new(&spelled.span, format!("`{word}` is a word of the language"))
                 .hint("choose another name"),
         );
     }
@@ -172,14 +171,14 @@ fn animate(
     if let (Value::Scalar(_), Change::Add(Value::Vector(_) | Value::Colour(_))) = (now, change) {
         let word = run.scope.symbols.word(name);
         return Err(Problem::new(
-            span,
+            &span,
             format!("`{word}` is a number, so its change with every frame must be one"),
         ));
     }
-    let value = moved(now, change, run.moment);
+    let value = change_by(now, change, run.moment);
     if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
         return Err(Problem::new(
-            span,
+            &span,
             format!("in frame {} the value is too large", run.moment),
         ));
     }
@@ -187,7 +186,7 @@ fn animate(
     Ok(())
 }
 
-/// Words that would be misread in expressions if they were variables.
+/// Returns whether a word would be misread in expressions if it were a variable.
 fn is_taken(word: &str) -> bool {
     ["hot", "to", "step", "and", "or", "not"]
         .iter()
@@ -204,8 +203,8 @@ enum Change {
     Multiply(f64),
 }
 
-/// A value after some frames, which need not be a whole number.
-fn moved(value: Value, change: Change, frames: f64) -> Value {
+/// Changes a value for a number of frames, which need not be whole.
+fn change_by(value: Value, change: Change, frames: f64) -> Value {
     match change {
         Change::Add(step) => match (value, step) {
             (Value::Scalar(_), Value::Scalar(_)) => value.zip(step, |x, s| x + s * frames),
@@ -222,7 +221,7 @@ fn moved(value: Value, change: Change, frames: f64) -> Value {
     }
 }
 
-/// The numbers after `hot`: the slider's lowest and highest value, and its step.
+/// Reads the numbers after `hot`: the slider's lowest and highest value, and its step.
 fn slider(read: &mut Reader<'_, '_>) -> Outcome<(Option<[f64; 2]>, Option<f64>)> {
     let start = read.start();
     if !is_number_next(read) {
@@ -232,7 +231,7 @@ fn slider(read: &mut Reader<'_, '_>) -> Outcome<(Option<[f64; 2]>, Option<f64>)>
     let high = read.number("the slider's highest value")?;
     if low >= high {
         return Err(Problem::new(
-            read.since(start),
+            &read.since(start),
             format!("the slider's lowest value, {low}, is not below its highest, {high}"),
         ));
     }
@@ -242,7 +241,7 @@ fn slider(read: &mut Reader<'_, '_>) -> Outcome<(Option<[f64; 2]>, Option<f64>)>
         let value = read.number("the slider's step")?;
         if value <= 0.0 {
             return Err(Problem::new(
-                read.since(start),
+                &read.since(start),
                 "the slider's step must be above 0",
             ));
         }
@@ -251,18 +250,17 @@ fn slider(read: &mut Reader<'_, '_>) -> Outcome<(Option<[f64; 2]>, Option<f64>)>
     Ok((Some([low, high]), step))
 }
 
-/// `+= step` or `*= factor`, and its place.
+/// Reads `+= step` or `*= factor`, if it stands here; returns its place, too.
 fn per_frame(read: &mut Reader<'_, '_>) -> Outcome<Option<(Change, Range<usize>)>> {
     let start = read.start();
-    let sign = |at: usize| read.items.get(at).map(|item| item.datum);
-    if !matches!(sign(read.at), Some(Datum::Sign(b'+' | b'*')))
-        || sign(read.at + 1) != Some(Datum::Sign(b'='))
-    {
+    let Some([first, second]) = read.items.get(read.at..read.at + 2) else {
         return Ok(None);
-    }
-    let adds = sign(read.at) == Some(Datum::Sign(b'+'));
+    };
+    let (Datum::Sign(sign @ (b'+' | b'*')), Datum::Sign(b'=')) = (first.datum, second.datum) else {
+        return Ok(None);
+    };
     read.at += 2;
-    let change = if adds {
+    let change = if sign == b'+' {
         let value = read.value("the change with every frame")?;
         match value {
             Value::Scalar(x) if is_number_next(read) => {
@@ -281,8 +279,8 @@ fn per_frame(read: &mut Reader<'_, '_>) -> Outcome<Option<(Change, Range<usize>)
     Ok(Some((change, read.since(start))))
 }
 
-/// One number, three numbers or a colour; and its place if it is written out, so that a slider can
-/// replace it.
+/// Reads one number, three numbers or a colour; returns its place, too, if it is written out, so
+/// that a slider can replace it.
 fn value(read: &mut Reader<'_, '_>) -> Outcome<(Value, Option<Range<usize>>)> {
     let start = read.start();
     let first = read.at;
@@ -293,7 +291,7 @@ fn value(read: &mut Reader<'_, '_>) -> Outcome<(Value, Option<Range<usize>>)> {
         let y = read.number("the second number")?;
         if !is_number_next(read) {
             return Err(Problem::new(
-                read.since(start),
+                &read.since(start),
                 "a variable is one number, three numbers or a colour; these are two numbers",
             )
             .hint("for a difference write `a - b` or `a-b`"));
@@ -303,15 +301,16 @@ fn value(read: &mut Reader<'_, '_>) -> Outcome<(Value, Option<Range<usize>>)> {
     let span = read.since(start);
     if !value.all(|x| x.abs() <= MAX_MAGNITUDE) {
         return Err(Problem::new(
-            span,
+            &span,
             "the value comes out as no finite number, or too large",
         )
         .hint("look for a division by 0 or a root of a negative number"));
     }
-    let written_out = is_written_out(read, first..read.at, value);
-    Ok((value, written_out.then_some(span)))
+    let is_literal = is_written_out(read, first..read.at, value);
+    Ok((value, is_literal.then_some(span)))
 }
 
+/// Returns whether a number follows.
 fn is_number_next(read: &mut Reader<'_, '_>) -> bool {
     read.more()
         && match read.datum() {
@@ -329,45 +328,40 @@ fn is_number_next(read: &mut Reader<'_, '_>) -> bool {
         }
 }
 
-/// Whether operands are plain numbers, a colour's name or `rgb(…)` of plain numbers.
+/// Returns whether operands are plain numbers, a colour's name or `rgb(…)` of plain numbers.
 fn is_written_out(read: &Reader<'_, '_>, operands: Range<usize>, value: Value) -> bool {
     let items = &read.items[operands];
-    let plain = |items: &[crate::syntax::Item]| {
-        let mut signed = false;
-        items.iter().all(|item| match item.datum {
-            Datum::Number(_) | Datum::Sign(b',' | b'<' | b'>') => {
-                signed = false;
-                true
-            }
-            Datum::Sign(b'-') => !std::mem::replace(&mut signed, true),
-            _ => false,
-        }) && items
-            .iter()
-            .filter(|item| matches!(item.datum, Datum::Number(_)))
-            .count()
-            == match value {
-                Value::Scalar(_) => 1,
-                _ => 3,
-            }
-    };
     match items {
-        [item] => match item.datum {
-            Datum::Word(symbol) => {
-                let is_colour = crate::colours::find(read.scope.symbols.word(symbol)).is_some();
-                is_colour && read.scope.get(symbol).is_none()
-            }
-            _ => plain(items),
-        },
-        [name, open, inner @ .., close] => match (name.datum, open.datum, close.datum) {
-            (Datum::Word(symbol), Datum::Sign(b'('), Datum::Sign(b')')) => {
-                read.scope.symbols.word(symbol).eq_ignore_ascii_case("rgb") && plain(inner)
-            }
-            _ => plain(items),
-        },
-        _ => plain(items),
+        [item] if let Datum::Word(symbol) = item.datum => {
+            let is_colour = crate::colours::find(read.scope.symbols.word(symbol)).is_some();
+            is_colour && read.scope.get(symbol).is_none()
+        }
+        [name, open, inner @ .., close]
+            if let Datum::Word(symbol) = name.datum
+                && open.datum == Datum::Sign(b'(')
+                && close.datum == Datum::Sign(b')') =>
+        {
+            read.scope.symbols.word(symbol).eq_ignore_ascii_case("rgb") && is_plain(inner, value)
+        }
+        _ => is_plain(items, value),
     }
 }
 
+/// Returns whether items are the plain numbers of a value, with signs and separators.
+fn is_plain(items: &[Item], value: Value) -> bool {
+    let (mut is_signed, mut count) = (false, 0);
+    for item in items {
+        match item.datum {
+            Datum::Sign(b'-') if !is_signed => is_signed = true,
+            Datum::Number(_) | Datum::Sign(b',' | b'<' | b'>') => is_signed = false,
+            _ => return false,
+        }
+        count += usize::from(matches!(item.datum, Datum::Number(_)));
+    }
+    count == if let Value::Scalar(_) = value { 1 } else { 3 }
+}
+
+/// Makes a variable one that the page shows as a slider.
 fn make_hot(
     run: &mut Evaluator<'_>,
     name: &str,
@@ -380,12 +374,8 @@ fn make_hot(
         return;
     }
     if run.repeating > 0 {
-        run.say(Severity::Warning, span, || {
-            (
-                String::from("a variable of a loop or a defined command cannot be hot"),
-                Some(String::from("set it before, outside of the braces")),
-            )
-        });
+        let message = "a variable of a loop or a defined command cannot be hot";
+        run.warn(&span, message, "set it before, outside of the braces");
         return;
     }
     let value = match value {
@@ -408,16 +398,12 @@ fn make_hot(
     }
 }
 
-/// `seed n`
-pub static SEED: CommandSpec = row(
-    "seed",
-    "start the random numbers of `rand`",
-    sets!(
+pub static SEED: CommandSpec = row("seed", "start the random numbers of `rand`")
+    .with(sets!(
         |run, seed| run.scope.random = Random::new(seed),
         number("n", "the seed")
-    ),
-)
-.default("0")
-.example(clay!(
-    "seed 7\nfor i = 1 to 20 { sphere Clay 0.3, rand*6-3, rand*6-3, 0 }"
-));
+    ))
+    .default("0")
+    .example(clay!(
+        "seed 7\nfor i = 1 to 20 { sphere Clay 0.3, rand*6-3, rand*6-3, 0 }"
+    ));

@@ -10,8 +10,8 @@ pub struct ViewPlane {
     pub cp: Option<DVec3>,
     /// The normal of the view plane.
     pub normal: Option<DVec3>,
-    /// Left, right, lower and upper edge.
+    /// The left, right, lower and upper edge.
     pub window: Option<[f64; 4]>,
-    /// Where the last of them stands.
+    /// The place of the last of them.
     pub place: (usize, Range<usize>),
 }

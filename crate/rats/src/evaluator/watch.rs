@@ -46,7 +46,7 @@ impl<'a> Evaluator<'a> {
             ))
         } else {
             literal
-                .and_then(|span| written_out(text, span))
+                .and_then(|span| literals(text, span))
                 .map(|spans| (self.file, spans))
                 .ok_or_else(|| format!("comes from `{word}`, which is computed"))
         };
@@ -72,8 +72,8 @@ impl<'a> Evaluator<'a> {
             source: self.source(span, 0),
         });
         let Some(watch) = &mut self.watch else { return };
-        let inherited = || watch.radii.get(old?.text).cloned();
-        let mut radius = own.or_else(inherited).unwrap_or(Number {
+        let copied = old.and_then(|old| watch.radii.get(old.text).cloned());
+        let mut radius = own.or(copied).unwrap_or(Number {
             value: 0.0,
             source: Source::Computed(String::from("is not given")),
         });
@@ -113,7 +113,8 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// An operand of the command's with the sources of its numbers; `None` if it is no number.
+    /// Returns an operand of the command with the sources of its numbers; `None` if it is no
+    /// number.
     fn operand(&mut self, command: &Command, filled: &Filled<'a>) -> Option<Operand> {
         let values = match filled.operand {
             given::Operand::Number(number) => vec![number],
@@ -166,12 +167,12 @@ impl<'a> Evaluator<'a> {
         Some((values, sources))
     }
 
-    /// From where a number of the present file comes that an expression gives; of a triple the one
-    /// with this index.
+    /// Returns the source of a number of the present file that an expression gives; of a triple it
+    /// is the number with this index.
     fn source(&self, span: Range<usize>, index: usize) -> Source {
         let text = self.sources.all[self.file].text;
         let slice = &text[span.clone()];
-        if let Some([span]) = written_out(text, span.clone()).as_deref() {
+        if let Some([span]) = literals(text, span.clone()).as_deref() {
             return Source::Literal {
                 file: self.file,
                 span: span.clone(),
@@ -184,10 +185,10 @@ impl<'a> Evaluator<'a> {
             None => (slice, false),
         };
         self.variable(word, index, negated)
-            .unwrap_or_else(|| Source::Computed(computed(slice)))
+            .unwrap_or_else(|| Source::Computed(reason(slice)))
     }
 
-    /// The source of a number that `word` stands for: a variable, or a part of one.
+    /// Returns the source of a number that `word` stands for: a variable, or a part of one.
     fn variable(&self, word: &str, index: usize, negated: bool) -> Option<Source> {
         let watch = self.watch.as_ref()?;
         // In a call, parameters may hide them.
@@ -221,9 +222,9 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// The places of the numbers in a range of a text, each with its sign, if there is nothing else
-/// there but separators.
-pub(super) fn written_out(text: &str, range: Range<usize>) -> Option<Vec<Range<usize>>> {
+/// Finds the places of the numbers in a range of a text, each with its sign, if there is nothing
+/// else there but separators.
+pub(super) fn literals(text: &str, range: Range<usize>) -> Option<Vec<Range<usize>>> {
     let mut spans = Vec::new();
     let mut sign: Option<usize> = None;
     for token in lex(text.get(range.clone())?) {
@@ -239,8 +240,8 @@ pub(super) fn written_out(text: &str, range: Range<usize>) -> Option<Vec<Range<u
     sign.is_none().then_some(spans)
 }
 
-/// Says that an expression gives a number.
-fn computed(expression: &str) -> String {
+/// Returns the reason why a number that an expression gives cannot be rewritten.
+fn reason(expression: &str) -> String {
     const LONGEST: usize = 40;
     let short = expression.split_whitespace().collect::<Vec<_>>().join(" ");
     match short.char_indices().nth(LONGEST) {
@@ -255,7 +256,7 @@ mod tests {
 
     #[test]
     fn numbers_that_are_written_out() {
-        let spans = |text: &str| written_out(text, 0..text.len());
+        let spans = |text: &str| literals(text, 0..text.len());
         assert_eq!(spans("1 2"), Some(vec![0..1, 2..3]));
         assert_eq!(spans("<1, -2 3>"), Some(vec![1..2, 4..6, 7..8]));
         assert_eq!(spans("−.5 # half\n 2"), Some(vec![0..5, 14..15]));

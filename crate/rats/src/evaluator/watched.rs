@@ -6,14 +6,15 @@ use scene::Origin;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Where a variable was set: the file and its numbers' places, or why they cannot be rewritten.
+/// Place where a variable was set: the file and its numbers' ranges, or the reason why they cannot
+/// be rewritten.
 pub type Setting = Result<(usize, Vec<Range<usize>>), String>;
 
 /// The notes of a run for one command.
 #[derive(Debug)]
 pub struct Watch<'a> {
     pub target: Origin,
-    /// Where variables of the whole text were set last.
+    /// The places where variables of the whole text were set last.
     pub variables: HashMap<Symbol, Setting>,
     pub radii: HashMap<&'a str, Number>,
     pub seen: Option<Provenance>,

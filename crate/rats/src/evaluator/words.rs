@@ -10,7 +10,7 @@ use crate::symbol::Symbol;
 use crate::syntax::{Block, Command, Node};
 use std::collections::HashSet;
 
-/// Unknown commands that are told of; a text that is no dataset has thousands.
+/// Most unknown commands that are reported; a text that is no dataset has thousands.
 const MOST: usize = 100;
 
 impl<'a> Evaluator<'a> {
@@ -38,11 +38,9 @@ impl<'a> Evaluator<'a> {
                 let names = defined
                     .iter()
                     .map(|symbol| self.scope.symbols.word(*symbol));
-                let problem = Problem::new(
-                    command.word_span.clone(),
-                    format!("there is no command `{word}`"),
-                )
-                .maybe_hint(commands::suggestion(word, names));
+                let problem =
+                    Problem::new(&command.word_span, format!("there is no command `{word}`"))
+                        .maybe_hint(commands::suggestion(word, names));
                 self.report.add(file, Severity::Error, problem);
             }
         }

@@ -51,17 +51,16 @@ fn check(project: &Project) {
     assert_eq!(json.matches("null").count(), absent(scene));
 }
 
-/// How many optional things a scene leaves out.
+/// Returns the number of optional things that a scene leaves out.
 fn absent(scene: &scene::Scene) -> usize {
-    let of = |m: &scene::Flesh| {
+    let flesh = scene.flesh.iter().flat_map(|flesh| {
         [
-            m.profile.is_none(),
-            m.kernel.is_none(),
-            m.end_radius.is_none(),
-            m.end_blobbiness.is_none(),
+            flesh.profile.is_none(),
+            flesh.kernel.is_none(),
+            flesh.end_radius.is_none(),
+            flesh.end_blobbiness.is_none(),
         ]
-    };
-    let flesh = scene.flesh.iter().flat_map(of);
+    });
     let elements = scene.elements.iter();
     let hard = elements.flat_map(|element| [element.flesh.is_none(), element.paint.is_none()]);
     let whole = scene

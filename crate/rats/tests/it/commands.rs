@@ -152,7 +152,8 @@ fn variables() {
 
 #[test]
 fn hot_variables() {
-    let text = "var r = -0.5 hot\nvar V = 1, 2 -3 hot\nvar C = Gold hot\nvar D = rgb(0.1, 0.2, 0.3) hot\n\
+    let text = "var r = -0.5 hot\nvar V = 1, 2 -3 hot\nvar C = Gold hot\n\
+        var D = rgb(0.1, 0.2, 0.3) hot\n\
                 var e = r*2 hot\nvar f = 1\nvar C = 0 1 0 hot\n";
     let compiled = run(text);
     assert!(compiled.diagnostics.is_empty());
@@ -204,7 +205,8 @@ fn files_share_everything() {
             File {
                 name: String::from("main.rat"),
                 text: String::from(
-                    "surface s diff Red\nfor i = 1 to 3 { read ball.dat }\nsphere s 1 x 0 0\neyep 0 0 99",
+                    "surface s diff Red\nfor i = 1 to 3 { read ball.dat }\nsphere s 1 x 0 0\n\
+                     eyep 0 0 99",
                 ),
             },
             File {
@@ -235,7 +237,8 @@ fn camera() {
 #[test]
 fn surfaces() {
     let scene = scene(
-        "surface { s, diffuse 0.5 0.25 1, specular White, shine 40, radius .3, blobbiness -8, strength 2 }\n\
+        "surface { s, diffuse 0.5 0.25 1, specular White, shine 40, \
+         radius .3, blobbiness -8, strength 2 }\n\
          material t body 1 0.5 0, ambient 10%, diffuse 80%, specular 50%, kernel CAUCHY\n\
          surface u ambient Red\n\
          sphere s 1 0 0 0\nsphere t 1 0 0 0\nsphere u 1 0 0 0",
@@ -371,7 +374,8 @@ fn primitives() {
 #[test]
 fn soft_shapes_without_a_radius_of_their_own_take_the_material_s() {
     let scene = scene(
-        "surface s diff Red, blob -1, rad .25, kernel cauchy\nline s <0 0 0> <1 0 0>\ndot s <0 0 0>\n\
+        "surface s diff Red, blob -1, rad .25, kernel cauchy\nline s <0 0 0> <1 0 0>\n\
+         dot s <0 0 0>\n\
          triangle s <0 0 0> <1 0 0> <0 1 0>",
     );
     for element in &scene.elements {
@@ -423,7 +427,8 @@ fn transforms_of_the_last_object() {
 #[test]
 fn objects_inside_objects() {
     let found = centers(
-        "object OUT\n  object IN\n    sphere s 1 1 0 0\n  close\n  rotate 0 0 1 90 IN\n  sphere s 1 1 0 0\nclose\n\
+        "object OUT\n  object IN\n    sphere s 1 1 0 0\n  close\n  rotate 0 0 1 90 IN\n  \
+         sphere s 1 1 0 0\nclose\n\
          translate 10 0 0 OUT",
     );
     near(found[0], v(10.0, 1.0, 0.0));
@@ -441,13 +446,14 @@ fn instances_and_removal() {
 #[test]
 fn chains() {
     let found = centers(
-        "chain s, BEADS\nfor i = 1 to 2 { sphere 1 i 0 0 }\nclose\ntranslate 0 1 0 BEADS\nsphere s 1 0 0 0",
+        "chain s, BEADS\nfor i = 1 to 2 { sphere 1 i 0 0 }\nclose\ntranslate 0 1 0 BEADS\n\
+         sphere s 1 0 0 0",
     );
     assert_eq!(found, [v(1.0, 1.0, 0.0), v(2.0, 1.0, 0.0), DVec3::ZERO]);
 }
 
 #[test]
-fn scaled_flesh_scales_with_its_bones() {
+fn flesh_scales_with_its_bones() {
     for mode in ["relative", "absolute"] {
         let text = format!(
             "blobscale {mode}\nfragile all\nsurface s diff Red, blob -8, rad .25\nobject A\n\
@@ -470,7 +476,8 @@ fn scaled_flesh_scales_with_its_bones() {
 #[test]
 fn options() {
     let settings = scene(
-        "soft off\ndouble off\nfragile arc cyl\nframesize 320 200\nsample 3\ngamma 2.2\ncontrast .1 .2 .3\nblobscale absolute\n\
+        "soft off\ndouble off\nfragile arc cyl\nframesize 320 200\nsample 3\ngamma 2.2\n\
+         contrast .1 .2 .3\nblobscale absolute\n\
          influence .01\ndigger HERMITE2 4\nmap on 2",
     )
     .settings;
@@ -514,7 +521,8 @@ fn options() {
 #[test]
 fn lights() {
     let lights = scene(
-        "light 1 0.5 0, pos 1 2 3, inten 2 noshadow\nlight White distant dir 0 0 -2\nlight White distant pos 0 5 0",
+        "light 1 0.5 0, pos 1 2 3, inten 2 noshadow\nlight White distant dir 0 0 -2\n\
+         light White distant pos 0 5 0",
     )
     .lights;
     assert_eq!(lights[0].colour, [2.0, 1.0, 0.0]);
@@ -535,7 +543,8 @@ fn background_and_reset() {
         scene("background 0.1 0.2 0.3").background,
         [0.1, 0.2, 0.3].into()
     );
-    let all = "background Red\neyep 1 2 3\nsample 4\nlight White pos 1 1 1\nsurface s diff Red\nsphere s 1 0 0 0\n\
+    let all = "background Red\neyep 1 2 3\nsample 4\nlight White pos 1 1 1\nsurface s diff Red\n\
+        sphere s 1 0 0 0\n\
                var x = 1 hot\n";
     let compiled = run(&format!("{all}reset all"));
     assert_eq!(compiled.scene.elements, []);
@@ -561,14 +570,16 @@ fn the_picture_is_the_scene_at_the_first_shoot() {
 #[test]
 fn loops_choices_and_calls() {
     let found = centers(
-        "for i = 0 to 1 step 0.25 {\n  if i > 0.4 and i < 0.9 { sphere s 1 i 0 0 } else if i == 0 { sphere s 1 0 9 0 }\n}",
+        "for i = 0 to 1 step 0.25 {\n  if i > 0.4 and i < 0.9 { sphere s 1 i 0 0 } \
+         else if i == 0 { sphere s 1 0 9 0 }\n}",
     );
     assert_eq!(
         found,
         [v(0.0, 9.0, 0.0), v(0.5, 0.0, 0.0), v(0.75, 0.0, 0.0)]
     );
     let found = centers(
-        "define tower(P n) {\n  sphere s 1 P\n  if n <= 1 { return }\n  tower P + vec(0, 0, 1), n - 1\n}\ntower <1 0 0> 3",
+        "define tower(P n) {\n  sphere s 1 P\n  if n <= 1 { return }\n  \
+         tower P + vec(0, 0, 1), n - 1\n}\ntower <1 0 0> 3",
     );
     assert_eq!(
         found,
@@ -683,7 +694,8 @@ fn a_file_called_like_one_of_the_library() {
 /// `+=` and `*=` change a variable with every frame.
 #[test]
 fn variables_change_with_every_frame() {
-    let text = "surface s diff Red\nvar x = 1 += 0.5\nvar r = 2\nvar r *= 0.5\nvar P = 0 0 0 += 0 0 1\n\
+    let text = "surface s diff Red\nvar x = 1 += 0.5\nvar r = 2\nvar r *= 0.5\n\
+        var P = 0 0 0 += 0 0 1\n\
         sphere s r x P.y P.z";
     let at = |frame| {
         let files = vec![File {
@@ -717,7 +729,8 @@ fn bodies(text: &str) -> (Vec<u32>, Vec<String>) {
 #[test]
 fn bodies_hold_what_stands_in_them() {
     let (of_each, names) = bodies(
-        "sphere s 1 0 0 0\nbody A\nsphere s 1 1 0 0\nobject ARM\nsphere s 1 2 0 0\nclose ARM\nclose A\n\
+        "sphere s 1 0 0 0\nbody A\nsphere s 1 1 0 0\nobject ARM\nsphere s 1 2 0 0\nclose ARM\n\
+         close A\n\
          sphere s 1 3 0 0\nobject O\nbody B\nsphere s 1 4 0 0\nclose\nsphere s 1 5 0 0\nclose O",
     );
     assert_eq!(of_each, [0, 1, 1, 0, 2, 0]);
@@ -732,7 +745,8 @@ fn bodies_hold_what_stands_in_them() {
 #[test]
 fn an_instance_of_a_body_is_a_new_body() {
     let (of_each, names) = bodies(
-        "body A\nsphere s 1 1 0 0\nclose\ninstance A C\nobject O\ninstance A B\nsphere s 1 2 0 0\nclose\n\
+        "body A\nsphere s 1 1 0 0\nclose\ninstance A C\nobject O\ninstance A B\nsphere s 1 2 0 0\n\
+         close\n\
          instance O P\nobject Q\nsphere s 1 3 0 0\nclose\nbody D\ninstance Q\nclose\ninstance Q R",
     );
     // The last `Q` means the copy in D.

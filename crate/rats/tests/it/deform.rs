@@ -60,7 +60,8 @@ fn vertex_on_a_control_moves_with_it() {
 
 #[test]
 fn coordinates_are_the_worlds_at_the_command() {
-    let text = "mesh s gem.obj\nscale 2 2 2\ntranslate 5 0 0\ndeform { control <5 0 -2.4> move <0 1 0> }\ntranslate 0 0 1";
+    let text = "mesh s gem.obj\nscale 2 2 2\ntranslate 5 0 0\n\
+        deform { control <5 0 -2.4> move <0 1 0> }\ntranslate 0 0 1";
     let tip = DVec3::new(5.0, 1.0, -1.4);
     assert!(corners(&run(text)).iter().any(|p| p.distance(tip) < 1e-12));
     // The same of the implicit surface.
@@ -69,7 +70,7 @@ fn coordinates_are_the_worlds_at_the_command() {
 }
 
 #[test]
-fn named_object_is_deformed_alone() {
+fn object_with_a_name_is_deformed_alone() {
     let text = "object A\n mesh s gem.obj\nclose\nobject B\n mesh s gem.obj\nclose\n";
     let plain = corners(&run(text));
     let bent = corners(&run(&format!(
@@ -98,7 +99,8 @@ fn surface_is_at_the_thickness_and_scales_with_the_mesh() {
         assert!(above(0.3, 0.049) && !above(0.3, 0.052));
     }
     // A mesh adds to the body that it stands in.
-    let text = "surface f = s, radius 0.5, blobbiness -3\nmesh s gem.obj metaballs spherical 12\nsphere f 0.5 3 0 0";
+    let text = "surface f = s, radius 0.5, blobbiness -3\nmesh s gem.obj metaballs spherical 12\n\
+        sphere f 0.5 3 0 0";
     let surfaces = run(text).scene.surfaces();
     assert_eq!(surfaces.len(), 1);
     assert!(surfaces[0].function().jet(DVec3::X * 3.0).value > THRESHOLD);
@@ -134,7 +136,9 @@ fn as_many_controls_as_are_taken() {
 
 #[test]
 fn controls_are_told_with_their_places_in_the_text() {
-    let text = "var up = 0.5\nmesh s gem.obj\ntranslate 1 0 0\ndeform { control <1 0 -1.2> move <0 0 up>\n  control 1 0 0.65\n  control <1, 1, 0> move 0 -.25 1e-1 }";
+    let text = "var up = 0.5\nmesh s gem.obj\ntranslate 1 0 0\n\
+        deform { control <1 0 -1.2> move <0 0 up>\n  control 1 0 0.65\n  \
+        control <1, 1, 0> move 0 -.25 1e-1 }";
     let compiled = run(text);
     let whole = format!("surface s, diffuse Red\n{text}");
     let [deform] = &compiled.deforms[..] else {

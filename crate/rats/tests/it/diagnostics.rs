@@ -29,7 +29,7 @@ fn corpus() {
         let mut actual = String::new();
         for section in sections_of(&expected) {
             sections += 1;
-            let section_actual = said(section);
+            let section_actual = with_messages(section);
             if section_actual != section && !update {
                 let _ = writeln!(
                     failures,
@@ -61,8 +61,8 @@ fn sections_of(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The section with the expectations replaced by what is said.
-fn said(section: &str) -> String {
+/// Returns the section with the expectations replaced by the messages of its texts.
+fn with_messages(section: &str) -> String {
     let (head, body) = section.split_once('\n').expect("a name and a text");
     let mut files = vec![File {
         name: String::from("main.rat"),

@@ -87,7 +87,8 @@ fn steps() {
         "steps",
     );
     fails(
-        "define f(x) { f2 x\nf2 x }\ndefine f2(x) { f3 x\nf3 x }\ndefine f3(x) { for i = 1 to 1e4 { f4 x } }\n\
+        "define f(x) { f2 x\nf2 x }\ndefine f2(x) { f3 x\nf3 x }\n\
+         define f3(x) { for i = 1 to 1e4 { f4 x } }\n\
          define f4(x) { for i = 1 to 1e4 { var y = x } }\nf 1",
         "steps",
     );
@@ -120,7 +121,8 @@ fn heavy_elements() {
     let curves = MAX_ELEMENTS / CURVE_WEIGHT + 1;
     fails(
         format!(
-            "surface s diff Red, blob -1, rad 1\nfor i = 1 to {curves} {{ curve s 1 0 0 0 1 0 0 1 1 0 0 1 i }}"
+            "surface s diff Red, blob -1, rad 1\nfor i = 1 to {curves} \
+             {{ curve s 1 0 0 0 1 0 0 1 1 0 0 1 i }}"
         ),
         "shapes",
     );
@@ -199,7 +201,7 @@ fn operands() {
 }
 
 #[test]
-fn nested_expressions() {
+fn expressions_in_expressions() {
     for (open, close) in [("(", ")"), ("-", ""), ("sin(", ")"), ("2^", ""), ("+", "")] {
         let deep = open.repeat(1000) + "1" + &close.repeat(1000);
         fails(format!("var x = {deep}"), "nested");
@@ -212,7 +214,7 @@ fn nested_expressions() {
 }
 
 #[test]
-fn nested_blocks() {
+fn blocks_in_blocks() {
     for open in ["for i = 1 to 1 {", "if 1 {", "define f() {"] {
         let deep = open.repeat(10_000) + &"}".repeat(10_000);
         fails(deep, "inside each other");
@@ -227,7 +229,7 @@ fn nested_blocks() {
 }
 
 #[test]
-fn nested_calls() {
+fn calls_in_calls() {
     fails("define f() { f }\nf", "deep");
     // The deepest nest of blocks in the deepest nest of calls.
     let body = "if 1 {".repeat(40) + "f" + &"}".repeat(40);
@@ -237,7 +239,7 @@ fn nested_calls() {
 }
 
 #[test]
-fn nested_files() {
+fn files_in_files() {
     // Each file reads the next one; there are fewer files than the limit of nesting, so a call in
     // between is what can go deeper.
     let files = (0..MAX_FILES)
@@ -256,7 +258,8 @@ fn magnitudes() {
     fails("eyep 2e12 0 0", "too large");
     fails("var x = 1e13", "too large");
     fails("var x = 1e400", "finite");
-    let text = "surface s diff Red\nobject A\nsphere s 1 1 0 0\nclose\nfor i = 1 to 400 { scale 10 10 10 }";
+    let text = "surface s diff Red\nobject A\nsphere s 1 1 0 0\nclose\n\
+        for i = 1 to 400 { scale 10 10 10 }";
     let compiled = run(text);
     assert!(compiled.scene.elements.is_empty());
     assert_eq!(compiled.diagnostics.len(), 1);
@@ -347,7 +350,7 @@ fn cut_image(side: u32) -> Vec<u8> {
     png
 }
 
-/// Each size is another height field, so none is kept, and a mistake is not either.
+/// Height fields of different sizes are different: none is kept, and a mistake is not either.
 #[test]
 fn a_large_image_in_a_loop() {
     let text = "surface s diff Red\nfor i = 1 to 1e6 { terra s big.png 0 0 0 i 1 1 }";
@@ -367,10 +370,11 @@ fn a_large_image_in_a_loop() {
 }
 
 #[test]
-fn deformed_vertices() {
+fn vertices_that_are_deformed() {
     let text = |turns: u32| {
         format!(
-            "surface s, diffuse Red\nmesh s gem.obj\nfor i = 1 to {turns} {{\n  deform {{ control <0 0 -1.2> move <0 0 0.001> }}\n}}\n"
+            "surface s, diffuse Red\nmesh s gem.obj\nfor i = 1 to {turns} {{\n  \
+             deform {{ control <0 0 -1.2> move <0 0 0.001> }}\n}}\n"
         )
     };
     fails(

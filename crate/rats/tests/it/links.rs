@@ -6,7 +6,7 @@ use rats::link::{self, LinkError, Shared};
 use rats::{File, Project};
 use scene::Camera;
 
-fn shared(name: &str, text: &str) -> Shared {
+fn share(name: &str, text: &str) -> Shared {
     Shared {
         project: Project {
             files: vec![File {
@@ -18,18 +18,21 @@ fn shared(name: &str, text: &str) -> Shared {
     }
 }
 
-fn framed(version: u8, json: &[u8]) -> String {
+fn fragment_of(version: u8, json: &[u8]) -> String {
     let mut bytes = vec![version];
     bytes.extend(miniz_oxide::deflate::compress_to_vec(json, 9));
     URL_SAFE_NO_PAD.encode(bytes)
 }
 
 /// A link of version 1 as it was sent. It must open for ever.
-const FROZEN: &str = "AU2NQQ6CQAxFrzL5bgmBGDZzCRO3wKKBDmJkIB0wGjIH8hxezIIuTPMXfW3eXzHJeOVmhl3h-hsH2HKFp4FhMVDvU6EZCWZ-6A_CIo4aNsG0vXPmJOQ7PnNb-TBdWLZDbrJ9Dub9qjxiHRM06hPaOvip4vKYZsk3Ra1uko7VXmaKflG8TH8o35Eb77CF7jF-AA";
+const FROZEN: &str = "\
+    AU2NQQ6CQAxFrzL5bgmBGDZzCRO3wKKBDmJkIB0wGjIH8hxezIIuTPMXfW3eXzHJeOVmhl3h-hsH2HKFp4FhMVDvU6\
+    EZCWZ-6A_CIo4aNsG0vXPmJOQ7PnNb-TBdWLZDbrJ9Dub9qjxiHRM06hPaOvip4vKYZsk3Ra1uko7VXmaKflG8TH8o\
+    35Eb77CF7jF-AA";
 
 #[test]
 fn version_1_is_frozen() {
-    let mut expected = shared(
+    let mut expected = share(
         "main.rat",
         "surface s diff OrangeRed\nsphere s 1 0 0 0 # é\n",
     );
@@ -54,12 +57,18 @@ fn texts_that_are_no_links_are_refused() {
         assert_eq!(link::decode(text), Err(LinkError::NotALink), "{text}");
     }
     assert_eq!(
-        link::decode(&framed(2, b"{}")),
+        link::decode(&fragment_of(2, b"{}")),
         Err(LinkError::NewerVersion(2))
     );
-    assert_eq!(link::decode(&framed(1, b"{}")), Err(LinkError::Damaged));
-    assert_eq!(link::decode(&framed(1, b"\xff")), Err(LinkError::Damaged));
-    let whole = link::encode(&shared("a", "sphere s 1 0 0 0")).expect("a link");
+    assert_eq!(
+        link::decode(&fragment_of(1, b"{}")),
+        Err(LinkError::Damaged)
+    );
+    assert_eq!(
+        link::decode(&fragment_of(1, b"\xff")),
+        Err(LinkError::Damaged)
+    );
+    let whole = link::encode(&share("a", "sphere s 1 0 0 0")).expect("a link");
     assert_eq!(
         link::decode(&whole[..whole.len() / 2]),
         Err(LinkError::Damaged)
@@ -71,16 +80,16 @@ fn links_that_are_too_large_are_refused() {
     let long = "A".repeat(link::MAX_FRAGMENT + 1);
     assert_eq!(link::decode(&long), Err(LinkError::TooLong));
     // A bomb: a small fragment that inflates beyond the limit.
-    let bomb = framed(1, &vec![b' '; 64 * link::MAX_INFLATED]);
+    let bomb = fragment_of(1, &vec![b' '; 64 * link::MAX_INFLATED]);
     assert!(bomb.len() < link::MAX_FRAGMENT);
     assert_eq!(link::decode(&bomb), Err(LinkError::TooLarge));
-    let large = shared("a", &" ".repeat(link::MAX_INFLATED));
+    let large = share("a", &" ".repeat(link::MAX_INFLATED));
     assert_eq!(link::encode(&large), Err(LinkError::TooLarge));
     // Does not deflate, so the fragment is too long.
     let noise: String = (0..link::MAX_FRAGMENT)
         .map(|i| char::from(b' ' + (rats::random::hash(&[i as f64]) * 90.0) as u8))
         .collect();
-    assert_eq!(link::encode(&shared("a", &noise)), Err(LinkError::TooLong));
+    assert_eq!(link::encode(&share("a", &noise)), Err(LinkError::TooLong));
 }
 
 #[test]
@@ -93,17 +102,17 @@ fn contents_that_are_no_project_are_refused() {
         );
         assert!(
             matches!(
-                link::decode(&framed(1, &json)),
+                link::decode(&fragment_of(1, &json)),
                 Err(LinkError::NotAProject(_))
             ),
             "{shared:?}"
         );
     };
-    let good = shared("a", "");
+    let good = share("a", "");
     assert!(link::encode(&good).is_ok());
-    refused(shared("", ""));
-    refused(shared("a\nb", ""));
-    refused(shared(&"a".repeat(link::MAX_NAME + 1), ""));
+    refused(share("", ""));
+    refused(share("a\nb", ""));
+    refused(share(&"a".repeat(link::MAX_NAME + 1), ""));
     let mut none = good.clone();
     none.project.files.clear();
     refused(none);

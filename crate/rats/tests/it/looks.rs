@@ -37,7 +37,8 @@ fn v(x: f64, y: f64, z: f64) -> DVec3 {
 #[test]
 fn mirrors_and_glass() {
     let glass = finish(
-        "diff Black, reflective 10%, transparent 0.8 0.9 1, index 1.5, dispersion 0.02, skip shadow reflected",
+        "diff Black, reflective 10%, transparent 0.8 0.9 1, index 1.5, \
+         dispersion 0.02, skip shadow reflected",
     );
     assert_eq!(glass.reflective, [0.1; 3]);
     assert_eq!(glass.transparent, [0.8, 0.9, 1.0]);
@@ -50,7 +51,8 @@ fn mirrors_and_glass() {
     assert_eq!(glass.skip, wanted);
     // A copy goes on from what it copies.
     let copy = scene(
-        "surface a diff Red, index 1.3, transparent 50%, specular 20%\nsurface b = a, index 2\nsphere b 1 0 0 0",
+        "surface a diff Red, index 1.3, transparent 50%, specular 20%\nsurface b = a, index 2\n\
+         sphere b 1 0 0 0",
     );
     let copy = &copy.finishes[1];
     assert_eq!((copy.index, copy.transparent), (2.0, [0.5; 3]));
@@ -131,7 +133,8 @@ fn layers_lie_upon_each_other() {
     assert_eq!(scales, [1.0, 3.0]);
     // A material's own list, and one of a profile with other layers.
     let scene = scene(&format!(
-        "{both}texture P strength sin one\nsurface s diff Red, rad 1, blob -1, texture A + P, texture B\nsphere s 1 0 0 0"
+        "{both}texture P strength sin one\n\
+         surface s diff Red, rad 1, blob -1, texture A + P, texture B\nsphere s 1 0 0 0"
     ));
     assert_eq!(scene.finishes[0].layers.len(), 2);
     assert!(scene.flesh[0].profile.is_some());
@@ -154,7 +157,8 @@ fn images_of_the_project() {
         png("maps/b.png", [0, 255, 0, 255]),
     ];
     let text = "texture A pigment a.png plain\n\
-        texture B diffuse maps/b.png region <-1 -1 -1> <1 1 1> <-1 -1 2> <1 -1 2> <1 1 2> <-1 1 2>\n\
+        texture B diffuse maps/b.png region <-1 -1 -1> <1 1 1> <-1 -1 2> \
+        <1 -1 2> <1 1 2> <-1 1 2>\n\
         texture C specular a.png plain, scale 2 2 1\nbackground a.png\n\
         surface s diff White, texture A + B + C\nsphere s 1 0 0 0\n";
     let compiled = run(text, &assets, 0.0);
@@ -166,10 +170,9 @@ fn images_of_the_project() {
     assert_eq!(scene.images[1].bytes[..3], [0, 255, 0]);
     assert_eq!(scene.background, Background::Image(0));
     let methods: Vec<Method> = scene.finishes[0].layers.iter().map(|l| l.method).collect();
+    let corner = v(1.0, 1.0, 2.0);
     assert_eq!(methods[0], Method::Image(0, Mapping::Plain));
-    assert!(
-        matches!(methods[1], Method::Image(1, Mapping::Region(r)) if r.corners[2] == v(1.0, 1.0, 2.0))
-    );
+    assert!(matches!(methods[1], Method::Image(1, Mapping::Region(r)) if r.corners[2] == corner));
     assert_eq!(methods[2], Method::Image(0, Mapping::Plain));
     // A second compilation shares the pixels.
     let again = run(text, &assets, 0.0).scene;
@@ -177,7 +180,7 @@ fn images_of_the_project() {
 }
 
 #[test]
-fn broken_and_huge_images_are_refused() {
+fn images_that_are_broken_or_huge_are_refused() {
     let mut broken = png("a.png", [0; 4]);
     broken.bytes = broken.bytes[..20].into();
     let compiled = run("background a.png", &[broken], 0.0);
@@ -253,7 +256,8 @@ fn air() {
     let fog = scene("fog Gray, distance 3, height 2").fog.expect("fog");
     assert_eq!((fog.distance, fog.height), (3.0, Some(2.0)));
     let halo = scene(
-        "surface s diff Red\nobject O\nsphere s 1 0 0 0\nsphere s 1 4 0 0\nclose\ncloud Red, object O",
+        "surface s diff Red\nobject O\nsphere s 1 0 0 0\nsphere s 1 4 0 0\nclose\n\
+         cloud Red, object O",
     );
     assert_eq!(halo.clouds[0].position, v(2.0, 0.0, 0.0));
     assert_eq!(halo.clouds[0].radius, 2.0 * v(3.0, 1.0, 1.0).length());
@@ -326,7 +330,8 @@ fn places(scene: &Scene) -> Vec<f64> {
 
 #[test]
 fn moments_of_an_open_shutter() {
-    let text = "var x = 0 += 8\nshutter 0.5\nsample 2\nsurface s diff Red\nsphere s 1 x 0 0\nsphere s 1 5 0 0\n";
+    let text = "var x = 0 += 8\nshutter 0.5\nsample 2\nsurface s diff Red\nsphere s 1 x 0 0\n\
+        sphere s 1 5 0 0\n";
     let compiled = run(text, &[], 3.0);
     assert_eq!(places(&compiled.scene), [24.0, 5.0]);
     // The middles of four equal shares of half a frame.

@@ -63,7 +63,8 @@ fn frames_follow_the_laws_of_motion() {
 #[test]
 fn a_frame_is_the_same_in_whatever_order_frames_are_asked_for() {
     let text = format!(
-        "var t = 0 += 0.3\n{TAIL}translate 0 sin(t) 0, TAIL\nmotion TAIL {{ pin ROOT, floor <0 2 0> <0 1 0> }}"
+        "var t = 0 += 0.3\n{TAIL}translate 0 sin(t) 0, TAIL\n\
+         motion TAIL {{ pin ROOT, floor <0 2 0> <0 1 0> }}"
     );
     let forwards: Vec<_> = (0..30)
         .map(|f| nodes(&run(&text, f64::from(f)), 0))
@@ -82,7 +83,7 @@ fn a_frame_is_the_same_in_whatever_order_frames_are_asked_for() {
 }
 
 #[test]
-fn pinned_nodes_follow_the_text_and_the_rest_lags_behind() {
+fn nodes_follow_the_text_where_pinned_and_the_rest_lags_behind() {
     let text =
         format!("var x = 0 += 0.1\n{TAIL}translate x 0 0\nmotion {{ gravity 0 0 0, pin ROOT }}");
     let now = nodes(&run(&text, 20.0), 0);
@@ -104,7 +105,8 @@ fn pinned_nodes_follow_the_text_and_the_rest_lags_behind() {
 fn skeletons_are_moved_in_the_world() {
     // Scaled by 2 and turned over: down in the world is up in its own coordinates.
     let text = format!(
-        "{TAIL}scale 2 2 2\nrotate 0 0 1 180\nmotion TAIL {{ gravity 0 -10 0, damping 0, rate 10, steps 10, stiffness 0 }}"
+        "{TAIL}scale 2 2 2\nrotate 0 0 1 180\n\
+         motion TAIL {{ gravity 0 -10 0, damping 0, rate 10, steps 10, stiffness 0 }}"
     );
     let now = nodes(&run(&text, 2.0), 0);
     let fell = 10.0 * 1e-4 * 20.0 * 21.0 / 2.0;
@@ -124,16 +126,20 @@ fn a_floor_a_box_and_another_skeleton_stand_in_the_way() {
     assert!(under(&format!("{TAIL}motion {{ }}")) < -5.0);
     assert!(under(&format!("{TAIL}motion {{ floor <0 1 0> <0 3 0> }}")) > 1.1);
     let boxed = format!(
-        "{TAIL}surface h, diffuse Red\nobject B\nbox h, <-9 0 -9> <9 1 9>\nclose\nmotion TAIL {{ against B }}"
+        "{TAIL}surface h, diffuse Red\nobject B\nbox h, <-9 0 -9> <9 1 9>\nclose\n\
+         motion TAIL {{ against B }}"
     );
     assert!(under(&boxed) > 1.1);
     let other = format!(
-        "{TAIL}skeleton s, BED {{ node A <-3 1 0> node B <6 1 0> curve A B }}\nskeleton s, OTHER {{ node A <1.5 1 -3> node B <1.5 1 3> curve A B }}\nmotion TAIL {{ against BED OTHER }}"
+        "{TAIL}skeleton s, BED {{ node A <-3 1 0> node B <6 1 0> curve A B }}\n\
+         skeleton s, OTHER {{ node A <1.5 1 -3> node B <1.5 1 3> curve A B }}\n\
+         motion TAIL {{ against BED OTHER }}"
     );
     // It lies on the rods, or hangs over them.
     assert!(under(&other) > -2.5);
     let both = format!(
-        "{TAIL}skeleton s, BED {{ node C <-3 1 0> node D <6 1 0> curve C D }}\nmotion TAIL BED {{ pin C D, bending 0, gravity 0 -3 0 }}"
+        "{TAIL}skeleton s, BED {{ node C <-3 1 0> node D <6 1 0> curve C D }}\n\
+         motion TAIL BED {{ pin C D, bending 0, gravity 0 -3 0 }}"
     );
     assert!(under(&both) > -2.5);
 }
@@ -179,7 +185,8 @@ fn too_much_is_refused_or_stops_with_words() {
     let nodes: String = (0..150).map(|i| format!("node n{i} <{i} 0 0> ")).collect();
     let along: String = (0..150).map(|i| format!("n{i} ")).collect();
     let text = format!(
-        "surface s, diffuse Red, radius 0.3\nskeleton s, A {{ {nodes} curve {along} }}\nmotion {{ steps 200 }}"
+        "surface s, diffuse Red, radius 0.3\nskeleton s, A {{ {nodes} curve {along} }}\n\
+         motion {{ steps 200 }}"
     );
     let far = run(&text, 2999.0);
     let stopped = far.diagnostics.iter();

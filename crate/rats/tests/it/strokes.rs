@@ -37,7 +37,8 @@ fn sculpture_is_a_mesh_like_any_other() {
     };
     assert_eq!(*corners, direct.corners(5));
     let soft = run(
-        "soft on\nsurface Flesh, diffuse Coral, blobbiness -2, radius 0.2\nmesh Flesh horn.strokes\n",
+        "soft on\nsurface Flesh, diffuse Coral, blobbiness -2, radius 0.2\n\
+         mesh Flesh horn.strokes\n",
         HORN,
     );
     assert!(

@@ -1,7 +1,7 @@
 //! The editor's queries to the language, and its use of the answers: opening the completions and
 //! writing one, going to definitions, renaming, laying the text out, the card under the pointer.
 
-use super::completion::Keyed;
+use super::completion::Choice;
 use super::place::{self, Place, id, to_bytes, to_chars};
 use super::{Editor, rename};
 use crate::command::Command;
@@ -44,7 +44,7 @@ impl Editor {
         match self.place() {
             Some(place) if focused => {
                 if typed {
-                    self.completions.typed(&self.buffer, place, now);
+                    self.completions.follow(&self.buffer, place, now);
                 }
                 self.completions.update(ui, session, place, now);
             }
@@ -56,9 +56,9 @@ impl Editor {
         }
     }
 
-    /// Writes a completion that was taken. Gives whether there was one.
-    pub(super) fn write(&mut self, ui: &Ui, taken: Keyed) -> bool {
-        let Keyed::Take(item, range) = taken else {
+    /// Writes a completion that was chosen. Returns whether there was one.
+    pub(super) fn write(&mut self, ui: &Ui, chosen: Choice) -> bool {
+        let Choice::Take(item, range) = chosen else {
             return false;
         };
         if self.buffer.get(range.clone()).is_none() {
@@ -79,13 +79,13 @@ impl Editor {
         self.before = Some(caret);
     }
 
-    /// Keys that ask about the text: completions, manual, definition, renaming, layout.
-    pub(super) fn questions(&mut self, ui: &Ui, session: &Session, commands: &mut Vec<Command>) {
+    /// Acts on keys that ask about the text: completions, manual, definition, renaming, layout.
+    pub(super) fn ask(&mut self, ui: &Ui, session: &Session, commands: &mut Vec<Command>) {
         let pressed = |modifiers, key| {
             let shortcut = egui::KeyboardShortcut::new(modifiers, key);
             ui.input_mut(|input| input.consume_shortcut(&shortcut))
         };
-        // The card that the user looks at comes before the caret.
+        // The card under the pointer comes before the caret.
         if let Some(command) = self.hover.take_command()
             && pressed(Modifiers::NONE, Key::F1)
         {
@@ -106,14 +106,14 @@ impl Editor {
             let command = card.and_then(|card| card.command);
             commands.push(Command::ShowManual(command.unwrap_or_default().to_owned()));
         } else if pressed(Modifiers::NONE, Key::F12) {
-            self.define(session, place, commands);
+            self.go_to_definition(session, place, commands);
         } else if pressed(Modifiers::NONE, Key::F2) {
             match rename::Rename::open(session, place) {
                 Ok(field) => self.rename = Some(field),
                 Err(trouble) => commands.push(Command::Tell(trouble)),
             }
         } else if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::F) {
-            self.lay_out(session, commands);
+            self.format(session, commands);
         } else if self.signature.is_open(self.line)
             && ui.input(|input| input.key_pressed(Key::Escape))
         {
@@ -122,8 +122,13 @@ impl Editor {
         }
     }
 
-    /// Goes to where the name at a place is made.
-    pub(super) fn define(&self, session: &Session, place: Place, commands: &mut Vec<Command>) {
+    /// Goes to the definition of the name at a place.
+    pub(super) fn go_to_definition(
+        &self,
+        session: &Session,
+        place: Place,
+        commands: &mut Vec<Command>,
+    ) {
         let found = assist::definition(session.project(), place.file, place.byte);
         commands.push(match found {
             Some(found) => Command::Jump {
@@ -131,25 +136,27 @@ impl Editor {
                 range: found.span,
             },
             None => Command::Tell(String::from(
-                "The texts do not make the name at the caret. F12 and Ctrl+click go to where a variable, material, object or command is made.",
+                "The texts do not define the name at the caret. F12 and Ctrl+click go to where a \
+                    variable, material, object or command is defined.",
             )),
         });
     }
 
-    /// Lays the file out anew; the caret stays in its line.
-    pub fn lay_out(&mut self, session: &Session, commands: &mut Vec<Command>) {
+    /// Formats the file; the caret stays in its line.
+    pub fn format(&mut self, session: &Session, commands: &mut Vec<Command>) {
         let text = session.text(self.file);
-        let neat = assist::format(text);
-        if neat != text {
-            let lines = neat.split_inclusive('\n').take(self.line.saturating_sub(1));
-            self.place = Some(lines.map(str::len).sum());
-            commands.push(Command::step(rats::TextEdit::whole(self.file, neat)));
+        let formatted = assist::format(text);
+        if formatted != text {
+            let lines = formatted.split_inclusive('\n');
+            let before = lines.take(self.line.saturating_sub(1));
+            self.place = Some(before.map(str::len).sum());
+            commands.push(Command::step(rats::TextEdit::whole(self.file, formatted)));
         }
     }
 
     /// Shows a card about the name under the pointer, or with Ctrl and a click goes to its
     /// definition.
-    pub(super) fn pointed(
+    pub(super) fn point(
         &mut self,
         response: &egui::Response,
         session: &Session,
@@ -173,7 +180,7 @@ impl Editor {
         if response.ctx.input(|input| input.modifiers.command) {
             response.ctx.set_cursor_icon(egui::CursorIcon::PointingHand);
             if response.clicked() {
-                self.define(session, place, commands);
+                self.go_to_definition(session, place, commands);
             }
             return;
         }

@@ -1,8 +1,8 @@
 //! The list of what can be written at the caret: opened by typing a word or with Ctrl+Space, used
 //! with the arrow keys, Enter or Tab, closed with Escape.
 //!
-//! While the user types, the list is only made when that is quick; else it waits for a short rest,
-//! so that typing never waits for it.
+//! While the user types, a list that takes long to make waits for a short rest, so that typing
+//! never waits for it.
 
 use super::place::{self, Place};
 use crate::session::Session;
@@ -16,11 +16,14 @@ use egui::{
 
 /// Seconds of rest after which a list that takes long is made.
 const REST: f64 = 0.15;
-/// Seconds in which a list is made while the user types on.
+/// Seconds up to which a list is quick enough to be made while the user types on.
 const QUICK: f64 = 0.004;
 /// Letters after which the list opens by itself.
 const LETTERS: usize = 2;
-/// How many rows are on show and how high they are: fewer and higher ones for thumbs.
+/// Size of the picture of the selected row.
+const PICTURE: egui::Vec2 = vec2(128.0, 96.0);
+
+/// Returns the number of rows on show and their height: fewer and higher ones for thumbs.
 fn rows(style: &egui::Style) -> (usize, f32) {
     if style.spacing.interact_size.y >= 40.0 {
         (5, 36.0)
@@ -29,32 +32,29 @@ fn rows(style: &egui::Style) -> (usize, f32) {
     }
 }
 
-/// The size of the picture of what is selected.
-const PICTURE: egui::Vec2 = vec2(128.0, 96.0);
-
 /// The list and where it belongs.
 #[derive(Default)]
 pub struct Popup {
-    /// The completions on offer, and the place and text they are for.
+    /// The completions on offer, and the place that they are for.
     offers: Option<(Place, Completions)>,
-    /// The part of the word that was written, in small letters.
+    /// The part of the word before the caret, in lower case.
     written: String,
     selected: usize,
-    /// Whether the user moved the selection, so that Enter surely means it.
+    /// Whether the user moved the selection, so that Enter takes it.
     chosen: bool,
     /// A place for which a list is wanted, and since when; whether it was asked for.
     wanted: Option<(Place, f64, bool)>,
-    /// How long making the last list took, seconds.
+    /// Seconds that making the last list took.
     cost: f64,
     pictures: Thumbnails,
 }
 
-/// Effect of the keys.
+/// A choice from the list.
 #[derive(Debug, PartialEq)]
-pub enum Keyed {
-    /// Nothing.
+pub enum Choice {
+    /// Nothing was chosen.
     Nothing,
-    /// This is to be written.
+    /// The completion to write in place of these bytes.
     Take(Completion, std::ops::Range<usize>),
 }
 
@@ -71,21 +71,21 @@ impl Popup {
         self.wanted = None;
     }
 
-    /// The user asked for the list at this place.
+    /// Opens the list at this place, as the user asked for it.
     pub fn ask(&mut self, place: Place) {
         self.wanted = Some((place, f64::NEG_INFINITY, true));
     }
 
-    /// The user typed, and the caret is at this place now.
-    pub fn typed(&mut self, text: &str, place: Place, now: f64) {
+    /// Follows a typed letter, after which the caret is at this place.
+    pub fn follow(&mut self, text: &str, place: Place, now: f64) {
         let word = text[..place.byte]
             .chars()
             .rev()
             .take_while(|c| c.is_alphanumeric() || *c == '_')
             .count();
-        let asked = self.is_open();
+        let was_open = self.is_open();
         self.close();
-        if word >= LETTERS || (asked && word > 0) {
+        if word >= LETTERS || (was_open && word > 0) {
             self.wanted = Some((place, now, false));
         }
     }
@@ -134,32 +134,32 @@ impl Popup {
         }
     }
 
-    /// Takes the keys that work on the list before the text sees them.
-    pub fn keys(&mut self, ui: &Ui) -> Keyed {
+    /// Consumes the keys that work on the list, before the text sees them.
+    pub fn keys(&mut self, ui: &Ui) -> Choice {
         let Some((_, completions)) = &self.offers else {
-            return Keyed::Nothing;
+            return Choice::Nothing;
         };
         let count = completions.items.len();
         let (page, _) = rows(ui.style());
         let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let selected = self.selected;
-        let mut moved = |to: usize| {
+        let mut select = |to: usize| {
             self.selected = to;
             self.chosen = true;
         };
         if pressed(Key::ArrowDown) {
-            moved((selected + 1) % count);
+            select((selected + 1) % count);
         } else if pressed(Key::ArrowUp) {
-            moved((selected + count - 1) % count);
+            select((selected + count - 1) % count);
         } else if pressed(Key::PageDown) {
-            moved((selected + page).min(count - 1));
+            select((selected + page).min(count - 1));
         } else if pressed(Key::PageUp) {
-            moved(selected.saturating_sub(page));
+            select(selected.saturating_sub(page));
         } else if pressed(Key::Escape) {
             self.close();
         } else if pressed(Key::Tab) {
             return self.take(selected);
-        } else if self.means(selected) {
+        } else if self.is_meant(selected) {
             if pressed(Key::Enter) {
                 return self.take(selected);
             }
@@ -167,11 +167,11 @@ impl Popup {
             // The line ends here; the text gets the key.
             self.close();
         }
-        Keyed::Nothing
+        Choice::Nothing
     }
 
-    /// Whether Enter means this row: it was chosen, or goes on as the word begins.
-    fn means(&self, index: usize) -> bool {
+    /// Whether Enter takes this row: the user moved there, or it begins as the word does.
+    fn is_meant(&self, index: usize) -> bool {
         let item = self
             .offers
             .as_ref()
@@ -179,22 +179,23 @@ impl Popup {
         self.chosen || item.is_some_and(|item| item.text.to_lowercase().starts_with(&self.written))
     }
 
-    fn take(&mut self, index: usize) -> Keyed {
+    fn take(&mut self, index: usize) -> Choice {
         let offers = self.offers.take();
         let taken = offers.and_then(|(_, mut completions)| {
             let fits = index < completions.items.len();
             fits.then(|| (completions.items.swap_remove(index), completions.replace))
         });
         match taken {
-            Some((item, range)) => Keyed::Take(item, range),
-            None => Keyed::Nothing,
+            Some((item, range)) => Choice::Take(item, range),
+            None => Choice::Nothing,
         }
     }
 
-    /// Shows the list below the caret (above where there is no room). Gives what was clicked.
-    pub fn show(&mut self, ui: &Ui, caret: Rect) -> Keyed {
+    /// Shows the list below the caret (above where there is no room). Returns the row that was
+    /// clicked.
+    pub fn show(&mut self, ui: &Ui, caret: Rect) -> Choice {
         let Some((_, completions)) = &self.offers else {
-            return Keyed::Nothing;
+            return Choice::Nothing;
         };
         let palette = theme::palette(ui.visuals());
         let items = &completions.items;
@@ -241,23 +242,23 @@ impl Popup {
                         ui.add_space(4.0);
                         self.pictures.show(ui, path, PICTURE);
                     }
-                    let told = format!(
+                    let spoken = format!(
                         "{}, {} of {}: {}",
                         item.text,
                         self.selected + 1,
                         items.len(),
                         item.detail
                     );
-                    foot(ui, palette, item, &told);
+                    foot(ui, palette, item, &spoken);
                 }
             });
         });
         crate::places::note(ui.ctx(), "completions", shown.response.rect);
-        clicked.map_or(Keyed::Nothing, |index| self.take(index))
+        clicked.map_or(Choice::Nothing, |index| self.take(index))
     }
 }
 
-/// One row. Gives whether it was clicked.
+/// Shows a row. Returns whether it was clicked.
 fn row(ui: &mut Ui, palette: &Palette, item: &Completion, selected: bool, height: f32) -> bool {
     let size = vec2(ui.available_width(), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -308,17 +309,17 @@ fn row(ui: &mut Ui, palette: &Palette, item: &Completion, selected: bool, height
     response.clicked()
 }
 
-/// The line at the foot: all about the selected row, which screen readers say by themselves.
-fn foot(ui: &mut Ui, palette: &Palette, item: &Completion, told: &str) {
+/// Shows the line at the foot, about the selected row. Screen readers say `spoken` when it changes.
+fn foot(ui: &mut Ui, palette: &Palette, item: &Completion, spoken: &str) {
     let text = egui::RichText::new(&item.detail)
         .size(12.0)
         .color(palette.weak);
     ui.add_space(4.0);
     let line = ui.add(egui::Label::new(text).truncate());
-    place::say(ui.ctx(), line.id, told);
+    place::say(ui.ctx(), line.id, spoken);
 }
 
-/// A letter for a kind, and its colour.
+/// Returns a letter for a kind, and its colour.
 fn sign(kind: CompletionKind, palette: &Palette) -> (&'static str, Color32) {
     match kind {
         CompletionKind::Command => ("c", palette.command),

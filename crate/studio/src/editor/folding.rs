@@ -1,6 +1,6 @@
-//! Folding: blocks, objects and long remarks shut to their first line. The text stays whole: folded
-//! lines are laid out without height. A small triangle beside the first line, or F8, shuts and
-//! opens.
+//! Folding: blocks, objects and long comments shut to their first line. The text stays whole:
+//! folded lines are laid out without height. A small triangle beside the first line, or F8, shuts
+//! and opens.
 
 use crate::theme::Palette;
 use egui::text::{LayoutJob, LayoutSection};
@@ -19,19 +19,19 @@ struct Folds {
     text: String,
     /// Blocks that can be folded, as lines from 0.
     ranges: Vec<Range<usize>>,
-    /// The first lines of what is.
+    /// The first lines of blocks that are folded.
     shut: BTreeSet<usize>,
     /// The bytes that are folded away.
     hidden: Vec<Range<usize>>,
 }
 
 impl Folding {
-    /// Forgets everything: another work is open.
+    /// Forgets everything, when another work was opened.
     pub fn clear(&mut self) {
         self.files.clear();
     }
 
-    /// Follows an edit; what was folded stays so. Gives the bytes that are folded away.
+    /// Follows an edit; folded blocks stay folded. Returns the bytes that are folded away.
     pub fn update(&mut self, file: usize, text: &str) -> Vec<Range<usize>> {
         let folds = self.files.entry(file).or_default();
         if folds.text != text {
@@ -43,30 +43,27 @@ impl Folding {
     /// Opens the folds that hide a line.
     pub fn reveal(&mut self, file: usize, line: usize) {
         if let Some(folds) = self.files.get_mut(&file) {
-            let hides = |fold: &Range<usize>| fold.start < line && line < fold.end;
-            let opened: Vec<usize> = folds
-                .ranges
-                .iter()
-                .filter(|f| hides(f))
-                .map(|f| f.start)
-                .collect();
-            for start in opened {
-                folds.shut.remove(&start);
+            for fold in &folds.ranges {
+                if fold.start < line && line < fold.end {
+                    folds.shut.remove(&fold.start);
+                }
             }
             folds.hide();
         }
     }
 
-    /// The fold that hides a line, the outermost one.
-    pub fn hiding(&self, file: usize, line: usize) -> Option<Range<usize>> {
+    /// Returns the outermost fold that hides a line.
+    pub fn around(&self, file: usize, line: usize) -> Option<Range<usize>> {
         let folds = self.files.get(&file)?;
-        let hides = |fold: &&Range<usize>| {
-            folds.shut.contains(&fold.start) && fold.start < line && line < fold.end
-        };
-        folds.ranges.iter().find(hides).cloned()
+        let mut shut = folds
+            .ranges
+            .iter()
+            .filter(|fold| folds.shut.contains(&fold.start));
+        shut.find(|fold| fold.start < line && line < fold.end)
+            .cloned()
     }
 
-    /// Shuts or opens the innermost fold around a line. Gives its lines if it is shut now.
+    /// Shuts or opens the innermost fold around a line. Returns its lines if it is shut now.
     pub fn toggle(&mut self, file: usize, line: usize) -> Option<Range<usize>> {
         let folds = self.files.get_mut(&file)?;
         let around = folds
@@ -82,8 +79,8 @@ impl Folding {
         is_shut.then_some(around)
     }
 
-    /// Draws the triangles at `x` beside the lines `rows` (from 0) that can be folded, and a mark
-    /// behind those that are. Gives the line whose triangle was clicked.
+    /// Draws triangles at `x` beside the lines `rows` (from 0) that can be folded, and a mark
+    /// behind those that are folded. Returns the line whose triangle was clicked.
     pub fn show(
         &self,
         ui: &Ui,
@@ -136,7 +133,7 @@ impl Folding {
 }
 
 impl Folds {
-    /// Takes a new text: lines after the edit keep what they were.
+    /// Takes a new text: folded lines after the edit stay folded.
     fn follow(&mut self, text: &str) {
         let (old, new): (Vec<&str>, Vec<&str>) =
             (self.text.lines().collect(), text.lines().collect());
@@ -146,25 +143,25 @@ impl Folds {
             .take(most)
             .take_while(|(a, b)| a == b)
             .count();
-        let moved = |line: &usize| {
-            if *line >= old.len() - after {
-                line + new.len() - old.len()
-            } else {
-                *line
-            }
-        };
         self.ranges = assist::folds(text);
         let starts: BTreeSet<usize> = self.ranges.iter().map(|fold| fold.start).collect();
         self.shut = self
             .shut
             .iter()
-            .map(moved)
+            .map(|line| {
+                if *line >= old.len() - after {
+                    line + new.len() - old.len()
+                } else {
+                    *line
+                }
+            })
             .filter(|line| starts.contains(line))
             .collect();
         text.clone_into(&mut self.text);
         self.hide();
     }
 
+    /// Finds the bytes that are folded away.
     fn hide(&mut self) {
         let ends = self.text.match_indices('\n').map(|(at, _)| at + 1);
         let starts: Vec<usize> = std::iter::once(0).chain(ends).collect();
@@ -196,7 +193,7 @@ fn triangle(ui: &Ui, middle: Pos2, shut: bool, colour: Color32) {
         .add(Shape::convex_polygon(corners, colour, Stroke::NONE));
 }
 
-/// A layout in which some bytes have no height.
+/// Returns a layout in which the hidden bytes have no height.
 #[must_use]
 pub fn hide(mut job: LayoutJob, hidden: &[Range<usize>]) -> LayoutJob {
     if hidden.is_empty() {
@@ -224,6 +221,7 @@ pub fn hide(mut job: LayoutJob, hidden: &[Range<usize>]) -> LayoutJob {
     job
 }
 
+/// Returns the part of a section that covers some of its bytes.
 fn part(section: &LayoutSection, bytes: Range<usize>, is_hidden: bool) -> LayoutSection {
     let mut part = section.clone();
     part.byte_range = egui::text::ByteIndex(bytes.start)..egui::text::ByteIndex(bytes.end);
@@ -253,23 +251,23 @@ mod tests {
         let longer = format!("# a remark\n{TEXT}");
         let hidden = folding.update(0, &longer);
         assert!(longer[hidden[0].clone()].starts_with("  quit"));
-        assert!(folding.hiding(0, 5).is_some());
+        assert!(folding.around(0, 5).is_some());
         assert!(folding.update(0, "quit\n").is_empty());
     }
 
     #[test]
-    fn hidden_lines_can_be_revealed() {
+    fn lines_in_folds_can_be_revealed() {
         let mut folding = Folding::default();
         folding.update(0, TEXT);
         folding.toggle(0, 0);
-        assert!(folding.hiding(0, 1).is_some());
+        assert!(folding.around(0, 1).is_some());
         folding.reveal(0, 1);
-        assert!(folding.hiding(0, 1).is_none());
+        assert!(folding.around(0, 1).is_none());
         assert!(folding.update(0, TEXT).is_empty());
     }
 
     #[test]
-    fn hidden_bytes_are_cut_out_of_their_sections() {
+    fn bytes_in_folds_are_cut_out_of_their_sections() {
         let job = LayoutJob::simple(
             String::from("abc\ndef\nghi"),
             FontId::monospace(13.0),

@@ -1,4 +1,4 @@
-//! The card about the word under the pointer, and the messages that stand there.
+//! The card about the word under the pointer, and the messages about its place.
 
 use super::place::Place;
 use crate::marks::Marks;
@@ -17,21 +17,21 @@ pub struct Hover {
     card: Option<(Place, u64, Option<Card>)>,
     /// The command that the card on show is about.
     command: Option<&'static str>,
-    /// The text that was shown last, and whether the pointer has lain still since it changed: who
-    /// writes wants no card.
     revision: u64,
+    /// Whether the pointer has not moved since the text changed: no card comes while the user
+    /// types.
     still: bool,
     pointer: Option<egui::Pos2>,
     pictures: Thumbnails,
 }
 
 impl Hover {
-    /// The command that the card on show is about, until the next frame.
+    /// Takes the command that the card of the last frame was about.
     pub fn take_command(&mut self) -> Option<&'static str> {
         self.command.take()
     }
 
-    /// Shows what there is to say about a place of the text under the pointer.
+    /// Shows the messages and, after a rest, the card about a place of the text under the pointer.
     pub fn show(
         &mut self,
         response: &Response,

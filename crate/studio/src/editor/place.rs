@@ -12,7 +12,7 @@ pub struct Place {
     pub byte: usize,
 }
 
-/// The id of the text widget, the same at every frame and size.
+/// Returns the id of the text widget, the same at every frame and size.
 pub fn id() -> Id {
     Id::unique("editor")
 }
@@ -44,14 +44,14 @@ pub fn say(ctx: &egui::Context, id: Id, text: &str) {
     });
 }
 
-/// The byte of a character, by its number.
+/// Returns the byte of a character, by its number.
 pub fn to_bytes(text: &str, char: usize) -> usize {
     text.char_indices()
         .nth(char)
         .map_or(text.len(), |(byte, _)| byte)
 }
 
-/// The number of characters before a byte.
+/// Returns the number of characters before a byte.
 pub fn to_chars(text: &str, byte: usize) -> usize {
     text[..text.floor_char_boundary(byte)].chars().count()
 }

@@ -1,4 +1,4 @@
-//! A small field at a name that gives it another name everywhere.
+//! A small field that renames the name at the caret everywhere.
 
 use super::place::{self, Place};
 use crate::command::Command;
@@ -9,7 +9,7 @@ use egui::{Area, Frame, Id, Key, Order, Rect, RichText, TextEdit, Ui, pos2};
 /// The field.
 pub struct Rename {
     place: Place,
-    /// The text it was opened on; another one closes it.
+    /// The session's revision of the text at opening; a change closes the field.
     revision: u64,
     name: String,
     places: usize,
@@ -21,7 +21,7 @@ impl Rename {
     /// Opens the field for the name at a place.
     ///
     /// # Errors
-    /// If no name that the texts make stands there.
+    /// If no name that the texts define stands there.
     pub fn open(session: &Session, place: Place) -> Result<Self, String> {
         let project = session.project();
         let places = assist::references(project, place.file, place.byte);
@@ -43,12 +43,13 @@ impl Rename {
                 fresh: true,
             }),
             None => Err(String::from(
-                "F2 renames variables, materials, objects and commands that the text makes. Put the caret on such a name.",
+                "F2 renames variables, materials, objects and commands that the text defines. \
+                    Put the caret on such a name.",
             )),
         }
     }
 
-    /// Shows the field at the caret. Gives whether it stays open.
+    /// Shows the field at the caret. Returns whether it stays open.
     pub fn show(
         &mut self,
         ui: &Ui,
@@ -86,10 +87,13 @@ impl Rename {
                 }
                 let (text, colour) = match &self.trouble {
                     Some(trouble) => (trouble.clone(), palette.error),
-                    None => (
-                        format!("{} places. Enter renames them.", self.places),
-                        palette.weak,
-                    ),
+                    None => {
+                        let text = match self.places {
+                            1 => String::from("1 place. Enter renames it."),
+                            count => format!("{count} places. Enter renames them."),
+                        };
+                        (text, palette.weak)
+                    }
                 };
                 let line = RichText::new(text).size(12.0).color(colour);
                 let line = ui.add(egui::Label::new(line).wrap());
@@ -108,7 +112,7 @@ impl Rename {
         open
     }
 
-    /// Gives whether the names were changed.
+    /// Changes the names, or shows why not. Returns whether they were changed.
     fn carry_out(&mut self, session: &Session, commands: &mut Vec<Command>) -> bool {
         let Place { file, byte } = self.place;
         match assist::rename(session.project(), file, byte, self.name.trim()) {

@@ -1,4 +1,4 @@
-//! A quiet line at the caret: how the command is written there, with the operand whose turn it is.
+//! A quiet line at the caret that says how its command is written and which operand is next.
 
 use super::place::{self, Place};
 use crate::platform;
@@ -10,14 +10,14 @@ use egui::{Area, FontId, Frame, Order, Rect, Ui, pos2, vec2};
 
 /// Seconds of rest after which a line that takes long is made.
 const REST: f64 = 0.2;
-/// Seconds in which it is made at once.
+/// Seconds up to which a line is quick enough to be made at once.
 const QUICK: f64 = 0.003;
 
 /// The line and where it belongs.
 #[derive(Default)]
 pub struct Line {
     known: Option<(Place, u64, Option<Signature>)>,
-    /// Place of the caret, and since when it is there.
+    /// Place of the caret and revision of the text, and since when they are so.
     here: Option<(Place, u64, f64)>,
     cost: f64,
     /// The caret's line in which the user closed it.
@@ -60,7 +60,7 @@ impl Line {
         }
         let screen = ui.ctx().content_rect();
         let width = (screen.width() - 24.0).min(520.0);
-        let job = written(signature, ui, width);
+        let job = lay_out(signature, ui, width);
         let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
         let size = galley.size() + vec2(16.0, 8.0);
         let left = caret.left().min(screen.right() - size.x - 8.0).max(4.0);
@@ -70,7 +70,7 @@ impl Line {
         } else {
             caret.bottom() + 3.0
         };
-        let told = told(signature);
+        let spoken = in_words(signature);
         let area = Area::new(egui::Id::unique("signature"))
             .order(Order::Middle)
             .fixed_pos(pos2(left, top))
@@ -85,7 +85,7 @@ impl Line {
                 .inner_margin(egui::Margin::symmetric(8, 4))
                 .show(ui, |ui| {
                     let label = ui.add(egui::Label::new(galley));
-                    place::say(ui.ctx(), label.id, &told);
+                    place::say(ui.ctx(), label.id, &spoken);
                 });
         });
         crate::places::note(ui.ctx(), "signature", shown.response.rect);
@@ -122,7 +122,7 @@ impl Line {
     }
 }
 
-fn written(signature: &Signature, ui: &Ui, width: f32) -> LayoutJob {
+fn lay_out(signature: &Signature, ui: &Ui, width: f32) -> LayoutJob {
     let palette = theme::palette(ui.visuals());
     let code = |colour| TextFormat::simple(FontId::monospace(12.0), colour);
     let mut job = LayoutJob::default();
@@ -143,8 +143,8 @@ fn written(signature: &Signature, ui: &Ui, width: f32) -> LayoutJob {
     job
 }
 
-/// Text for screen readers.
-fn told(signature: &Signature) -> String {
+/// Returns the text for screen readers.
+fn in_words(signature: &Signature) -> String {
     match signature
         .active
         .and_then(|index| signature.parameters.get(index))

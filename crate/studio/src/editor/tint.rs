@@ -9,8 +9,9 @@ use assist::Tint;
 use egui::{Popup, Rect, Ui, UiBuilder, vec2};
 use rats::{HotValue, TextEdit, hot};
 
-/// Side of a square of colour, and the space between two.
+/// Side of a square of colour.
 const SIDE: f32 = 16.0;
+/// Space between two squares.
 const GAP: f32 = 5.0;
 /// Most colours that are shown.
 const MOST: usize = 4;
@@ -18,10 +19,10 @@ const MOST: usize = 4;
 /// The colours of the command at the caret.
 #[derive(Default)]
 pub struct Tints {
-    /// The place and the text that they are of.
+    /// The place and the revision of the text that they belong to.
     of: Option<(Place, u64)>,
     tints: Vec<Tint>,
-    /// The place of the colour that is being chosen: what is written moves the caret, perhaps into
+    /// The place of the colour that is being chosen: writing it moves the caret, perhaps into
     /// another command.
     anchor: Option<Place>,
     dragging: bool,

@@ -12,7 +12,7 @@ use rats::Deform;
 use scene::Origin;
 use std::collections::BTreeSet;
 
-/// Knobs that are shown, at most: the nearest to the eye.
+/// Most knobs that are shown: those nearest to the eye.
 const MOST_KNOBS: usize = 240;
 
 /// The deformation whose cage is shown.
@@ -20,11 +20,12 @@ const MOST_KNOBS: usize = 240;
 pub struct Cage {
     /// Index in the compiled text's list.
     chosen: Option<usize>,
-    /// The handles of a revision, and the lines between the controls.
+    /// The revision and the index that handles were made for, and the handles.
     made: Option<(u64, usize, Vec<Handle>)>,
-    /// The control points that `edges` are of.
+    /// The control points that `edges` join.
     places: Vec<DVec3>,
     edges: Vec<[u32; 2]>,
+    /// The knob that is held, and the place to which the pointer has dragged it.
     drag: Option<(usize, DVec3)>,
 }
 
@@ -33,21 +34,21 @@ fn contains(origin: Origin, file: usize, byte: usize) -> bool {
 }
 
 impl Cage {
-    /// Shows none.
+    /// Lets go: no deformation is chosen.
     pub fn let_go(&mut self) {
         self.chosen = None;
         self.drag = None;
     }
 
-    /// The deformation that is shown.
-    pub fn chosen<'s>(&self, session: &'s Session) -> Option<&'s Deform> {
-        session.compiled().deforms.get(self.chosen?)
+    /// Returns the deformation that is shown.
+    pub fn deform<'s>(&self, session: &'s Session) -> Option<&'s Deform> {
+        session.compilation().deforms.get(self.chosen?)
     }
 
-    /// Chooses the deformation in which the caret is; another place of the caret lets go.
+    /// Chooses the deformation in which the caret is; elsewhere it lets go.
     pub fn follow(&mut self, session: &Session, caret: Option<(usize, usize)>) {
         let Some((file, byte)) = caret else { return };
-        let deforms = &session.compiled().deforms;
+        let deforms = &session.compilation().deforms;
         let found = deforms
             .iter()
             .position(|deform| contains(deform.origin, file, byte));
@@ -57,9 +58,9 @@ impl Cage {
         self.chosen = found;
     }
 
-    /// Chooses the last deformation of what a command has made. Returns where it stands.
+    /// Chooses the last deformation of elements that a command has made. Returns its origin.
     pub fn choose_of(&mut self, session: &Session, origin: Origin) -> Option<Origin> {
-        let deforms = &session.compiled().deforms;
+        let deforms = &session.compilation().deforms;
         self.chosen = deforms
             .iter()
             .rposition(|deform| deform.of.contains(&origin));
@@ -74,7 +75,7 @@ impl Cage {
         }
     }
 
-    /// Draws cage and knobs, and takes what is done to them.
+    /// Draws cage and knobs, and carries out what the user does to them.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -85,7 +86,7 @@ impl Cage {
         commands: &mut Vec<Command>,
     ) {
         let session = around.session;
-        let (Some(index), Some(deform)) = (self.chosen, self.chosen(session)) else {
+        let (Some(index), Some(deform)) = (self.chosen, self.deform(session)) else {
             return;
         };
         let key = (session.revision(), index);
@@ -131,11 +132,11 @@ impl Cage {
                 && *held == i
                 && answer.pulled != Vec2::ZERO
             {
-                *place = sight.moved(*place, answer.pulled, answer.deep);
+                *place = sight.drag(*place, answer.pulled, answer.deep);
                 target = Some(*place);
             }
             if answer.nudged != Vec2::ZERO {
-                target = Some(sight.moved(handle.place, answer.nudged, answer.deep));
+                target = Some(sight.drag(handle.place, answer.nudged, answer.deep));
             }
             let Some(target) = target else { continue };
             let grain = sight.point(handle.place);
@@ -146,7 +147,7 @@ impl Cage {
     }
 }
 
-/// The lines of the cage.
+/// Returns the lines of the cage.
 fn edges(controls: &[DVec3]) -> Vec<[u32; 2]> {
     let mut edges = BTreeSet::new();
     for [a, b, c] in fit::web(controls) {

@@ -8,18 +8,18 @@ use egui::{
     Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 
-/// The colour of what is lit.
+/// The colour of bones and knobs.
 pub const LIT: Color32 = Color32::from_rgb(255, 222, 122);
 
 /// Input on a knob in one frame.
 pub struct Answer {
     /// A drag begins.
     pub begins: bool,
-    /// Drag in points.
+    /// Movement by the pointer in points.
     pub pulled: Vec2,
     /// Movement by keys in points.
     pub nudged: Vec2,
-    /// Whether up means away from the eye.
+    /// Whether moving up means away from the eye.
     pub deep: bool,
 }
 
@@ -93,7 +93,8 @@ pub fn show(
     }
 }
 
-/// How far keys move the knob that has the focus, and whether away from the eye.
+/// Returns the movement by keys of the knob that has the focus, and whether up means away from the
+/// eye.
 fn keys(ui: &Ui, response: &egui::Response) -> (Vec2, bool) {
     /// Points that a press of an arrow moves.
     const STEP: f32 = 6.0;
@@ -115,7 +116,7 @@ fn keys(ui: &Ui, response: &egui::Response) -> (Vec2, bool) {
     })
 }
 
-/// Label beside the knob.
+/// Draws the label beside a knob.
 fn caption(painter: &Painter, rect: Rect, at: Pos2, handle: &Handle, fixed: Option<&str>) {
     let mut text = format!("{}  {}", handle.label, handle.text());
     if let Some(why) = fixed {

@@ -19,19 +19,19 @@ use glam::DVec3;
 use scene::{Camera, Origin, Scene, Shape};
 use std::ops::Range;
 
-/// Bones of one command that are lit, at most: a loop may make thousands.
+/// Most bones of one command that are shown: a loop may make thousands.
 const MOST_BONES: usize = 400;
-/// Knobs that are shown, at most: a polygon may have hundreds of corners.
+/// Most knobs that are shown: a polygon may have hundreds of corners.
 const MOST_KNOBS: usize = 240;
 
-/// The chosen shape and what is being done to it.
+/// The chosen shape and its handles.
 #[derive(Default)]
 pub struct Hands {
     /// Index of the chosen element in the compiled scene.
     chosen: Option<usize>,
-    /// How many elements that scene had.
+    /// The number of elements of that scene.
     count: usize,
-    /// The file and byte of the caret when it was last looked at.
+    /// The file and byte of the caret at the last frame.
     caret: Option<(usize, usize)>,
     handles: Vec<Handle>,
     /// Key of the handles: revision, frame of the film, element; and the camera.
@@ -71,21 +71,15 @@ impl Hands {
         self.made = None;
     }
 
-    /// Another work is open.
+    /// Forgets everything, when another work was opened.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// The chosen element of the compiled scene.
-    #[must_use]
-    pub fn chosen(&self) -> Option<usize> {
-        self.chosen
-    }
-
-    /// The file and the bytes of the chosen shape's command.
+    /// Returns the file and the bytes of the chosen shape's command.
     #[must_use]
     pub fn lit(&self, session: &Session) -> Option<(usize, Range<usize>)> {
-        let scene = &session.compiled().scene;
+        let scene = &session.compilation().scene;
         let origin = scene.elements.get(self.chosen?)?.origin;
         Some((
             origin.file as usize,
@@ -93,8 +87,8 @@ impl Hands {
         ))
     }
 
-    /// Draws the bone and the knobs of the chosen shape over the picture in
-    /// `rect`, and takes what is done to them. `picture` is what the picture itself answered.
+    /// Draws the bone and the knobs of the chosen shape over the picture in `rect`, and carries out
+    /// what the user does to them. `picture` is the response of the picture itself.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -109,12 +103,11 @@ impl Hands {
             commands.push(Command::Release);
         }
         self.cage.release(ui, commands);
-        // Places in the text are only known of a text that was compiled, and without errors: else
-        // the picture is not of this text.
+        // Before the text has compiled without errors, the picture is not of this text.
         if !session.is_compiled() || session.errors() > 0 || rect.width() < 1.0 {
             return;
         }
-        let scene = &session.compiled().scene;
+        let scene = &session.compilation().scene;
         if self.count != scene.elements.len() {
             self.count = scene.elements.len();
             self.let_go();
@@ -129,7 +122,7 @@ impl Hands {
         {
             self.click(around, &sight, at, commands);
         }
-        let is_cage = self.cage.chosen(session).is_some();
+        let is_cage = self.cage.deform(session).is_some();
         let chosen = self.chosen.filter(|chosen| *chosen < self.count);
         if chosen.is_none() && !is_cage {
             return;
@@ -158,36 +151,33 @@ impl Hands {
         }
         self.caret = caret;
         let Some((file, byte)) = caret else { return };
-        let scene = &session.compiled().scene;
+        let scene = &session.compilation().scene;
         let text = session.text(file);
-        let there = line_of(text, byte);
+        let line = line_of(text, byte);
         let is_at = |origin: Origin| {
             origin.file as usize == file
                 && (origin.start as usize..=origin.end as usize).contains(&byte)
         };
-        let is_there = |origin: Origin| {
-            is_at(origin)
-                || origin.file as usize == file && there.contains(&(origin.start as usize))
+        let is_in_line = |origin: Origin| {
+            is_at(origin) || origin.file as usize == file && line.contains(&(origin.start as usize))
         };
         let stays = self
             .chosen
             .and_then(|chosen| scene.elements.get(chosen))
-            .is_some_and(|element| is_there(element.origin));
+            .is_some_and(|element| is_in_line(element.origin));
         if !stays {
-            self.chosen = None;
             self.handles.clear();
             self.made = None;
-            let position = |test: &dyn Fn(Origin) -> bool| {
-                scene
-                    .elements
-                    .iter()
-                    .position(|element| test(element.origin))
-            };
-            self.chosen = position(&is_at).or_else(|| position(&is_there));
+            let mut elements = scene.elements.iter();
+            self.chosen = elements.position(|element| is_at(element.origin));
+            if self.chosen.is_none() {
+                let mut elements = scene.elements.iter();
+                self.chosen = elements.position(|element| is_in_line(element.origin));
+            }
         }
     }
 
-    /// Chooses what is seen at a point of the picture.
+    /// Chooses the shape that is seen at a point of the picture.
     fn click(
         &mut self,
         around: &Around<'_>,
@@ -196,17 +186,17 @@ impl Hands {
         commands: &mut Vec<Command>,
     ) {
         let session = around.session;
-        let scene = &session.compiled().scene;
+        let scene = &session.compilation().scene;
         let Some(picker) = session.picker(around.draft) else {
             return;
         };
         let eye = sight.projection.eye;
-        let met = |at| picker.pick(eye, sight.direction(at));
+        let pick = |at| picker.pick(eye, sight.direction(at));
         // A finger, or a hand that is not quite still, may mean what is next to the point.
         let reach = if around.touch { 12.0 } else { 4.0 };
         let nearby =
             (0..8).map(|i| at + reach * egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4));
-        let found = met(at).or_else(|| nearby.filter_map(met).min_by(|a, b| a.t.total_cmp(&b.t)));
+        let found = pick(at).or_else(|| nearby.filter_map(pick).min_by(|a, b| a.t.total_cmp(&b.t)));
         self.let_go();
         if let Some(element) = found.and_then(|hit| hit.element) {
             self.chosen = Some(element as usize);
@@ -235,7 +225,7 @@ impl Hands {
                 session.project(),
                 session.assets(),
                 session.film_frame(),
-                session.compiled(),
+                session.compilation(),
                 chosen,
                 &sight.projection.world_from_view,
             );
@@ -244,6 +234,7 @@ impl Hands {
         }
     }
 
+    /// Shows the knobs of the chosen shape, and carries out what the user does to them.
     fn knobs(
         &mut self,
         ui: &mut Ui,
@@ -254,9 +245,8 @@ impl Hands {
         commands: &mut Vec<Command>,
     ) {
         // Points come last, above the others, which have room to move away.
-        let is_point = |index: &usize| self.handles[*index].kind == handles::Kind::Point;
-        let all = 0..self.handles.len();
-        let (points, others): (Vec<usize>, Vec<usize>) = all.partition(is_point);
+        let (points, others): (Vec<usize>, Vec<usize>) = (0..self.handles.len())
+            .partition(|index| self.handles[*index].kind == handles::Kind::Point);
         for index in others.into_iter().chain(points) {
             let handle = &self.handles[index];
             let Some(at) = sight.screen(handle.place).filter(|at| rect.contains(*at)) else {
@@ -275,11 +265,11 @@ impl Hands {
                 && drag.handle == index
                 && answer.pulled != egui::Vec2::ZERO
             {
-                drag.target = sight.moved(drag.target, answer.pulled, answer.deep);
+                drag.target = sight.drag(drag.target, answer.pulled, answer.deep);
                 target = Some(drag.target);
             }
             if answer.nudged != egui::Vec2::ZERO {
-                target = Some(sight.moved(handle.place, answer.nudged, answer.deep));
+                target = Some(sight.drag(handle.place, answer.nudged, answer.deep));
             }
             if let Some(target) = target {
                 let grain = sight.point(handle.place);
@@ -290,7 +280,7 @@ impl Hands {
     }
 }
 
-/// The bytes of the line around a byte, without its end.
+/// Returns the bytes of the line around a byte, without its line feed.
 fn line_of(text: &str, byte: usize) -> Range<usize> {
     let byte = text.floor_char_boundary(byte);
     let start = text[..byte].rfind('\n').map_or(0, |end| end + 1);
@@ -298,7 +288,7 @@ fn line_of(text: &str, byte: usize) -> Range<usize> {
     start..end
 }
 
-/// Draws the bone of the chosen element, and fainter those of the others that its command made.
+/// Draws the bone of the chosen element and, fainter, the bones of others that its command made.
 fn paint(painter: &Painter, sight: &Sight, scene: &Scene, chosen: usize) {
     let element = &scene.elements[chosen];
     let others = scene
@@ -328,6 +318,7 @@ fn paint(painter: &Painter, sight: &Sight, scene: &Scene, chosen: usize) {
     }
 }
 
+/// Returns a place of a shape at which its size on the screen is measured.
 fn middle(shape: &Shape) -> DVec3 {
     match shape {
         Shape::Sphere { center, .. } | Shape::Arc { center, .. } | Shape::Box { center, .. } => {
@@ -343,7 +334,7 @@ fn middle(shape: &Shape) -> DVec3 {
     }
 }
 
-/// A line through places, bright within a dark seam, so that it is seen on any picture.
+/// Draws a line through places, bright within a dark seam, so that it is seen on any picture.
 fn stroke(painter: &Painter, sight: &Sight, places: &[DVec3], strength: f32) {
     let pieces: Vec<_> = places
         .windows(2)

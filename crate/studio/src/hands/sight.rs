@@ -1,4 +1,4 @@
-//! Between places of the world and points of the screen.
+//! Projection of places in the world to points on the screen, and back.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 use glam::DVec3;
@@ -13,7 +13,7 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// The view of a camera that fills a rectangle.
+    /// Makes the view of a camera that fills a rectangle.
     #[must_use]
     pub fn new(camera: &Camera, rect: Rect) -> Self {
         // Only the proportions count; thousandths of points are exact enough for them.
@@ -24,19 +24,18 @@ impl Sight {
         }
     }
 
-    /// In the camera's axes: to the right, up, and behind the eye.
+    /// Returns a place in the camera's axes: to the right, up, and behind the eye.
     fn view(&self, place: DVec3) -> DVec3 {
         self.projection.world_from_view.transpose() * (place - self.projection.eye)
     }
 
-    /// How far in front of the eye a place is; negative behind it.
+    /// Returns the depth of a place in front of the eye; negative behind it.
     #[must_use]
     pub fn depth(&self, place: DVec3) -> f64 {
         -self.view(place).z
     }
 
-    /// Projection of a point to the screen; `None` if it is not in front of the eye, or too far
-    /// aside.
+    /// Projects a place to the screen; `None` if it is not in front of the eye, or too far aside.
     #[must_use]
     pub fn screen(&self, place: DVec3) -> Option<Pos2> {
         let view = self.view(place);
@@ -52,8 +51,7 @@ impl Sight {
         } = self.projection;
         let x = ((view.x / depth - shift[0]) / half_width + 1.0) * 0.5;
         let y = (1.0 - (view.y / depth - shift[1]) / half_height) * 0.5;
-        let near = |share: f64| share.abs() < 1e4;
-        (near(x) && near(y)).then(|| {
+        (x.abs() < 1e4 && y.abs() < 1e4).then(|| {
             pos2(
                 self.rect.left() + x as f32 * self.rect.width(),
                 self.rect.top() + y as f32 * self.rect.height(),
@@ -61,7 +59,7 @@ impl Sight {
         })
     }
 
-    /// A line between two places as it is seen, cut off where it passes behind the eye.
+    /// Projects a line between two places, cut off where it passes behind the eye.
     #[must_use]
     pub fn line(&self, from: DVec3, to: DVec3) -> Option<[Pos2; 2]> {
         /// The share of the longer end's depth at which lines are cut off.
@@ -80,7 +78,7 @@ impl Sight {
         Some([self.screen(from)?, self.screen(to)?])
     }
 
-    /// The unit direction in which a point of the screen is seen.
+    /// Returns the unit direction in which a point of the screen is seen.
     #[must_use]
     pub fn direction(&self, at: Pos2) -> DVec3 {
         let share = (at - self.rect.min) / self.rect.size().max(Vec2::splat(1e-3));
@@ -88,17 +86,17 @@ impl Sight {
             .direction(f64::from(share.x), f64::from(share.y))
     }
 
-    /// How long a point of the screen is at a place of the world.
+    /// Returns the length in the world of a point of the screen, at the depth of a place.
     #[must_use]
     pub fn point(&self, place: DVec3) -> f64 {
         let width = f64::from(self.rect.width().max(1.0));
         self.depth(place).max(1e-9) * 2.0 * self.projection.half_width / width
     }
 
-    /// Moves a point by `by` points on the screen, in the plane through it that is parallel to the
+    /// Moves a place by `by` points on the screen, in the plane through it that is parallel to the
     /// screen; with `deep` moving up takes it further away from the eye.
     #[must_use]
-    pub fn moved(&self, place: DVec3, by: Vec2, deep: bool) -> DVec3 {
+    pub fn drag(&self, place: DVec3, by: Vec2, deep: bool) -> DVec3 {
         let axes = self.projection.world_from_view;
         let point = self.point(place);
         let across = axes.x_axis * (f64::from(by.x) * point);
@@ -144,15 +142,15 @@ mod tests {
     }
 
     #[test]
-    fn moved_points_follow_the_pointer() {
+    fn points_follow_the_pointer() {
         let sight = sight();
         let before = sight.screen(DVec3::ONE).expect("visible");
         let by = vec2(12.0, -7.0);
         let after = sight
-            .screen(sight.moved(DVec3::ONE, by, false))
+            .screen(sight.drag(DVec3::ONE, by, false))
             .expect("visible");
         assert!((after - before - by).length() < 1e-2, "{before} {after}");
-        let deep = sight.moved(DVec3::ONE, vec2(0.0, -10.0), true);
+        let deep = sight.drag(DVec3::ONE, vec2(0.0, -10.0), true);
         assert!(sight.depth(deep) > sight.depth(DVec3::ONE));
         assert!((sight.screen(deep).expect("visible") - before).length() < 1e-2);
     }

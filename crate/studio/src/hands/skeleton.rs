@@ -3,13 +3,13 @@
 use glam::DVec3;
 use scene::Shape;
 
-/// Lines of a circle.
-const ROUND: usize = 64;
-/// Lines of a curve.
-const CURVED: usize = 48;
+/// Number of lines that draw an arc.
+const ARC_LINES: usize = 64;
+/// Number of lines that draw a curve.
+const CURVE_LINES: usize = 48;
 
-/// The lines of a shape's bone, each through some places of the world. `size` is the length to draw
-/// for what has no end or no size: crosses at points, a piece of a plane.
+/// Returns the lines of a shape's bone, each through some places of the world. `size` is the length
+/// of lines for bones without a size: crosses at points, a piece of a plane.
 #[must_use]
 pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
     match shape {
@@ -25,22 +25,22 @@ pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
             angle,
             ..
         } => {
-            let at = |i: usize| {
-                let (sine, cosine) = libm::sincos(angle * i as f64 / ROUND as f64);
+            let line = (0..=ARC_LINES).map(|i| {
+                let (sine, cosine) = libm::sincos(angle * i as f64 / ARC_LINES as f64);
                 *center + (*u * cosine + *v * sine) * *sweep
-            };
-            vec![(0..=ROUND).map(at).collect()]
+            });
+            vec![line.collect()]
         }
         Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => vec![ring(corners)],
         Shape::Polygon { rings, .. } => rings.iter().map(|corners| ring(corners)).collect(),
         Shape::Curve { control, .. } => {
             let [a, b, c, d] = *control;
-            let at = |i: usize| {
-                let t = i as f64 / CURVED as f64;
+            let line = (0..=CURVE_LINES).map(|i| {
+                let t = i as f64 / CURVE_LINES as f64;
                 let s = 1.0 - t;
                 a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
-            };
-            vec![(0..=CURVED).map(at).collect(), vec![a, b], vec![c, d]]
+            });
+            vec![line.collect(), vec![a, b], vec![c, d]]
         }
         Shape::Plane { point, normal, .. } => {
             let (u, v) = normal.any_orthonormal_pair();
@@ -58,11 +58,11 @@ pub fn lines(shape: &Shape, size: f64) -> Vec<Vec<DVec3>> {
         Shape::Function(function) => match function.curves() {
             None => cross(function.middle(), 0.15 * size),
             Some(curves) => {
-                let place = |(p, _)| function.to_world.transform_point3(p);
-                curves
-                    .pieces()
-                    .map(|ends| ends.map(place).to_vec())
-                    .collect()
+                let lines = curves.pieces().map(|ends| {
+                    ends.map(|(p, _)| function.to_world.transform_point3(p))
+                        .to_vec()
+                });
+                lines.collect()
             }
         },
     }
@@ -106,7 +106,7 @@ mod tests {
         };
         let line = &lines(&arc, 1.0)[0];
         assert_eq!(line[0], DVec3::X * 2.0);
-        assert!(line[ROUND].distance(DVec3::X * -2.0) < 1e-12);
+        assert!(line[ARC_LINES].distance(DVec3::X * -2.0) < 1e-12);
         let cuboid = Shape::Box {
             center: DVec3::ONE,
             axes: [DVec3::X, DVec3::Y, DVec3::Z],

@@ -1,4 +1,4 @@
-//! The strip with the tools of drawing, under the picture.
+//! The strip of drawing tools under the picture, and buttons on the picture.
 
 use super::{THICKNESS, page, tool::Tool};
 use crate::app::App;
@@ -13,7 +13,7 @@ use egui::{
 /// Height of the strip.
 pub const HEIGHT: f32 = 60.0;
 
-/// The button on the picture that begins drawing.
+/// Shows the button on the picture that begins drawing.
 pub fn start(ui: &mut Ui, picture: Rect, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let size = vec2(92.0, 40.0);
@@ -60,18 +60,19 @@ pub fn start(ui: &mut Ui, picture: Rect, commands: &mut Vec<Command>) {
     }
 }
 
-/// The button on the picture that makes the last stroke one of a pair, or single.
+/// Shows the button on the picture that makes the last stroke one of a pair, or single. Returns
+/// whether it was clicked.
 pub fn turn(ui: &mut Ui, picture: Rect, pair: bool) -> bool {
     let palette = theme::palette(ui.visuals());
     let (word, tip) = if pair {
         (
             "Make it a pair",
-            "Let the last stroke grow on the other side, too",
+            "Let the last stroke grow on the other side too",
         )
     } else {
         (
             "Only one",
-            "Keep the last stroke in the middle, without another one on the other side",
+            "Keep the last stroke single, without another one on the other side",
         )
     };
     let font = FontId::proportional(14.0);
@@ -129,23 +130,23 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
                 Tool::Cut,
                 Icon::Scissors,
                 "Cut",
-                "Cut limbs off, take dots, limbs and eyes away",
+                "Cut limbs off, remove dots, limbs and eyes",
             ),
         ] {
-            let button = labelled(ui, sign, text, tool == Some(own)).on_hover_text(tip);
+            let button = tool_button(ui, sign, text, tool == Some(own)).on_hover_text(tip);
             places::note(ui.ctx(), format!("tool {}", own.id()), button.rect);
             if button.clicked() {
                 commands.push(Command::SetTool(Some(own)));
             }
         }
         ui.add_space(if narrow { 1.0 } else { 10.0 });
-        let tip = "Limbs in pairs: what is drawn on one side grows on the other, too";
-        let mirror = labelled(ui, Icon::Mirror, "Pairs", pencil.mirror).on_hover_text(tip);
+        let tip = "Limbs in pairs: what is drawn on one side grows on the other too";
+        let mirror = tool_button(ui, Icon::Mirror, "Pairs", pencil.mirror).on_hover_text(tip);
         places::note(ui.ctx(), "draw mirror", mirror.rect);
         if mirror.clicked() {
             pencil.mirror = !pencil.mirror;
         }
-        let colour = labelled(ui, Icon::Drop, "Colour", false);
+        let colour = tool_button(ui, Icon::Drop, "Colour", false);
         let dot = colour.rect.center_top() + vec2(0.0, 20.0);
         if let Some(index) = pencil.colour {
             let [r, g, b] = page::COLOURS[index].1.map(|c| (c * 255.0) as u8);
@@ -159,13 +160,13 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(if narrow { 4.0 } else { 12.0 });
             let done =
-                labelled(ui, Icon::Done, "Done", false).on_hover_text("Lay the pencil down (D)");
+                tool_button(ui, Icon::Done, "Done", false).on_hover_text("Put the pencil down (D)");
             places::note(ui.ctx(), "draw done", done.rect);
             if done.clicked() {
                 commands.push(Command::SetTool(None));
             }
             if !narrow {
-                let fresh = labelled(ui, Icon::Add, "New", false)
+                let fresh = tool_button(ui, Icon::Add, "New", false)
                     .on_hover_text("An empty page to draw on; this work is kept");
                 places::note(ui.ctx(), "draw new", fresh.rect);
                 if fresh.clicked() {
@@ -223,8 +224,8 @@ fn caption(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
     );
 }
 
-/// A button with an icon above its word.
-fn labelled(ui: &mut Ui, sign: Icon, text: &str, chosen: bool) -> Response {
+/// Shows a button with an icon above its word.
+fn tool_button(ui: &mut Ui, sign: Icon, text: &str, chosen: bool) -> Response {
     let width = if ui.ctx().content_rect().width() < 560.0 {
         46.0
     } else {
@@ -257,7 +258,7 @@ fn labelled(ui: &mut Ui, sign: Icon, text: &str, chosen: bool) -> Response {
     response
 }
 
-/// The colours to draw with.
+/// Shows the colours to draw with.
 fn colours(ui: &mut Ui, chosen: &mut Option<usize>) {
     ui.set_width(196.0);
     ui.label("Colour of the next stroke");
@@ -296,7 +297,7 @@ fn colours(ui: &mut Ui, chosen: &mut Option<usize>) {
                 }
             }
         });
-    let same = ui.selectable_label(chosen.is_none(), "As what it grows from");
+    let same = ui.selectable_label(chosen.is_none(), "Same as what it grows from");
     places::note(ui.ctx(), "draw colour same", same.rect);
     if same.clicked() {
         *chosen = None;

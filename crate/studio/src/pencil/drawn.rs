@@ -1,4 +1,4 @@
-//! The skeletons of the compiled text, as things in the picture that a hand draws on.
+//! The skeletons of the compiled text, as places in the picture where the user draws.
 
 use crate::hands::Sight;
 use egui::{Pos2, Vec2};
@@ -9,44 +9,44 @@ use skeleton::{Node, Scheme, Skeleton};
 use sketch::Block;
 use std::ops::Range;
 
-/// Skeletons that are looked at, at most: a loop may make thousands.
+/// Most skeletons that are drawn on: a loop may make thousands.
 const MOST: usize = 200;
 
 /// A `skeleton` command of the text. Places are in the world, unless they are the skeleton's own.
 pub struct Drawn {
-    /// Index of its element.
+    /// Index of the element.
     pub element: usize,
-    /// Index of its file.
+    /// Index of the file.
     pub file: usize,
-    /// Bytes of its command.
+    /// Bytes of the command.
     pub span: Range<usize>,
     /// The command's block; `None` if drawing cannot change it, as a loop or an instance made it.
     pub block: Option<Block>,
     /// Nodes and curves in coordinates of its own.
     pub skeleton: Skeleton,
-    /// From those to the world.
+    /// Map from those to the world.
     pub to_world: DAffine3,
-    /// By how much radii grow on the way.
+    /// Factor by which the map enlarges radii.
     pub growth: f64,
     /// The colour of its material.
     pub colour: scene::Rgb,
-    /// Where each node is taken hold of: on its curve where that can be, and by how much the node
-    /// moves for that place to move by 1.
+    /// The place at which each node is held, on its curve if possible, and how far the node moves
+    /// for that place to move by 1.
     pub knobs: Vec<(DVec3, f64)>,
     /// The refined curves' points with their radii.
     points: Vec<(DVec3, f64)>,
     pieces: Vec<Piece>,
-    /// How often curves meet each node: 1 at a free end.
+    /// The number of curves' segments that meet at each node: 1 at a free end.
     meetings: Vec<usize>,
 }
 
 /// A piece of a refined curve.
 struct Piece {
-    /// Indices of its points.
+    /// Indices of the points.
     ends: [usize; 2],
     curve: usize,
     span: usize,
-    /// Where between the two nodes its ends are, 0 … 1.
+    /// Places of the ends between the two nodes, 0 … 1.
     shares: [f64; 2],
 }
 
@@ -57,22 +57,22 @@ pub struct Spot {
     pub drawn: usize,
     /// The curve.
     pub curve: usize,
-    /// Between its node of this number and the next.
+    /// The place is between the curve's node of this number and the next.
     pub span: usize,
-    /// How far between them, 0 … 1.
+    /// Place between them, 0 … 1.
     pub share: f64,
     /// The place on the curve.
     pub place: DVec3,
     /// The radius there.
     pub radius: f64,
-    /// Where the flesh around it is seen, if it is.
+    /// The place on the flesh around it that is seen.
     pub surface: DVec3,
-    /// How many points of the screen the curve is from the pointer.
+    /// Distance of the curve from the pointer, points of the screen.
     pub off: f32,
 }
 
 impl Drawn {
-    /// All of a compiled text.
+    /// Finds the skeletons of a compiled text, at most [`MOST`].
     #[must_use]
     pub fn all(project: &Project, compiled: &Compiled) -> Vec<Self> {
         let scene = &compiled.scene;
@@ -101,29 +101,24 @@ impl Drawn {
                 .filter(|block| !placement.repeated && is_of(block, &curves.skeleton));
             let to_world = function.to_world;
             let growth = placement.growth;
-            let place = |p: DVec3| to_world.transform_point3(p);
             let points: Vec<_> = polyline
                 .vertices
                 .iter()
-                .map(|v| (place(v.position), v.radius * growth))
+                .map(|v| (to_world.transform_point3(v.position), v.radius * growth))
                 .collect();
             let mut pieces: Vec<Piece> = Vec::new();
-            let mut start = 0;
-            let segments = &polyline.segments;
-            while start < segments.len() {
-                let same = |s: &&skeleton::Segment| {
-                    (s.curve, s.span) == (segments[start].curve, segments[start].span)
-                };
-                let count = segments[start..].iter().take_while(same).count();
-                for (i, segment) in segments[start..start + count].iter().enumerate() {
+            let spans = polyline
+                .segments
+                .chunk_by(|s, t| (s.curve, s.span) == (t.curve, t.span));
+            for span in spans {
+                for (i, segment) in span.iter().enumerate() {
                     pieces.push(Piece {
                         ends: segment.ends,
                         curve: segment.curve,
                         span: segment.span,
-                        shares: [i, i + 1].map(|i| i as f64 / count as f64),
+                        shares: [i, i + 1].map(|i| i as f64 / span.len() as f64),
                     });
                 }
-                start += count;
             }
             let mut meetings = vec![0; curves.skeleton.nodes.len()];
             for along in &curves.skeleton.curves {
@@ -156,6 +151,7 @@ impl Drawn {
         all
     }
 
+    /// Returns [`Self::knobs`].
     fn knobs_of(&self, scheme: Scheme) -> Vec<(DVec3, f64)> {
         let nodes = &self.skeleton.nodes;
         let mut knobs: Vec<_> = nodes
@@ -181,14 +177,14 @@ impl Drawn {
         knobs
     }
 
-    /// Whether a node is an open end: one curve ends there and nothing goes on, but for limbs
-    /// beside the mirror x = 0 where the curve is in it.
+    /// Whether a node is an open end: one curve ends there and nothing goes on, except for limbs
+    /// beside the mirror x = 0 if the curve lies in it.
     #[must_use]
     pub fn is_end(&self, node: usize) -> bool {
         self.before(node).is_some()
     }
 
-    /// The node before an open end; `None` if the node is none.
+    /// Returns the node before an open end; `None` if the node is no open end.
     #[must_use]
     pub fn before(&self, node: usize) -> Option<usize> {
         let pairs = self
@@ -215,20 +211,20 @@ impl Drawn {
         own.position.x.abs() <= 0.05 * own.radius
     }
 
-    /// A node's radius in the world.
+    /// Returns a node's radius in the world.
     #[must_use]
     pub fn radius(&self, node: usize) -> f64 {
         self.skeleton.nodes[node].radius * self.growth
     }
 
-    /// The refined curves' pieces, each as two points with their radii.
+    /// Returns the refined curves' pieces, each as two points with their radii.
     pub fn limbs(&self) -> impl Iterator<Item = [(DVec3, f64); 2]> + '_ {
         self.pieces
             .iter()
             .map(|piece| piece.ends.map(|end| self.points[end]))
     }
 
-    /// The refined curves' pieces of one curve.
+    /// Returns the pieces of a curve, each as two points with their radii.
     pub fn limbs_of(&self, curve: usize) -> impl Iterator<Item = [(DVec3, f64); 2]> + '_ {
         self.pieces
             .iter()
@@ -236,7 +232,7 @@ impl Drawn {
             .map(|piece| piece.ends.map(|end| self.points[end]))
     }
 
-    /// The middle of all points.
+    /// Returns the middle of the box around all points.
     #[must_use]
     pub fn middle(&self) -> DVec3 {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -250,13 +246,13 @@ impl Drawn {
         }
     }
 
-    /// In coordinates of its own.
+    /// Maps a place of the world to coordinates of the skeleton.
     #[must_use]
-    pub fn own(&self, place: DVec3) -> DVec3 {
+    pub fn to_own(&self, place: DVec3) -> DVec3 {
         self.to_world.inverse().transform_point3(place)
     }
 
-    /// The node that is within `reach` of a place of its own coordinates, the nearest one.
+    /// Returns the node nearest to a place in coordinates of the skeleton, within `reach`.
     #[must_use]
     pub fn node_near(&self, own: DVec3, reach: f64) -> Option<usize> {
         let nodes = self.skeleton.nodes.iter().enumerate();
@@ -266,7 +262,7 @@ impl Drawn {
             .map(|(_, i)| i)
     }
 
-    /// The place of the curves nearest to one in the world, if it is within `reach`.
+    /// Returns the place of the curves nearest to one in the world, within `reach`.
     #[must_use]
     pub fn spot_near(&self, index: usize, place: DVec3, reach: f64) -> Option<Spot> {
         let mut best: Option<(f64, Spot)> = None;
@@ -298,14 +294,14 @@ impl Drawn {
         best.map(|(_, spot)| spot)
     }
 
-    /// The node at a spot, if the spot is as good as at one.
+    /// Returns the node at a spot, if the spot is as good as at one.
     #[must_use]
     pub fn node_at_spot(&self, spot: &Spot) -> Option<usize> {
         let along = self.skeleton.curves.get(spot.curve)?;
         let ends = [*along.get(spot.span)?, *along.get(spot.span + 1)?];
         let node = if spot.share < 0.5 { ends[0] } else { ends[1] };
         let (knob, factor) = self.knobs[node];
-        // A node beside its curve would pull the curve to where it branches.
+        // At a node beside its curve a branch would pull the curve aside.
         let beside = self
             .to_world
             .transform_point3(self.skeleton.nodes[node].position)
@@ -314,23 +310,23 @@ impl Drawn {
         (near && (factor == 1.0 || beside < 0.25 * spot.radius)).then_some(node)
     }
 
-    /// A node at a spot, in coordinates of its own.
+    /// Returns a new node at a spot, in coordinates of the skeleton.
     #[must_use]
     pub fn node_of(&self, spot: &Spot) -> Node {
         Node {
-            position: self.own(spot.place),
+            position: self.to_own(spot.place),
             radius: spot.radius / self.growth.max(f64::MIN_POSITIVE),
         }
     }
 }
 
-/// Whether a block is the one that made a skeleton.
+/// Whether a block can be the one that made a skeleton: its nodes and curves are as many.
 fn is_of(block: &Block, skeleton: &Skeleton) -> bool {
     block.nodes.len() == skeleton.nodes.len() && block.curves.len() == skeleton.curves.len()
 }
 
-/// The knob within `reach` points of a place of the screen: skeleton and node. With `ends` free
-/// ends only, each of which reaches at least as far as half of its flesh.
+/// Returns skeleton and node of the knob nearest to a place of the screen, within `reach` points.
+/// With `ends` only open ends count, each of which reaches at least as far as half of its flesh.
 #[must_use]
 pub fn node_at(
     all: &[Drawn],
@@ -362,8 +358,8 @@ pub fn node_at(
     best.map(|(_, found)| found)
 }
 
-/// The place of a curve whose flesh is seen at a place of the screen, the nearest to the eye, or
-/// that is at most `extra` points beside it.
+/// Returns the place of a curve whose flesh is seen at a place of the screen, the nearest to the
+/// eye; else that of the nearest flesh at most `extra` points beside it.
 #[must_use]
 pub fn spot_at(all: &[Drawn], sight: &Sight, at: Pos2, extra: f32) -> Option<Spot> {
     let mut best: Option<((bool, f64), Spot)> = None;
@@ -383,7 +379,7 @@ pub fn spot_at(all: &[Drawn], sight: &Sight, at: Pos2, extra: f32) -> Option<Spo
                 continue;
             }
             let is_inside = off <= flesh;
-            // On the ball around the curve's place.
+            // Distance from the curve's place to the surface of a ball around it, towards the eye.
             let bulge = f64::from((flesh * flesh - off * off).max(0.0).sqrt()) * point;
             let depth = sight.depth(place) - bulge;
             let rank = (
@@ -419,7 +415,8 @@ pub fn spot_at(all: &[Drawn], sight: &Sight, at: Pos2, extra: f32) -> Option<Spo
     best.map(|(_, spot)| spot)
 }
 
-/// Where a line that is drawn across the screen first crosses a curve that drawing can change.
+/// Returns the place at which a line across the screen first crosses a curve that drawing can
+/// change.
 #[must_use]
 pub fn crossing(all: &[Drawn], sight: &Sight, line: &[Pos2]) -> Option<Spot> {
     for ends in line.windows(2) {
@@ -433,7 +430,7 @@ pub fn crossing(all: &[Drawn], sight: &Sight, line: &[Pos2]) -> Option<Spot> {
                 let (Some(p), Some(q)) = (sight.screen(a), sight.screen(b)) else {
                     continue;
                 };
-                let Some(t) = crossed(p, q, ends[0], ends[1]) else {
+                let Some(t) = intersect(p, q, ends[0], ends[1]) else {
                     continue;
                 };
                 let t = f64::from(t);
@@ -461,7 +458,7 @@ pub fn crossing(all: &[Drawn], sight: &Sight, line: &[Pos2]) -> Option<Spot> {
     None
 }
 
-/// Where on a line a point is nearest, 0 … 1, and how far away it is.
+/// Returns the place on a line nearest to a point, 0 … 1, and the distance.
 fn nearest(p: Pos2, q: Pos2, at: Pos2) -> (f32, f32) {
     let along = q - p;
     let square = along.length_sq();
@@ -473,8 +470,8 @@ fn nearest(p: Pos2, q: Pos2, at: Pos2) -> (f32, f32) {
     (t, at.distance(p + along * t))
 }
 
-/// Where on the line from p to q the one from a to b crosses it, 0 … 1.
-fn crossed(p: Pos2, q: Pos2, a: Pos2, b: Pos2) -> Option<f32> {
+/// Returns the place on the line from p to q, 0 … 1, at which the one from a to b crosses it.
+fn intersect(p: Pos2, q: Pos2, a: Pos2, b: Pos2) -> Option<f32> {
     let cross = |u: Vec2, v: Vec2| u.x * v.y - u.y * v.x;
     let (along, other) = (q - p, b - a);
     let slope = cross(along, other);

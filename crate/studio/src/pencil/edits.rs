@@ -1,5 +1,5 @@
-//! From gestures to texts: where a stroke begins, which way it goes through space, and what it
-//! writes.
+//! Gestures made into texts: the beginning of a stroke, its way through space, and the edits that
+//! it makes.
 
 use super::drawn::{Drawn, Spot, node_at, spot_at};
 use super::page;
@@ -10,153 +10,156 @@ use glam::{DAffine3, DVec3};
 use rats::{Project, TextEdit};
 use scene::Rgb;
 use skeleton::Node;
-use sketch::{Limb, Mark, Sample, Start, Stroke};
+use sketch::{Limb, Sample, Start, Stroke};
 
-/// Thickness of a long stroke at its free end, in shares of that at its root. A short one is a head
-/// or a paw, and as thick all along.
+/// Thickness of a long stroke at its free end, as a share of that at its root. A short one is a
+/// head or a paw, and equally thick all along.
 const TIP: f64 = 0.6;
-/// Lengths in radii of strokes that are short and long in that sense.
+/// Lengths in radii up to which a stroke is short, and from which it is long.
 const SHORT: [f64; 2] = [3.5, 9.0];
-/// Thickness of the ends of a stroke that begins in the air, in shares of that of its middle.
+/// Thickness of the ends of a stroke that begins in the air, as a share of that of its middle.
 const ENDS: f64 = 0.75;
 /// Least distances of the limbs of a pair from the mirror, in radii of the brush and of the flesh
 /// that they grow from.
 const APART: [f64; 2] = [1.2, 0.85];
-/// A short stroke from an end is a head or a paw: lengths in radii at which it begins to be
-/// thicker, is thickest, and no longer is; and how thick it is then.
+/// A short stroke from an end is a head or a paw, thicker than the end: lengths in radii at which
+/// that begins, is greatest and is over, and the greatest factor.
 const EGG: ([f64; 3], f64) = ([1.5, 6.0, 14.0], 1.8);
 /// Most radius of an end that is a neck or an ankle, in radii of the brush.
 const THIN: f64 = 1.3;
-/// Radius at no and at full pressure of a pen, in shares of the brush's.
-const PRESSED: [f64; 2] = [0.3, 1.5];
+/// Radius at no and at full pressure of a pen, as shares of the brush's.
+const PRESSURE: [f64; 2] = [0.3, 1.5];
 /// Least cosine of the angle between the line of sight and the mirror's normal at which strokes are
 /// drawn on the mirror itself.
 const FACING: f64 = 0.6;
 
-/// What strokes are drawn with.
+/// The brush of strokes.
 #[derive(Clone, Copy, Debug)]
 pub struct Brush {
     /// Radius, points of the screen.
     pub radius: f32,
     /// Whether strokes are mirrored at x = 0 of the model.
     pub mirror: bool,
-    /// The colour; `None`: that of what a stroke grows from.
+    /// The colour; `None`: that of the root.
     pub colour: Option<Rgb>,
     /// Whether fingers are likely.
     pub touch: bool,
 }
 
-/// What a stroke grows from.
+/// The part of a skeleton that a stroke grows from.
 #[derive(Clone, Copy, Debug)]
 pub enum Root {
-    /// Nothing: it begins in the air, or on a shape that is no skeleton.
+    /// None: the stroke begins in the air, or on a shape that is no skeleton.
     Free,
-    /// A node: index of the skeleton, of the node.
+    /// A node: indices of skeleton and node.
     Node(usize, usize),
-    /// The same, an open end whose curve goes on.
+    /// An open end whose curve goes on: indices of skeleton and node.
     End(usize, usize),
     /// A place of a curve.
     Spot(Spot),
 }
 
-/// Where a stroke begins.
+/// The beginning of a stroke.
 #[derive(Clone, Copy, Debug)]
-pub struct Begin {
-    /// What it grows from.
+pub struct Beginning {
+    /// The root.
     pub root: Root,
-    /// Where its curve begins, if it grows from something.
+    /// The place at which the curve begins, if it grows from something.
     pub place: Option<DVec3>,
-    /// A point of the plane that it is drawn on, and its normal.
+    /// A point of the plane that the stroke is drawn on, and the normal.
     pub plane: (DVec3, DVec3),
     /// Radius of the brush there.
     pub radius: f64,
     /// Whether the mirrored stroke is drawn as well.
     pub pair: bool,
-    /// Whether it goes on from an end that is hardly thicker than the brush: a short one is a head
-    /// or a paw then.
+    /// Whether it goes on from an end that is hardly thicker than the brush: then a short stroke is
+    /// a head or a paw.
     pub tip: bool,
-    /// From the model's own coordinates, in which the mirror is x = 0, to the world.
+    /// Map to the world from the model's own coordinates, in which the mirror is x = 0.
     pub to_world: DAffine3,
 }
 
-/// What is known of a stroke when its beginning is looked for.
+/// Hints about a stroke whose beginning is looked for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wish {
-    /// Where it goes on the screen; `None` if it has not gone anywhere yet.
+    /// Direction on the screen; `None` while the stroke is too short to have one.
     pub heading: Option<Vec2>,
-    /// Whether it is to be one of a pair; `None` to decide that by its beginning and heading.
+    /// Whether it should be one of a pair; `None` to decide that by beginning and heading.
     pub pair: Option<bool>,
 }
 
 /// Cosine of the angle between an end's direction and a stroke's below which the stroke has a curve
-/// of its own: the flesh keeps its corner.
+/// of its own, so that the flesh keeps its corner.
 const STRAIGHT: f32 = 0.6;
-/// The one below which a stroke that goes down from an end is a leg, and not the end's
+/// Cosine of that angle below which a stroke that goes down from an end is a leg, and not the end's
 /// continuation.
 const SIDEWAYS: f32 = 0.4;
-/// The one below which any stroke goes back, and grows beside the end.
+/// Cosine of that angle below which any stroke goes back, and grows beside the end.
 const BACK: f32 = -0.3;
 
-/// How a stroke leaves an open end: along its curve, round a corner, or as something that grows
-/// there.
+/// The way in which a stroke leaves an open end.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Leave {
+enum Departure {
+    /// A continuation along the end's curve.
     On,
+    /// A new curve, round a corner.
     Corner,
+    /// A limb of its own, which grows beside the end.
     Beside,
 }
 
-fn leave(drawn: &Drawn, node: usize, sight: &Sight, heading: Option<Vec2>) -> Leave {
-    let seen = |node: usize| {
+/// Returns the way in which a stroke with a heading leaves an open end.
+fn departure(drawn: &Drawn, node: usize, sight: &Sight, heading: Option<Vec2>) -> Departure {
+    let screen = |node: usize| {
         let position = drawn.skeleton.nodes[node].position;
         sight.screen(drawn.to_world.transform_point3(position))
     };
-    // From the middle of its curve: the very end of a body often hangs down.
+    // The end's direction, from the middle of its curve: the very end of a body often hangs down.
     let out = drawn.before(node).and_then(|before| {
-        let has = |along: &&Vec<usize>| {
+        let along = drawn.skeleton.curves.iter().find(|along| {
             along
                 .windows(2)
                 .any(|ends| ends == [node, before] || ends == [before, node])
-        };
-        let along = drawn.skeleton.curves.iter().find(has)?;
-        let places: Vec<Pos2> = along.iter().filter_map(|node| seen(*node)).collect();
+        })?;
+        let places: Vec<Pos2> = along.iter().filter_map(|node| screen(*node)).collect();
         let sum = places
             .iter()
             .fold(Vec2::ZERO, |sum, place| sum + place.to_vec2());
-        let out = seen(node)?.to_vec2() - sum / places.len() as f32;
+        let out = screen(node)?.to_vec2() - sum / places.len() as f32;
         (out.length() > 1.0).then(|| out.normalized())
     });
     let (Some(out), Some(heading)) = (out, heading) else {
-        return Leave::On;
+        return Departure::On;
     };
     let heading = heading.normalized();
     let cosine = out.dot(heading);
     let is_flat = drawn.is_flat(node);
     if cosine < BACK || is_flat && cosine < SIDEWAYS && heading.y > 0.5 {
-        Leave::Beside
+        Departure::Beside
     } else if cosine < STRAIGHT {
-        Leave::Corner
+        Departure::Corner
     } else {
-        Leave::On
+        Departure::On
     }
 }
 
-/// The skeleton that a stroke from nowhere belongs to: the last one that drawing can change, of the
+/// Returns the skeleton of a stroke without a root: the last one that drawing can change, of the
 /// brush's colour if it has one.
 #[must_use]
 pub fn target(all: &[Drawn], colour: Option<Rgb>) -> Option<usize> {
-    let fits = |drawn: &Drawn| drawn.block.is_some() && is_colour(drawn.colour, colour);
-    all.iter().rposition(fits)
+    all.iter()
+        .rposition(|drawn| drawn.block.is_some() && is_colour(drawn.colour, colour))
 }
 
+/// Whether a colour is nearly the wanted one, if there is one.
 fn is_colour(own: Rgb, wanted: Option<Rgb>) -> bool {
     wanted.is_none_or(|wanted| own.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 2e-3))
 }
 
-/// Where a stroke begins that is put down at a place of the screen. From an open end it goes on,
-/// unless it goes down or back from there; from elsewhere on flesh that the mirror cuts it is one
-/// of a pair. `meets` says where a ray from the eye meets shapes that are no skeletons; `home` is
-/// the depth of strokes on an empty page.
+/// Finds the beginning of a stroke from a place of the screen. From an open end it goes on, unless
+/// it goes down or back from there; from elsewhere on flesh that the mirror cuts it is one of a
+/// pair. `meets` returns the place at which the ray from the eye meets a shape that is no skeleton;
+/// `home` is a place at the depth of strokes on an empty page.
 #[must_use]
 pub fn begin(
     all: &[Drawn],
@@ -166,7 +169,7 @@ pub fn begin(
     wish: Wish,
     home: DVec3,
     meets: impl FnOnce() -> Option<DVec3>,
-) -> Begin {
+) -> Beginning {
     let ahead = -sight.projection.world_from_view.z_axis;
     let (end_reach, extra) = if brush.touch {
         (20.0, 8.0)
@@ -175,12 +178,12 @@ pub fn begin(
     };
     let single = !brush.mirror || wish.pair == Some(false);
     let end = node_at(all, sight, at, end_reach, true).and_then(|(index, node)| {
-        let leave = leave(&all[index], node, sight, wish.heading);
+        let departure = departure(&all[index], node, sight, wish.heading);
         let is_beside = match wish.pair {
             Some(pair) if all[index].is_flat(node) => pair,
-            _ => leave == Leave::Beside,
+            _ => departure == Departure::Beside,
         };
-        (!is_beside).then_some((index, node, leave == Leave::On))
+        (!is_beside).then_some((index, node, departure == Departure::On))
     });
     let spot = if end.is_none() {
         spot_at(all, sight, at, extra).or_else(|| spot_at(all, sight, at, end_reach))
@@ -200,7 +203,7 @@ pub fn begin(
     let faces = mirror.dot(ahead).abs() >= FACING;
     let radius = |place: DVec3| f64::from(brush.radius) * sight.point(place);
     let is_middle = |place: DVec3| own(place).x.abs() * growth <= 0.2 * radius(place);
-    let made = |root, place: Option<DVec3>, through: DVec3, pair, on_mirror: bool| Begin {
+    let make = |root, place: Option<DVec3>, through: DVec3, pair, on_mirror: bool| Beginning {
         root,
         place,
         plane: (through, if on_mirror { mirror } else { -ahead }),
@@ -217,9 +220,9 @@ pub fn begin(
         } else {
             Root::Node(index, node)
         };
-        let begin = made(root, Some(place), place, !single && !flat, flat);
+        let begin = make(root, Some(place), place, !single && !flat, flat);
         let tip = all[index].radius(node) <= THIN * begin.radius;
-        return Begin { tip, ..begin };
+        return Beginning { tip, ..begin };
     }
     if let Some(spot) = spot {
         let drawn = &all[spot.drawn];
@@ -231,7 +234,7 @@ pub fn begin(
             Root::Node(index, node) => all[index].knobs[node].0,
             _ => spot.place,
         };
-        // Within the flesh, but towards the eye, so that limbs of both sides stand apart.
+        // Within the flesh, but near the eye's side, so that the limbs of a pair stand apart.
         let mut through = spot.place.lerp(spot.surface, 0.6);
         let flat = single && brush.mirror && faces && is_middle(place);
         if flat {
@@ -252,9 +255,9 @@ pub fn begin(
                 through = to_world.transform_point3(inside);
             }
         }
-        // Seen from the side, both stay as far from the mirror all along.
+        // If the mirror is seen from the side, both limbs keep their distance from it.
         let along = brush.mirror && faces;
-        let mut begin = made(root, Some(place), through, !single, along);
+        let mut begin = make(root, Some(place), through, !single, along);
         if drawn.block.is_none() {
             begin.root = Root::Free;
         }
@@ -262,7 +265,7 @@ pub fn begin(
     }
     if let Some(met) = meets() {
         let inside = met + ahead * (0.4 * radius(met));
-        return made(Root::Free, Some(inside), inside, !single, false);
+        return make(Root::Free, Some(inside), inside, !single, false);
     }
     let middle = model.map_or(home, |index| all[index].middle());
     let flat = brush.mirror && faces;
@@ -272,11 +275,12 @@ pub fn begin(
         inside.x = 0.0;
         through = to_world.transform_point3(inside);
     }
-    made(Root::Free, None, through, !single && !flat, flat)
+    make(Root::Free, None, through, !single && !flat, flat)
 }
 
-impl Begin {
-    /// Where a ray through a place of the screen meets the plane that the stroke is drawn on.
+impl Beginning {
+    /// Returns the place at which a ray through a place of the screen meets the plane that the
+    /// stroke is drawn on; `None` if that is behind the eye, too far away or seen from the edge.
     #[must_use]
     pub fn on_plane(&self, sight: &Sight, at: Pos2) -> Option<DVec3> {
         let (through, normal) = self.plane;
@@ -289,7 +293,7 @@ impl Begin {
         (slope.abs() > 0.05 && t > 0.0 && t < far && place.is_finite()).then_some(place)
     }
 
-    /// The stroke in space, in the world.
+    /// Returns the stroke as samples in the world.
     #[must_use]
     pub fn samples(&self, sight: &Sight, stroke: &Stroke) -> Vec<Sample> {
         let marks = stroke.marks();
@@ -299,14 +303,15 @@ impl Begin {
         let mut leave = 0.0;
         if let Some(place) = self.place {
             points.push((place, marks[0].pressure));
-            // The hand is put down beside the curve, and goes away from it.
-            let seen = sight.screen(place);
-            leave = seen.map_or(0.0, |seen| seen.distance(start).clamp(4.0, 40.0));
+            // The pointer starts beside the curve. Marks count once they are as far away from
+            // there.
+            let at = sight.screen(place);
+            leave = at.map_or(0.0, |at| at.distance(start).clamp(4.0, 40.0));
         }
         let away = marks
             .iter()
             .position(|mark| start.distance(pos2(mark.at[0], mark.at[1])) >= leave);
-        // A short stub is its last point.
+        // Of a short stub the last mark counts.
         for mark in &marks[away.unwrap_or(marks.len() - 1)..] {
             if let Some(place) = self.on_plane(sight, pos2(mark.at[0], mark.at[1])) {
                 points.push((place, mark.pressure));
@@ -321,33 +326,34 @@ impl Begin {
         let long = (radii - SHORT[0]) / (SHORT[1] - SHORT[0]);
         let tip = 1.0 + (TIP - 1.0) * long.clamp(0.0, 1.0);
         let egg = if self.tip { egg(radii) } else { 1.0 };
-        let sample = |((position, pressure), along): (&(DVec3, Option<f32>), &f64)| {
+        let mut samples = Vec::with_capacity(points.len());
+        for ((position, pressure), along) in points.into_iter().zip(along) {
             let share = along / length;
-            let thick = match pressure {
+            let thickness = match pressure {
                 Some(pressure) => {
-                    PRESSED[0] + (PRESSED[1] - PRESSED[0]) * f64::from(pressure.clamp(0.0, 1.0))
+                    PRESSURE[0] + (PRESSURE[1] - PRESSURE[0]) * f64::from(pressure.clamp(0.0, 1.0))
                 }
                 None if self.place.is_some() => egg * (1.0 + (tip - 1.0) * share),
                 None => ENDS + (1.0 - ENDS) * libm::sin(share * std::f64::consts::PI),
             };
-            Sample {
-                position: *position,
-                radius: self.radius * thick,
-            }
-        };
-        points.iter().zip(&along).map(sample).collect()
+            samples.push(Sample {
+                position,
+                radius: self.radius * thickness,
+            });
+        }
+        samples
     }
 
-    /// The mirrored place.
+    /// Mirrors a place of the world.
     #[must_use]
-    pub fn mirrored(&self, place: DVec3) -> DVec3 {
+    pub fn mirror(&self, place: DVec3) -> DVec3 {
         let own = self.to_world.inverse().transform_point3(place);
         self.to_world
             .transform_point3(own * DVec3::new(-1.0, 1.0, 1.0))
     }
 }
 
-/// How much thicker a stroke from an end is, of so many radii.
+/// Returns the factor on the thickness of a stroke from an end, by its length in radii.
 fn egg(radii: f64) -> f64 {
     let ([none, most, long], thick) = EGG;
     let share = if radii < most {
@@ -358,29 +364,29 @@ fn egg(radii: f64) -> f64 {
     1.0 + (thick - 1.0) * share.clamp(0.0, 1.0)
 }
 
-/// Where a stroke goes: from its beginning to its middle. `None` while it is short.
+/// Returns a stroke's direction on the screen, from its beginning to its middle; `None` while it is
+/// short.
 #[must_use]
 pub fn heading(stroke: &Stroke) -> Option<Vec2> {
-    let marks = stroke.marks();
-    let at = |mark: &Mark| pos2(mark.at[0], mark.at[1]);
-    let start = at(&marks[0]);
+    let mut places = stroke.marks().iter().map(|m| pos2(m.at[0], m.at[1]));
+    let start = places.next()?;
     let half = 0.5 * stroke.reach();
-    let mark = marks.iter().find(|mark| start.distance(at(mark)) >= half)?;
-    (half >= 6.0).then(|| at(mark) - start)
+    let middle = places.find(|place| start.distance(*place) >= half)?;
+    (half >= 6.0).then(|| middle - start)
 }
 
-/// Turns a stroke round that begins in the air and ends on flesh: it grows from there. Gives how it
-/// begins then.
+/// Reverses a stroke that begins in the air and ends on flesh, so that it grows from there. Returns
+/// its beginning and the stroke.
 #[must_use]
-pub fn turned(
+pub fn orient(
     all: &[Drawn],
     sight: &Sight,
     brush: &Brush,
-    begin: Begin,
+    begin: Beginning,
     stroke: &Stroke,
     pair: Option<bool>,
     home: DVec3,
-) -> (Begin, Stroke) {
+) -> (Beginning, Stroke) {
     if begin.place.is_some() {
         return (begin, stroke.clone());
     }
@@ -399,25 +405,25 @@ pub fn turned(
     }
 }
 
-/// The text with a new curve along samples of the world, and its mirrored one.
-/// `point` is the length of a point of the screen there. `None` if the stroke is too short.
+/// Returns the text with a new curve along samples of the world, and its mirrored one; `None` if
+/// the stroke is too short. `point` is the length of a point of the screen there.
 #[must_use]
 pub fn draw(
     project: &Project,
     all: &[Drawn],
-    begin: &Begin,
+    begin: &Beginning,
     samples: &[Sample],
     brush: &Brush,
     point: f64,
 ) -> Option<TextEdit> {
-    // A skeleton of another colour is another one.
-    let rooted = match begin.root {
+    // A stroke of another colour goes into another skeleton.
+    let root = match begin.root {
         Root::Node(index, _) | Root::End(index, _) => Some(index),
         Root::Spot(spot) => Some(spot.drawn),
         Root::Free => None,
     };
-    let rooted = rooted.filter(|index| is_colour(all[*index].colour, brush.colour));
-    let into = rooted.or_else(|| target(all, brush.colour));
+    let root = root.filter(|index| is_colour(all[*index].colour, brush.colour));
+    let into = root.or_else(|| target(all, brush.colour));
     let (to_world, growth) = match into {
         Some(index) => (all[index].to_world, all[index].growth),
         None => (DAffine3::IDENTITY, 1.0),
@@ -434,15 +440,15 @@ pub fn draw(
     let unit = point / growth;
     let shake = if brush.touch { 5.0 } else { 3.0 };
     let nodes = sketch::fit(&own, shake * unit)?;
-    let mirrored = |nodes: &[Node]| -> Vec<Node> {
-        let flip = |node: &Node| Node {
+    let flipped: Vec<Node> = nodes
+        .iter()
+        .map(|node| Node {
             position: node.position * DVec3::new(-1.0, 1.0, 1.0),
             ..*node
-        };
-        nodes.iter().map(flip).collect()
-    };
+        })
+        .collect();
     let mut limbs = Vec::new();
-    let start = rooted.map(|index| (index, start_at(&all[index], begin)));
+    let start = root.map(|index| (index, start_at(&all[index], begin)));
     match start {
         Some((index, Some(start))) => {
             let drawn = &all[index];
@@ -454,11 +460,11 @@ pub fn draw(
             match twin {
                 Some(Some(start)) => limbs.push(Limb {
                     start,
-                    nodes: mirrored(&nodes[1..]),
+                    nodes: flipped[1..].to_vec(),
                 }),
                 Some(None) => limbs.push(Limb {
                     start: Start::Free,
-                    nodes: mirrored(&nodes),
+                    nodes: flipped,
                 }),
                 None => {}
             }
@@ -466,12 +472,12 @@ pub fn draw(
         _ => {
             limbs.push(Limb {
                 start: Start::Free,
-                nodes: nodes.clone(),
+                nodes,
             });
             if begin.pair {
                 limbs.push(Limb {
                     start: Start::Free,
-                    nodes: mirrored(&nodes),
+                    nodes: flipped,
                 });
             }
         }
@@ -491,8 +497,8 @@ pub fn draw(
     Some(TextEdit::whole(0, text))
 }
 
-/// The beginning of a curve that grows from a skeleton.
-fn start_at(drawn: &Drawn, begin: &Begin) -> Option<Start> {
+/// Returns the start of a curve that grows from a skeleton.
+fn start_at(drawn: &Drawn, begin: &Beginning) -> Option<Start> {
     drawn.block.as_ref()?;
     match begin.root {
         Root::Free => None,
@@ -507,10 +513,10 @@ fn start_at(drawn: &Drawn, begin: &Begin) -> Option<Start> {
     }
 }
 
-/// Where the mirrored curve begins; `None` if nothing is there.
-fn twin_start(drawn: &Drawn, index: usize, start: &Start, begin: &Begin) -> Option<Start> {
+/// Returns the start of the mirrored curve; `None` if the skeleton is not there.
+fn twin_start(drawn: &Drawn, index: usize, start: &Start, begin: &Beginning) -> Option<Start> {
     let place = begin.place?;
-    let own = drawn.own(place);
+    let own = drawn.to_own(place);
     let radius = match start {
         Start::Node(node) | Start::End(node) => drawn.skeleton.nodes[*node].radius,
         Start::Between { node, .. } => node.radius,
@@ -539,11 +545,11 @@ fn twin_start(drawn: &Drawn, index: usize, start: &Start, begin: &Begin) -> Opti
     })
 }
 
-/// The text with a bead on the flesh, and its mirrored one.
+/// Returns the text with a bead on the flesh, and its mirrored one.
 #[must_use]
 pub fn bead(
     project: &Project,
-    begin: &Begin,
+    begin: &Beginning,
     at: DVec3,
     colour: Rgb,
     point: f64,
@@ -556,7 +562,7 @@ pub fn bead(
         text.push('\n');
     }
     let mut centers = vec![at];
-    let other = begin.mirrored(at);
+    let other = begin.mirror(at);
     if begin.pair && other.distance(at) > radius {
         centers.push(other);
     }
@@ -568,7 +574,7 @@ pub fn bead(
     Some(TextEdit::whole(0, text))
 }
 
-/// A number without the digits that are below a tenth of the grain.
+/// Writes a number without digits below the power of ten at or under the grain.
 fn number(x: f64, grain: f64) -> String {
     let decimals = (-libm::floor(libm::log10(grain.max(1e-9)))).clamp(0.0, 9.0) as usize;
     let text = format!("{x:.decimals$}");
@@ -580,10 +586,10 @@ fn number(x: f64, grain: f64) -> String {
     if short == "-0" { "0" } else { short }.to_owned()
 }
 
-/// The text with the ground of the page under the lowest flesh: what is drawn stands. Unchanged if
-/// the text has another ground.
+/// Returns the text with the ground of the page moved to the lowest flesh, so that the creature
+/// stands on it. Unchanged if the text has another ground.
 #[must_use]
-pub fn grounded(text: &str, all: &[Drawn]) -> String {
+pub fn put_on_ground(text: &str, all: &[Drawn]) -> String {
     let Some(range) = page::ground(text) else {
         return text.to_owned();
     };
@@ -598,52 +604,45 @@ pub fn grounded(text: &str, all: &[Drawn]) -> String {
     format!("{}{height}{}", &text[..range.start], &text[range.end..])
 }
 
-/// Whether a change makes no new mistakes; else what is wrong with it. Gives the change with the
-/// ground under it, and what the text makes.
+/// Checks that a change makes no new mistakes. Returns the change with the ground moved, the texts
+/// and the result of compiling them.
 ///
 /// # Errors
-/// Says why the change cannot be made: the compiler's message.
-pub fn checked(
+/// If it makes a mistake, with the compiler's message.
+pub fn check(
     session: &Session,
     change: TextEdit,
 ) -> Result<(TextEdit, Project, rats::Compiled), String> {
     let file = change.file;
     let project = session.project().apply(&[change]);
     let compiled = rats::compile_at(&project, session.assets(), f64::from(session.film_frame()));
-    let errors = |diagnostics: &[rats::Diagnostic]| {
-        let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
-        diagnostics.iter().filter(is_error).count()
-    };
-    if errors(&compiled.diagnostics) > errors(session.diagnostics()) {
-        let new = compiled.diagnostics.iter().find(|d| {
-            d.severity == rats::Severity::Error
-                && session
-                    .diagnostics()
-                    .iter()
-                    .all(|old| old.message != d.message)
-        });
+    let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
+    let mut errors = compiled.diagnostics.iter().filter(is_error);
+    let before = session.diagnostics();
+    if errors.clone().count() > before.iter().filter(is_error).count() {
+        let new = errors.find(|d| before.iter().all(|old| old.message != d.message));
         let why = new.map_or("the text would have a mistake", |d| &d.message);
         return Err(format!("This cannot be drawn here: {why}."));
     }
-    let changed = project.files.get(file).map_or("", |file| &file.text);
-    let text = grounded(changed, &Drawn::all(&project, &compiled));
+    let text = project.files.get(file).map_or("", |file| &file.text);
+    let text = put_on_ground(text, &Drawn::all(&project, &compiled));
     Ok((TextEdit::whole(file, text), project, compiled))
 }
 
-/// Makes a change, and then what is the same on the other side of the mirror, in one step. `again`
-/// gets the skeletons after the first.
+/// Makes a change, and then the same one on the other side of the mirror, in one step. `again`
+/// makes the second change from the texts and skeletons after the first.
 ///
 /// # Errors
-/// As [`checked`].
+/// If the first change makes a mistake, as [`check`] does.
 pub fn twice(
     session: &Session,
     change: TextEdit,
     again: impl FnOnce(&Project, &[Drawn]) -> Option<TextEdit>,
 ) -> Result<TextEdit, String> {
-    let (first, project, compiled) = checked(session, change)?;
+    let (first, project, compiled) = check(session, change)?;
     let all = Drawn::all(&project, &compiled);
     match again(&project, &all).filter(|second| second.file == first.file) {
-        Some(second) => checked(session, second.clone())
+        Some(second) => check(session, second.clone())
             .map(|(change, ..)| change)
             .or(Ok(first)),
         None => Ok(first),

@@ -1,4 +1,4 @@
-//! A node that is held: it follows the hand, and so does its mirrored one.
+//! A node that is held: it follows the pointer, and so does its mirrored one.
 
 use super::drawn::Drawn;
 use crate::command::Command;
@@ -9,7 +9,7 @@ use egui::Pos2;
 use glam::DVec3;
 use rats::TextEdit;
 
-/// The handles of an element of a revision and frame of the film.
+/// The handles of an element, kept for a revision of the text and a frame of the film.
 #[derive(Default)]
 pub struct Handles {
     made: Option<(u64, u32, usize)>,
@@ -24,7 +24,7 @@ impl Handles {
                 session.project(),
                 session.assets(),
                 session.film_frame(),
-                session.compiled(),
+                session.compilation(),
                 element,
                 &sight.projection.world_from_view,
             );
@@ -34,29 +34,29 @@ impl Handles {
     }
 }
 
-/// The handle of a skeleton's node, and that of its radius if it has one of its own.
+/// Returns the handle of a skeleton's node, and that of its radius if it has one of its own.
 fn of_node(all: &[Handle], node: usize) -> Option<(&Handle, Option<&Handle>)> {
-    let is_point = |handle: &&Handle| handle.kind == Kind::Point;
-    let mut points = all.iter().enumerate().filter(|(_, h)| is_point(h));
+    let handles = all.iter().enumerate();
+    let mut points = handles.filter(|(_, handle)| handle.kind == Kind::Point);
     let (index, point) = points.nth(node)?;
     let radius = all.get(index + 1).filter(|next| next.kind == Kind::Length);
     let radius = radius.filter(|radius| !radius.label.contains("material"));
     Some((point, radius))
 }
 
-/// A node in the hand.
+/// A node that is held.
 pub struct Grip {
     drawn: usize,
     node: usize,
     twin: Option<usize>,
     /// Whether it stays on the mirror.
     flat: bool,
-    /// Where it is wanted, world.
+    /// The place in the world to which it is dragged.
     target: DVec3,
     at: Pos2,
 }
 
-/// The node on the other side of the mirror x = 0.
+/// Returns the node on the other side of the mirror x = 0.
 #[must_use]
 pub fn twin(drawn: &Drawn, node: usize) -> Option<usize> {
     let own = drawn.skeleton.nodes[node];
@@ -85,7 +85,7 @@ impl Grip {
         }
     }
 
-    /// Moves it with the pointer. Says why, if it cannot be moved.
+    /// Moves the node with the pointer. Returns a reason if it cannot be moved.
     pub fn drag(
         &mut self,
         all: &[Drawn],
@@ -103,9 +103,9 @@ impl Grip {
         }
         self.at = at;
         let before = self.target;
-        self.target = sight.moved(before, by, false);
+        self.target = sight.drag(before, by, false);
         if self.flat {
-            // In the mirror, and still under the pointer if that is seen from the side.
+            // In the mirror, and still under the pointer unless the mirror is seen from its edge.
             let mirror = drawn.to_world.matrix3.inverse().transpose() * DVec3::X;
             let eye = sight.projection.eye;
             let ray = (self.target - eye).normalize_or_zero();
@@ -114,11 +114,11 @@ impl Grip {
                 let far = (before - eye).dot(mirror.normalize_or_zero()) / slope;
                 self.target = eye + ray * far;
             }
-            let mut own = drawn.own(self.target);
+            let mut own = drawn.to_own(self.target);
             own.x = 0.0;
             self.target = drawn.to_world.transform_point3(own);
         }
-        let own = drawn.own(self.target);
+        let own = drawn.to_own(self.target);
         let other = drawn
             .to_world
             .transform_point3(own * DVec3::new(-1.0, 1.0, 1.0));
@@ -137,7 +137,7 @@ impl Grip {
     }
 }
 
-/// Makes nodes thicker by a factor. Says why, if one cannot be.
+/// Makes nodes thicker by a factor. Returns a reason if one cannot be.
 pub fn widen(
     drawn: &Drawn,
     nodes: &[usize],
@@ -174,7 +174,7 @@ pub fn widen(
                     wanted / growth,
                     grain / growth,
                 )?;
-                // The mirrored one follows at the next turn, when its number stands in the text.
+                // The mirrored one follows next time, when its number stands in the text.
                 commands.push(Command::edit(TextEdit::whole(drawn.file, new)));
                 return None;
             }
@@ -184,21 +184,21 @@ pub fn widen(
     None
 }
 
-/// Adds changes of other places.
+/// Adds edits that overlap none of those before.
 fn add_apart(edits: &mut Vec<TextEdit>, more: Vec<TextEdit>) {
     for edit in more {
-        let meets = |other: &TextEdit| {
+        let overlaps = edits.iter().any(|other| {
             other.file == edit.file
                 && other.span.start < edit.span.end
                 && edit.span.start < other.span.end
-        };
-        if !edits.iter().any(meets) {
+        });
+        if !overlaps {
             edits.push(edit);
         }
     }
 }
 
-/// Makes changes that are apart from each other.
+/// Makes edits that do not overlap.
 fn write(mut edits: Vec<TextEdit>, commands: &mut Vec<Command>) {
     edits.sort_by_key(|edit| (edit.file, edit.span.start));
     commands.push(Command::Edit { edits, step: false });

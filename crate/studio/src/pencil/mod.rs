@@ -2,7 +2,7 @@
 //!
 //! Nothing is kept here that the text does not say: each gesture changes the text, in one undo
 //! step. [`drawn`] finds the text's skeletons in the picture, [`edits`] makes texts of gestures,
-//! [`page`] is the page that drawing begins with, [`paint`] shows what the hand does, [`bar`] is
+//! [`page`] is the page that drawing begins with, [`paint`] shows strokes and skeletons, [`bar`] is
 //! the strip with the tools.
 
 pub mod bar;
@@ -20,7 +20,7 @@ use crate::hands::Sight;
 use crate::session::Session;
 use crate::{places, platform};
 use drawn::{Spot, crossing, node_at, spot_at};
-use edits::{Begin, Brush, Root, Wish};
+use edits::{Beginning, Brush, Root, Wish};
 use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
 use glam::DVec3;
 use grip::Grip;
@@ -29,12 +29,12 @@ use scene::Shape;
 use sketch::{Mark, Stroke};
 use tool::Tool;
 
-/// Thickness of strokes, points of a picture 640 points wide: least and most.
+/// Least and most radius of strokes, points of a picture 640 points wide.
 pub const THICKNESS: [f32; 2] = [3.0, 60.0];
-/// By how much thicker the first stroke of a page is.
+/// Factor on the thickness of the first stroke of a page.
 const BODY: f32 = 2.6;
 
-/// The tool in hand, and what is being done with it.
+/// The tool in hand and its gesture.
 pub struct Pencil {
     tool: Option<Tool>,
     /// Whether strokes are mirrored.
@@ -43,7 +43,7 @@ pub struct Pencil {
     pub thickness: f32,
     /// Points of the screen for one of those.
     scale: f32,
-    /// Index of the colour of strokes; `None`: that of what they grow from.
+    /// Index of the colour of strokes; `None`: that of their root.
     pub colour: Option<usize>,
     /// The skeletons of a revision and frame of the film.
     all: Vec<Drawn>,
@@ -54,27 +54,27 @@ pub struct Pencil {
     /// The node under the pointer.
     over: Option<(usize, usize)>,
     grip: grip::Handles,
-    /// The last stroke as it would be otherwise.
-    other: Option<Other>,
-    /// Where something lies on the picture, which a press is for.
+    /// The alternative to the last stroke.
+    alternative: Option<Alternative>,
+    /// Places on the picture where no stroke begins.
     off: Vec<Rect>,
 }
 
-/// What the last stroke would be as one of a pair if it is single, or single.
-struct Other {
-    /// Revision of the text with the last stroke; `None` until that is made.
+/// The last stroke as one of a pair if it is single, or single if it is one of a pair.
+struct Alternative {
+    /// Revision of the text with the last stroke; `None` until it is there.
     revision: Option<u64>,
     /// The text with the last stroke.
     now: String,
-    /// The text with the other one, in its place.
+    /// The edit to the text with the alternative.
     change: TextEdit,
-    /// Whether that is a pair.
+    /// Whether the alternative is a pair.
     pair: bool,
 }
 
 enum Gesture {
     /// A limb is being drawn.
-    Stroke(Stroke, Box<Begin>),
+    Stroke(Stroke, Box<Beginning>),
     /// A cut is being made.
     Cut(Stroke),
     /// A node is held.
@@ -112,14 +112,14 @@ impl Default for Pencil {
             chosen: None,
             over: None,
             grip: grip::Handles::default(),
-            other: None,
+            alternative: None,
             off: Vec::new(),
         }
     }
 }
 
 impl Pencil {
-    /// The tool in hand; `None` while nothing is drawn.
+    /// Returns the tool in hand.
     #[must_use]
     pub fn tool(&self) -> Option<Tool> {
         self.tool
@@ -135,22 +135,23 @@ impl Pencil {
         }
     }
 
-    /// Says where something lies on the picture: no stroke begins there.
+    /// Sets places on the picture where no stroke begins, as something covers them.
     pub fn keep_off(&mut self, places: Vec<Rect>) {
         self.off = places;
     }
 
-    /// What the last stroke can be made, while the text is as that left it:
-    /// `true` for one of a pair, `false` for a single one.
+    /// Whether the last stroke can be made one of a pair, or else single; `None` if it cannot be
+    /// changed, as after another edit.
     #[must_use]
-    pub fn other(&self, session: &Session) -> Option<bool> {
-        let other = self.other.as_ref().filter(|_| self.gesture.is_none())?;
+    pub fn alternative(&self, session: &Session) -> Option<bool> {
+        let other = self.alternative.as_ref();
+        let other = other.filter(|_| self.gesture.is_none())?;
         (other.revision == Some(session.revision())).then_some(other.pair)
     }
 
-    /// Makes the last stroke what it would be otherwise.
+    /// Replaces the last stroke by its alternative.
     pub fn turn(&mut self, session: &Session, commands: &mut Vec<Command>) {
-        let Some(other) = self.other.as_mut() else {
+        let Some(other) = self.alternative.as_mut() else {
             return;
         };
         if other.revision != Some(session.revision()) {
@@ -164,7 +165,7 @@ impl Pencil {
         other.revision = None;
     }
 
-    /// Another work is open.
+    /// Forgets all but the tool and its settings, when another work was opened.
     pub fn clear(&mut self) {
         *self = Self {
             tool: self.tool,
@@ -175,7 +176,7 @@ impl Pencil {
         };
     }
 
-    /// Whether the wheel makes a node thicker, in place of coming nearer.
+    /// Whether the wheel makes a node thicker, in place of zooming.
     #[must_use]
     pub fn takes_wheel(&self) -> bool {
         self.tool == Some(Tool::Move) && self.over.is_some()
@@ -190,10 +191,11 @@ impl Pencil {
     /// Whether the text has a skeleton that can be drawn on.
     #[must_use]
     pub fn has_skeleton(session: &Session) -> bool {
-        let all = Drawn::all(session.project(), session.compiled());
+        let all = Drawn::all(session.project(), session.compilation());
         all.iter().any(|drawn| drawn.block.is_some())
     }
 
+    /// Returns the brush of the next stroke.
     fn brush(&self, touch: bool) -> Brush {
         let is_first = self.all.iter().all(|drawn| drawn.block.is_none());
         Brush {
@@ -204,8 +206,8 @@ impl Pencil {
         }
     }
 
-    /// Takes what is done to the picture in `rect`, and shows what it does. `picture` is what the
-    /// picture itself answered.
+    /// Carries out gestures on the picture in `rect`, and shows skeletons and the stroke.
+    /// `picture` is the response of the picture itself.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -223,27 +225,26 @@ impl Pencil {
                 paint::hint(
                     ui,
                     rect,
-                    "The text has a mistake: undo, or mend it, to go on drawing",
+                    "The text has a mistake: undo it or fix it to go on drawing",
                 );
             }
             return;
         }
         let key = (session.revision(), session.film_frame());
         if self.made != Some(key) {
-            self.other = self.other.take().filter(|other| {
+            self.alternative = self.alternative.take().filter(|other| {
                 let file = other.change.file;
                 file < session.project().files.len() && session.text(file) == other.now
             });
-            if let Some(other) = &mut self.other {
+            if let Some(other) = &mut self.alternative {
                 other.revision = Some(key.0);
             }
             self.made = Some(key);
-            self.all = Drawn::all(session.project(), session.compiled());
-            let there = |found: &(usize, usize)| {
-                let drawn = self.all.get(found.0);
-                drawn.is_some_and(|drawn| found.1 < drawn.knobs.len() && drawn.block.is_some())
-            };
-            self.chosen = self.chosen.filter(there);
+            self.all = Drawn::all(session.project(), session.compilation());
+            self.chosen = self.chosen.filter(|(index, node)| {
+                let drawn = self.all.get(*index);
+                drawn.is_some_and(|drawn| *node < drawn.knobs.len() && drawn.block.is_some())
+            });
         }
         let sight = Sight::new(&session.camera(), rect);
         self.listen(ui, rect, &sight, around, commands);
@@ -311,18 +312,18 @@ impl Pencil {
         if let Some((index, node)) = self.chosen
             && (pressed(Key::Delete) || pressed(Key::Backspace))
         {
-            self.take_away(around.session, index, node, commands);
+            self.remove_node(around.session, index, node, commands);
         }
     }
 
-    /// Gives up what is being done.
+    /// Gives up the gesture.
     fn drop_gesture(&mut self, commands: &mut Vec<Command>) {
         if let Some(Gesture::Grip(_) | Gesture::Rim) = self.gesture.take() {
             commands.push(Command::Release);
         }
     }
 
-    /// Follows the pointer, through all that it did since the last frame.
+    /// Follows the pointer through all events since the last frame.
     fn listen(
         &mut self,
         ui: &Ui,
@@ -411,6 +412,7 @@ impl Pencil {
         }
     }
 
+    /// Begins a gesture of the tool.
     fn press(&mut self, sight: &Sight, around: &Around<'_>, at: Pos2, commands: &mut Vec<Command>) {
         let session = around.session;
         match self.tool {
@@ -441,13 +443,22 @@ impl Pencil {
         }
     }
 
-    fn begin(&self, session: &Session, sight: &Sight, at: Pos2, wish: Wish, touch: bool) -> Begin {
+    fn begin(
+        &self,
+        session: &Session,
+        sight: &Sight,
+        at: Pos2,
+        wish: Wish,
+        touch: bool,
+    ) -> Beginning {
         let brush = self.brush(touch);
         let home = session.camera().target;
         edits::begin(&self.all, sight, at, &brush, wish, home, || {
             let hit = hit(session, sight, at, 0.0)?;
-            let is_skeleton = |element: u32| self.all.iter().any(|d| d.element == element as usize);
-            (!hit.element.is_some_and(is_skeleton)).then_some(hit.position)
+            let is_skeleton = hit
+                .element
+                .is_some_and(|element| self.all.iter().any(|d| d.element == element as usize));
+            (!is_skeleton).then_some(hit.position)
         })
     }
 
@@ -470,7 +481,7 @@ impl Pencil {
                 let (from, spot) = (*from, *spot);
                 self.bend(around.session, sight, from, spot, commands);
             }
-            // Which way it leaves an end tells what it is.
+            // A stroke from an end may change its beginning with its heading.
             Some(Gesture::Stroke(stroke, begin)) if begin.place.is_some() => {
                 let start = stroke.marks()[0].at;
                 let wish = Wish {
@@ -522,7 +533,7 @@ impl Pencil {
         };
         let change = TextEdit::whole(drawn.file, text);
         let number = drawn.knobs.len();
-        match edits::checked(session, change) {
+        match edits::check(session, change) {
             Ok((change, project, compiled)) => {
                 commands.push(Command::Hold);
                 commands.push(Command::edit(change));
@@ -540,6 +551,7 @@ impl Pencil {
         }
     }
 
+    /// Carries out the gesture at its end.
     fn release(
         &mut self,
         sight: &Sight,
@@ -552,7 +564,7 @@ impl Pencil {
         match self.gesture.take() {
             Some(Gesture::Stroke(mut stroke, begin)) => {
                 stroke.push(mark(at));
-                self.other = None;
+                self.alternative = None;
                 let result = if stroke.reach() < still {
                     self.tap(session, sight, around.touch, at, &begin)
                 } else {
@@ -569,11 +581,10 @@ impl Pencil {
                 }
             }
             Some(Gesture::Grip(_) | Gesture::Rim) => {
-                // What is drawn by the last move stands in the text already; the ground follows in
-                // the same step.
+                // The last move is in the text already; the ground follows in the same step.
                 for drawn in self.all.iter().take(1) {
                     let text = session.text(drawn.file);
-                    let new = edits::grounded(text, &self.all);
+                    let new = edits::put_on_ground(text, &self.all);
                     if session.is_compiled() && new != text {
                         commands.push(Command::edit(TextEdit::whole(drawn.file, new)));
                     }
@@ -584,14 +595,14 @@ impl Pencil {
         }
     }
 
-    /// A bead where the picture was tapped.
+    /// Makes a bead where the picture was tapped.
     fn tap(
         &mut self,
         session: &Session,
         sight: &Sight,
         touch: bool,
         at: Pos2,
-        begin: &Begin,
+        begin: &Beginning,
     ) -> Option<Result<TextEdit, String>> {
         let reach = if touch { 16.0 } else { 5.0 };
         let hit = hit(session, sight, at, reach)?;
@@ -602,13 +613,13 @@ impl Pencil {
         begin.pair = self.mirror;
         begin.radius = f64::from(self.brush(touch).radius) * sight.point(hit.position);
         let point = sight.point(hit.position);
-        // Half sunk in.
+        // Sunk into the flesh, so that a quarter of its radius is hidden.
         let center = hit.position - hit.normal * (0.15 * begin.radius);
         let change = edits::bead(session.project(), &begin, center, colour, point)?;
-        Some(edits::checked(session, change).map(|(change, ..)| change))
+        Some(edits::check(session, change).map(|(change, ..)| change))
     }
 
-    /// A limb along a stroke.
+    /// Makes a limb along a stroke, and keeps the alternative to it.
     fn limb(
         &mut self,
         session: &Session,
@@ -616,18 +627,18 @@ impl Pencil {
         touch: bool,
         stroke: &Stroke,
     ) -> Option<Result<TextEdit, String>> {
-        let (change, is_pair) = self.grown(session, sight, touch, stroke, None)?;
-        let change = match edits::checked(session, change) {
+        let (change, is_pair) = self.grow(session, sight, touch, stroke, None)?;
+        let change = match edits::check(session, change) {
             Ok((change, ..)) => change,
             Err(why) => return Some(Err(why)),
         };
         if self.mirror
-            && let Some((other, pair)) = self.grown(session, sight, touch, stroke, Some(!is_pair))
+            && let Some((other, pair)) = self.grow(session, sight, touch, stroke, Some(!is_pair))
             && pair != is_pair
-            && let Ok((other, ..)) = edits::checked(session, other)
+            && let Ok((other, ..)) = edits::check(session, other)
             && other.file == change.file
         {
-            self.other = Some(Other {
+            self.alternative = Some(Alternative {
                 revision: None,
                 now: change.text.clone(),
                 change: other,
@@ -637,9 +648,9 @@ impl Pencil {
         Some(Ok(change))
     }
 
-    /// The text with a limb along a stroke, and whether it is one of a pair. `pair`: whether it is
-    /// to be.
-    fn grown(
+    /// Returns the edit that adds a limb along a stroke, and whether the limb is one of a pair.
+    /// `pair`: whether it should be; `None` to decide that by the stroke.
+    fn grow(
         &mut self,
         session: &Session,
         sight: &Sight,
@@ -655,7 +666,7 @@ impl Pencil {
             pair,
         };
         let begin = self.begin(session, sight, pos2(start[0], start[1]), wish, touch);
-        let (begin, stroke) = edits::turned(&self.all, sight, &brush, begin, stroke, pair, home);
+        let (begin, stroke) = edits::orient(&self.all, sight, &brush, begin, stroke, pair, home);
         let samples = begin.samples(sight, &stroke);
         let point = sight.point(begin.plane.0);
         let project = session.project();
@@ -663,7 +674,7 @@ impl Pencil {
         Some((change, begin.pair))
     }
 
-    /// Takes away what is tapped: a node, a curve or a bead.
+    /// Removes the bead, node or curve that is tapped.
     fn erase(
         &mut self,
         session: &Session,
@@ -676,10 +687,10 @@ impl Pencil {
         if let Some(hit) = hit(session, sight, at, 0.0)
             && let Some(element) = hit.element
         {
-            let scene = &session.compiled().scene;
+            let scene = &session.compilation().scene;
             let element = element as usize;
             let shape = &scene.elements[element];
-            let alone = !session.compiled().placements[element].repeated;
+            let alone = !session.compilation().placements[element].repeated;
             if matches!(shape.shape, Shape::Sphere { .. }) && alone {
                 let origin = shape.origin;
                 let (file, span) = (
@@ -689,14 +700,14 @@ impl Pencil {
                 let text = sketch::without_commands(session.text(file), &[span]);
                 let change = text.map(|text| TextEdit::whole(file, text));
                 step(
-                    change.map(|change| edits::checked(session, change).map(|(c, ..)| c)),
+                    change.map(|change| edits::check(session, change).map(|(c, ..)| c)),
                     commands,
                 );
                 return;
             }
         }
         if let Some((index, node)) = node_at(&self.all, sight, at, reach, false) {
-            self.take_away(session, index, node, commands);
+            self.remove_node(session, index, node, commands);
             return;
         }
         let Some(spot) = spot_at(&self.all, sight, at, 4.0) else {
@@ -713,7 +724,7 @@ impl Pencil {
             return;
         };
         let change = TextEdit::whole(drawn.file, text);
-        let other = self.mirrored(spot.drawn, spot.place);
+        let other = self.mirror_place(spot.drawn, spot.place);
         let radius = spot.radius;
         let result = edits::twice(session, change, |project, all| {
             let (index, spot) = near(all, other?, 0.6 * radius)?;
@@ -727,8 +738,8 @@ impl Pencil {
         step(Some(result), commands);
     }
 
-    /// Takes a node away, and its mirrored one.
-    fn take_away(
+    /// Removes a node, and its mirrored one.
+    fn remove_node(
         &mut self,
         session: &Session,
         index: usize,
@@ -741,7 +752,7 @@ impl Pencil {
             return;
         };
         let change = TextEdit::whole(drawn.file, text);
-        let other = self.mirrored(
+        let other = self.mirror_place(
             index,
             drawn
                 .to_world
@@ -753,7 +764,7 @@ impl Pencil {
             let other = other?;
             let found = all.iter().find_map(|drawn| {
                 drawn.block.as_ref()?;
-                Some((drawn, drawn.node_near(drawn.own(other), 0.3 * radius)?))
+                Some((drawn, drawn.node_near(drawn.to_own(other), 0.3 * radius)?))
             });
             let (drawn, node) = found?;
             let text = &project.files[drawn.file].text;
@@ -795,7 +806,7 @@ impl Pencil {
             return;
         };
         let change = TextEdit::whole(drawn.file, text);
-        let other = self.mirrored(spot.drawn, spot.place);
+        let other = self.mirror_place(spot.drawn, spot.place);
         let result = edits::twice(session, change, |project, all| {
             let (index, spot) = near(all, other?, 0.6 * spot.radius)?;
             let drawn = &all[index];
@@ -807,10 +818,11 @@ impl Pencil {
         step(Some(result), commands);
     }
 
-    /// The place on the other side of the mirror, if strokes are mirrored and it is another one.
-    fn mirrored(&self, index: usize, place: DVec3) -> Option<DVec3> {
+    /// Returns the place on the other side of the mirror, if strokes are mirrored and it is not the
+    /// same.
+    fn mirror_place(&self, index: usize, place: DVec3) -> Option<DVec3> {
         let drawn = &self.all[index];
-        let own = drawn.own(place);
+        let own = drawn.to_own(place);
         let other = own * DVec3::new(-1.0, 1.0, 1.0);
         let least = 1e-3 * drawn.middle().distance(place).max(1e-6);
         let apart = self.mirror && own.x.abs() > least;
@@ -854,7 +866,7 @@ impl Pencil {
         }
     }
 
-    /// The chosen node's place on the screen, and where its radius is taken hold of.
+    /// Returns the chosen node's place on the screen, and that of the knob of its radius.
     fn rim(&self, sight: &Sight) -> Option<(Pos2, Pos2)> {
         let (index, node) = self.chosen?;
         let drawn = self.all.get(index)?;
@@ -889,11 +901,10 @@ impl Pencil {
         });
         if let Some((samples, begin, colour)) = &limb {
             if begin.pair {
-                let other = |sample: &sketch::Sample| sketch::Sample {
-                    position: begin.mirrored(sample.position),
-                    ..*sample
-                };
-                let other: Vec<_> = samples.iter().map(other).collect();
+                let mut other = samples.clone();
+                for sample in &mut other {
+                    sample.position = begin.mirror(sample.position);
+                }
                 paint::tube(painter, sight, &other, *colour, 0.55);
             }
             paint::tube(painter, sight, samples, *colour, 0.9);
@@ -926,7 +937,7 @@ impl Pencil {
         }
     }
 
-    fn stroke_colour(&self, begin: &Begin) -> scene::Rgb {
+    fn stroke_colour(&self, begin: &Beginning) -> scene::Rgb {
         let own = match begin.root {
             Root::Node(index, _) | Root::End(index, _) => Some(index),
             Root::Spot(spot) => Some(spot.drawn),
@@ -939,7 +950,7 @@ impl Pencil {
         }
     }
 
-    /// What a gesture would do now.
+    /// Returns a sentence about what a gesture would do now.
     fn hint(
         &self,
         tool: Tool,
@@ -953,7 +964,7 @@ impl Pencil {
                 return "A pair: the other one grows on the other side";
             }
             (Some(Gesture::Stroke(..)), _) => return "Let go, and it becomes a limb",
-            (Some(Gesture::Cut(_)), _) => return "Across a limb: what is beyond falls off",
+            (Some(Gesture::Cut(_)), _) => return "Across a limb: the part beyond falls off",
             (Some(Gesture::Rim), _) => return "Away from the dot: thicker",
             (Some(_), _) => return "Let go where it should stay",
             (None, _) => {}
@@ -982,7 +993,7 @@ impl Pencil {
             };
         }
         match (tool, around.touch) {
-            _ if is_empty => "Nothing is drawn yet: take Draw",
+            _ if is_empty => "Nothing is drawn yet: choose Draw",
             (Tool::Move, true) if self.chosen.is_some() => {
                 "Pinch: thicker or thinner · drag the dot: move it"
             }
@@ -991,13 +1002,14 @@ impl Pencil {
                 "Drag: move it · wheel: thicker or thinner"
             }
             (Tool::Move, false) => "Drag a dot, or bend a limb · right button turns",
-            (_, true) => "Cut across a limb · tap a dot, a limb or an eye: it goes",
-            (_, false) => "Cut across a limb · click a dot, a limb or an eye: it goes",
+            (_, true) => "Cut across a limb · tap a dot, a limb or an eye to remove it",
+            (_, false) => "Cut across a limb · click a dot, a limb or an eye to remove it",
         }
     }
 }
 
-/// The place of the skeletons that drawing can change, nearest to one in the world.
+/// Returns a place near one in the world, on the first skeleton within `reach` that drawing can
+/// change.
 fn near(all: &[Drawn], place: DVec3, reach: f64) -> Option<(usize, Spot)> {
     all.iter().enumerate().find_map(|(index, drawn)| {
         drawn.block.as_ref()?;
@@ -1005,6 +1017,7 @@ fn near(all: &[Drawn], place: DVec3, reach: f64) -> Option<(usize, Spot)> {
     })
 }
 
+/// Makes an edit as an undo step, or tells why there is none.
 fn step(result: Option<Result<TextEdit, String>>, commands: &mut Vec<Command>) {
     match result {
         Some(Ok(edit)) => commands.push(Command::step(edit)),
@@ -1020,8 +1033,7 @@ fn mark(at: Pos2) -> Mark {
     }
 }
 
-/// Returns where a place of the screen is on what is seen there, or at most `around` points beside
-/// it.
+/// Returns the hit that is seen at a place of the screen, or at most `around` points beside it.
 fn hit(session: &Session, sight: &Sight, at: Pos2, around: f32) -> Option<tracer::Hit> {
     let picker = session.picker(false)?;
     let rings = [0.0, 0.5, 1.0].map(|share| share * around);

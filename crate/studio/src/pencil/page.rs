@@ -14,11 +14,11 @@ pub const COLOURS: [(&str, Rgb); 8] = [
     ("Night", [0.07, 0.07, 0.09]),
 ];
 
-/// The ground of the page, up to its height.
+/// The command of the page's ground, up to its height.
 const GROUND: &str = "ground <0.72 0.70 0.62>, height ";
 
-/// The text of an empty page to draw on: seen from the side and a little from before, so that what
-/// is drawn in pairs lies to the left and right of it. `ratio`: height of its place to width.
+/// Returns the text of an empty page to draw on: seen from the side and a little from the front, so
+/// that both limbs of a pair are seen. `ratio`: height by width of its place.
 #[must_use]
 pub fn fresh(ratio: f64) -> String {
     let ratio = if ratio.is_finite() {
@@ -56,8 +56,8 @@ surface Skin, {skin}
     )
 }
 
-/// Bytes of the height of the page's ground. `None` if a text has no such ground, or no plain
-/// number there.
+/// Returns the bytes of the height of the page's ground; `None` if a text has no such ground, or no
+/// plain number there.
 #[must_use]
 pub fn ground(text: &str) -> Option<std::ops::Range<usize>> {
     let starts = text.match_indices(GROUND).map(|(at, _)| at);
@@ -70,20 +70,21 @@ pub fn ground(text: &str) -> Option<std::ops::Range<usize>> {
     Some(start..start + line.len())
 }
 
-/// The fields of a material: soft, or hard and shining.
+/// Returns the fields of a material: soft, or hard and shiny.
 fn surface(colour: Rgb, soft: bool) -> String {
     let [r, g, b] = colour;
     if soft {
         format!(
-            "kernel cauchy, diffuse <{r} {g} {b}>, specular Gray40, shine 30, radius 0.2, blobbiness -2"
+            "kernel cauchy, diffuse <{r} {g} {b}>, specular Gray40, shine 30, radius 0.2, \
+                blobbiness -2"
         )
     } else {
         format!("diffuse <{r} {g} {b}>, specular White, shine 90")
     }
 }
 
-/// A text that has a material of a colour, and its name: one that is written just so, or a new one
-/// at the end.
+/// Returns a text that has a material of a colour, and the material's name: one with the same
+/// fields, or a new one at the end. `texts` are those in which the name must be free.
 pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
     text: &str,
     texts: impl Fn() -> T,
@@ -98,8 +99,8 @@ pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
     if let Some(name) = known {
         return (text.to_owned(), name.to_owned());
     }
-    let named = COLOURS.iter().find(|(_, rgb)| *rgb == colour);
-    let stem = named.map_or("Colour", |(name, _)| name);
+    let known = COLOURS.iter().find(|(_, rgb)| *rgb == colour);
+    let stem = known.map_or("Colour", |(name, _)| name);
     let stem = format!("{stem}{}", if soft { "Skin" } else { "Bead" });
     let name = sketch::free_name(texts(), &stem);
     let line = if text.contains("\r\n") { "\r\n" } else { "\n" };
@@ -111,7 +112,7 @@ pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
     (text, name)
 }
 
-/// Whether a text is an empty page: nothing, or what a new work begins with.
+/// Whether a text is an empty page: no text, or that of a new work.
 #[must_use]
 pub fn is_empty(text: &str) -> bool {
     text.trim().is_empty() || text.trim() == crate::examples::BLANK.trim()

@@ -1,4 +1,4 @@
-//! What drawing shows over the picture: the flesh of a stroke, bones and knobs, the hint.
+//! Painting over the picture while drawing: the flesh of a stroke, bones and knobs, the hint.
 
 use super::drawn::Drawn;
 use super::tool::Tool;
@@ -10,33 +10,35 @@ use glam::DVec3;
 use scene::Rgb;
 use sketch::Sample;
 
+/// The colour of bones and knobs.
 const LIT: Color32 = Color32::from_rgb(255, 222, 122);
-/// Points of a tube that are drawn, at most.
+/// Most samples of a tube that are drawn.
 const MOST: usize = 240;
 
-/// How a knob is shown.
+/// The emphasis of a knob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Light {
-    /// As all others.
+    /// None.
     Plain,
-    /// Under the pointer.
+    /// The emphasis of the knob under the pointer.
     Over,
-    /// Touched last.
+    /// The emphasis of the knob that was touched last.
     Chosen,
 }
 
+/// Returns a colour at a brightness and an opacity.
 fn shade(colour: Rgb, light: f32, alpha: f32) -> Color32 {
     let [r, g, b] = colour.map(|c| ((c * light).clamp(0.0, 1.0) * 255.0) as u8);
     Color32::from_rgb(r, g, b).gamma_multiply(alpha)
 }
 
-/// A tube through samples: discs, shaded from the middle to the rim.
+/// Paints a tube through samples, shaded from the middle to the rim.
 pub fn tube(painter: &Painter, sight: &Sight, samples: &[Sample], colour: Rgb, alpha: f32) {
     let step = samples.len().div_ceil(MOST).max(1);
     let last = samples.len().saturating_sub(1);
-    let kept = samples.iter().enumerate();
-    let kept = kept.filter(|(i, _)| i % step == 0 || *i == last);
-    let seen: Vec<(Pos2, f32)> = kept
+    let few = samples.iter().enumerate();
+    let few = few.filter(|(i, _)| i % step == 0 || *i == last);
+    let discs: Vec<(Pos2, f32)> = few
         .filter_map(|(_, sample)| {
             let at = sight.screen(sample.position)?;
             let radius = (sample.radius / sight.point(sample.position)) as f32;
@@ -50,19 +52,20 @@ pub fn tube(painter: &Painter, sight: &Sight, samples: &[Sample], colour: Rgb, a
         (0.5, 0.2, 1.1),
         (0.2, 0.3, 1.35),
     ] {
-        ribbon(painter, &seen, share, off, shade(colour, light, alpha));
+        ribbon(painter, &discs, share, off, shade(colour, light, alpha));
     }
 }
 
-/// A line of varying width, moved towards the light.
-fn ribbon(painter: &Painter, seen: &[(Pos2, f32)], share: f32, off: f32, colour: Color32) {
+/// Paints a band through discs, which are shrunk to a share of their radii and moved towards the
+/// light by `off` radii.
+fn ribbon(painter: &Painter, discs: &[(Pos2, f32)], share: f32, off: f32, colour: Color32) {
     let place = |(at, radius): (Pos2, f32)| (at + vec2(-0.5, -0.85) * off * radius, radius * share);
-    for &point in seen.first().iter().chain(&seen.last()) {
+    for &point in discs.first().iter().chain(&discs.last()) {
         let (at, radius) = place(*point);
         painter.circle_filled(at, radius, colour);
     }
     let mut mesh = Mesh::default();
-    for pair in seen.windows(2) {
+    for pair in discs.windows(2) {
         let [(a, r), (b, s)] = [place(pair[0]), place(pair[1])];
         let along = b - a;
         if along.length() < 0.2 {
@@ -89,7 +92,7 @@ fn ribbon(painter: &Painter, seen: &[(Pos2, f32)], share: f32, off: f32, colour:
     painter.add(Shape::mesh(mesh));
 }
 
-/// The flesh of a skeleton, roughly: while no picture of it is there.
+/// Paints the flesh of a skeleton roughly, while there is no picture of it.
 pub fn flesh(painter: &Painter, sight: &Sight, drawn: &Drawn) {
     for [(a, r), (b, s)] in drawn.limbs() {
         let ends = [(a, r), (b, s)].map(|(position, radius)| Sample { position, radius });
@@ -106,7 +109,7 @@ pub fn flesh(painter: &Painter, sight: &Sight, drawn: &Drawn) {
     }
 }
 
-/// The curves and knobs of a skeleton.
+/// Paints the curves and knobs of a skeleton.
 pub fn bones(
     painter: &Painter,
     sight: &Sight,
@@ -158,7 +161,7 @@ pub fn bones(
     }
 }
 
-/// The circle of a node's radius, and the knob on it.
+/// Paints the circle of a node's radius, and the knob on it.
 pub fn rim(painter: &Painter, center: Pos2, rim: Pos2) {
     let radius = center.distance(rim);
     for (width, colour) in [(3.0, Color32::from_black_alpha(100)), (1.4, Color32::WHITE)] {
@@ -172,7 +175,7 @@ pub fn rim(painter: &Painter, center: Pos2, rim: Pos2) {
     );
 }
 
-/// The line of a cut.
+/// Paints the line of a cut.
 pub fn knife(painter: &Painter, stroke: &sketch::Stroke) {
     let line: Vec<Pos2> = stroke
         .marks()
@@ -189,13 +192,13 @@ pub fn knife(painter: &Painter, stroke: &sketch::Stroke) {
     ));
 }
 
-/// The brush at the pointer.
+/// Paints the brush at the pointer.
 pub fn brush(painter: &Painter, at: Pos2, radius: f32) {
     painter.circle_stroke(at, radius, Stroke::new(2.6, Color32::from_black_alpha(80)));
     painter.circle_stroke(at, radius, Stroke::new(1.2, Color32::from_white_alpha(200)));
 }
 
-/// A line of text at the top of the picture.
+/// Paints a line of text at the top of the picture.
 pub fn hint(ui: &Ui, rect: Rect, text: &str) {
     let painter = ui.painter().with_clip_rect(rect);
     let font = FontId::proportional(13.5);

@@ -1,6 +1,6 @@
-//! What a hand does with the pencil.
+//! The tools of drawing.
 
-/// What the hand does.
+/// A tool of drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
     /// Strokes become limbs.
@@ -8,15 +8,15 @@ pub enum Tool {
     Draw,
     /// Nodes are moved, and made thicker or thinner.
     Move,
-    /// Limbs are cut, nodes and curves taken away.
+    /// Limbs are cut, nodes and curves removed.
     Cut,
 }
 
 impl Tool {
-    /// All of them.
+    /// The tools in the order of the strip.
     pub const ALL: [Self; 3] = [Self::Draw, Self::Move, Self::Cut];
 
-    /// Its name in the page handle's status.
+    /// Returns the name in the page handle's status.
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {

@@ -1,7 +1,7 @@
-//! Stand-ins for tests: an address and a storage in memory, for each thread its own.
+//! Stand-ins for tests: an address and a storage in memory, one for each thread.
 
-use crate::intake::Taken;
-use crate::recording::{Encoded, Kind, VideoFormat};
+use crate::intake::Incoming;
+use crate::recording::{EncodedVideo, Kind, VideoFormat};
 use crate::request::{Request, Requests};
 use crate::storage::Store;
 use ::picture::{Format, Picture, file};
@@ -16,7 +16,7 @@ thread_local! {
     static DOWNLOAD: RefCell<Option<(String, Vec<u8>)>> = const { RefCell::new(None) };
 }
 
-/// Seconds on a clock that never goes back.
+/// Returns the seconds on a clock that never goes back.
 #[must_use]
 pub fn now(ctx: &egui::Context) -> f64 {
     ctx.input(|input| input.time)
@@ -28,10 +28,10 @@ pub fn pen_pressure() -> Option<f32> {
     None
 }
 
-/// Says whether each frame keeps the tracer waiting.
-pub fn set_frames_dear(_dear: bool) {}
+/// Sets whether each frame keeps the tracer waiting.
+pub fn set_frames_slow(_is_slow: bool) {}
 
-/// Milliseconds since 1970.
+/// Returns the milliseconds since 1970.
 #[must_use]
 pub fn unix_time() -> f64 {
     std::time::SystemTime::now()
@@ -39,19 +39,19 @@ pub fn unix_time() -> f64 {
         .map_or(0.0, |time| time.as_millis() as f64)
 }
 
-/// A word that differs between tabs.
+/// Returns a word that differs between tabs.
 #[must_use]
 pub fn random_word() -> String {
     String::from("native")
 }
 
-/// The page's address without its fragment.
+/// Returns the page's address without its fragment.
 #[must_use]
 pub fn page() -> String {
     String::from("https://sinew.example/")
 }
 
-/// The fragment of the address, with `#`, or empty.
+/// Returns the fragment of the address, with `#`, or empty.
 #[must_use]
 pub fn hash() -> String {
     HASH.with_borrow(Clone::clone)
@@ -67,24 +67,24 @@ pub fn push_hash(hash: &str) {
     set_hash(hash);
 }
 
-/// The storage.
+/// Returns a storage in memory.
 #[must_use]
 pub fn store() -> Box<dyn Store> {
     Box::<BTreeMap<String, String>>::default()
 }
 
-/// Gives the user a file.
+/// Saves a file for the user.
 pub fn download(name: &str, _mime: &str, bytes: &[u8]) {
     DOWNLOAD.set(Some((name.to_owned(), bytes.to_vec())));
 }
 
 /// Reads files that were dropped on the window and asks for them to be taken in.
 pub fn read_dropped(files: Vec<egui::DroppedFileHandle>, requests: &Requests) {
-    let taken = files.iter().map(|file| Taken {
+    let files = files.iter().map(|file| Incoming {
         name: file.path().display().to_string(),
         bytes: file.bytes(),
     });
-    requests.ask(Request::Files(taken.collect()));
+    requests.ask(Request::Files(files.collect()));
 }
 
 /// Lets the user choose files. Tests ask for them to be taken in themselves.
@@ -94,42 +94,42 @@ pub fn pick_files(_requests: &Requests) {
 
 /// Whether the user was asked to choose files since the last call, for tests.
 #[must_use]
-pub fn picked() -> bool {
+pub fn was_asked_for_files() -> bool {
     PICKED.take()
 }
 
-/// The file that was given last, for tests.
+/// Takes the file that was saved last, for tests.
 #[must_use]
-pub fn downloaded() -> Option<(String, Vec<u8>)> {
+pub fn last_download() -> Option<(String, Vec<u8>)> {
     DOWNLOAD.take()
 }
 
 thread_local! {
-    static TROUBLED: RefCell<bool> = const { RefCell::new(false) };
+    static STOPPED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether the program stopped unexpectedly the last time in this tab.
+/// Whether the program stopped unexpectedly last time in this tab.
 #[must_use]
-pub fn troubled() -> bool {
-    TROUBLED.with_borrow(|troubled| *troubled)
+pub fn has_stopped_before() -> bool {
+    STOPPED.get()
 }
 
 /// Notes that the program may stop unexpectedly, or with `false` that it works.
-pub fn set_troubled(troubled: bool) {
-    TROUBLED.set(troubled);
+pub fn set_stopped(has_stopped: bool) {
+    STOPPED.set(has_stopped);
 }
 
-/// Whether what is stored lasts.
+/// Whether the storage outlives the page.
 #[must_use]
 pub fn has_storage() -> bool {
     true
 }
 
-/// Says in the browser's tab what is open.
+/// Sets the title of the browser's tab.
 pub fn set_title(_name: &str) {}
 
-/// There is none apart from the window's.
-pub fn pretended_card(_done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {}
+/// Asks for an emulated graphics card, which tests do not have.
+pub fn ask_emulated_card(_done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {}
 
 /// Reads a file of the page.
 #[must_use]
@@ -143,14 +143,15 @@ pub fn fetch(path: &str, done: impl FnOnce(Option<Vec<u8>>) + 'static) {
     done(read(path));
 }
 
-/// The encoders of [`VideoEncoder`].
+/// Returns the formats of [`VideoEncoder`].
 #[must_use]
 pub fn native_formats() -> Vec<VideoFormat> {
-    let format = |kind, codec: &str| VideoFormat {
-        kind,
-        codec: codec.to_owned(),
-    };
-    vec![format(Kind::Mp4, "avc1"), format(Kind::WebM, "vp09")]
+    [(Kind::Mp4, "avc1"), (Kind::WebM, "vp09")]
+        .map(|(kind, codec)| VideoFormat {
+            kind,
+            codec: codec.to_owned(),
+        })
+        .to_vec()
 }
 
 /// Asks for encoders.
@@ -166,10 +167,10 @@ pub struct VideoEncoder {
 }
 
 impl VideoEncoder {
-    /// An encoder of one of [`native_formats`].
+    /// Makes an encoder of one of [`native_formats`].
     ///
     /// # Errors
-    /// For another codec.
+    /// If the codec is another one.
     pub fn new(codec: &str, _size: [u32; 2], _rate: u16) -> Result<Self, String> {
         Ok(Self {
             codec: match codec {
@@ -184,7 +185,7 @@ impl VideoEncoder {
         })
     }
 
-    /// Frames that wait to be encoded.
+    /// Returns the number of frames that wait to be encoded.
     #[must_use]
     pub fn waiting(&self) -> usize {
         0
@@ -204,13 +205,13 @@ impl VideoEncoder {
         Ok(())
     }
 
-    /// Returns everything at the second call.
+    /// Returns the video at the second call, as a browser needs time.
     ///
     /// # Errors
     /// Never.
-    pub fn finish(&mut self) -> Result<Option<Encoded>, String> {
+    pub fn finish(&mut self) -> Result<Option<EncodedVideo>, String> {
         let is_over = std::mem::replace(&mut self.is_ending, true);
-        Ok(is_over.then(|| Encoded {
+        Ok(is_over.then(|| EncodedVideo {
             codec: self.codec.clone(),
             colours: Colours::BT709,
             packets: std::mem::take(&mut self.packets),

@@ -1,6 +1,6 @@
 //! The browser's encoders of videos (WebCodecs), where it has them.
 
-use crate::recording::{Encoded, Kind, VideoFormat};
+use crate::recording::{EncodedVideo, Kind, VideoFormat};
 use ::picture::Picture;
 use js_sys::{Object, Promise, Reflect, Uint8Array};
 use std::cell::RefCell;
@@ -15,7 +15,12 @@ extern "C" {
     type Encoder;
     #[wasm_bindgen(constructor, catch, js_class = "VideoEncoder")]
     fn new(handlers: &JsValue) -> Result<Encoder, JsValue>;
-    #[wasm_bindgen(static_method_of = Encoder, js_class = "VideoEncoder", js_name = isConfigSupported, catch)]
+    #[wasm_bindgen(
+        static_method_of = Encoder,
+        js_class = "VideoEncoder",
+        js_name = isConfigSupported,
+        catch
+    )]
     fn is_config_supported(settings: &JsValue) -> Result<Promise, JsValue>;
     #[wasm_bindgen(method, catch)]
     fn configure(this: &Encoder, settings: &JsValue) -> Result<(), JsValue>;
@@ -47,8 +52,8 @@ extern "C" {
     fn copy_to(this: &Chunk, bytes: &Uint8Array) -> Result<(), JsValue>;
 }
 
-/// Codecs to be asked for, the better ones of a kind first: H.264's profiles and VP9 at a level for
-/// 4096 × 2304 pixels.
+/// Codecs to ask for, the better ones of a kind first: H.264's profiles and VP9 at a level for 4096
+/// × 2304 pixels.
 const CODECS: [(Kind, &str); 5] = [
     (Kind::Mp4, "avc1.640033"),
     (Kind::Mp4, "avc1.4d0033"),
@@ -57,7 +62,7 @@ const CODECS: [(Kind, &str); 5] = [
     (Kind::WebM, "vp8"),
 ];
 
-/// Bits for a pixel of a frame: smooth shading shows no blocks.
+/// Bits for a pixel of a frame: enough that smooth shading shows no blocks.
 const BITS: f64 = 0.25;
 
 /// Asks for the browser's encoders; none if it has no WebCodecs.
@@ -76,8 +81,8 @@ pub fn video_formats(done: impl FnOnce(Vec<VideoFormat>) + 'static) {
 }
 
 async fn is_supported(codec: &str) -> Result<bool, JsValue> {
-    let asked = Encoder::is_config_supported(&settings(codec, [1280, 720], 25))?;
-    let answer = JsFuture::from(asked).await?;
+    let answer = Encoder::is_config_supported(&settings(codec, [1280, 720], 25))?;
+    let answer = JsFuture::from(answer).await?;
     Ok(Reflect::get(&answer, &"supported".into())?.is_truthy())
 }
 
@@ -92,7 +97,7 @@ fn settings(codec: &str, size: [u32; 2], rate: u16) -> JsValue {
         ("framerate", rate.into()),
         ("bitrate", bits.into()),
         ("latencyMode", "quality".into()),
-        // Lengths before units, as MP4 has them. Other codecs do not look at it.
+        // Lengths before units, as MP4 has them. Other codecs ignore it.
         ("avc", object(&[("format", "avc".into())])),
     ])
 }
@@ -126,7 +131,7 @@ pub struct VideoEncoder {
 }
 
 impl VideoEncoder {
-    /// An encoder for frames of a size, so many in a second.
+    /// Makes an encoder for frames of a size, `rate` in a second.
     ///
     /// # Errors
     /// If the browser refuses.
@@ -160,7 +165,7 @@ impl VideoEncoder {
         })
     }
 
-    /// Frames that wait to be encoded.
+    /// Returns the number of frames that wait to be encoded.
     #[must_use]
     pub fn waiting(&self) -> usize {
         self.encoder.encode_queue_size() as usize
@@ -189,11 +194,11 @@ impl VideoEncoder {
         encoded.map_err(|error| words(&error))
     }
 
-    /// Has the last frames encoded. Returns everything once that is done, until then `None`.
+    /// Waits for the last frames. Returns the video once they are encoded, until then `None`.
     ///
     /// # Errors
     /// If the encoder has failed.
-    pub fn finish(&mut self) -> Result<Option<Encoded>, String> {
+    pub fn finish(&mut self) -> Result<Option<EncodedVideo>, String> {
         if !self.is_ending {
             self.is_ending = true;
             let flushed = self.encoder.flush().map_err(|error| words(&error))?;
@@ -214,7 +219,7 @@ impl VideoEncoder {
         if !state.is_flushed {
             return Ok(None);
         }
-        Ok(Some(Encoded {
+        Ok(Some(EncodedVideo {
             codec: if self.codec.starts_with("avc1") {
                 Codec::H264 {
                     configuration: std::mem::take(&mut state.configuration),
@@ -264,14 +269,11 @@ fn take(state: &mut State, chunk: &Chunk, about: &JsValue) -> Result<(), JsValue
     Ok(())
 }
 
-/// The colours that an encoder tells of by WebCodecs' words.
+/// Returns the meaning of colours by WebCodecs' words; `None` if one is not known.
 fn colours(space: &JsValue) -> Option<Colours> {
-    let word = |name: &str| {
-        let value = Reflect::get(space, &name.into()).ok()?;
-        value.as_string()
-    };
     let code = |name: &str| {
-        Some(match word(name)?.as_str() {
+        let word = Reflect::get(space, &name.into()).ok()?.as_string()?;
+        Some(match word.as_str() {
             "rgb" => 0,
             "bt709" => 1,
             "bt470bg" => 5,

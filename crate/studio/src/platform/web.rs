@@ -1,6 +1,6 @@
-//! The browser.
+//! Services of the browser.
 
-use crate::intake::{self, Taken};
+use crate::intake::{self, Incoming};
 use crate::request::{Request, Requests};
 use crate::storage::Store;
 use egui_wgpu::wgpu;
@@ -13,7 +13,8 @@ fn window() -> web_sys::Window {
     web_sys::window().expect("the app runs in a page, not in a worker")
 }
 
-/// Seconds on a clock that never goes back. egui's own stands still while the tab is hidden.
+/// Returns the seconds on a clock that never goes back. egui's own stands still while the tab is
+/// hidden.
 #[must_use]
 pub fn now(_ctx: &egui::Context) -> f64 {
     crate::clock::stopwatch()
@@ -23,26 +24,26 @@ thread_local! {
     static PEN: std::cell::Cell<Option<f32>> = const { std::cell::Cell::new(None) };
 }
 
-/// The pressure of the pen that touches the page, or that touched it last, 0 … 1; `None` for a
+/// Returns the pressure, 0 … 1, of the pen that touches the page or touched it last; `None` for a
 /// mouse or a finger.
 #[must_use]
 pub fn pen_pressure() -> Option<f32> {
     PEN.get()
 }
 
-/// Listens to pens from now on, whose pressure the window's own events do not tell.
+/// Listens to pens from now on, as the window's own events have no pressure.
 pub fn watch_pens() {
     let listen = Closure::<dyn Fn(web_sys::PointerEvent)>::new(|event: web_sys::PointerEvent| {
         let pressure = event.pressure();
         if event.pointer_type() != "pen" {
             PEN.set(None);
         } else if pressure > 0.0 {
-            // Lifted it keeps the last one, for the end of its stroke.
+            // A lifted pen keeps its last pressure, for the end of its stroke.
             PEN.set(Some(pressure));
         }
     });
     for name in ["pointerdown", "pointermove"] {
-        // Before the canvas has it. Where the browser refuses, strokes have an even thickness.
+        // Before the canvas gets the event. Where the browser refuses, strokes are equally thick.
         let _ = window().add_event_listener_with_callback_and_bool(
             name,
             listen.as_ref().unchecked_ref(),
@@ -52,32 +53,32 @@ pub fn watch_pens() {
     listen.forget();
 }
 
-/// Says whether each frame keeps the tracer waiting.
-pub fn set_frames_dear(dear: bool) {
-    crate::frames::dear(dear);
+/// Sets whether each frame keeps the tracer waiting.
+pub fn set_frames_slow(is_slow: bool) {
+    crate::frames::set_slow(is_slow);
 }
 
-/// Milliseconds since 1970.
+/// Returns the milliseconds since 1970.
 #[must_use]
 pub fn unix_time() -> f64 {
     js_sys::Date::now()
 }
 
-/// A word that differs between tabs.
+/// Returns a word that differs between tabs.
 #[must_use]
 pub fn random_word() -> String {
     let random = js_sys::Math::random() * 2.0_f64.powi(48);
     format!("{:x}{:x}", unix_time() as u64, random as u64)
 }
 
-/// The page's address without its fragment.
+/// Returns the page's address without its fragment.
 #[must_use]
 pub fn page() -> String {
     let href = window().location().href().unwrap_or_default();
     href.split('#').next().unwrap_or_default().to_owned()
 }
 
-/// The fragment of the address, with `#`, or empty.
+/// Returns the fragment of the address, with `#`, or empty.
 #[must_use]
 pub fn hash() -> String {
     window().location().hash().unwrap_or_default()
@@ -95,20 +96,20 @@ pub fn set_hash(hash: &str) {
     }
 }
 
-/// Changes the fragment and makes a new entry in the history, so that the browser's way back leads
-/// to the present one.
+/// Changes the fragment and makes a new entry in the history, so that the browser's Back leads to
+/// the present one.
 pub fn push_hash(hash: &str) {
     if self::hash() == hash {
         return;
     }
     let address = format!("{}{hash}", page());
     if let Ok(history) = window().history() {
-        // Refused in some sandboxes; then only the way back is missing.
+        // Refused in some sandboxes; then only Back does not lead here.
         let _ = history.push_state_with_url(&JsValue::NULL, "", Some(&address));
     }
 }
 
-/// Local storage, or memory where the browser allows none.
+/// Returns the local storage, or memory where the browser allows none.
 #[must_use]
 pub fn store() -> Box<dyn Store> {
     match window().local_storage() {
@@ -127,7 +128,8 @@ impl Store for Local {
     fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
         self.0.set_item(key, value).map_err(|_| {
             String::from(
-                "The browser's storage is full, so your latest changes live in this tab only. Delete old works in the gallery, or keep a link.",
+                "The browser's storage is full, so your latest changes live in this tab only. \
+                    Delete old works in the gallery, or keep a link.",
             )
         })
     }
@@ -144,7 +146,7 @@ impl Store for Local {
     }
 }
 
-/// Gives the user a file.
+/// Saves a file for the user.
 pub fn download(name: &str, mime: &str, bytes: &[u8]) {
     let save = || -> Result<(), JsValue> {
         let url = web_sys::Url::create_object_url_with_blob(&blob(mime, bytes)?)?;
@@ -179,7 +181,7 @@ pub fn pick_files(requests: &Requests) {
         input.set_type("file");
         input.set_multiple(true);
         let source = input.clone();
-        let chosen = Closure::once_into_js(move || {
+        let on_choice = Closure::once_into_js(move || {
             let list = source.files();
             let files = list.iter().flat_map(|list| {
                 let all = 0..list.length();
@@ -187,7 +189,7 @@ pub fn pick_files(requests: &Requests) {
             });
             read_files(files.collect(), requests);
         });
-        input.set_onchange(Some(chosen.unchecked_ref()));
+        input.set_onchange(Some(on_choice.unchecked_ref()));
         input.click();
         Ok(())
     };
@@ -196,7 +198,7 @@ pub fn pick_files(requests: &Requests) {
     }
 }
 
-/// Reads files one after another; what is too large is not read at all.
+/// Reads files one after another; those that are too large are not read at all.
 fn read_files(files: Vec<web_sys::File>, requests: Requests) {
     wasm_bindgen_futures::spawn_local(async move {
         let mut taken = Vec::new();
@@ -212,7 +214,7 @@ fn read_files(files: Vec<web_sys::File>, requests: Requests) {
                 Ok(()) => Ok(Vec::new()),
                 Err(reason) => Err(reason),
             };
-            taken.push(Taken { name, bytes });
+            taken.push(Incoming { name, bytes });
         }
         if !taken.is_empty() {
             requests.ask(Request::Files(taken));
@@ -220,7 +222,7 @@ fn read_files(files: Vec<web_sys::File>, requests: Requests) {
     });
 }
 
-/// Bytes as the browser's file object.
+/// Returns bytes as the browser's file object.
 ///
 /// # Errors
 /// If the browser has no memory for it.
@@ -231,34 +233,36 @@ pub fn blob(mime: &str, bytes: &[u8]) -> Result<web_sys::Blob, JsValue> {
     web_sys::Blob::new_with_u8_array_sequence_and_options(&parts, &options)
 }
 
-const TROUBLED: &str = "sinew/troubled";
+/// Key of the mark that the program may have stopped unexpectedly.
+const STOPPED: &str = "sinew/troubled";
 
-/// Whether the program stopped unexpectedly the last time in this tab. Kept for the tab alone, so
-/// that another tab that is just starting is not taken for one that stopped.
+/// Whether the program stopped unexpectedly last time in this tab. Other tabs do not count, as one
+/// that is just starting is marked, too.
 #[must_use]
-pub fn troubled() -> bool {
-    matches!(window().session_storage(), Ok(Some(storage)) if matches!(storage.get_item(TROUBLED), Ok(Some(_))))
+pub fn has_stopped_before() -> bool {
+    let storage = window().session_storage().ok().flatten();
+    storage.is_some_and(|storage| matches!(storage.get_item(STOPPED), Ok(Some(_))))
 }
 
 /// Notes that the program may stop unexpectedly, or with `false` that it works.
-pub fn set_troubled(troubled: bool) {
+pub fn set_stopped(has_stopped: bool) {
     if let Ok(Some(storage)) = window().session_storage() {
         // Without storage, a bad start is simply tried again.
-        let _ = if troubled {
-            storage.set_item(TROUBLED, "1")
+        let _ = if has_stopped {
+            storage.set_item(STOPPED, "1")
         } else {
-            storage.remove_item(TROUBLED)
+            storage.remove_item(STOPPED)
         };
     }
 }
 
-/// Whether what is stored lasts.
+/// Whether the storage outlives the page.
 #[must_use]
 pub fn has_storage() -> bool {
     matches!(window().local_storage(), Ok(Some(_)))
 }
 
-/// Says in the browser's tab what is open.
+/// Sets the title of the browser's tab.
 pub fn set_title(name: &str) {
     if let Some(document) = window().document() {
         document.set_title(&format!("{name} – Sinew"));
@@ -282,8 +286,8 @@ async fn bytes_of(path: &str) -> Result<Vec<u8>, JsValue> {
     Ok(js_sys::Uint8Array::new(&buffer).to_vec())
 }
 
-/// Asks for a graphics card that the browser has, or pretends to have, apart from the window's.
-pub fn pretended_card(done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {
+/// Asks for a graphics card apart from the window's, which the browser may emulate.
+pub fn ask_emulated_card(done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {
     wasm_bindgen_futures::spawn_local(async move {
         if let Some((device, queue)) = card().await {
             done(device, queue);

@@ -3,7 +3,7 @@
 //! eframe's window needs a device, a surface and pipelines. wgpu's own stand-in backend ("noop")
 //! has a device that takes everything and does nothing, but its surface supports no format, so
 //! eframe would refuse it. [`Idle`] is an instance whose surface claims the usual format and never
-//! has a texture to draw on, which eframe takes for a window that is covered: it skips the frame.
+//! has a texture to draw on. eframe takes this for a window that is covered, and skips the frame.
 
 use egui_wgpu::{WgpuSetup, WgpuSetupExisting};
 use wgpu::custom::{
@@ -17,10 +17,10 @@ use std::pin::Pin;
 /// The largest side of a texture: the font atlas and the traced picture must fit.
 const MAX_TEXTURE_SIDE: u32 = 8192;
 
-/// A setup for eframe that draws nothing.
+/// Makes a setup for eframe that draws nothing.
 ///
 /// # Errors
-/// wgpu's message when it cannot make its stand-in device.
+/// If wgpu cannot make its stand-in device, with its message.
 pub async fn setup() -> Result<WgpuSetup, String> {
     let noop = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::NOOP,
@@ -53,7 +53,7 @@ pub async fn setup() -> Result<WgpuSetup, String> {
     }))
 }
 
-/// Both the instance and its surfaces.
+/// An instance, and its surfaces.
 #[derive(Debug)]
 struct Idle;
 

@@ -6,14 +6,14 @@ use web_sys::{CanvasRenderingContext2d, HtmlCanvasElement, ImageData};
 
 use painter::Painter;
 
-/// A line width that nothing draws with. A canvas forgets it together with its pixels when its size
-/// is set, even to what it was, and so shows that it must be painted anew.
+/// A line width that no line has. A canvas forgets it together with its pixels when its size is
+/// set, even to the same size, and so shows that it must be painted anew.
 const MARK: f64 = 7.0;
 
-/// Paints all that egui shows on a canvas that has no context yet.
+/// Paints everything that egui shows on a canvas, which has no context yet.
 ///
 /// # Errors
-/// When the browser gives no context for drawing.
+/// If the browser gives no context for drawing.
 pub fn install(context: &Context, canvas: &HtmlCanvasElement) -> Result<(), String> {
     let settings = js_sys::Object::new();
     // The window is opaque, and its pixels are written rather than drawn.

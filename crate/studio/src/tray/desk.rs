@@ -1,9 +1,9 @@
 //! The files that a text's jobs find in the page: the images of the work, its traced picture, and
-//! what the jobs before wrote. Results live in memory and only as long as they are on the tray.
+//! results of the jobs before. Results are kept in memory, only as long as they are on the tray.
 
 use crate::asset::{self, Asset};
 use crate::picture::Image;
-use ::picture::{Format, Picture, file};
+use ::picture::{Format, Picture, Problem, file};
 use darkroom::{Shelf, Target, name};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -12,10 +12,10 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Pixels of the largest picture that a job may read or make: 2048 × 2048. One of them takes a few
-/// tenths of a second, in which the page stands still.
+/// Most pixels of a picture that a job may read or make, 2048 × 2048. A job takes a few tenths of a
+/// second with it, in which the page stands still.
 pub const MAX_PIXELS: u64 = 4 << 20;
-/// Bytes of all results together.
+/// Most bytes of all results together.
 pub const MAX_BYTES: usize = 64 << 20;
 /// Most results.
 pub const MAX_RESULTS: usize = 256;
@@ -38,8 +38,8 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// A desk with the images of the work. `picture` is the name of the traced picture, and whether
-    /// it is to be saved.
+    /// Makes a desk with the images of the work. `picture` is the name of the traced picture, and
+    /// whether it is to be saved.
     #[must_use]
     pub fn new(assets: Vec<Asset>, picture: (String, bool)) -> Self {
         Self {
@@ -52,21 +52,12 @@ impl Desk {
 
     /// Puts the traced picture on the desk.
     pub fn put_picture(&mut self, image: &Image) {
-        let encode = || {
-            let [width, height] = image.size;
-            if u64::from(width) * u64::from(height) > MAX_PIXELS {
-                let (size, most) = (image.size, MAX_PIXELS);
-                return Err(::picture::Problem::NoRoom { size, most });
-            }
-            let format = Format::of(Path::new(&self.picture.0))?;
-            file::encode(&Picture::new(width, height, image.rgba.clone())?, format)
-        };
         let name = &self.picture.0;
-        let drawn = encode().map(Arc::from);
+        let drawn = encode(image, name).map(Arc::from);
         self.drawn = Some(drawn.map_err(|problem| format!("{name}: {problem}")));
     }
 
-    /// Whether a job waits for the traced picture, because it reads it and it is not there yet.
+    /// Whether a job that reads these files waits for the traced picture.
     #[must_use]
     pub fn waits_for(&self, names: &[&str]) -> bool {
         let (name, saved) = &self.picture;
@@ -76,7 +67,7 @@ impl Desk {
             && !self.made.borrow().files.contains_key(name)
     }
 
-    /// A file, if it is there.
+    /// Returns a file, if it is there.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<Arc<[u8]>> {
         let name = name::plain(name);
@@ -94,6 +85,17 @@ impl Desk {
     }
 }
 
+/// Encodes a traced picture as a file of a name.
+fn encode(image: &Image, name: &str) -> Result<Vec<u8>, Problem> {
+    let [width, height] = image.size;
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        let (size, most) = (image.size, MAX_PIXELS);
+        return Err(Problem::NoRoom { size, most });
+    }
+    let format = Format::of(Path::new(name))?;
+    file::encode(&Picture::new(width, height, image.rgba.clone())?, format)
+}
+
 impl Shelf for Desk {
     fn read(&self, name: &str) -> Result<Vec<u8>, String> {
         if let Some(bytes) = self.find(name) {
@@ -102,7 +104,8 @@ impl Shelf for Desk {
         let (picture, saved) = &self.picture;
         if name::plain(name) != picture {
             return Err(format!(
-                "there is no {name} here; drop the picture on the page and it becomes a file of the work"
+                "there is no {name} here; \
+                    drop the picture on the page and it becomes a file of the work"
             ));
         }
         match &self.drawn {
@@ -122,7 +125,8 @@ impl Shelf for Desk {
         let made = self.made.borrow();
         if made.files.len() >= MAX_RESULTS && !made.files.contains_key(name) {
             return Err(format!(
-                "{name} is not made: the page holds {MAX_RESULTS} results; the program has no such limit"
+                "{name} is not made: the page holds {MAX_RESULTS} results; \
+                    the program has no such limit"
             ));
         }
         Ok(Box::new(Sheet {
@@ -205,7 +209,7 @@ mod tests {
         assert_eq!(
             desk.read("a.png"),
             Ok(vec![2]),
-            "what is not kept is not there"
+            "a target that is not kept leaves no file"
         );
         assert!(desk.read("b.png").unwrap_err().contains("no b.png here"));
     }

@@ -12,14 +12,14 @@ use super::desk::MAX_PIXELS;
 /// Longest side of a thumbnail, pixels.
 const THUMBNAIL: u32 = 256;
 
-/// One thing on the tray.
+/// An entry of the tray.
 pub struct Item {
-    /// Which of the text's jobs made it.
+    /// Index of the job that made it.
     pub job: usize,
     /// The command that made it.
     pub command: &'static str,
     /// Message of the job.
-    pub said: String,
+    pub message: String,
     /// Visible content.
     pub content: Content,
 }
@@ -36,15 +36,15 @@ pub enum Content {
 
 /// The file of a picture or an animation.
 pub struct Film {
-    /// Its name.
+    /// The file's name.
     pub name: String,
-    /// Its bytes.
+    /// The content.
     pub bytes: Arc<[u8]>,
-    /// Its decoded look, once it was needed; none if it is damaged.
+    /// The decoded picture, once it was needed; the inner option is `None` if it is damaged.
     pub look: Option<Option<Look>>,
 }
 
-/// Decoded look of a picture.
+/// Facts and thumbnail of a picture.
 #[derive(Clone)]
 pub struct Look {
     /// Width and height, pixels.
@@ -56,7 +56,7 @@ pub struct Look {
 }
 
 impl Item {
-    /// The file, if there is one.
+    /// Returns the file, if there is one.
     #[must_use]
     pub fn film(&self) -> Option<&Film> {
         match &self.content {
@@ -71,7 +71,7 @@ impl Item {
         matches!(self.content, Content::Refused)
     }
 
-    /// Its title: the file's name, or the command's.
+    /// Returns the title: the file's name, or the command's.
     #[must_use]
     pub fn title(&self) -> &str {
         self.film().map_or(self.command, |film| &film.name)
@@ -79,12 +79,12 @@ impl Item {
 }
 
 impl Film {
-    /// Its format. Names on the tray have one.
+    /// Returns the format by the name.
     fn format(&self) -> Result<Format, Problem> {
         Format::of(Path::new(&self.name))
     }
 
-    /// MIME type of the file.
+    /// Returns the media type of the file.
     #[must_use]
     pub fn mime(&self) -> &'static str {
         match self.format() {
@@ -95,7 +95,7 @@ impl Film {
         }
     }
 
-    /// Size, kind and length in a few words.
+    /// Returns size, format and length in a few words.
     #[must_use]
     pub fn facts(&self) -> String {
         let kind = self.format().map_or("", Format::name);
@@ -110,7 +110,8 @@ impl Film {
         }
     }
 
-    /// Its frames from the first one on; `None` if there is only one or it cannot be read.
+    /// Returns the frames from the first one on; `None` if the format has only one or it cannot be
+    /// read.
     #[must_use]
     pub fn frames(&self) -> Option<Frames<'static>> {
         let format = self.format().ok()?;
@@ -118,7 +119,7 @@ impl Film {
             .then(|| animation::frames_at_most(self.bytes.clone(), format, MAX_PIXELS).ok())?
     }
 
-    /// The first frame, and whether there are more.
+    /// Returns the first frame, and whether there are more.
     ///
     /// # Errors
     /// If it cannot be read.
@@ -132,8 +133,8 @@ impl Film {
         Ok((picture, false))
     }
 
-    /// Looks at the file, once. Gives whether there was something to do.
-    pub fn look_at(&mut self, ctx: &Context) -> bool {
+    /// Decodes the first frame, unless that was done before. Returns whether it did.
+    pub fn decode(&mut self, ctx: &Context) -> bool {
         if self.look.is_some() {
             return false;
         }
@@ -147,27 +148,28 @@ impl Film {
     }
 }
 
-/// A picture for the screen, made smaller where a side is longer than `longest`.
+/// Makes a texture of a picture, shrunk if a side is longer than `longest`.
 pub fn texture(ctx: &Context, picture: &Picture, longest: u32) -> TextureHandle {
     let longest = longest.min(ctx.input(|input| input.max_texture_side) as u32);
-    let small = small(picture, longest);
+    let small = shrink(picture, longest);
     let picture = small.as_ref().unwrap_or(picture);
     let size = picture.size().map(|side| side as usize);
     let pixels = ColorImage::from_rgba_unmultiplied(size, picture.pixels());
     ctx.load_texture("result", pixels, TextureOptions::LINEAR)
 }
 
-fn small(picture: &Picture, longest: u32) -> Option<Picture> {
+/// Shrinks a picture so that its longer side is `longest`; `None` if it is no longer than that.
+fn shrink(picture: &Picture, longest: u32) -> Option<Picture> {
     let [width, height] = picture.size();
     let larger = width.max(height);
     if larger <= longest {
         return None;
     }
-    let scaled = |side: u32| {
+    let [width, height] = [width, height].map(|side| {
         let side = u64::from(side) * u64::from(longest) / u64::from(larger);
         (side as u32).max(1)
-    };
-    resize(picture, scaled(width), scaled(height)).ok()
+    });
+    resize(picture, width, height).ok()
 }
 
 #[cfg(test)]
@@ -176,14 +178,14 @@ mod tests {
 
     #[test]
     fn large_pictures_are_shown_small_and_keep_their_proportions() {
-        for (size, shown) in [
+        for (size, expected) in [
             ([1024, 512], Some([256, 128])),
             ([256, 256], None),
             ([4000, 3], Some([256, 1])),
         ] {
             let picture = Picture::filled(size[0], size[1], [9, 9, 9, 255]).unwrap();
-            let small = small(&picture, 256).map(|picture| picture.size());
-            assert_eq!(small, shown);
+            let small = shrink(&picture, 256).map(|picture| picture.size());
+            assert_eq!(small, expected);
         }
     }
 }

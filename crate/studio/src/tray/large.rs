@@ -1,4 +1,4 @@
-//! One result, large: what it is, played if it moves, to be saved or kept.
+//! A result, shown large and played if it moves, with buttons that save or keep it.
 
 use super::item::{Content, Film, Item, texture};
 use crate::asset::{self, Asset, Kind};
@@ -16,13 +16,12 @@ use std::sync::Arc;
 const LONGEST: u32 = 2048;
 /// Shortest time that a frame is shown, seconds.
 const SHORTEST: f64 = 0.02;
-/// Height of all that is not the picture, points.
+/// Height of everything except the picture, points.
 const REST: f32 = 148.0;
-
 /// Least height of the place for the picture, points.
 const LEAST: f32 = 120.0;
 
-/// A button that leads to the command.
+/// Shows a button that leads to the command. Returns whether it was clicked.
 fn find(ui: &mut Ui) -> bool {
     let button = ui.button("Show in the text");
     places::note(ui.ctx(), "find result", button.rect);
@@ -31,10 +30,10 @@ fn find(ui: &mut Ui) -> bool {
         .clicked()
 }
 
-/// A button that makes the result a file of the work.
+/// Shows a button that makes the result a file of the work. Returns whether it was clicked.
 fn keep(ui: &mut Ui, film: &Film, kept: &[Asset]) -> bool {
-    let same = |asset: &Asset| asset.name == film.name && asset.bytes == film.bytes;
-    if kept.iter().any(same) {
+    let mut kept = kept.iter();
+    if kept.any(|asset| asset.name == film.name && asset.bytes == film.bytes) {
         ui.add_enabled(false, Button::new("Kept as a file"));
         return false;
     }
@@ -47,7 +46,7 @@ fn keep(ui: &mut Ui, film: &Film, kept: &[Asset]) -> bool {
 /// The result that was opened.
 #[derive(Default)]
 pub struct Large {
-    /// Its place on the tray.
+    /// Index on the tray.
     pub open: usize,
     view: Option<View>,
 }
@@ -55,11 +54,11 @@ pub struct Large {
 /// A picture on the screen.
 struct View {
     bytes: Arc<[u8]>,
-    /// None if it is damaged.
+    /// The texture; `None` if the file is damaged.
     texture: Option<TextureHandle>,
-    /// The frames that come, if it moves.
+    /// The frames to come, if it moves.
     frames: Option<Frames<'static>>,
-    /// When the next one comes.
+    /// Time of the next frame, seconds.
     due: f64,
 }
 
@@ -75,7 +74,7 @@ impl View {
         }
     }
 
-    /// Shows the next frame if its time has come. The tray plays an animation over and over.
+    /// Shows the next frame if its time has come. An animation repeats for ever.
     fn play(&mut self, ui: &Ui, film: &Film, now: f64) {
         let Some(frames) = &mut self.frames else {
             return;
@@ -93,7 +92,7 @@ impl View {
                         texture.set(pixels, TextureOptions::LINEAR);
                     }
                 }
-                // At the end, or at a frame that is damaged, it begins again.
+                // After the last frame, or at a damaged one, it begins again.
                 _ => {
                     self.frames = film.frames();
                     self.due = now;
@@ -116,7 +115,7 @@ impl Large {
         now: f64,
         commands: &mut Vec<Command>,
     ) {
-        // The tray may have changed meanwhile.
+        // The tray may have changed since it was opened.
         let Some(item) = items.get(self.open) else {
             commands.push(Command::Close);
             return;
@@ -161,7 +160,7 @@ impl Large {
             };
             ScrollArea::vertical().show(ui, |ui| {
                 ui.set_max_height((size.y - REST).max(80.0));
-                ui.label(RichText::new(&item.said).color(colour));
+                ui.label(RichText::new(&item.message).color(colour));
             });
             ui.add_space(8.0);
             if find(ui) {
@@ -173,9 +172,9 @@ impl Large {
         ui.add_space(8.0);
         let facts = RichText::new(film.facts()).color(palette.text);
         ui.add(Label::new(facts).truncate());
-        let said = RichText::new(&item.said).size(12.5).color(palette.weak);
-        ui.add(Label::new(said).truncate())
-            .on_hover_text(&item.said);
+        let message = RichText::new(&item.message).size(12.5).color(palette.weak);
+        ui.add(Label::new(message).truncate())
+            .on_hover_text(&item.message);
         ui.add_space(4.0);
         ui.horizontal(|ui| {
             let save = RichText::new("Save").color(palette.on_accent);
@@ -204,11 +203,11 @@ impl Large {
         };
         view.play(ui, film, now);
         // No taller than the picture needs.
-        let shown = view.texture.as_ref().map_or(Vec2::splat(LEAST), |texture| {
+        let wanted = view.texture.as_ref().map_or(Vec2::splat(LEAST), |texture| {
             let texture = texture.size_vec2();
             texture * (2.0_f32).min((size.x - 16.0) / texture.x.max(1.0))
         });
-        let size = vec2(size.x, (shown.y + 16.0).clamp(LEAST, size.y.max(LEAST)));
+        let size = vec2(size.x, (wanted.y + 16.0).clamp(LEAST, size.y.max(LEAST)));
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Picture {}", film.name))
@@ -216,7 +215,7 @@ impl Large {
         ui.painter().rect_filled(rect, 6.0, palette.stage);
         match &view.texture {
             Some(texture) => {
-                // Small pictures are not blown up to a blur.
+                // Small pictures are enlarged at most twice, as they would be blurred.
                 let full = contain(texture.size_vec2(), rect.shrink(8.0));
                 let scale = (2.0 * texture.size_vec2().x / full.width()).min(1.0);
                 let place = egui::Rect::from_center_size(full.center(), full.size() * scale);

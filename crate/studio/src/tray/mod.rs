@@ -1,9 +1,8 @@
-//! The tray: what the commands of the TOOLS group made of the work's pictures, below its own
-//! picture.
+//! The tray below the picture: the results of commands of the TOOLS group, which work on pictures.
 //!
-//! The jobs of a text run when it has no errors and they, the images they read or the traced
-//! picture changed. They run in small steps, a few milliseconds in each frame, and wait for the
-//! traced picture only if they read it. The tray's contents stay until a new run is complete.
+//! The jobs of a text run when it has no errors and they, the images that they read or the traced
+//! picture have changed. They run in small steps, a few milliseconds in each frame, and wait for
+//! the traced picture only if they read it. The tray's contents stay until a new run is complete.
 
 pub mod desk;
 pub mod item;
@@ -23,27 +22,26 @@ use rats::Tool;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Seconds of quiet after an edit before its jobs begin, so that no half-written name is looked
-/// for.
+/// Seconds without an edit before the jobs begin, so that no half-typed name is looked for.
 const QUIET: f64 = 0.3;
-/// Seconds of work in one frame of the page, after which what was begun is still finished.
-const SPELL: f64 = 0.008;
+/// Seconds of work in a frame of the page after which no further step begins.
+const SLICE: f64 = 0.008;
 
 /// Inputs of the jobs besides the traced picture.
 #[derive(Clone, Default, PartialEq)]
 struct Order {
     tools: Vec<Tool>,
-    /// The images that they read.
+    /// The images that the jobs read.
     assets: Vec<Asset>,
     /// The name of the traced picture, and whether it is to be saved.
     picture: (String, bool),
-    /// Whether they read it.
+    /// Whether the jobs read the traced picture.
     reads_picture: bool,
 }
 
 impl Order {
     fn of(session: &Session) -> Self {
-        let compiled = session.compiled();
+        let compiled = session.compilation();
         let picture = (compiled.output.file(), compiled.output.saved);
         let mut read: Vec<&str> = compiled.tools.iter().flat_map(Tool::reads).collect();
         field::heap_sort(&mut read, |a, b| a < b);
@@ -62,20 +60,19 @@ impl Order {
     }
 }
 
-/// Which picture it is: the session's generation and the size.
-type Drawn = (u64, [u32; 2]);
+/// Key of a traced picture: the session's generation and the size.
+type PictureKey = (u64, [u32; 2]);
 
 /// The jobs of the open text and their results.
 #[derive(Default)]
 pub struct Tray {
-    /// The state of the work that was looked at last: the text's revision and the frame of the
-    /// film.
+    /// The state of the work at the last tick: the text's revision and the frame of the film.
     seen: Option<(u64, u32)>,
-    /// When the jobs of what was seen may begin.
+    /// Time at which its jobs may begin, seconds.
     due: Option<f64>,
     order: Order,
-    /// The traced picture that the results are of, if the jobs read it.
-    drawn: Option<Drawn>,
+    /// The traced picture that the jobs have read.
+    drawn: Option<PictureKey>,
     run: Option<Run>,
     items: Vec<Item>,
     /// Whether only the tray's head is shown.
@@ -83,7 +80,7 @@ pub struct Tray {
     large: Large,
 }
 
-/// Jobs that are being done.
+/// Jobs that are running, with the results so far.
 struct Run {
     bench: Bench<Desk>,
     items: Vec<Item>,
@@ -91,7 +88,7 @@ struct Run {
 }
 
 impl Tray {
-    /// Another work is open.
+    /// Forgets all but whether the tray is folded, when another work was opened.
     pub fn clear(&mut self) {
         *self = Self {
             folded: self.folded,
@@ -105,7 +102,7 @@ impl Tray {
         !self.order.tools.is_empty()
     }
 
-    /// The results. Those of the first run appear one by one.
+    /// Returns the results. Those of the first run appear one by one.
     #[must_use]
     pub fn items(&self) -> &[Item] {
         match &self.run {
@@ -136,10 +133,10 @@ impl Tray {
         self.large.show(ui, size, items, kept, now, commands);
     }
 
-    /// Place of the command that made a result, if the text is still the same.
+    /// Returns file and bytes of the command that made a result, if the text is still the same.
     #[must_use]
     pub fn place_of(&self, index: usize, session: &Session) -> Option<(usize, Range<usize>)> {
-        let compiled = session.compiled();
+        let compiled = session.compilation();
         let item = self.items().get(index)?;
         let origin = compiled.tool_origins.get(item.job)?;
         // Results shown while new ones are made may be of an older text.
@@ -151,7 +148,7 @@ impl Tray {
         ))
     }
 
-    /// Progress in a few words; empty when all is done.
+    /// Returns the progress in a few words; empty when all jobs are done.
     #[must_use]
     pub fn state(&self) -> String {
         match &self.run {
@@ -161,7 +158,7 @@ impl Tray {
         }
     }
 
-    /// Seconds until [`Self::tick`] has something to do, if it waits for a time.
+    /// Returns the seconds until [`Self::tick`] may begin jobs; `None` if none wait.
     #[must_use]
     pub fn wait(&self, now: f64) -> Option<f64> {
         Some((self.due? - now).max(0.0))
@@ -181,7 +178,7 @@ impl Tray {
         }
         let seen = (session.revision(), session.film_frame());
         if self.seen != Some(seen) {
-            // Another work that was just opened is not being written.
+            // Nobody is typing yet in a work that was just opened.
             let quiet = if self.seen.is_some() { QUIET } else { 0.0 };
             self.seen = Some(seen);
             self.due = (Order::of(session) != self.order).then_some(now + quiet);
@@ -189,7 +186,7 @@ impl Tray {
         if self.due.is_some_and(|due| now >= due) {
             self.due = None;
             let first = self.run.is_none() && self.items.is_empty();
-            // While a mistake is being mended the results stay, as the picture does.
+            // While the text has a mistake the results stay, as the picture does.
             if session.errors() == 0 || first {
                 let order = Order::of(session);
                 if order != self.order {
@@ -225,7 +222,7 @@ impl Tray {
         }
     }
 
-    /// Begins anew.
+    /// Begins the jobs anew.
     fn begin(&mut self) {
         if self.order.tools.is_empty() {
             self.run = None;
@@ -245,16 +242,16 @@ impl Tray {
 }
 
 impl Run {
-    /// Works for a short while. Gives whether there is more to do.
+    /// Works for [`SLICE`] seconds. Returns whether there is more to do.
     fn go_on(&mut self, ctx: &Context) -> bool {
         let start = crate::clock::stopwatch();
         self.waits = false;
         loop {
-            let looked = self.items.iter_mut().any(|item| match &mut item.content {
-                Content::File(film) => film.look_at(ctx),
+            let has_decoded = self.items.iter_mut().any(|item| match &mut item.content {
+                Content::File(film) => film.decode(ctx),
                 _ => false,
             });
-            if !looked {
+            if !has_decoded {
                 let Some(tool) = self.bench.tool() else {
                     return false;
                 };
@@ -267,18 +264,18 @@ impl Run {
                     self.take(job, command, finished);
                 }
             }
-            if crate::clock::stopwatch() - start > SPELL {
+            if crate::clock::stopwatch() - start > SLICE {
                 return true;
             }
         }
     }
 
-    /// Puts what a job came to on the tray.
+    /// Puts the results of a job, or the reason why it failed, on the tray.
     fn take(&mut self, job: usize, command: &'static str, finished: Result<Done, String>) {
-        let item = |said: String, content| Item {
+        let item = |message: String, content| Item {
             job,
             command,
-            said,
+            message,
             content,
         };
         match finished {
@@ -291,12 +288,9 @@ impl Run {
                     let Some(bytes) = self.bench.shelf().find(&name) else {
                         continue;
                     };
-                    let known = |item: &Item| {
-                        item.film()
-                            .is_some_and(|old| old.name == name && Arc::ptr_eq(&old.bytes, &bytes))
-                    };
                     // A picture that is written and shown after that is listed once.
-                    if self.items.iter().any(known) {
+                    let mut films = self.items.iter().filter_map(Item::film);
+                    if films.any(|old| old.name == name && Arc::ptr_eq(&old.bytes, &bytes)) {
                         continue;
                     }
                     let look = None;

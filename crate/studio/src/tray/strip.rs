@@ -1,4 +1,4 @@
-//! The strip below the picture on which the results lie side by side.
+//! The strip below the picture that shows the results side by side.
 
 use super::Tray;
 use super::item::{Content, Film, Item};
@@ -17,12 +17,13 @@ const HEAD: f32 = 32.0;
 
 /// The measures of a card, points.
 struct Measures {
-    /// The thumbnail.
+    /// Size of the thumbnail.
     picture: Vec2,
-    /// Caption.
+    /// Height of the caption.
     words: f32,
-    /// How wide a sentence is.
+    /// Width of a card with a sentence.
     sentence: f32,
+    /// Space between cards.
     gap: f32,
 }
 
@@ -39,7 +40,7 @@ const NARROW: Measures = Measures {
     gap: 8.0,
 };
 
-/// How high the strip is.
+/// Returns the height of the strip.
 #[must_use]
 pub fn height(narrow: bool, folded: bool) -> f32 {
     match (narrow, folded) {
@@ -61,7 +62,7 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
     let measures = if narrow { &NARROW } else { &WIDE };
     let all = ui.available_rect_before_wrap();
     let mut ui = ui.new_child(places::part("tray results", all));
-    // A wheel, too, goes along the strip.
+    // The wheel, too, scrolls along the strip.
     ui.style_mut().always_scroll_the_only_direction = true;
     ScrollArea::horizontal()
         .id_salt("results")
@@ -88,7 +89,7 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
         });
 }
 
-/// The title, how far the jobs are, and a button to fold the strip.
+/// Shows the title, the progress of the jobs, and a button that folds the strip.
 fn head(ui: &mut Ui, tray: &Tray, commands: &mut Vec<Command>) {
     let palette = theme::palette(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEAD), Sense::hover());
@@ -102,7 +103,7 @@ fn head(ui: &mut Ui, tray: &Tray, commands: &mut Vec<Command>) {
         count => format!("Results {count}"),
     };
     ui.label(RichText::new(title).size(12.5).color(palette.weak))
-        .on_hover_text("What the commands on pictures in the text made");
+        .on_hover_text("Results of the commands on pictures in the text");
     if refused > 0 {
         let text = format!("{refused} could not be made");
         ui.label(RichText::new(text).size(12.5).color(palette.error));
@@ -126,7 +127,7 @@ fn head(ui: &mut Ui, tray: &Tray, commands: &mut Vec<Command>) {
     });
 }
 
-/// One result. Gives whether it was clicked.
+/// Shows the card of a result. Returns whether it was clicked.
 fn card(ui: &mut Ui, item: &Item, measures: &Measures) -> bool {
     let palette = theme::palette(ui.visuals());
     let film = item.film();
@@ -138,7 +139,7 @@ fn card(ui: &mut Ui, item: &Item, measures: &Measures) -> bool {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| {
         let name = match &item.content {
-            Content::Refused => format!("{} could not be done: {}", item.command, item.said),
+            Content::Refused => format!("{} could not be done: {}", item.command, item.message),
             _ => format!("Show {}", item.title()),
         };
         egui::WidgetInfo::labeled(egui::Role::Button, true, name)
@@ -155,7 +156,7 @@ fn card(ui: &mut Ui, item: &Item, measures: &Measures) -> bool {
     }
     response
         .on_hover_cursor(egui::CursorIcon::PointingHand)
-        .on_hover_text(&item.said)
+        .on_hover_text(&item.message)
         .clicked()
 }
 
@@ -204,7 +205,7 @@ fn picture_card(ui: &Ui, painter: &Painter, rect: Rect, film: &Film, measures: &
     }
 }
 
-/// A card that says why there is no picture.
+/// Paints the card of a result without a picture, with the job's message.
 fn sentence_card(painter: &Painter, rect: Rect, item: &Item, palette: &theme::Palette) {
     let (edge, title) = match item.content {
         Content::Refused => (palette.error, palette.error),
@@ -217,7 +218,7 @@ fn sentence_card(painter: &Painter, rect: Rect, item: &Item, palette: &theme::Pa
     painter.text(at, Align2::LEFT_TOP, item.command, font, title);
     let at = at + vec2(0.0, 18.0);
     let format = TextFormat::simple(FontId::proportional(11.5), palette.text);
-    let mut job = LayoutJob::single_section(item.said.clone(), format);
+    let mut job = LayoutJob::single_section(item.message.clone(), format);
     let rows = ((rect.bottom() - at.y - 4.0) / 14.5).floor().max(1.0) as usize;
     job.wrap = TextWrapping {
         max_width: rect.right() - at.x - 10.0,
@@ -228,7 +229,7 @@ fn sentence_card(painter: &Painter, rect: Rect, item: &Item, palette: &theme::Pa
     painter.galley(at, galley, palette.text);
 }
 
-/// A line that ends with dots where there is no room.
+/// Paints a line of text, which is cut off with dots at a width.
 fn line(painter: &Painter, at: Pos2, width: f32, text: &str, size: f32, colour: egui::Color32) {
     let format = TextFormat::simple(FontId::proportional(size), colour);
     let mut job = LayoutJob::single_section(text.to_owned(), format);

@@ -1,4 +1,4 @@
-//! Drawing: what the hand does on the picture becomes curves in the text.
+//! Drawing: gestures on the picture become curves in the text.
 
 use crate::driver::Window;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
@@ -6,7 +6,7 @@ use scene::{Form, Shape};
 use skeleton::Skeleton;
 use studio::places;
 
-/// A page to draw on.
+/// Opens a page to draw on.
 fn page() -> Window {
     let mut window = Window::open(1000.0, 700.0);
     let draw = window.place("draw").center();
@@ -18,7 +18,7 @@ fn page() -> Window {
     window
 }
 
-/// A place of the picture, in shares.
+/// Returns a point of the picture by shares of its sides.
 fn at(window: &Window, x: f32, y: f32) -> Pos2 {
     let rect = window.place("picture");
     rect.min + vec2(x * rect.width(), y * rect.height())
@@ -41,25 +41,25 @@ fn stroke(window: &mut Window, places: &[(f32, f32)]) {
     window.steps(3);
 }
 
-/// The skeletons that a text makes.
+/// Returns the skeletons that a text makes.
 fn skeletons(text: &str) -> Vec<Skeleton> {
     let compiled = rats::compile(&rats::Project::single(text));
-    // A material that nothing is made of yet is worth a note.
-    let is_note = |diagnostic: &rats::Diagnostic| diagnostic.severity == rats::Severity::Note;
+    // A material that no shape has yet is worth a note.
+    let mut diagnostics = compiled.diagnostics.iter();
     assert!(
-        compiled.diagnostics.iter().all(is_note),
+        diagnostics.all(|diagnostic| diagnostic.severity == rats::Severity::Note),
         "{:?}\n{text}",
         compiled.diagnostics
     );
-    let shapes = compiled.scene.elements.iter().map(|element| &element.shape);
-    let skeleton = |shape: &Shape| match shape {
-        Shape::Function(function) => match &function.form {
-            Form::Skeleton(curves) => Some(curves.skeleton.clone()),
-            _ => None,
-        },
-        _ => None,
-    };
-    shapes.filter_map(skeleton).collect()
+    let mut skeletons = Vec::new();
+    for element in &compiled.scene.elements {
+        if let Shape::Function(function) = &element.shape
+            && let Form::Skeleton(curves) = &function.form
+        {
+            skeletons.push(curves.skeleton.clone());
+        }
+    }
+    skeletons
 }
 
 fn body() -> Window {
@@ -74,7 +74,7 @@ fn strokes_become_a_body_and_limbs_in_pairs() {
     let text = window.text();
     let skeleton = &skeletons(&text)[0];
     assert_eq!(skeleton.curves.len(), 1, "{text}");
-    // On the mirror, though the eye looks from aside.
+    // On the mirror, though the eye looks from the side.
     assert!(
         skeleton.nodes.iter().all(|node| node.position.x == 0.0),
         "{text}"
@@ -128,7 +128,7 @@ fn a_stroke_from_an_end_goes_on_and_one_that_ends_on_flesh_grows_from_there() {
     );
 }
 
-/// Height of the ground in a text.
+/// Returns the height of the ground in a text.
 fn ground(text: &str) -> f64 {
     let line = text
         .lines()
@@ -227,8 +227,7 @@ fn the_last_stroke_is_made_a_pair_or_single() {
     window.key(Modifiers::COMMAND, Key::Z);
     window.steps(3);
     assert_eq!(skeletons(&window.text())[0].curves.len(), 1);
-    // Of a text that something else changed nothing is turned: the place belongs to the picture
-    // again.
+    // After another edit the button is gone, and the place belongs to the picture again.
     let text = window.text();
     window.press(turn, true);
     window.steps(1);
@@ -263,7 +262,7 @@ fn nodes_are_moved_widened_and_bent() {
     assert_ne!(moved.nodes[0].position, before.nodes[0].position);
     window.key(Modifiers::COMMAND, Key::Z);
     assert_eq!(skeletons(&window.text())[0], before);
-    // The wheel over a node, which comes no nearer then.
+    // The wheel over a node makes it thicker and does not zoom.
     let node = window.place(&names[0]).center();
     let eye = window.parts.outbox.borrow().camera.eye;
     window.harness.event(Event::PointerMoved(node));
@@ -300,7 +299,7 @@ fn nodes_are_moved_widened_and_bent() {
 }
 
 #[test]
-fn limbs_are_cut_and_taken_away_in_pairs() {
+fn limbs_are_cut_and_removed_in_pairs() {
     let mut window = body();
     stroke(&mut window, &[(0.45, 0.52), (0.44, 0.85)]);
     let whole = skeletons(&window.text())[0].clone();
@@ -409,9 +408,12 @@ fn two_fingers_turn_and_give_up_the_stroke() {
 }
 
 #[test]
-fn the_own_text_is_kept_and_what_a_loop_made_stays() {
+fn own_text_and_skeletons_of_loops_are_kept() {
     let mut window = Window::open(1000.0, 700.0);
-    window.load("eyep 0 0 10\nsurface a, radius 0.5, diffuse Coral, blobbiness -2\nfor i = 0 to 1 {\n  skeleton a, s { node A <-2 2*i 0> node B <2 2*i 0> curve A B }\n}\n# the end");
+    window.load(
+        "eyep 0 0 10\nsurface a, radius 0.5, diffuse Coral, blobbiness -2\nfor i = 0 to 1 {\n  \
+            skeleton a, s { node A <-2 2*i 0> node B <2 2*i 0> curve A B }\n}\n# the end",
+    );
     window.edit();
     window.write(" ");
     let text = window.text();

@@ -15,7 +15,7 @@ sphere flesh size, 0 0 0
 sphere flesh size, 1 0 0
 ";
 
-/// A window in which no line of the text is wrapped.
+/// Opens a window in which no line of the text is wrapped.
 fn window() -> Window {
     let mut window = Window::open(1600.0, 800.0);
     window.load(TEXT);
@@ -42,7 +42,7 @@ fn type_in(window: &mut Window, text: &str) {
 }
 
 #[test]
-fn completions_open_while_typing_and_one_undo_takes_the_word_back() {
+fn completions_open_while_typing_and_are_one_undo_step() {
     let mut window = window();
     at_end(&mut window);
     type_in(&mut window, "sph");
@@ -98,7 +98,7 @@ fn keys_choose_close_and_do_not_get_in_the_way() {
 }
 
 #[test]
-fn a_line_at_the_caret_says_whose_turn_it_is() {
+fn a_line_at_the_caret_says_which_operand_is_next() {
     let mut window = window();
     at_end(&mut window);
     type_in(&mut window, "sphere flesh ");
@@ -125,7 +125,7 @@ fn a_line_at_the_caret_says_whose_turn_it_is() {
 }
 
 #[test]
-fn names_lead_to_where_they_are_made_and_can_be_renamed() {
+fn names_lead_to_their_definitions_and_can_be_renamed() {
     let mut window = window();
     window.edit();
     for _ in 0..4 {
@@ -156,7 +156,7 @@ fn names_lead_to_where_they_are_made_and_can_be_renamed() {
 }
 
 #[test]
-fn a_click_with_control_goes_to_where_a_name_is_made() {
+fn a_click_with_control_goes_to_the_definition_of_a_name() {
     let mut window = window();
     let editor = window.place("editor");
     // On `size` in the fifth line.
@@ -183,7 +183,7 @@ fn a_click_with_control_goes_to_where_a_name_is_made() {
     assert!(line.starts_with("var # "), "{line}");
 }
 
-/// A key that goes down.
+/// Returns the event of a key that goes down.
 fn key(key: Key) -> Event {
     with(Modifiers::NONE, key)
 }
@@ -202,7 +202,7 @@ fn letters(text: &str) -> Event {
     Event::Text(text.to_owned())
 }
 
-/// A click on a line of the text, from 0, which the pointer is on from now on.
+/// Moves the pointer to a line of the text, from 0. Returns the events of a click there.
 fn click(window: &mut Window, line: u8) -> [Event; 2] {
     let pos = window.place("editor").center_top() + vec2(0.0, 20.0 + 19.6 * f32::from(line));
     window.harness.event(Event::PointerMoved(pos));
@@ -215,7 +215,7 @@ fn click(window: &mut Window, line: u8) -> [Event; 2] {
     })
 }
 
-/// Has all of it come in one frame, as in a slow browser.
+/// Sends events that come in one frame, as in a slow browser.
 fn at_once(window: &mut Window, events: impl IntoIterator<Item = Event>) {
     window.harness.input_mut().events.extend(events);
     // As many frames as a browser would be asked for.
@@ -244,7 +244,7 @@ fn a_name_is_renamed_in_one_frame() {
 }
 
 #[test]
-fn keys_that_come_with_a_click_go_to_what_was_clicked() {
+fn keys_that_come_with_a_click_go_to_the_clicked_widget() {
     // Also if the button goes up a frame after it went down.
     for together in [true, false] {
         for (arrow, line) in [(Key::ArrowUp, 0), (Key::ArrowDown, 2)] {
@@ -378,7 +378,7 @@ fn a_card_comes_when_the_pointer_rests_and_the_manual_with_f1() {
     assert!(window.place("search commands").width() > 100.0);
 }
 
-/// Seconds that frames take while a letter is typed at the end of a long text.
+/// Returns the seconds that frames take, in each of which a letter is typed.
 fn frames(window: &mut Window, letters: &str) -> Vec<f64> {
     letters
         .chars()
@@ -398,29 +398,30 @@ fn typing_in_a_long_text_does_not_wait_for_answers() {
     let mut window = Window::with_text(&text);
     at_end(&mut window);
     window.steps(10);
-    // A remark has neither completions nor a line at the caret.
+    // A comment has neither completions nor a line at the caret.
     let without = frames(&mut window, "# sphere");
     window.key(Modifiers::NONE, Key::Enter);
     let with = frames(&mut window, "sphere fl");
     window.steps(2);
     assert!(window.text() == format!("{text}# sphere\nsphere fl"));
-    // The quickest frame is the one that least was taken from by others.
-    let quickest = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
-    let (without, with) = (quickest(without), quickest(with));
+    // The quickest frame, which other programs have disturbed least.
+    let [without, with] = [without, with].map(|t| t.into_iter().fold(f64::INFINITY, f64::min));
     let compile = window.parts.outbox.borrow().report.timings.compile;
     println!(
-        "a frame: {without:.3} s in a remark, {with:.3} s in a command, {compile:.3} s of it for compiling"
+        "a frame: {without:.3} s in a comment, {with:.3} s in a command, \
+            {compile:.3} s of it for compiling"
     );
     // Processors are shared while tests run.
     assert!(
         with < 2.0 * without + 0.02,
-        "{with} s, {without} s in a remark"
+        "{with} s, {without} s in a comment"
     );
 }
 
 #[test]
 fn blocks_fold_with_f8_and_with_their_triangles() {
-    let text = "surface flesh diffuse Red\nobject A\n  sphere flesh 1 0 0 0\n  sphere flesh 1 1 0 0\nclose\ninfo\n";
+    let text = "surface flesh diffuse Red\nobject A\n  sphere flesh 1 0 0 0\n  \
+        sphere flesh 1 1 0 0\nclose\ninfo\n";
     let mut window = Window::with_text(text);
     at_end(&mut window);
     window.key(Modifiers::CTRL, Key::Home);

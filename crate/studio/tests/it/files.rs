@@ -7,7 +7,7 @@ use rats::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use studio::app::Parts;
-use studio::intake::Taken;
+use studio::intake::Incoming;
 use studio::request::Request;
 use studio::{platform, share, storage};
 
@@ -21,11 +21,11 @@ sphere flesh 0.5, 0 0 0
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 fn take_in(window: &mut Window, files: &[(&str, &[u8])]) {
-    let taken = files.iter().map(|(name, bytes)| Taken {
+    let files = files.iter().map(|(name, bytes)| Incoming {
         name: (*name).to_owned(),
         bytes: Ok(bytes.to_vec()),
     });
-    window.parts.requests.ask(Request::Files(taken.collect()));
+    window.parts.requests.ask(Request::Files(files.collect()));
     window.steps(4);
 }
 
@@ -37,7 +37,7 @@ fn names(window: &Window) -> Vec<String> {
     files(window).into_iter().map(|file| file.name).collect()
 }
 
-/// A file dropped on the window.
+/// A file that is dropped on the window.
 #[derive(Debug)]
 struct Dropped(PathBuf, Vec<u8>);
 
@@ -95,7 +95,7 @@ fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
     window.write("# mine\n");
     let png: &[u8] = include_bytes!("../../../../www/examples/cowrie.png");
     take_in(&mut window, &[("wood.png", png), ("tri.obj", OBJ)]);
-    window.harness.get_by_label_contains("3 corners, 1 faces");
+    window.harness.get_by_label_contains("3 corners, 1 face");
     let tab = window.place("tab wood.png").center();
     window.click(tab);
     window.harness.get_by_label_contains("pixels, ");
@@ -156,21 +156,21 @@ fn files_can_be_chosen_with_a_button_on_a_desk_and_on_a_phone() {
     let mut window = Window::with_text(TEXT);
     let button = window.place("open files").center();
     window.click(button);
-    assert!(platform::picked());
+    assert!(platform::was_asked_for_files());
     drop(window);
     let mut window = Window::open(390.0, 844.0);
     let more = window.place("more").center();
     window.click(more);
     window.harness.get_by_label("Open files…").click();
     window.steps(2);
-    assert!(platform::picked());
+    assert!(platform::was_asked_for_files());
     // The tabs have room there too.
     take_in(&mut window, &[("tri.obj", OBJ)]);
     window.place("tab tri.obj");
 }
 
 #[test]
-fn a_project_is_one_file_and_is_taken_back() {
+fn a_project_is_one_file_and_can_be_opened_again() {
     let mut window = Window::with_text(TEXT);
     window.edit();
     window.write("# a bone\n");
@@ -180,11 +180,11 @@ fn a_project_is_one_file_and_is_taken_back() {
     window.click(menu);
     let choice = window.place("download project").center();
     window.click(choice);
-    let (name, bytes) = platform::downloaded().expect("a file");
+    let (name, bytes) = platform::last_download().expect("a file");
     assert_eq!(name, "Main.zip");
     window.harness.get_by_label_contains("Saved Main.zip");
 
-    // Somewhere else, with a work of one's own open: that is left as it is.
+    // Opened elsewhere, where another work of the user's is open, which is kept.
     let mut window = Window::open(1000.0, 700.0);
     window.edit();
     window.write("# mine\n");

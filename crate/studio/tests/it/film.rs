@@ -71,7 +71,7 @@ fn a_frame_can_be_chosen_and_the_film_saved() {
     );
 }
 
-/// Saves the film in a format and returns the file.
+/// Saves the film in a format. Returns the file's name and content.
 fn save(window: &mut Window, format: &str) -> (String, Vec<u8>) {
     let menu = window.place("save film").center();
     window.click(menu);
@@ -79,7 +79,7 @@ fn save(window: &mut Window, format: &str) -> (String, Vec<u8>) {
     window.click(choice);
     for _ in 0..2000 {
         window.steps(1);
-        if let Some(file) = platform::downloaded() {
+        if let Some(file) = platform::last_download() {
             return file;
         }
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -125,7 +125,7 @@ fn playing_goes_through_the_frames_and_editing_stops_a_film() {
     window
         .harness
         .get_by_label_contains("The film was not saved");
-    assert_eq!(platform::downloaded(), None);
+    assert_eq!(platform::last_download(), None);
 }
 
 #[test]
@@ -147,6 +147,6 @@ fn a_film_can_be_stopped_on_a_phone() {
     window
         .harness
         .get_by_label_contains("You stopped it. The film was not saved");
-    assert_eq!(platform::downloaded(), None);
+    assert_eq!(platform::last_download(), None);
     window.place("slider frame");
 }

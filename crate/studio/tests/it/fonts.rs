@@ -16,9 +16,8 @@ fn characters(folder: &Path, kinds: &[&str], found: &mut BTreeSet<char>) {
             .is_some_and(|kind| kinds.iter().any(|known| kind == *known))
         {
             let text = std::fs::read_to_string(&path).unwrap();
-            // Tests write what only a user would.
+            // Texts of tests and comments are not drawn.
             let text = text.split("#[cfg(test)]").next().unwrap();
-            // Nobody but us reads remarks.
             let lines = text
                 .lines()
                 .filter(|line| !line.trim_start().starts_with("//"));
@@ -54,8 +53,8 @@ fn every_sign_that_the_page_writes_can_be_drawn() {
     }
 }
 
-/// Everything both fonts can draw, drawn without hinting.
-fn drawn(definitions: FontDefinitions) -> (Vec<[f32; 2]>, egui::ColorImage) {
+/// Draws all signs that both fonts have, without hinting. Returns the sizes and the atlas.
+fn draw(definitions: FontDefinitions) -> (Vec<[f32; 2]>, egui::ColorImage) {
     let options = TextOptions {
         font_hinting: false,
         ..TextOptions::default()
@@ -101,7 +100,7 @@ fn leaving_out_the_hinting_changed_no_outline_and_no_width() {
             bytes.len()
         );
     }
-    let (whole, lean) = (drawn(whole), drawn(studio::fonts::definitions()));
+    let (whole, lean) = (draw(whole), draw(studio::fonts::definitions()));
     assert_eq!(lean.0, whole.0);
     assert!(lean.1 == whole.1, "the letters differ");
 }

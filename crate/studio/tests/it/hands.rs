@@ -1,5 +1,5 @@
-//! Editing by hand: what is clicked in the picture is found in the text, and what is dragged
-//! changes its numbers.
+//! Editing by hand: a click on the picture finds the place in the text, and a drag changes its
+//! numbers.
 
 use crate::driver::Window;
 use assist::handles::Editable;
@@ -10,7 +10,7 @@ use studio::hands::Sight;
 use studio::{examples, places};
 use tracer::Picker;
 
-/// A ball on the left, which is written out, and three on the right, which a loop makes.
+/// A text with a ball on the left, and three on the right from a loop.
 const TEXT: &str = "\
 framesize 64 48
 eyep 0 0 10
@@ -22,7 +22,7 @@ for i = 0 to 2 {
 }
 ";
 
-/// The line of the text, from 1, in which the cursor is.
+/// Returns the line of the cursor, from 1.
 fn line(window: &Window) -> usize {
     let state = TextEdit::load_state(&window.harness.ctx, egui::Id::unique("editor"));
     let range = state.and_then(|state| state.cursor.char_range()).unwrap();
@@ -30,8 +30,8 @@ fn line(window: &Window) -> usize {
     text.matches('\n').count() + 1
 }
 
-/// Where a place of the model's plane z = 0 is seen.
-fn seen(window: &Window, x: f32, y: f32) -> Pos2 {
+/// Projects a place of the model's plane z = 0 to the screen.
+fn project(window: &Window, x: f32, y: f32) -> Pos2 {
     let rect = window.place("picture");
     // The eye is 10 away, and half of the width is seen at an angle of 45°/2.
     let unit = 0.5 * rect.width() / (10.0 * libm::tanf(22.5_f32.to_radians()));
@@ -48,18 +48,18 @@ fn knobs(window: &Window) -> Vec<String> {
 fn a_click_finds_the_line_and_a_click_beside_lets_go() {
     let mut window = Window::with_text(TEXT);
     assert!(knobs(&window).is_empty());
-    let ball = seen(&window, -2.0, 0.1);
+    let ball = project(&window, -2.0, 0.1);
     window.click(ball);
     assert_eq!(line(&window), 5);
     assert_eq!(knobs(&window), ["hand the centre", "hand the radius"]);
     // A shape of a loop cannot be moved alone, and its knob says why; all can be made wider.
-    let ball = seen(&window, 2.0, 1.0);
+    let ball = project(&window, 2.0, 1.0);
     window.click(ball);
     assert_eq!(line(&window), 7);
     let shared = "hand the radius; of all that are made here";
     assert_eq!(knobs(&window), ["hand the centre", shared]);
     window.harness.get_by_label("the centre: is made in a loop");
-    let nothing = seen(&window, 0.0, 2.0);
+    let nothing = project(&window, 0.0, 2.0);
     window.click(nothing);
     assert!(knobs(&window).is_empty());
     assert_eq!(window.text(), TEXT);
@@ -68,11 +68,11 @@ fn a_click_finds_the_line_and_a_click_beside_lets_go() {
 #[test]
 fn a_drag_changes_the_numbers_and_is_one_undo_step() {
     let mut window = Window::with_text(TEXT);
-    let ball = seen(&window, -2.0, 0.1);
+    let ball = project(&window, -2.0, 0.1);
     window.click(ball);
     let from = window.place("hand the centre").center();
-    assert!((from - seen(&window, -2.0, 0.0)).length() < 1.0);
-    let to = seen(&window, -1.0, 0.5);
+    assert!((from - project(&window, -2.0, 0.0)).length() < 1.0);
+    let to = project(&window, -1.0, 0.5);
     window.drag(from, to);
     let text = window.text();
     let written = text.split(['<', '>']).nth(1).unwrap();
@@ -94,12 +94,12 @@ fn a_drag_changes_the_numbers_and_is_one_undo_step() {
 #[test]
 fn the_radius_follows_its_knob() {
     let mut window = Window::with_text(TEXT);
-    let ball = seen(&window, -2.0, 0.1);
+    let ball = project(&window, -2.0, 0.1);
     window.click(ball);
     let from = window.place("hand the radius").center();
     window.drag(
         from,
-        from + (seen(&window, 0.25, 0.0) - seen(&window, 0.0, 0.0)),
+        from + (project(&window, 0.25, 0.0) - project(&window, 0.0, 0.0)),
     );
     let text = window.text();
     let radius: f32 = text
@@ -129,7 +129,7 @@ fn the_caret_chooses_and_escape_lets_go() {
     assert!(knobs(&window).is_empty());
     go(&mut window, Key::ArrowUp, 5);
     assert_eq!(knobs(&window).len(), 2);
-    // The first one closes what the editor says about the command.
+    // The first one closes the editor's line about the command.
     window.key(Modifiers::NONE, Key::Escape);
     window.key(Modifiers::NONE, Key::Escape);
     assert!(knobs(&window).is_empty());
@@ -138,7 +138,7 @@ fn the_caret_chooses_and_escape_lets_go() {
 #[test]
 fn arrow_keys_nudge_a_knob() {
     let mut window = Window::with_text(TEXT);
-    let ball = seen(&window, -2.0, 0.1);
+    let ball = project(&window, -2.0, 0.1);
     window.click(ball);
     let knob = window.harness.get_by_label("the centre");
     knob.focus();
@@ -160,13 +160,13 @@ fn arrow_keys_nudge_a_knob() {
 #[test]
 fn while_the_text_has_errors_nothing_can_be_held() {
     let mut window = Window::with_text(TEXT);
-    let ball = seen(&window, -2.0, 0.1);
+    let ball = project(&window, -2.0, 0.1);
     window.click(ball);
     assert_eq!(knobs(&window).len(), 2);
     window.edit();
     window.write("nonsense\n");
     assert!(knobs(&window).is_empty());
-    let ball = seen(&window, -2.0, 0.1);
+    let ball = project(&window, -2.0, 0.1);
     window.click(ball);
     assert!(knobs(&window).is_empty());
 }
@@ -175,46 +175,46 @@ fn while_the_text_has_errors_nothing_can_be_held() {
 fn a_phone_has_knobs_for_fingers() {
     let mut window = Window::open(390.0, 844.0);
     window.load(TEXT);
-    let ball = seen(&window, -2.0, 0.1);
+    let ball = project(&window, -2.0, 0.1);
     window.click(ball);
     let knob = window.place("hand the centre");
     assert!(knob.width() >= 40.0 && knob.height() >= 40.0);
-    let to = seen(&window, -1.0, -0.5);
+    let to = project(&window, -1.0, -0.5);
     window.drag(knob.center(), to);
     assert!(!window.text().contains("<-2 0 0>"));
 }
 
 #[test]
 fn every_example_has_shapes_to_pick_with_handles() {
-    // Those with images and meshes of their own show nothing without them.
-    let alone = examples::ALL.iter().filter(|e| e.files.is_empty());
+    // Examples with images and meshes show nothing without them.
+    let all = examples::ALL.iter().filter(|e| e.files.is_empty());
     let www = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www");
-    for example in alone {
+    for example in all {
         let text = std::fs::read_to_string(www.join(example.path)).unwrap();
         let project = example.project(&text);
         let compiled = rats::compile(&project);
         let scene = &compiled.scene;
         let begin = Instant::now();
         let picker = Picker::new(scene);
-        let prepared = begin.elapsed();
+        let preparation = begin.elapsed();
         let [width, height] = scene.settings.frame.map(|side| side as f32);
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(width, height));
         let sight = Sight::new(&scene.camera, rect);
         let eye = sight.projection.eye;
-        let mut met = Vec::new();
+        let mut elements = Vec::new();
         let begin = Instant::now();
         for i in 0..9 {
             for j in 0..9 {
                 let at = rect.lerp_inside(vec2(i as f32 + 0.5, j as f32 + 0.5) / 9.0);
                 let hit = picker.pick(eye, sight.direction(at));
-                met.extend(hit.and_then(|hit| hit.element));
+                elements.extend(hit.and_then(|hit| hit.element));
             }
         }
-        let picked = begin.elapsed() / 81;
-        assert!(!met.is_empty(), "{}", example.title);
+        let click = begin.elapsed() / 81;
+        assert!(!elements.is_empty(), "{}", example.title);
         let mut movable = 0;
         let begin = Instant::now();
-        for element in met.iter().take(6).map(|&element| element as usize) {
+        for element in elements.iter().take(6).map(|&element| element as usize) {
             let view = &sight.projection.world_from_view;
             let handles = assist::handles::handles(&project, &[], 0, &compiled, element, view);
             assert!(!handles.is_empty(), "{}", example.title);
@@ -223,11 +223,12 @@ fn every_example_has_shapes_to_pick_with_handles() {
                 .filter(|handle| matches!(handle.edit, Editable::Literal { .. }))
                 .count();
         }
-        let handled = begin.elapsed() / met.len().min(6) as u32;
+        let handles = begin.elapsed() / elements.len().min(6) as u32;
         println!(
-            "{}: ready in {prepared:?}, a click {picked:?}, its handles {handled:?}, {movable} to move",
+            "{}: ready in {preparation:?}, a click {click:?}, its handles {handles:?}, \
+                {movable} to move",
             example.title
         );
-        assert!(picked.as_secs_f64() < 1.0 && prepared.as_secs_f64() < 5.0);
+        assert!(click.as_secs_f64() < 1.0 && preparation.as_secs_f64() < 5.0);
     }
 }

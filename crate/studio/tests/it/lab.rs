@@ -1,4 +1,4 @@
-//! The lab, driven as a user drives it: its links, its lessons, and what it leaves alone.
+//! The lab, driven as a user drives it: its links, its lessons, and the work that it leaves alone.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, pos2, vec2};
 use egui_kittest::Harness;
@@ -28,7 +28,7 @@ struct Window {
 
 impl Window {
     fn open([width, height]: [f32; 2], parts: Parts) -> Self {
-        platform::set_troubled(false);
+        platform::set_stopped(false);
         let inner = parts.clone();
         let harness = Harness::builder()
             .with_size(vec2(width, height))
@@ -50,7 +50,7 @@ impl Window {
         window
     }
 
-    /// A window with a small text of the user's own, so that its picture is soon finished.
+    /// Opens a window with a small text of the user's own, whose picture is soon finished.
     fn with_work(size: [f32; 2]) -> Self {
         platform::set_hash("");
         let mut window = Self::open(size, Parts::new());
@@ -131,7 +131,7 @@ impl Window {
         self.steps(4);
     }
 
-    /// Waits until something is so.
+    /// Waits until a condition holds.
     fn until(&mut self, what: &str, is: impl Fn(&Self) -> bool) {
         for _ in 0..6000 {
             if is(self) {
@@ -258,8 +258,9 @@ fn every_control_of_the_lab_has_a_name() {
             window.steps(6);
             window.until("rest", |window| {
                 let lab = window.lab().unwrap();
-                let rests = |name, rest| lab.readings.get(name).is_none_or(|now| *now == rest);
-                lab.waiting == 0 && rests("finished", 1.0) && rests("timed", 63.0)
+                let mut last = [("finished", 1.0), ("timed", 63.0)].into_iter();
+                lab.waiting == 0
+                    && last.all(|(name, last)| lab.readings.get(name).is_none_or(|n| *n == last))
             });
             // Runs until nothing moves; then egui_kittest checks the names for screen readers.
             window.harness.run();
@@ -269,7 +270,7 @@ fn every_control_of_the_lab_has_a_name() {
 }
 
 #[test]
-fn grips_move_what_they_say() {
+fn grips_change_their_readings() {
     let mut window = Window::with_work(DESK);
     window.follow("#lab=convolution");
     let before = window.reading("iso");
@@ -308,7 +309,7 @@ fn grips_move_what_they_say() {
 }
 
 #[test]
-fn a_slice_is_refined_and_tells_the_field_under_the_pointer() {
+fn a_slice_is_refined_and_shows_the_field_under_the_pointer() {
     let mut window = Window::with_work(DESK);
     window.follow("#lab=slice");
     window.until("the finest slice", |window| {
@@ -356,7 +357,7 @@ fn spans_are_held_against_the_exact_surface() {
 }
 
 #[test]
-fn small_pictures_are_traced_and_the_editor_s_picture_is_not_disturbed() {
+fn small_pictures_do_not_disturb_the_picture_of_the_editor() {
     let mut window = Window::with_work(DESK);
     window.until("the picture", |window| {
         window.parts.outbox.borrow().report.phase == "done"
@@ -419,7 +420,7 @@ fn every_lesson_opens_as_a_dataset_that_compiles() {
         let report = window.parts.outbox.borrow().report.clone();
         assert_eq!(report.diagnostics, [], "{lesson:?}: {text}");
         assert_eq!(platform::hash(), "");
-        // The own work is on the shelf, and the way back leads to the lesson.
+        // The user's work is on the shelf, and the way back leads to the lesson.
         let mut shelf = parts.shelf.borrow_mut();
         let [entry] = shelf.entries().try_into().expect("one work");
         let (_, kept) = shelf.open(&entry.id).expect("the work");

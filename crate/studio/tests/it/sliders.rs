@@ -19,7 +19,7 @@ fn vector(window: &Window) -> [f64; 3] {
 }
 
 #[test]
-fn a_pad_moves_a_vector_and_one_undo_takes_the_drag_back() {
+fn a_drag_on_a_pad_moves_a_vector_and_is_one_undo_step() {
     for size in [[1000.0, 700.0], [390.0, 844.0]] {
         let mut window = Window::open(size[0], size[1]);
         window.load(TEXT);

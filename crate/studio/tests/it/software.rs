@@ -1,4 +1,4 @@
-//! The picture drawn on the processor is the one that egui's own painter draws on a GPU.
+//! The processor draws the window as egui's own painter does on a GPU.
 
 use egui::{
     ClippedPrimitive, Color32, ColorImage, Context, Mesh, Pos2, RawInput, Rect, TextureOptions,
@@ -10,7 +10,7 @@ use painter::Painter;
 const SIZE: [u32; 2] = [640, 448];
 const GROUND: Color32 = Color32::from_rgb(30, 40, 50);
 
-/// A bit of everything that egui draws.
+/// Shows a bit of everything that egui draws.
 fn show(ui: &mut Ui, picture: &egui::TextureHandle) {
     egui::Panel::left("left").show(ui, |ui| {
         ui.heading("Heading: fi ff, äöü");
@@ -64,7 +64,7 @@ fn show(ui: &mut Ui, picture: &egui::TextureHandle) {
     });
 }
 
-/// One frame: what to paint and the changes of the textures.
+/// Returns the shapes of a frame and the changes of its textures.
 fn frame(scale: f32) -> (Vec<ClippedPrimitive>, TexturesDelta) {
     let context = Context::default();
     context.set_fonts(studio::fonts::definitions());
@@ -94,7 +94,7 @@ fn frame(scale: f32) -> (Vec<ClippedPrimitive>, TexturesDelta) {
     viewport.native_pixels_per_point = Some(scale);
     let output = context.run_ui(input, |ui| show(ui, &picture));
     let primitives = context.tessellate(output.shapes, output.pixels_per_point);
-    // The textures of the frame; the picture is freed only when the context is dropped.
+    // The picture is freed only when the context is dropped.
     (primitives, output.textures_delta)
 }
 
@@ -191,12 +191,12 @@ fn on_gpu(
     copy.get_mapped_range(..).unwrap().to_vec()
 }
 
-/// At most one in 2000 channels may differ by more than this: egui's shader and ours round at
+/// The difference that at most one in 2000 channels may exceed: egui's shader and ours round at
 /// different places, and a pixel whose centre lies on an edge may fall to either side.
 const STEPS: u8 = 3;
 
 #[test]
-fn the_processor_draws_what_a_gpu_draws() {
+fn the_processor_draws_like_a_gpu() {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let options = wgpu::RequestAdapterOptions::default();
     let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {

@@ -4,7 +4,7 @@ use crate::driver::Window;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use studio::app::Parts;
-use studio::intake::Taken;
+use studio::intake::Incoming;
 use studio::picture::Image;
 use studio::request::Request;
 use studio::{picture, places, platform};
@@ -24,11 +24,11 @@ fn png(size: [u32; 2], level: u8) -> Vec<u8> {
 
 /// Drops two pictures on the page.
 fn drop_two(window: &mut Window) {
-    let taken = [("one.png", 200), ("two.png", 90)].map(|(name, level)| Taken {
+    let files = [("one.png", 200), ("two.png", 90)].map(|(name, level)| Incoming {
         name: name.to_owned(),
         bytes: Ok(png([40, 30], level)),
     });
-    window.parts.requests.ask(Request::Files(taken.to_vec()));
+    window.parts.requests.ask(Request::Files(files.to_vec()));
     window.steps(4);
     // The last of them is shown in the place of the text.
     window.harness.get_by_label("Back to the text").click();
@@ -81,7 +81,7 @@ fn tools_on_two_dropped_pictures_give_results_that_are_shown_saved_and_kept() {
     window.harness.get_by_label("wrote collage.png, 80×30");
     window.harness.get_by_label("Save").click();
     window.steps(2);
-    let (name, bytes) = platform::downloaded().expect("a file");
+    let (name, bytes) = platform::last_download().expect("a file");
     assert_eq!((name.as_str(), &bytes[1..4]), ("collage.png", &b"PNG"[..]));
     window.key(Modifiers::NONE, Key::ArrowRight);
     window.key(Modifiers::NONE, Key::ArrowRight);
@@ -96,7 +96,7 @@ fn tools_on_two_dropped_pictures_give_results_that_are_shown_saved_and_kept() {
     window.place("tab diff.png");
     window.place("editor");
 
-    // Folded, it leaves the room to the picture; without tools it goes.
+    // Folded it leaves its room to the picture; without tools it disappears.
     let fold = window.place("fold tray").center();
     window.click(fold);
     assert!(window.place("tray").height() < 40.0);
@@ -105,7 +105,7 @@ fn tools_on_two_dropped_pictures_give_results_that_are_shown_saved_and_kept() {
 }
 
 #[test]
-fn errors_have_the_program_s_words() {
+fn errors_have_the_words_of_the_program() {
     let mut window = Window::with_text(&format!(
         "resize no.png 20 10\nconvert ../a.png b.png\nshow color Gold\n{SCENE}"
     ));
@@ -144,7 +144,7 @@ fn the_traced_picture_is_one_of_the_files_unless_it_is_not_saved() {
     open(&mut window, "small.png");
     window.harness.get_by_label("Save").click();
     window.steps(2);
-    let (_, bytes) = platform::downloaded().expect("a file");
+    let (_, bytes) = platform::last_download().expect("a file");
     let read = studio::examples::decode(&bytes).unwrap();
     assert_eq!(read.rgba, traced);
     window.key(Modifiers::NONE, Key::Escape);
@@ -162,7 +162,7 @@ fn the_traced_picture_is_one_of_the_files_unless_it_is_not_saved() {
         window.harness.get_by_label("Save").click();
         window.steps(2);
         window.key(Modifiers::NONE, Key::Escape);
-        let (_, bytes) = platform::downloaded().expect("a file");
+        let (_, bytes) = platform::last_download().expect("a file");
         fresh = studio::examples::decode(&bytes).unwrap().rgba != traced;
         if fresh {
             break;
@@ -187,7 +187,7 @@ fn animations_are_played_in_the_large_view() {
     open(&mut window, "fli.gif");
     window.harness.get_by_label_contains("GIF, an animation");
     window.harness.get_by_label_contains("2 frames of 40×30");
-    // It goes round and round without an end.
+    // It repeats for ever.
     window.steps(40);
     window.place("result");
     // It can be kept, and has a tab as a picture that was dropped.
@@ -238,12 +238,12 @@ fn many_jobs_are_done_in_many_frames_and_not_all_results_are_held() {
     let jobs = "for i = 1 to 300 { show color Gold }";
     let mut window = Window::with_text(&format!("{jobs}\n{SCENE}"));
     assert_eq!(window.errors(), 0);
-    let said = |window: &Window, text: &str| window.harness.query_by_label(text).is_some();
-    let in_between = (1..300).filter(|n| said(&window, &format!("{n} of 300")));
+    let shows = |window: &Window, text: &str| window.harness.query_by_label(text).is_some();
+    let in_between = (1..300).filter(|n| shows(&window, &format!("{n} of 300")));
     assert_eq!(in_between.count(), 1);
     for _ in 0..5000 {
         window.steps(1);
-        if said(&window, "44 could not be made") && said(&window, "Results 256") {
+        if shows(&window, "44 could not be made") && shows(&window, "Results 256") {
             return;
         }
     }

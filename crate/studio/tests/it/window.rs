@@ -1,4 +1,4 @@
-//! The window, driven as a user drives it: keys, pointer, and what is on the screen afterwards.
+//! The window, driven as a user drives it, by keys and pointer.
 
 use crate::driver::Window;
 use egui::{Event, Key, Modifiers, pos2, vec2};
@@ -36,7 +36,7 @@ fn typing_edits_and_an_error_is_listed_while_the_picture_stays() {
     assert_eq!(window.image(), picture, "the old picture stays");
     assert!(window.place("problems").height() > 20.0);
 
-    // A click on the problem goes there: what is typed next takes its place.
+    // A click on the problem selects its place, which typing replaces.
     window
         .harness
         .get_by_label_contains("Problem at 1:1")
@@ -54,7 +54,7 @@ fn typing_edits_and_an_error_is_listed_while_the_picture_stays() {
 }
 
 #[test]
-fn a_slider_rewrites_its_number_and_one_undo_takes_the_drag_back() {
+fn a_drag_on_a_slider_rewrites_its_number_and_is_one_undo_step() {
     let mut window = Window::with_text(TEXT);
     let slider = window.place("slider size");
     let at = |share: f32| pos2(slider.left() + slider.width() * share, slider.center().y);
@@ -79,14 +79,12 @@ fn a_slider_rewrites_its_number_and_one_undo_takes_the_drag_back() {
 fn keys_stay_in_order_when_they_come_at_once() {
     let mut window = Window::with_text("\n");
     window.edit();
-    let enter = |window: &Window| window.harness.key_press(Key::Enter);
-    window
-        .harness
-        .event(Event::Text(String::from("for i = 1 to 3 {")));
-    enter(&window);
-    window.harness.event(Event::Text(String::from("# a")));
-    enter(&window);
-    window.harness.event(Event::Text(String::from("# b")));
+    for (line, text) in ["for i = 1 to 3 {", "# a", "# b"].into_iter().enumerate() {
+        if line > 0 {
+            window.harness.key_press(Key::Enter);
+        }
+        window.harness.event(Event::Text(text.to_owned()));
+    }
     window.steps(6);
     assert_eq!(window.text(), "for i = 1 to 3 {\n  # a\n  # b\n");
 }
@@ -147,7 +145,7 @@ fn a_click_counts_though_the_first_picture_comes_meanwhile() {
 }
 
 #[test]
-fn a_shared_link_leaves_the_own_work_alone() {
+fn a_shared_link_leaves_the_users_work_alone() {
     let parts = Parts::new();
     let mut mine = Window::open_with(1000.0, 700.0, parts.clone());
     mine.load(TEXT);
@@ -199,7 +197,7 @@ fn a_shared_link_leaves_the_own_work_alone() {
     assert_eq!(
         platform::hash(),
         "",
-        "the address no longer says what is open"
+        "the address does not carry another work"
     );
 }
 
@@ -235,7 +233,7 @@ fn the_picture_can_be_saved() {
     let mut window = Window::with_text(TEXT);
     window.finish();
     window.key(Modifiers::COMMAND, Key::S);
-    let (name, bytes) = platform::downloaded().expect("a file");
+    let (name, bytes) = platform::last_download().expect("a file");
     assert_eq!(name, "Main.png");
     assert!(bytes.starts_with(b"\x89PNG"));
 }
@@ -283,7 +281,7 @@ fn too_long_a_paste_is_refused_in_words() {
 #[test]
 fn after_a_bad_start_nothing_is_drawn_until_the_user_says_so() {
     let parts = Parts::new();
-    platform::set_troubled(true);
+    platform::set_stopped(true);
     let inner = parts.clone();
     let mut harness = Harness::builder()
         .with_size(vec2(1000.0, 700.0))
@@ -301,10 +299,10 @@ fn after_a_bad_start_nothing_is_drawn_until_the_user_says_so() {
     harness.get_by_label("Draw").click();
     harness.run_steps(5);
     assert_ne!(parts.outbox.borrow().report.phase, "idle");
-    platform::set_troubled(false);
+    platform::set_stopped(false);
 }
 
-/// The parts of the page, which must not overlap.
+/// Checks that parts of the page are on the screen and do not overlap.
 fn check_layout(window: &Window, names: &[&str]) {
     let screen = window.harness.ctx.content_rect();
     for (index, name) in names.iter().enumerate() {
@@ -390,7 +388,7 @@ fn a_problem_leads_to_the_manual_and_its_example_opens() {
 }
 
 #[test]
-fn a_related_place_is_a_way_there() {
+fn a_related_place_can_be_clicked() {
     let mut window = Window::with_text(&format!("{TEXT}object a\nclose b\n"));
     let related = window
         .parts
@@ -409,7 +407,7 @@ fn a_related_place_is_a_way_there() {
     assert_eq!(&window.text()[at..=at], "#");
 }
 
-/// Asks for the finished picture. The cell holds the answer once there is one.
+/// Asks for the finished picture. Returns a cell that holds the answer once there is one.
 fn ask_finished(parts: &Parts) -> Rc<RefCell<Option<Result<(), String>>>> {
     let answer = Rc::new(RefCell::new(None));
     let inner = answer.clone();
@@ -422,7 +420,7 @@ fn ask_finished(parts: &Parts) -> Rc<RefCell<Option<Result<(), String>>>> {
 }
 
 #[test]
-fn finished_waits_for_the_picture_and_is_refused_while_the_lab_keeps_it_waiting() {
+fn scripts_wait_for_the_picture_and_are_refused_while_the_lab_keeps_it_waiting() {
     let mut window = Window::with_text(TEXT);
     let early = ask_finished(&window.parts);
     window.finish();
@@ -436,7 +434,7 @@ fn finished_waits_for_the_picture_and_is_refused_while_the_lab_keeps_it_waiting(
     let done = ask_finished(&window.parts);
     window.steps(2);
     assert_eq!(done.take(), Some(Ok(())));
-    // One that is to be drawn anew waits, and the answer does not.
+    // A picture that must be drawn anew waits, and the script is refused at once.
     let camera = scene::Camera {
         eye: [3.0, 0.0, 5.0].into(),
         ..window.parts.outbox.borrow().camera
@@ -462,16 +460,16 @@ fn large_mesh_is_read_apart_while_the_picture_stays() {
     let picture = window.image();
     let mut mesh = String::from("v -1 -1 0\nv 1 -1 0\nv 0 1 0\n");
     while mesh.len() <= studio::asset::LARGE_MESH {
-        mesh.push_str("# a remark that makes the file large\n");
+        mesh.push_str("# a comment that makes the file large\n");
     }
     mesh.push_str("f 1 2 3\n");
     let text = TEXT.replace("sphere flesh size, 0 0 0", "mesh flesh big.obj");
-    let taken = |name: &str, text: &str| studio::intake::Taken {
+    let files = [("big.obj", mesh), ("main.rat", text)];
+    let files = files.map(|(name, text)| studio::intake::Incoming {
         name: name.to_owned(),
-        bytes: Ok(text.as_bytes().to_vec()),
-    };
-    let files = vec![taken("big.obj", &mesh), taken("main.rat", &text)];
-    window.parts.requests.ask(Request::Files(files));
+        bytes: Ok(text.into_bytes()),
+    });
+    window.parts.requests.ask(Request::Files(files.to_vec()));
     window.steps(1);
     {
         let outbox = window.parts.outbox.borrow();

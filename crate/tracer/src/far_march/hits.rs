@@ -1,4 +1,4 @@
-//! Rays through a piece of their way: their first crossings, and the surface there.
+//! First crossings of rays with the surface in a piece of their way, and the surface there.
 use super::piece::Piece;
 use super::{FarBody, FarQuery, FarWork, ROUNDING};
 use crate::blob_march::{
@@ -14,17 +14,17 @@ use wide::f32x8;
 
 /// Largest number of Newton steps to a hit.
 const MOST_REFINING: u32 = 12;
-/// Part of the tolerance up to which a hit is refined, as excess over slope.
+/// Largest error of a refined hit, excess over slope, as a part of the tolerance.
 const REFINED: f32 = 0.25;
 
-/// All that is not among the blobs of a piece, with its error.
+/// The backdrop of a piece, the sum of all that is not among its blobs, with its error.
 #[derive(Clone, Copy)]
 pub struct Known {
     pub backdrop: Backdrop,
     pub error: f64,
 }
 
-/// The places to begin at.
+/// The places at which a march begins.
 #[derive(Clone, Copy)]
 pub struct Start {
     /// Estimate of the crossing, and the end of the first step ([`MarchRays`]).
@@ -35,15 +35,15 @@ pub struct Start {
 }
 
 impl FarQuery<'_> {
-    /// Half the tolerance of pictures at a parameter.
+    /// Returns half the tolerance of pictures at a parameter.
     pub fn tolerance(&self, t: f64) -> f64 {
         (0.1 * self.pixel * t).clamp(FINEST, COARSEST_OF_BLOBS)
     }
 }
 
 impl FarBody {
-    /// Follows rays through a piece of their way, among the blobs in
-    /// `work`. Returns those that cross the surface there; `None` if this is not the way.
+    /// Follows rays through a piece of their way, among the blobs in `work`. Returns those that
+    /// cross the surface there, a bit each; `None` if they must be followed in another way.
     pub(super) fn follow(
         &self,
         query: &FarQuery<'_>,
@@ -101,7 +101,7 @@ impl FarBody {
         Some(marched.met)
     }
 
-    /// A ray of a packet, with parameters relative to a piece's middle.
+    /// Returns a ray of a packet, with parameters relative to a piece's middle.
     pub(super) fn along<'a>(
         &self,
         query: &FarQuery<'a>,
@@ -119,7 +119,7 @@ impl FarBody {
         }
     }
 
-    /// Numbers of all primitives.
+    /// Iterates over the numbers of the body's primitives.
     pub(super) fn numbers(&self) -> impl Iterator<Item = u32> {
         self.first as u32..(self.first + self.count) as u32
     }
@@ -209,15 +209,15 @@ impl FarBody {
         let lanes = mask(met);
         let t = at.to_array();
         for lane in (0..PACKET).filter(|i| met >> i & 1 != 0) {
-            work.flesh.t[lane] = piece.t + f64::from(t[lane]);
+            work.samples.t[lane] = piece.t + f64::from(t[lane]);
         }
-        for (own, new) in work.flesh.gradient.iter_mut().zip(gradient) {
+        for (own, new) in work.samples.gradient.iter_mut().zip(gradient) {
             *own = lanes.select(new, *own);
         }
         self.weigh(query, piece, at, met, work)
     }
 
-    /// Gradients at places relative to a piece's middle.
+    /// Returns the field's gradients at places relative to a piece's middle.
     fn gradient(&self, piece: &Piece<'_>, place: [f32x8; 3], work: &mut FarWork) -> [f32x8; 3] {
         let cell = piece.cell;
         let scale = f32x8::splat(1.0 / cell.reach() as f32);
@@ -253,7 +253,7 @@ impl FarBody {
         let radius = 0.5 * (last - first) + piece.width;
         let place = piece.places(at);
         let world = piece.world(place);
-        for ((_, field), (_, weight)) in self.finishes.iter().zip(&mut work.flesh.weights) {
+        for ((_, field), (_, weight)) in self.finishes.iter().zip(&mut work.samples.weights) {
             let mut own = f32x8::splat(THRESHOLD as f32);
             if let Some(field) = field {
                 let cell = field.around(primitives, center, radius)?;

@@ -81,7 +81,7 @@ pub struct FarWork {
     strong: Vec<u32>,
     weak: Vec<u32>,
     /// Surface samples at the hits of the last packet.
-    pub flesh: SurfaceSamples,
+    pub samples: SurfaceSamples,
     pub evaluations: u64,
     /// Rays searched again in double precision.
     pub doubts: u64,
@@ -98,7 +98,7 @@ pub struct FarQuery<'r> {
     pub quest: Quest,
     /// Width of a pixel at distance 1.
     pub pixel: f64,
-    /// All primitives.
+    /// The scene's primitives with their bounds.
     pub sight: BoundedTerms<'r>,
     /// Length of rays below which nothing is resolved.
     pub resolution: f64,
@@ -107,7 +107,7 @@ pub struct FarQuery<'r> {
 impl FarBody {
     /// Prepares a body of primitives numbered from `first` on, with the radius of a ball outside
     /// which the field is below T. `None` if it is no body of many points of one endless kernel
-    /// that add to the field. What is still true of an earlier body is taken over.
+    /// that add to the field. Those cells of an earlier body that still hold are taken over.
     pub fn new(
         primitives: &[Primitive],
         finishes: &[u32],
@@ -125,7 +125,7 @@ impl FarBody {
         }
         let points = Points::of(primitives)?;
         let (middle, half) = cube(center, radius);
-        let changed = earlier.and_then(|earlier| points.changed_from(&earlier.points));
+        let changed = earlier.and_then(|earlier| points.changes_from(&earlier.points));
         let earlier = earlier.filter(|_| changed.is_some());
         let changed: Arc<[u32]> = changed.unwrap_or_default().into();
         let field = FarField::new(primitives, middle, half).surface_only();
@@ -136,24 +136,24 @@ impl FarBody {
         if members.len() > MOST_FINISHES {
             return None;
         }
-        let is_mixed = members.len() > 1;
-        let own = |finish: u32| {
-            let field = field.of_positive(|i| finishes[i as usize] == finish);
-            let before = earlier.and_then(|earlier| {
-                let mut finishes = earlier.finishes.iter();
-                finishes.find(|(other, _)| *other == finish)?.1.as_ref()
+        let mut fields = Vec::new();
+        for &finish in &members {
+            let own = (members.len() > 1).then(|| {
+                let field = field.of_positive(|i| finishes[i as usize] == finish);
+                let before = earlier.and_then(|earlier| {
+                    let mut finishes = earlier.finishes.iter();
+                    finishes.find(|(other, _)| *other == finish)?.1.as_ref()
+                });
+                field.after(before, &changed)
             });
-            field.after(before, &changed)
-        };
-        let members = members.into_iter();
-        let finishes = members.map(|finish| (finish, is_mixed.then(|| own(finish))));
-        let finishes = finishes.collect();
+            fields.push((finish, own));
+        }
         Some(Self {
             points,
             field,
             first,
             count: primitives.len(),
-            finishes,
+            finishes: fields,
             center,
             radius,
         })
@@ -165,14 +165,14 @@ impl FarBody {
 
     /// Finds the first crossings of rays with the surface; for [`Quest::Entry`] only whether there
     /// is one from outside. Returns the rays that cross, a bit each, with the surface there in
-    /// `work.flesh`. `None` if this is not the way for these rays; the caller then takes the
+    /// `work.samples`. `None` if this way does not serve these rays; the caller then takes the
     /// general one.
     pub fn first(&self, query: &FarQuery<'_>, work: &mut FarWork) -> Option<u32> {
         if query.quest != Quest::Entry {
-            work.flesh.weights.clear();
+            work.samples.weights.clear();
             let zero = f32x8::splat(0.0);
             let weights = self.finishes.iter().map(|(finish, _)| (*finish, zero));
-            work.flesh.weights.extend(weights);
+            work.samples.weights.extend(weights);
         }
         self.first_of(query, query.alive, 0.0, work)
     }
@@ -271,8 +271,8 @@ impl FarBody {
         Some(met)
     }
 
-    /// Parameters between which a beam may be where the surface is; `None` if it is too wide for
-    /// the hierarchy. Empty if it misses it.
+    /// Returns the parameters between which a beam may meet the surface's ball; `None` if the beam
+    /// is too wide for the hierarchy. The range is empty if the beam misses the ball.
     fn range(&self, beam: &Beam) -> Option<[f64; 2]> {
         let away = self.center - beam.axis.origin;
         let along = away.dot(beam.axis.direction);
@@ -334,7 +334,7 @@ mod tests {
     use trials::Random;
     use trials::scenes::{clothe, element, empty, soft};
 
-    /// Balls in a cloud, of some finishes, in the scene's own places.
+    /// Returns a cloud of balls of some finishes, in the scene's own places.
     fn cloud(kernel: Kernel, count: u32, finishes: u32, numbers: &mut Random) -> Soft {
         let mut scene = empty();
         clothe(&mut scene, vec![soft(-4.0, 1.0); finishes as usize]);
@@ -375,7 +375,8 @@ mod tests {
                 let entered = soft.far_first(0, &rays, &limits, 255, Quest::Entry, &mut work);
                 let Some(met) = met else { continue };
                 taken += 1;
-                // Rays start outside. Grazing ones may be told differently, as without noise.
+                // Rays start outside. The answers for grazing ones may differ, as an entry is
+                // searched without noise.
                 let entered = entered.expect("the same way");
                 differ += (entered ^ met).count_ones();
                 for (lane, ray) in rays.iter().enumerate() {
@@ -383,23 +384,23 @@ mod tests {
                     assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{kernel:?} {ray:?}");
                     let Some((t, gradient)) = exact else { continue };
                     hits += 1;
-                    let flesh = &work.flesh;
+                    let samples = &work.samples;
                     // The second query has not changed the first one's samples.
-                    let off = (flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                    let off = (samples.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
                     assert!(off < 2e-4 * gradient.length(), "{kernel:?} {off}");
-                    let told = flesh.gradients()[lane];
-                    assert!(told.distance(gradient) < 0.02 * gradient.length());
+                    let got = samples.gradients()[lane];
+                    assert!(got.distance(gradient) < 0.02 * gradient.length());
                     // Each finish has its share, T in all.
                     let place = ray.at(t).to_array();
                     let mut shares = [0.0; 3];
                     for (p, finish) in soft.primitives.iter().zip(&soft.finish) {
                         shares[*finish as usize] += p.value(place);
                     }
-                    assert_eq!(flesh.weights.len(), 3);
-                    for (finish, weight) in &flesh.weights {
-                        let told = f64::from(weight.to_array()[lane]);
+                    assert_eq!(samples.weights.len(), 3);
+                    for (finish, weight) in &samples.weights {
+                        let got = f64::from(weight.to_array()[lane]);
                         let want: f64 = shares[*finish as usize];
-                        assert!((told - want).abs() < 2e-3, "{kernel:?} {told} {want}");
+                        assert!((got - want).abs() < 2e-3, "{kernel:?} {got} {want}");
                     }
                 }
             }
@@ -436,7 +437,7 @@ mod tests {
                 assert_eq!(met >> lane & 1 != 0, exact.is_some(), "{ray:?}");
                 let Some((t, gradient)) = exact else { continue };
                 hits += 1;
-                let off = (work.flesh.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
+                let off = (work.samples.t[lane] - t).abs() * gradient.dot(ray.direction).abs();
                 assert!(off < 2e-4 * gradient.length(), "{off}");
             }
         }
@@ -490,7 +491,7 @@ mod tests {
             scene.elements.push(Element { kernel, ..element });
         }
         scene.camera.eye = DVec3::new(0.5, -4.0, 1.0).to_array().into();
-        // So many pixels that packets are narrow, of which those in the middle are enough.
+        // Packets are narrow among so many pixels, of which those in the middle are enough.
         let size = [512, 384];
         let trace = |picture: &crate::Picture| {
             let tile = crate::Tile {

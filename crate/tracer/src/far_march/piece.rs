@@ -28,6 +28,7 @@ pub struct Piece<'a> {
 }
 
 impl<'a> Piece<'a> {
+    /// Returns the part of the rays' way between two parameters.
     pub fn new(cell: &'a Cell, beam: &'a Beam, rays: &[Ray; PACKET], [from, to]: [f64; 2]) -> Self {
         let t = 0.5 * (from + to);
         let middle = beam.axis.at(t);
@@ -45,12 +46,12 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// The beam's middle at a parameter.
+    /// Returns the point of the beam's axis at a parameter.
     pub fn axis_at(&self, t: f64) -> DVec3 {
         self.beam.axis.at(t)
     }
 
-    /// Places of the rays at parameters relative to the middle's, relative to the middle.
+    /// Returns the rays' places, relative to the middle, at parameters relative to the middle's.
     #[inline(always)]
     pub fn places(&self, t: f32x8) -> [f32x8; 3] {
         core::array::from_fn(|i| self.origin[i] + self.direction[i] * t)
@@ -71,7 +72,7 @@ impl<'a> Piece<'a> {
         core::array::from_fn(|i| f32x8::splat(shift[i]) + place[i] * scale)
     }
 
-    /// The cell's polynomial along the rays.
+    /// Returns the cell's polynomial along the rays.
     pub fn far(&self) -> Backdrop {
         let scale = f32x8::splat((self.half / self.cell.reach()) as f32);
         const { assert!(DEGREE == 5) };

@@ -28,21 +28,23 @@ pub struct Points {
     softening: f32,
 }
 
-/// A point.
+/// A point, prepared for marching.
 pub struct Point {
     center: DVec3,
     pub blob: Blob<f32>,
     scale: f32,
     amplitude: f32,
-    /// Squared distance of its own surface, in kernel widths, and that from which on it is strong.
+    /// Squared distance, in kernel widths, of the point's own surface.
     core: f32,
+    /// Squared distance, in kernel widths, up to which the point is strong.
     strong: f32,
+    /// Distance from the point's own surface at which a ray is well outside.
     lead: f32,
 }
 
 impl FarBody {
     /// Follows rays through a piece of their way among points. Returns those that cross the surface
-    /// there; `None` if this is not the way.
+    /// there, a bit each; `None` if they must be followed in another way.
     pub(super) fn follow_points(
         &self,
         query: &FarQuery<'_>,
@@ -65,14 +67,18 @@ impl FarBody {
 }
 
 impl Points {
-    /// `None` if some of the primitives are anything else.
+    /// Prepares primitives; `None` unless all are points of one kernel that never ends.
     pub fn of(primitives: &[Primitive]) -> Option<Self> {
         let kernel = primitives.first()?.kernel;
         let (power, softening) = power(kernel)?;
-        let point = |p: &Primitive| {
+        let mut each = Vec::with_capacity(primitives.len());
+        for p in primitives {
             let blob: Blob<f32> = p.endless_point()?;
+            if p.kernel != kernel {
+                return None;
+            }
             let [scale, amplitude] = blob.scale_and_amplitude();
-            (p.kernel == kernel).then_some(Point {
+            each.push(Point {
                 center: p.blob_middle(),
                 blob,
                 scale,
@@ -80,27 +86,27 @@ impl Points {
                 core: blob.square_of(THRESHOLD) as f32,
                 strong: blob.square_of(STRONG) as f32,
                 lead: (LEAD / p.width) as f32,
-            })
-        };
-        let each: Option<Vec<Point>> = primitives.iter().map(point).collect();
+            });
+        }
         Some(Self {
-            each: each?,
+            each,
             power,
             softening: softening as f32,
         })
     }
 
-    /// Numbers of the points that differ from others, in ascending order. `None` if they are too
-    /// many or not as many points.
-    pub fn changed_from(&self, others: &Self) -> Option<Vec<u32>> {
-        let kernel = |points: &Self| (points.power, points.each.len());
-        if kernel(self) != kernel(others) {
+    /// Returns the numbers of the points that differ from those of others, in ascending order.
+    /// `None` if more than [`MOST_CHANGED`] differ, or the kernel or the number of points does.
+    pub fn changes_from(&self, others: &Self) -> Option<Vec<u32>> {
+        if self.power != others.power || self.each.len() != others.each.len() {
             return None;
         }
         let mut changed = Vec::new();
         for (i, (own, other)) in self.each.iter().zip(&others.each).enumerate() {
-            let parts = |point: &Point| (point.center, point.scale, point.amplitude);
-            if parts(own) != parts(other) {
+            if own.center != other.center
+                || own.scale != other.scale
+                || own.amplitude != other.amplitude
+            {
                 if changed.len() == MOST_CHANGED {
                     return None;
                 }
@@ -234,7 +240,8 @@ impl Points {
         })
     }
 
-    /// Estimates where rays cross: where they enter a point's own surface, and a little before.
+    /// Estimates the parameters at which rays cross: where they enter a point's own surface, and a
+    /// little before.
     fn guess(&self, piece: &Piece<'_>, work: &FarWork) -> [f32x8; 2] {
         let far = f32x8::splat(f32::INFINITY);
         let start = f32x8::splat(-piece.half as f32);

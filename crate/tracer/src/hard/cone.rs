@@ -18,8 +18,8 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// `None` unless the length and one radius are positive, none is negative, and all numbers are
-    /// finite.
+    /// Prepares the shape; `None` unless the length and one radius are positive, none is negative,
+    /// and all numbers are finite.
     #[must_use]
     pub fn new([base, apex]: [DVec3; 2], [base_radius, apex_radius]: [f64; 2]) -> Option<Self> {
         let axis = (apex - base).try_normalize()?;
@@ -41,7 +41,7 @@ impl Cone {
         })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         // From the point of the line that is nearest to the middle: from a far eye the differences
         // of squares would lose their digits.
@@ -78,15 +78,15 @@ impl Cone {
             () if growth > 0.0 => (second, f64::INFINITY),
             () => (f64::NEG_INFINITY, first),
         };
-        let at = |t: f64| Crossing {
+        let [enter, leave] = [first, second].map(|t| Crossing {
             t,
             normal: self.outward(near.at(t)),
-        };
-        clip.stretch(at(first), at(second));
+        });
+        clip.stretch(enter, leave);
         clip.finish_from(shift, out);
     }
 
-    /// The unit normal at a point of the wall.
+    /// Returns the outward unit normal at a point of the wall.
     fn outward(&self, p: DVec3) -> DVec3 {
         let start = p - self.base;
         let across = start - self.axis * start.dot(self.axis);
@@ -94,17 +94,15 @@ impl Cone {
         (across.normalize_or_zero() - self.axis * self.slope).normalize_or(self.axis)
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         // Through both rims if that is a sensible place, else about the wider lid.
         let (r, s) = (self.base_radius, self.apex_radius);
         let place = 0.5 * (self.length + (s - r) * (s + r) / self.length);
         let place = place.clamp(0.0, self.length);
-        let reach = |along: f64, radius: f64| (along * along + radius * radius).sqrt();
-        (
-            self.base + self.axis * place,
-            reach(place, r).max(reach(self.length - place, s)),
-        )
+        let [base, apex] = [(place, r), (self.length - place, s)]
+            .map(|(along, radius)| (along * along + radius * radius).sqrt());
+        (self.base + self.axis * place, base.max(apex))
     }
 }

@@ -14,7 +14,7 @@ pub struct Cuboid {
 }
 
 impl Cuboid {
-    /// `None` unless the axes span a volume and all numbers are finite.
+    /// Prepares the shape; `None` unless the axes span a volume and all numbers are finite.
     #[must_use]
     pub fn new(center: DVec3, axes: [DVec3; 3]) -> Option<Self> {
         // A face's normal is across the other two axes: the rows of the inverse.
@@ -27,7 +27,7 @@ impl Cuboid {
         })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         let mut clip = Clip::whole_line();
         for (axis, normal) in self.axes.iter().zip(self.normals) {
@@ -37,14 +37,14 @@ impl Cuboid {
         clip.finish(out);
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         (self.center, reach(self.axes))
     }
 }
 
-/// The distance from the middle of a box to its furthest corner.
+/// Returns the distance from the middle of a box to its furthest corner.
 pub(super) fn reach([x, y, z]: [DVec3; 3]) -> f64 {
     let corners = [x + y + z, x + y - z, x - y + z, x - y - z];
     corners.map(DVec3::length).into_iter().fold(0.0, f64::max)

@@ -13,7 +13,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// `None` unless radius and length are positive and all numbers are finite.
+    /// Prepares the shape; `None` unless radius and length are positive and all numbers are finite.
     #[must_use]
     pub fn new(base: DVec3, apex: DVec3, radius: f64) -> Option<Self> {
         let axis = (apex - base).try_normalize()?;
@@ -25,7 +25,7 @@ impl Cylinder {
         })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         let mut clip = Clip::whole_line();
         clip.half_space(ray, self.base, -self.axis);
@@ -38,7 +38,7 @@ impl Cylinder {
         clip.finish(out);
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         let half = 0.5 * self.base.distance(self.apex);
@@ -49,21 +49,20 @@ impl Cylinder {
     }
 }
 
-/// Part of a ray's line within an infinite cylinder.
+/// The part of a ray's line within an infinite cylinder.
 pub(super) enum Wall {
-    /// Nowhere.
+    /// Nothing of the line.
     Outside,
-    /// Everywhere: it runs along the axis.
+    /// The whole line, which runs along the axis.
     Inside,
-    /// From where it enters to where it leaves.
+    /// The part between the crossings where it enters and where it leaves.
     Between(Crossing, Crossing),
 }
 
-/// Meets the endless cylinder about an axis through `base`, a unit vector, in the plane across it.
+/// Finds the part of a ray's line within the infinite cylinder around an axis, a unit vector,
+/// through `base`. It is computed in the plane across the axis.
 pub(super) fn wall(ray: &Ray, base: DVec3, axis: DVec3, radius: f64) -> Wall {
-    let across = |v: DVec3| v - axis * v.dot(axis);
-    let start = across(ray.origin - base);
-    let rate = across(ray.direction);
+    let [start, rate] = [ray.origin - base, ray.direction].map(|v| v - axis * v.dot(axis));
     let speed = rate.length();
     if speed > 0.0 {
         let way = rate / speed;
@@ -73,11 +72,11 @@ pub(super) fn wall(ray: &Ray, base: DVec3, axis: DVec3, radius: f64) -> Wall {
             return Wall::Outside;
         }
         let half = half.sqrt();
-        let at = |s: f64| Crossing {
+        let [enter, leave] = [nearest - half, nearest + half].map(|s| Crossing {
             t: s / speed,
             normal: (start + way * s) / radius,
-        };
-        Wall::Between(at(nearest - half), at(nearest + half))
+        });
+        Wall::Between(enter, leave)
     } else if start.length_squared() >= radius * radius {
         Wall::Outside
     } else {

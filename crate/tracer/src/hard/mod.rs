@@ -41,7 +41,7 @@ pub struct Crossing {
     pub normal: DVec3,
 }
 
-/// A hard shape, made ready.
+/// A hard shape, prepared for tracing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solid {
     /// A ball.
@@ -67,8 +67,9 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// A shape with the given radius, which may overrule the shape's own; those without a single
-    /// one ignore it. `None` if it has no surface: a number that is not finite, a size of zero.
+    /// Prepares a shape with the given radius, which may overrule the shape's own; shapes without a
+    /// single one ignore it. `None` if it has no surface: a number that is not finite, a size of
+    /// zero.
     #[must_use]
     pub fn new(shape: &Shape, radius: f64) -> Option<Self> {
         if !radius.is_finite() {
@@ -124,7 +125,7 @@ impl Solid {
         }
     }
 
-    /// A ball that holds the shape; `None` for a plane.
+    /// Returns a ball (centre, radius) that holds the shape; `None` for a plane.
     #[must_use]
     pub fn ball(&self) -> Option<(DVec3, f64)> {
         match self {
@@ -151,14 +152,11 @@ struct Clip {
 
 impl Clip {
     fn whole_line() -> Self {
-        let at = |t| Crossing {
+        let [enter, leave] = [f64::NEG_INFINITY, f64::INFINITY].map(|t| Crossing {
             t,
             normal: DVec3::ZERO,
-        };
-        Self {
-            enter: at(f64::NEG_INFINITY),
-            leave: at(f64::INFINITY),
-        }
+        });
+        Self { enter, leave }
     }
 
     /// Keeps the half space where `(p − point)·normal ≤ 0`.
@@ -199,7 +197,8 @@ impl Clip {
         self.finish_from(0.0, out);
     }
 
-    /// The same where the clip was made for a ray that starts at parameter `start` of the true one.
+    /// Adds both ends if anything is left and they are finite, of a clip that was made for a ray
+    /// that starts at parameter `start` of the true one.
     fn finish_from(&self, start: f64, out: &mut Vec<Crossing>) {
         if self.enter.t < self.leave.t && self.enter.t.is_finite() && self.leave.t.is_finite() {
             out.extend([self.enter, self.leave].map(|c| Crossing {
@@ -210,8 +209,8 @@ impl Clip {
     }
 }
 
-/// Where `a·t² + 2·b·t + c` is zero, in order; an end is infinite where `a` vanishes. `None` where
-/// it is zero nowhere, or everywhere.
+/// Returns the zeros of `a·t² + 2·b·t + c`, in order; one is infinite if `a` vanishes. `None` if it
+/// is zero nowhere, or everywhere.
 fn zeros(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     let square = b * b - a * c;
     if square.is_nan() || square < 0.0 {

@@ -21,8 +21,8 @@ pub struct Patch {
 const EDGE: f64 = 1e-12;
 
 impl Patch {
-    /// `None` unless the triangle has an area and all numbers are finite. A normal without length
-    /// is taken to be the triangle's.
+    /// Prepares the shape; `None` unless the triangle has an area and all numbers are finite. A
+    /// normal without length is taken to be the triangle's.
     #[must_use]
     pub fn new(corners: [DVec3; 3], normals: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
@@ -46,8 +46,8 @@ impl Patch {
         })
     }
 
-    /// See [`super::Solid::crossings`]. The normal is the one that light sees; it is on the same
-    /// side of the ray as the triangle's own.
+    /// Adds the place where the ray's line crosses the triangle. The normal is the one that light
+    /// sees; it is on the same side of the ray as the triangle's own.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         let rate = ray.direction.dot(self.normal);
         let t = (self.corner - ray.origin).dot(self.normal) / rate;
@@ -65,14 +65,14 @@ impl Patch {
         let mixed = mixed.normalize_or(self.normal);
         out.push(Crossing {
             t,
-            normal: self.turned(mixed, ray.direction),
+            normal: self.turn(mixed, ray.direction),
         });
     }
 
-    /// A normal that is seen from the same side as the face. Near the outline of a body the mixed
-    /// normal of a patch may point away from the eye that sees the patch's outer side; it is then
-    /// turned until it is just edge-on, so that light is not taken to come from within.
-    fn turned(&self, mixed: DVec3, direction: DVec3) -> DVec3 {
+    /// Turns a normal until it is seen from the same side as the face. Near the outline of a body
+    /// the mixed normal of a patch may point away from the eye that sees the patch's outer side; it
+    /// is then turned until it is just edge-on, so that light is not taken to come from within.
+    fn turn(&self, mixed: DVec3, direction: DVec3) -> DVec3 {
         let face = self.normal * mixed.dot(self.normal).signum();
         let facing = face.dot(direction);
         let tilt = mixed.dot(direction);
@@ -83,7 +83,7 @@ impl Patch {
         edge_on + direction * (1e-9 * facing.signum())
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         (self.center, self.reach)

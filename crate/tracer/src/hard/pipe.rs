@@ -14,7 +14,7 @@ pub struct Pipe {
 }
 
 impl Pipe {
-    /// `None` unless radius and length are positive and all numbers are finite.
+    /// Prepares the shape; `None` unless radius and length are positive and all numbers are finite.
     #[must_use]
     pub fn new(base: DVec3, apex: DVec3, radius: f64) -> Option<Self> {
         let axis = (apex - base).try_normalize()?;
@@ -26,7 +26,7 @@ impl Pipe {
         })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         if let Wall::Between(enter, leave) = wall(ray, self.base, self.axis, self.radius) {
             for crossing in [enter, leave] {
@@ -38,7 +38,7 @@ impl Pipe {
         }
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         let half = 0.5 * self.length;

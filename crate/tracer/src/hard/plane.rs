@@ -12,7 +12,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// `None` unless the normal has a direction and all numbers are finite.
+    /// Prepares the shape; `None` unless the normal has a direction and all numbers are finite.
     #[must_use]
     pub fn new(point: DVec3, normal: DVec3, half: f64) -> Option<Self> {
         let normal = normal.try_normalize()?;
@@ -23,7 +23,7 @@ impl Plane {
         })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         if self.half > 0.0 {
             let mut clip = Clip::whole_line();

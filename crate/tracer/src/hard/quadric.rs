@@ -12,7 +12,8 @@ pub struct Quadric {
 }
 
 impl Quadric {
-    /// `None` unless it is a surface in a box with a volume, and all numbers are finite.
+    /// Prepares the shape; `None` unless it is a surface in a box with a volume, and all numbers
+    /// are finite.
     #[must_use]
     pub fn new(surface: &scene::Quadric) -> Option<Self> {
         let local_from_world = surface.local_from_world()?;
@@ -22,7 +23,7 @@ impl Quadric {
         })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         let start = self.local_from_world * (ray.origin - self.surface.center);
         let rate = self.local_from_world * ray.direction;
@@ -62,7 +63,7 @@ impl Quadric {
         }
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         (self.surface.center, reach(self.surface.axes))

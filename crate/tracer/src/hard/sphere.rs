@@ -11,13 +11,13 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// `None` unless the radius is positive and all numbers are finite.
+    /// Prepares the shape; `None` unless the radius is positive and all numbers are finite.
     #[must_use]
     pub fn new(center: DVec3, radius: f64) -> Option<Self> {
         (center.is_finite() && radius > 0.0).then_some(Self { center, radius })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         let to_center = self.center - ray.origin;
         let nearest = to_center.dot(ray.direction);
@@ -34,7 +34,7 @@ impl Sphere {
         }
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         (self.center, self.radius)

@@ -1,9 +1,16 @@
-//! Every shape against its own definition as a set of points.
+//! Tests of every shape against its own definition as a set of points.
 use super::*;
 use core::f64::consts::TAU;
 use trials::{Random, count};
 
-/// A ray that passes near the origin.
+/// Whether a point is over a triangle, given with its normal.
+fn is_over([a, b, c]: [DVec3; 3], normal: DVec3, p: DVec3) -> bool {
+    [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|&(from, to)| (to - from).cross(p - from).dot(normal) > 0.0)
+}
+
+/// Returns a ray that passes near the origin.
 fn ray_near(n: &mut Random) -> Ray {
     let origin = n.vector(4.0);
     let direction = (n.vector(1.0) - origin).normalize();
@@ -125,10 +132,11 @@ fn tubes_thin_and_fat_short_and_closed() {
             // Is p in one of the discs? The disc at angle a lies in the plane of the axis and a.
             let azimuth = libm::atan2(y, x);
             let rho = libm::hypot(x, y);
-            let disc = |azimuth: f64, rho: f64| {
-                azimuth.rem_euclid(TAU) <= angle && libm::hypot(rho - sweep, z) < radius
-            };
-            disc(azimuth, rho) || disc(azimuth + TAU / 2.0, -rho)
+            [(azimuth, rho), (azimuth + TAU / 2.0, -rho)]
+                .iter()
+                .any(|(azimuth, rho)| {
+                    azimuth.rem_euclid(TAU) <= angle && libm::hypot(rho - sweep, z) < radius
+                })
         });
     }
     assert!(seen > count(500));
@@ -152,8 +160,7 @@ fn prisms_and_slabs() {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
         seen += check(&mut n, &solid, &|p| {
-            let left = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) > 0.0;
-            left(a, b) && left(b, c) && left(c, a) && (p - a).dot(normal).abs() < half
+            is_over(corners, normal, p) && (p - a).dot(normal).abs() < half
         });
         let point = n.vector(1.0);
         let plane = Shape::Plane {
@@ -232,16 +239,10 @@ fn a_distant_eye_sees_a_thin_tube() {
 
 #[test]
 fn shapes_without_a_surface_are_refused() {
-    let sphere = |r| {
-        Solid::new(
-            &Shape::Sphere {
-                center: DVec3::ZERO,
-                radius: r,
-            },
-            r,
-        )
-    };
-    assert!(sphere(0.0).is_none() && sphere(-1.0).is_none() && sphere(f64::NAN).is_none());
+    for radius in [0.0, -1.0, f64::NAN] {
+        let center = DVec3::ZERO;
+        assert!(Solid::new(&Shape::Sphere { center, radius }, radius).is_none());
+    }
     let point = Shape::Cylinder {
         base: DVec3::ONE,
         apex: DVec3::ONE,
@@ -449,11 +450,9 @@ fn patches_are_flat_but_lit_round() {
         let solid = Solid::new(&Shape::Patch { corners, normals }, 0.0).unwrap();
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
-        let inside = |p: DVec3| {
-            let left = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) > 0.0;
-            left(a, b) && left(b, c) && left(c, a)
-        };
-        seen += check_sheet(&mut n, &solid, &|p| inside(p).then(|| (p - a).dot(normal)));
+        seen += check_sheet(&mut n, &solid, &|p| {
+            is_over(corners, normal, p).then(|| (p - a).dot(normal))
+        });
         // In the middle of an edge it is the mean of two normals. (A ray along it is never
         // edge-on.)
         let direction = (normals[0].normalize() + normals[1].normalize()).normalize();
@@ -491,9 +490,8 @@ fn patches_near_the_outline_are_not_lit_from_within() {
     assert!(turned >= count(6), "{turned}");
 }
 
-/// No ray slips between two patches that share an edge.
 #[test]
-fn patches_join_without_gaps() {
+fn no_ray_slips_between_two_patches_that_share_an_edge() {
     let mut n = Random::new(11);
     for _ in 0..count(2000) {
         let [a, b, c, d] = [n.vector(1.0), n.vector(1.0), n.vector(1.0), n.vector(1.0)];
@@ -508,7 +506,7 @@ fn patches_join_without_gaps() {
         for patch in patches {
             patch.crossings(&ray, &mut out);
         }
-        // Seen edge-on from beside both it may be met by neither; that is not a gap.
+        // A ray edge-on from beside both may meet neither; that is not a gap.
         let normal = (b - a).cross(ray.direction);
         let beside = normal.dot(c - a) * normal.dot(d - a) > 0.0;
         assert!(beside || !out.is_empty(), "{ray:?} {patches:?}");

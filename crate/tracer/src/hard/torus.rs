@@ -33,8 +33,8 @@ pub struct Tube {
 }
 
 impl Tube {
-    /// `None` unless sweep, angle and radius are positive, u and v span a plane, and all numbers
-    /// are finite.
+    /// Prepares the shape; `None` unless sweep, angle and radius are positive, u and v span a
+    /// plane, and all numbers are finite.
     #[must_use]
     pub fn new(
         center: DVec3,
@@ -45,8 +45,8 @@ impl Tube {
     ) -> Option<Self> {
         let u = u.try_normalize()?;
         let v = (v - u * v.dot(u)).try_normalize()?;
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        if !(positive(sweep) && positive(angle) && positive(radius) && center.is_finite()) {
+        let sizes = [sweep, angle, radius];
+        if !(sizes.iter().all(|x| *x > 0.0 && x.is_finite()) && center.is_finite()) {
             return None;
         }
         // A circle's piece of up to half a turn lies in the ball over its chord.
@@ -73,7 +73,7 @@ impl Tube {
     }
 
     /// Whether a direction in the (u, v) plane is within the arc's angle.
-    fn swept(&self, x: f64, y: f64) -> bool {
+    fn sweeps(&self, x: f64, y: f64) -> bool {
         if self.closed {
             return true;
         }
@@ -92,10 +92,10 @@ impl Tube {
         let room = self.radius * self.radius - z * z;
         let near = rho - self.sweep;
         let far = rho + self.sweep;
-        (near * near < room && self.swept(x, y)) || (far * far < room && self.swept(-x, -y))
+        (near * near < room && self.sweeps(x, y)) || (far * far < room && self.sweeps(-x, -y))
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         // Measure t from the point nearest to the body's middle: the quartic is then well scaled
         // however far the eye is.
@@ -105,9 +105,8 @@ impl Tube {
         if across > reach * reach {
             return;
         }
-        let local = |d: DVec3| [d.dot(self.u), d.dot(self.v), d.dot(self.w)];
-        let o = local(ray.at(shift) - self.center);
-        let d = local(ray.direction);
+        let [o, d] = [ray.at(shift) - self.center, ray.direction]
+            .map(|p| [p.dot(self.u), p.dot(self.v), p.dot(self.w)]);
         let at = |t: f64| [o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2]];
         // Outside the ball, and above and below the tube, there is nothing.
         let half = (reach * reach - across).sqrt();
@@ -178,6 +177,8 @@ impl Tube {
         }
     }
 
+    /// Returns the outward unit normal at a point (local coordinates) of the surface, on a lid if
+    /// one is given.
     fn normal(&self, [x, y, z]: [f64; 3], lid: Option<Lid>) -> DVec3 {
         if let Some(([ex, ey], [nx, ny])) = lid {
             // Where a fat disc reaches over the axis, it sweeps the other way.
@@ -202,7 +203,7 @@ impl Tube {
             .unwrap_or(self.w)
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         self.ball

@@ -15,21 +15,21 @@ pub struct Prism {
 }
 
 impl Prism {
-    /// `None` unless the triangle has an area and all numbers are finite.
+    /// Prepares the shape; `None` unless the triangle has an area and all numbers are finite.
     #[must_use]
     pub fn new(corners: [DVec3; 3], half: f64) -> Option<Self> {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).try_normalize()?;
-        let side = |from: DVec3, to: DVec3| (to - from).cross(normal).try_normalize();
+        let [ab, bc, ca] = [b - a, c - b, a - c].map(|edge| edge.cross(normal).try_normalize());
         (corners.iter().all(|c| c.is_finite()) && half >= 0.0).then_some(Self {
             corners,
             normal,
-            sides: [side(a, b)?, side(b, c)?, side(c, a)?],
+            sides: [ab?, bc?, ca?],
             half,
         })
     }
 
-    /// See [`super::Solid::crossings`].
+    /// Adds all places where the ray's line crosses the surface, in no order.
     pub fn crossings(&self, ray: &Ray, out: &mut Vec<Crossing>) {
         if self.half > 0.0 {
             let mut clip = Clip::whole_line();
@@ -48,8 +48,8 @@ impl Prism {
             return;
         }
         let p = ray.at(t);
-        let inside = |(corner, side): (&DVec3, DVec3)| (p - *corner).dot(side) <= 0.0;
-        if self.corners.iter().zip(self.sides).all(inside) {
+        let mut sides = self.corners.iter().zip(self.sides);
+        if sides.all(|(corner, side)| (p - *corner).dot(side) <= 0.0) {
             out.push(Crossing {
                 t,
                 normal: self.normal,
@@ -57,7 +57,7 @@ impl Prism {
         }
     }
 
-    /// See [`super::Solid::ball`].
+    /// Returns a ball (centre, radius) that holds the shape.
     #[must_use]
     pub fn ball(&self) -> (DVec3, f64) {
         let center = self.corners.iter().sum::<DVec3>() / 3.0;

@@ -1,6 +1,6 @@
 //! Ways of finding surfaces, held to the conformance suite: no hits further from the true surface
-//! than the tolerance, none missed where it is thicker than that, none invented. The same on many
-//! more rays, kernel by kernel: `cargo run --release -p tracer --example certify`.
+//! than the tolerance, none missed where it is thicker than that, none invented.
+//! `cargo run --release -p tracer --example certify` does so on many more rays, kernel by kernel.
 
 use field::Kernel;
 use glam::DVec3;
@@ -16,14 +16,13 @@ const PICTURES: Method<'static> = &|trial, picture| parameters(&picture.cast(&tr
 
 /// The exact way.
 const EXACT: Method<'static> = &|trial, picture| {
-    let first = |&(origin, direction): &(DVec3, DVec3)| {
-        picture.hits(origin, direction).first().map(|hit| hit.t)
-    };
-    trial.rays.iter().map(first).collect()
+    let rays = trial.rays.iter();
+    rays.map(|&(origin, direction)| picture.hits(origin, direction).first().map(|hit| hit.t))
+        .collect()
 };
 
-/// A test for each check of the suite, so that they run side by side.
-macro_rules! held {
+/// Defines a test for each check of the suite, so that they run side by side.
+macro_rules! hold {
     ($($module:ident: $method:expr, $($check:ident),*;)*) => {$(
         mod $module {
             use super::*;
@@ -35,7 +34,7 @@ macro_rules! held {
     )*};
 }
 
-held! {
+hold! {
     pictures: PICTURES, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds,
         starts_beside_a_cloud, earlier_faults, earlier_faults_that_are_hard_to_judge;
     exact: EXACT, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds;
@@ -45,7 +44,7 @@ held! {
 const PLAIN: [Kind; 3] = [Kind::Point, Kind::Segment, Kind::Arc];
 
 #[test]
-fn a_hit_that_is_three_tolerances_off_is_told() {
+fn a_hit_that_is_three_tolerances_off_is_noticed() {
     let (total, _) = judge(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
         let mut hits = picture.cast(&trial.rays);
         for (hit, (_, direction)) in hits.iter_mut().zip(&trial.rays) {
@@ -61,7 +60,7 @@ fn a_hit_that_is_three_tolerances_off_is_told() {
 }
 
 #[test]
-fn a_hit_that_is_not_reported_is_told() {
+fn a_hit_that_is_not_reported_is_noticed() {
     let (total, _) = judge(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
         let mut hits = parameters(&picture.cast(&trial.rays));
         hits.iter_mut().step_by(3).for_each(|hit| *hit = None);
@@ -71,18 +70,17 @@ fn a_hit_that_is_not_reported_is_told() {
 }
 
 #[test]
-fn the_far_side_instead_of_the_near_one_is_told() {
+fn the_far_side_instead_of_the_near_one_is_noticed() {
     let (total, _) = judge(&Kernel::ALL, &PLAIN, 18, 3, &|trial, picture| {
-        let far = |&(origin, direction): &(DVec3, DVec3)| {
-            picture.hits(origin, direction).last().map(|hit| hit.t)
-        };
-        trial.rays.iter().map(far).collect()
+        let rays = trial.rays.iter();
+        rays.map(|&(origin, direction)| picture.hits(origin, direction).last().map(|hit| hit.t))
+            .collect()
     });
     assert!(total.missed * 10 > total.hits * 2, "{total:?}");
 }
 
 #[test]
-fn a_primitive_that_is_left_out_is_told() {
+fn a_primitive_that_is_left_out_is_noticed() {
     let (total, _) = judge(&Kernel::ALL, &[Kind::Mixed], 9, 3, &|trial, _| {
         let mut scene = trial.scene.clone();
         scene.elements.pop();
@@ -115,11 +113,10 @@ fn cast_agrees_with_pictures() {
             .trace(whole, Pass::Full, &|| false, &mut Stats::default())
             .expect("nobody asked to stop");
         let projection = scene.camera.projection(SIDE, SIDE);
-        let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
         let rays: Vec<_> = (0..SIDE * SIDE)
             .map(|i| {
-                let direction = projection.direction(middle(i % SIDE), middle(i / SIDE));
-                (projection.eye, direction)
+                let [x, y] = [i % SIDE, i / SIDE].map(|i| (f64::from(i) + 0.5) / f64::from(SIDE));
+                (projection.eye, projection.direction(x, y))
             })
             .collect();
         for (pixel, hit) in pixels.chunks(4).zip(picture.cast(&rays)) {
@@ -132,7 +129,7 @@ fn cast_agrees_with_pictures() {
 }
 
 /// Counts a picture's pixels that show the surface, and those that disagree with their exact rays.
-fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
+fn count_pixels(mut scene: Scene, side: u32) -> [usize; 2] {
     scene.background = [0.0, 0.0, 1.0].into();
     for finish in &mut scene.finishes {
         finish.ambient = [0.5, 0.5, 0.0];
@@ -149,10 +146,10 @@ fn shown(mut scene: Scene, side: u32) -> [usize; 2] {
         .trace(whole, Pass::Full, &|| false, &mut Stats::default())
         .expect("nobody asked to stop");
     let projection = scene.camera.projection(side, side);
-    let middle = |i: u32| (f64::from(i) + 0.5) / f64::from(side);
     let (mut shown, mut wrong) = (0, 0);
     for (i, pixel) in (0..side * side).zip(pixels.chunks(4)) {
-        let direction = projection.direction(middle(i % side), middle(i / side));
+        let [x, y] = [i % side, i / side].map(|i| (f64::from(i) + 0.5) / f64::from(side));
+        let direction = projection.direction(x, y);
         let there = !picture.hits(projection.eye, direction).is_empty();
         shown += usize::from(there);
         wrong += usize::from(there != (pixel[2] == 0));
@@ -194,14 +191,14 @@ fn pictures_show_what_is_there() {
                 ..element(shape, 0)
             });
         }
-        let [there, off] = shown(scene, 48);
+        let [there, off] = count_pixels(scene, 48);
         seen += there;
         wrong += off;
     }
     assert!(seen > count(1000) && wrong <= count(2), "{wrong} of {seen}");
 }
 
-/// A bone much thinner than any beam.
+/// A bone that is much thinner than any beam is seen.
 #[test]
 fn a_thin_bone_beside_blobs_is_not_stepped_over() {
     let mut scene = empty();
@@ -217,11 +214,12 @@ fn a_thin_bone_beside_blobs_is_not_stepped_over() {
         apex: DVec3::new(3e-5, 0.0, 0.0),
         radius: 1e-5,
     };
-    let of = |shape: Shape, kernel: Kernel| Element {
-        kernel,
-        ..element(shape, 0)
-    };
-    scene.elements = vec![of(blob, Kernel::Gauss), of(thin, Kernel::Quartic)];
-    let [shown, wrong] = shown(scene, 64);
+    for (shape, kernel) in [(blob, Kernel::Gauss), (thin, Kernel::Quartic)] {
+        scene.elements.push(Element {
+            kernel,
+            ..element(shape, 0)
+        });
+    }
+    let [shown, wrong] = count_pixels(scene, 64);
     assert!(shown > 500 && wrong * 50 <= shown, "{wrong} of {shown}");
 }

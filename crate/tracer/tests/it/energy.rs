@@ -1,4 +1,4 @@
-//! Light is not made from nothing, and no pixel is not a number.
+//! Tests that surfaces make no light from nothing, and that every pixel is a number.
 
 use crate::looks::*;
 use glam::DVec3;
@@ -7,23 +7,24 @@ use trials::{Random, count};
 
 const SIZE: [u32; 2] = [24, 18];
 
-/// Diffuse, specular, mirrored and passed shares of a channel that sum to 1.
+/// Returns diffuse, specular, reflected and transmitted shares of a channel that sum to 1.
 fn shares(random: &mut Random) -> [f64; 4] {
     let parts = [0; 4].map(|_| random.unit());
     let whole: f64 = parts.iter().sum();
     parts.map(|part| part / whole)
 }
 
-/// A material without light of its own whose shares sum to 1 in each channel.
-fn closed(random: &mut Random) -> Finish {
+/// Returns a material without light of its own whose shares sum to 1 in each channel.
+fn random_finish(random: &mut Random) -> Finish {
     let channels = [0; 3].map(|_| shares(random));
-    let of = |k: usize| [0, 1, 2].map(|channel| channels[channel][k] as f32);
+    let [diffuse, specular, reflective, transparent] =
+        [0, 1, 2, 3].map(|k| channels.map(|shares| shares[k] as f32));
     Finish {
         ambient: [0.0; 3],
-        diffuse: of(0),
-        specular: of(1),
-        reflective: of(2),
-        transparent: of(3),
+        diffuse,
+        specular,
+        reflective,
+        transparent,
         shine: random.range(1.0, 100.0) as f32,
         index: random.range(0.7, 2.4) as f32,
         dispersion: random.range(0.0, 0.2) as f32,
@@ -51,13 +52,13 @@ fn shape(random: &mut Random) -> Shape {
     }
 }
 
-/// The brightest channel of a scene under one light of this brightness that nothing else lights.
+/// Returns the brightest channel of a scene under a single light of this brightness.
 fn brightest(seed: u64, light: f32) -> u8 {
     let mut random = Random::new(seed);
     let mut scene = dark();
     scene.settings.vanish = 0.0;
     for k in 0..7 {
-        let (shape, finish) = (shape(&mut random), closed(&mut random));
+        let (shape, finish) = (shape(&mut random), random_finish(&mut random));
         if k % 3 == 0 && !matches!(shape, Shape::Box { .. }) {
             add_soft(&mut scene, shape, finish);
         } else {
@@ -92,7 +93,7 @@ fn a_background_is_not_made_brighter_by_what_stands_before_it() {
         let mut scene = dark();
         scene.background = Background::Colour([0.5; 3]);
         for _ in 0..7 {
-            let (shape, finish) = (shape(&mut random), closed(&mut random));
+            let (shape, finish) = (shape(&mut random), random_finish(&mut random));
             add(&mut scene, shape, finish);
         }
         // Without lights a scene would be lit evenly.
@@ -105,8 +106,8 @@ fn a_background_is_not_made_brighter_by_what_stands_before_it() {
     }
 }
 
-/// A scene with much that may go wrong: a lens and a tone that spread one bad number over
-/// neighbours are left out.
+/// Returns a scene in which much may go wrong, without what would spread one bad number over
+/// neighbours.
 fn extreme(index: f32, dispersion: f32, thin: f64) -> Scene {
     let mut scene = dark();
     scene.background = Background::Colour([0.5, 0.6, 0.7]);

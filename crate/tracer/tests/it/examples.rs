@@ -1,7 +1,6 @@
-//! Examples of the gallery whose skeletons fold and touch: what pictures show of them, against the
-//! reference.
+//! Pictures of examples of the gallery whose skeletons fold and touch, against the reference.
 //!
-//! With SINEW_SCENE only those of one; the counts are printed with `--nocapture`.
+//! SINEW_SCENE names the only example to judge; the counts are printed with `--nocapture`.
 
 use crate::judged::{Range, distances, is_outside, packet, reference};
 use glam::DVec3;
@@ -24,7 +23,7 @@ macro_rules! example {
     };
 }
 
-/// Names, texts and frames.
+/// Names, texts and frames of the examples.
 const EXAMPLES: [(&str, &str, u32); 8] = [
     example!("grasp", 0),
     example!("squeeze", 0),
@@ -36,8 +35,8 @@ const EXAMPLES: [(&str, &str, u32); 8] = [
     example!("falling", 40),
 ];
 
-/// The soft bodies of an example.
-fn compiled(name: &str, text: &str, frame: u32) -> Scene {
+/// Returns the soft bodies of an example.
+fn compile(name: &str, text: &str, frame: u32) -> Scene {
     let compiled = rats::compile_at(&Project::single(text), &[], f64::from(frame));
     let mut errors = compiled.diagnostics.iter();
     let error = errors.find(|d| d.severity == rats::Severity::Error);
@@ -49,7 +48,7 @@ fn compiled(name: &str, text: &str, frame: u32) -> Scene {
     scene
 }
 
-/// The box around all that the camera sees.
+/// Returns the box around all that the camera sees.
 fn range(scene: &Scene, picture: &Picture) -> Range {
     let rays: Vec<(DVec3, DVec3)> = (0..SIDE * SIDE / 16)
         .map(|i| pixel(scene, f64::from(i % 64) / 64.0, f64::from(i / 64) / 64.0))
@@ -67,15 +66,15 @@ fn range(scene: &Scene, picture: &Picture) -> Range {
     }
 }
 
-/// The ray of a place in the picture.
+/// Returns the ray of a place in the picture.
 fn pixel(scene: &Scene, x: f64, y: f64) -> (DVec3, DVec3) {
     let projection = scene.camera.projection(SIDE, SIDE);
     (projection.eye, projection.direction(x, y))
 }
 
-/// Half of the packets from the camera, the others from around.
+/// Judges rays of an example, half of the packets from the camera, the others from around.
 fn judge(name: &str, text: &str, frame: u32, rays: usize) -> Row {
-    let scene = compiled(name, text, frame);
+    let scene = compile(name, text, frame);
     let picture = Picture::new(&scene, [SIDE; 2]);
     let mut reference = reference(&scene);
     let range = range(&scene, &picture);
@@ -88,9 +87,8 @@ fn judge(name: &str, text: &str, frame: u32, rays: usize) -> Row {
         let (packet, limit) = if numbers.chance(0.5) {
             let (x, y) = (numbers.unit(), numbers.unit());
             let spread = numbers.decades(-3.0, -1.0);
-            let about = |numbers: &mut Random, x: f64| x + spread * numbers.range(-1.0, 1.0);
             let rays = (0..8).map(|_| {
-                let (x, y) = (about(&mut numbers, x), about(&mut numbers, y));
+                let [x, y] = [x, y].map(|c| c + spread * numbers.range(-1.0, 1.0));
                 pixel(&scene, x, y)
             });
             (rays.collect(), far)
@@ -98,9 +96,9 @@ fn judge(name: &str, text: &str, frame: u32, rays: usize) -> Row {
             let packet = packet(&mut numbers, &range, &picture, &mut reference);
             (packet, 2.0 * range.far)
         };
-        let said = distances(&picture, &packet);
-        let told = row.judge((&picture, &mut reference), &packet, &said, limit);
-        print!("{told}");
+        let found = distances(&picture, &packet);
+        let faults = row.judge((&picture, &mut reference), &packet, &found, limit);
+        print!("{faults}");
     }
     println!("{name} frame {frame}: {row:?}");
     row

@@ -1,4 +1,4 @@
-//! Local convolution and folds in contact, as pictures show them, against a search along the ray.
+//! Pictures of local convolution and of folds in contact, against a search along the ray.
 
 use contact::Bulge;
 use field::{Implicit, Kernel, THRESHOLD};
@@ -10,7 +10,7 @@ use tracer::Picture;
 use trials::Random;
 use trials::scenes::empty;
 
-/// Worms that fold and cross themselves, with or without contact of the folds.
+/// Returns a worm that folds and crosses itself, with or without contact of the folds.
 fn worm(seed: u64, touching: bool) -> Scene {
     let mut numbers = Random::new(seed * 2 + 11);
     numbers.unit();
@@ -55,7 +55,8 @@ fn worm(seed: u64, touching: bool) -> Scene {
     scene
 }
 
-/// The first crossing of a ray, by small steps; with the least distance to the threshold before it.
+/// Returns the first crossing of a ray, by small steps, and the least distance to the threshold
+/// before it.
 fn march(function: &dyn Implicit, (origin, direction): (DVec3, DVec3)) -> (Option<f64>, f64) {
     const STEP: f64 = 4e-3;
     let value = |t: f64| function.jet(origin + direction * t).value - THRESHOLD;

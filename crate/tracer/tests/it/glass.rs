@@ -1,4 +1,4 @@
-//! Mirrors and glass against paths made by hand, with the sines' law written as angles.
+//! Tests of mirrors and glass against paths made by hand, with Snell's law written as angles.
 
 use crate::looks::*;
 use field::Kernel;
@@ -8,8 +8,8 @@ use tracer::{Pass, Picture, Stats, Tile};
 
 const SIZE: [u32; 2] = [48, 36];
 
-/// The direction of a ray behind a surface, by angles: none at total reflection. The normal looks
-/// against the ray.
+/// Returns the direction of a ray behind a surface, by angles; `None` at total reflection. The
+/// normal points against the ray.
 fn bend(direction: DVec3, normal: DVec3, from: f64, to: f64) -> Option<DVec3> {
     let across = direction - normal * direction.dot(normal);
     let sine = across.length() * from / to;
@@ -19,7 +19,8 @@ fn bend(direction: DVec3, normal: DVec3, from: f64, to: f64) -> Option<DVec3> {
     })
 }
 
-/// Where a ray leaves the unit ball of glass, and in which direction; none if it passes by.
+/// Returns the point where a ray leaves the unit ball of glass, and its direction then; `None` if
+/// it passes by.
 fn through_ball(origin: DVec3, direction: DVec3, index: f64) -> Option<(DVec3, DVec3)> {
     let b = origin.dot(direction);
     let root = b * b - origin.length_squared() + 1.0;
@@ -33,14 +34,14 @@ fn through_ball(origin: DVec3, direction: DVec3, index: f64) -> Option<(DVec3, D
     Some((out, bend(inner, -out, index, 1.0)?))
 }
 
-/// What a ruler at this z shows where a ray meets it, as a byte.
+/// Returns the reading of a ruler at this z where a ray meets it, as a byte.
 fn reading((origin, direction): (DVec3, DVec3), z: f64, scale: f64) -> f64 {
     let x = origin.x + direction.x * (z - origin.z) / direction.z;
     let u = x * scale;
     (u - u.floor()) * 255.0
 }
 
-/// Checks the pixels for which `path` tells how the ray goes on, and says how many there were.
+/// Checks the pixels for which `path` returns the ray beyond the glass; returns their number.
 fn compare(
     scene: &Scene,
     scale: f64,
@@ -103,12 +104,8 @@ fn dispersion_has_three_indices() {
     }
 }
 
-/// The twelve triangles of a box.
+/// Returns the twelve triangles of a box.
 fn triangles(low: DVec3, high: DVec3) -> Vec<[DVec3; 3]> {
-    let corner = |i: usize| {
-        let pick = |bit: usize, k: usize| if i >> bit & 1 == 0 { low[k] } else { high[k] };
-        DVec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
-    };
     let faces = [
         [0, 1, 3, 2],
         [4, 6, 7, 5],
@@ -117,19 +114,22 @@ fn triangles(low: DVec3, high: DVec3) -> Vec<[DVec3; 3]> {
         [0, 2, 6, 4],
         [1, 5, 7, 3],
     ];
-    let cut = |f: [usize; 4]| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]];
-    let corners = |t: [usize; 3]| t.map(corner);
-    faces.into_iter().flat_map(cut).map(corners).collect()
+    let triangles = faces
+        .into_iter()
+        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    triangles
+        .map(|triangle| {
+            triangle.map(|i| {
+                let corner = [0, 1, 2].map(|k| if i >> k & 1 == 0 { low[k] } else { high[k] });
+                DVec3::from_array(corner)
+            })
+        })
+        .collect()
 }
 
 #[test]
 fn slabs_shift_light_whether_boxes_or_meshes() {
     let (low, high) = (DVec3::new(-9.0, -9.0, -0.5), DVec3::new(9.0, 9.0, 1.0));
-    let path = |origin: DVec3, direction: DVec3| {
-        let at = origin + direction * (1.0 - origin.z) / direction.z;
-        let inner = bend(direction, DVec3::Z, 1.0, 1.6)?;
-        Some((at + inner * -1.5 / inner.z, direction))
-    };
     let middle = 0.5 * (low + high);
     let half = 0.5 * (high - low);
     let mut whole = dark();
@@ -154,7 +154,12 @@ fn slabs_shift_light_whether_boxes_or_meshes() {
         });
     }
     for scene in [whole, meshed] {
-        assert_eq!(compare(&scene, 4.0, (0, 1.5), path), 48 * 36);
+        let count = compare(&scene, 4.0, (0, 1.5), |origin, direction| {
+            let at = origin + direction * (1.0 - origin.z) / direction.z;
+            let inner = bend(direction, DVec3::Z, 1.0, 1.6)?;
+            Some((at + inner * -1.5 / inner.z, direction))
+        });
+        assert_eq!(count, 48 * 36);
     }
 }
 
@@ -228,24 +233,26 @@ fn a_prism_reflects_totally() {
     let mut scene = dark();
     scene.camera.fov = 8.0;
     add_prism(&mut scene, 1.5);
-    let glow = |colour| Finish {
-        ambient: colour,
-        ..black()
-    };
-    let wall = |point: DVec3| Shape::Plane {
-        point,
-        normal: point.normalize(),
-        radius: 0.0,
-    };
-    add(&mut scene, wall(DVec3::X * -4.0), glow([1.0, 0.0, 0.0]));
-    add(&mut scene, wall(DVec3::Z * -4.0), glow([0.0, 0.0, 1.0]));
+    for (normal, ambient) in [
+        (DVec3::NEG_X, [1.0, 0.0, 0.0]),
+        (DVec3::NEG_Z, [0.0, 0.0, 1.0]),
+    ] {
+        let wall = Shape::Plane {
+            point: normal * 4.0,
+            normal,
+            radius: 0.0,
+        };
+        let glow = Finish { ambient, ..black() };
+        add(&mut scene, wall, glow);
+    }
     assert!(draw(&scene, [8, 8]).iter().all(|p| *p == [255, 0, 0]));
-    // Of less dense glass it does not: sin 45° · 1.3 < 1.
+    // A prism of less dense glass does not: sin 45° · 1.3 < 1.
     scene.finishes[1].index = 1.3;
     assert!(draw(&scene, [8, 8]).iter().all(|p| *p == [0, 0, 255]));
 }
 
-/// A prism whose index is near that of total reflection at 45°, √2: blue is reflected, red passes.
+/// A prism whose index is near that of total reflection at 45°, √2, reflects blue and lets red
+/// pass.
 #[test]
 fn colours_part_at_total_reflection() {
     let mut scene = dark();
@@ -287,7 +294,8 @@ fn a_body_in_another_bends_light_by_both_indices() {
         } else {
             add(&mut scene, shape, glass(index));
         }
-        let path = |origin: DVec3, direction: DVec3| {
+        let bound = if soft { 6.0 } else { 1.5 };
+        let count = compare(&scene, 2.0, (0, bound), |origin, direction| {
             let at = origin + direction * (1.5 - origin.z) / direction.z;
             let inner = bend(direction, DVec3::Z, 1.0, WATER)?;
             let b = at.dot(inner);
@@ -304,9 +312,7 @@ fn a_body_in_another_bends_light_by_both_indices() {
             let out = bend(inner, DVec3::Z, WATER, 1.0)?;
             // Grazing rays show the ruler's divisions too small.
             (out.z < -0.4).then_some((at, out))
-        };
-        let bound = if soft { 6.0 } else { 1.5 };
-        let count = compare(&scene, 2.0, (0, bound), path);
+        });
         assert!(count > 100, "{count}");
     }
 }
@@ -334,9 +340,9 @@ fn a_mirror_shows_what_the_mirrored_eye_sees() {
         add_soft(&mut scene, ball(place, 0.5), shiny.clone());
     }
     let mut mirrored = scene.clone();
-    let flip = |p: DVec3| DVec3::new(p.x, p.y, -p.z);
-    mirrored.camera.eye = flip(scene.camera.eye);
-    mirrored.camera.target = flip(scene.camera.target);
+    for place in [&mut mirrored.camera.eye, &mut mirrored.camera.target] {
+        place.z = -place.z;
+    }
     let mirror = Finish {
         reflective: [1.0; 3],
         ..black()
@@ -364,18 +370,18 @@ fn a_mirror_shows_what_the_mirrored_eye_sees() {
 fn depth_and_vanishing_end_reflections() {
     // Between two parallel glowing mirrors: glow·(1 + r + r² + …).
     let mut scene = dark();
-    let mirror = |share: f32| Finish {
-        ambient: [0.1; 3],
-        reflective: [share; 3],
-        ..black()
-    };
     for z in [-1.0, 8.0] {
+        let mirror = Finish {
+            ambient: [0.1; 3],
+            reflective: [0.5; 3],
+            ..black()
+        };
         let plane = Shape::Plane {
             point: DVec3::Z * z,
             normal: DVec3::Z,
             radius: 0.0,
         };
-        add(&mut scene, plane, mirror(0.5));
+        add(&mut scene, plane, mirror);
     }
     for depth in [0, 1, 2, 7] {
         scene.settings.max_depth = depth;
@@ -390,7 +396,7 @@ fn depth_and_vanishing_end_reflections() {
     assert_eq!(draw(&scene, [8, 8])[27], [(sum * 255.0 + 0.5) as u8; 3]);
 }
 
-/// Soft and hard bodies, nested and overlapping, of one finish.
+/// Returns soft and hard bodies, nested and overlapping, of one finish.
 fn crowd(finish: &Finish) -> Scene {
     let mut scene = dark();
     scene.settings.max_depth = 32;

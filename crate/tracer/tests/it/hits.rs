@@ -1,4 +1,4 @@
-//! All crossings of rays, against marching along them in small steps.
+//! Tests of all crossings of rays, against marching along them in small steps.
 use glam::DVec3;
 use scene::{Scene, Shape};
 use tracer::Picture;
@@ -142,7 +142,7 @@ fn senseless_rays_hit_nothing() {
     assert!(picture.hits(DVec3::ZERO, DVec3::NAN).is_empty());
 }
 
-/// With `double off` a face that is seen from behind is not there for the eye.
+/// The setting `double off` hides faces that are seen from behind.
 #[test]
 fn faces_seen_from_behind_may_be_hidden() {
     let mut scene = empty();

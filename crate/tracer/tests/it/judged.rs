@@ -8,7 +8,7 @@ use std::sync::Arc;
 use tracer::Picture;
 use trials::Random;
 
-/// The bulges written out once more.
+/// Returns the formulas of bulges, written out once more.
 pub fn deformation(bulge: Bulge) -> Deformation {
     let fall = |f: f64, m: f64, h: f64| {
         let w = 1.0 - m;
@@ -43,12 +43,11 @@ pub fn deformation(bulge: Bulge) -> Deformation {
     Deformation::new(bulge.start(), formula)
 }
 
-/// The scene as the reference knows it: bodies of primitives, and bodies of one skeleton that is
-/// convolved locally.
+/// Returns a scene as the reference knows it: bodies of primitives, and bodies of one skeleton that
+/// is convolved locally.
 pub fn reference(scene: &Scene) -> Reference {
     let partners = scene.partners();
     let surfaces = scene.surfaces_apart();
-    let place = |body: u32| surfaces.iter().position(|surface| surface.body() == body);
     let mut bodies = Vec::new();
     for surface in &surfaces {
         let body = surface.body();
@@ -75,7 +74,10 @@ pub fn reference(scene: &Scene) -> Reference {
         bodies.push(TouchingBody {
             substance,
             partners: others
-                .filter_map(|(j, by)| Some((place(*j)?, deformation(*by))))
+                .filter_map(|(j, by)| {
+                    let place = surfaces.iter().position(|surface| surface.body() == *j)?;
+                    Some((place, deformation(*by)))
+                })
                 .collect(),
         });
     }
@@ -84,17 +86,17 @@ pub fn reference(scene: &Scene) -> Reference {
     reference
 }
 
-/// Where rays are sent.
+/// A box at which rays are aimed.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
     pub center: DVec3,
-    /// Half the edges of a box around what is to be met.
+    /// Half the edges of the box.
     pub half: DVec3,
     /// Distance of eyes from the centre.
     pub far: f64,
 }
 
-/// A packet of rays from outside.
+/// Returns a packet of rays from outside.
 pub fn packet(
     numbers: &mut Random,
     range: &Range,
@@ -108,8 +110,9 @@ pub fn packet(
         // Like neighbouring pixels.
         0 => {
             let spread = numbers.decades(-3.0, -1.0) * half.max_element();
-            let to = |numbers: &mut Random| aim + spread * numbers.vector(1.0) - eye;
-            (0..8).map(|_| (eye, to(numbers).normalize())).collect()
+            (0..8)
+                .map(|_| (eye, (aim + spread * numbers.vector(1.0) - eye).normalize()))
+                .collect()
         }
         // Tangents, a little inside or outside.
         1 => {
@@ -145,7 +148,7 @@ pub fn is_outside(reference: &mut Reference, point: DVec3) -> bool {
     reference.excess(point).0 < 0.0 && reference.surface_near(point, 1e-4) == Near::Beyond
 }
 
-/// How far rays go in a picture.
+/// Returns the distances of the first hits of rays in a picture.
 pub fn distances(picture: &Picture, rays: &[(DVec3, DVec3)]) -> Vec<Option<f64>> {
     let hits = picture.cast(rays).into_iter();
     hits.map(|hit| hit.map(|hit| hit.t)).collect()

@@ -5,7 +5,7 @@ use scene::{Background, Camera, Element, Finish, Flesh, Scene, Shape};
 use texture::{Method, Target, Texture, Wave};
 use tracer::{Pass, Picture, Stats, Tile};
 
-/// A black scene without lights, seen from z = 6.
+/// Returns a black scene without lights, seen from z = 6.
 pub fn dark() -> Scene {
     Scene {
         background: Background::Colour([0.0; 3]),
@@ -22,7 +22,7 @@ pub fn dark() -> Scene {
     }
 }
 
-/// A finish that does nothing.
+/// Returns a finish that neither shines nor scatters light.
 pub fn black() -> Finish {
     Finish {
         diffuse: [0.0; 3],
@@ -31,7 +31,7 @@ pub fn black() -> Finish {
     }
 }
 
-/// A finish that lets everything pass.
+/// Returns a finish that lets all light pass.
 pub fn glass(index: f32) -> Finish {
     Finish {
         transparent: [1.0; 3],
@@ -49,7 +49,7 @@ pub fn add(scene: &mut Scene, shape: Shape, finish: Finish) {
     });
 }
 
-/// The same, soft.
+/// Adds a soft element with a finish.
 pub fn add_soft(scene: &mut Scene, shape: Shape, finish: Finish) {
     add(scene, shape, finish);
     if let Some(last) = scene.elements.last_mut() {
@@ -57,11 +57,12 @@ pub fn add_soft(scene: &mut Scene, shape: Shape, finish: Finish) {
     }
 }
 
+/// Returns a ball.
 pub fn ball(center: DVec3, radius: f64) -> Shape {
     Shape::Sphere { center, radius }
 }
 
-/// A glowing plane across z whose brightness tells x: the fraction of `scale·x`.
+/// Adds a glowing plane across z whose brightness shows x: the fraction of `scale·x`.
 pub fn ruler(scene: &mut Scene, z: f64, scale: f64) {
     let finish = Finish {
         ambient: [1.0; 3],
@@ -80,11 +81,13 @@ pub fn ruler(scene: &mut Scene, z: f64, scale: f64) {
     add(scene, plane, finish);
 }
 
-/// Red, green and blue of each pixel, rows from the top, one ray each.
+/// Draws a scene with one ray for each pixel; returns red, green and blue of the pixels, rows from
+/// the top.
 pub fn draw(scene: &Scene, size: [u32; 2]) -> Vec<[u8; 3]> {
     draw_pass(scene, size, Pass::Full)
 }
 
+/// Draws a scene in a pass; returns red, green and blue of the pixels, rows from the top.
 pub fn draw_pass(scene: &Scene, size: [u32; 2], pass: Pass) -> Vec<[u8; 3]> {
     let tile = Tile {
         x: 0,
@@ -99,24 +102,25 @@ pub fn draw_pass(scene: &Scene, size: [u32; 2], pass: Pass) -> Vec<[u8; 3]> {
     rgba.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect()
 }
 
-/// The ray through the middle of each pixel.
+/// Returns the ray through the middle of each pixel.
 pub fn rays(scene: &Scene, size: [u32; 2]) -> Vec<(DVec3, DVec3)> {
     let projection = scene.camera.projection(size[0], size[1]);
     let [width, height] = size.map(f64::from);
-    let ray = |i: u32| {
-        let (x, y) = (f64::from(i % size[0]), f64::from(i / size[0]));
-        let direction = projection.direction((x + 0.5) / width, (y + 0.5) / height);
-        (scene.camera.eye, direction)
-    };
-    (0..size[0] * size[1]).map(ray).collect()
+    (0..size[0] * size[1])
+        .map(|i| {
+            let (x, y) = (f64::from(i % size[0]), f64::from(i / size[0]));
+            let direction = projection.direction((x + 0.5) / width, (y + 0.5) / height);
+            (scene.camera.eye, direction)
+        })
+        .collect()
 }
 
-/// The largest difference of two pixels' channels.
+/// Returns the largest difference of two pixels' channels.
 pub fn apart(a: [u8; 3], b: [u8; 3]) -> u8 {
     (0..3).map(|i| a[i].abs_diff(b[i])).fold(0, u8::max)
 }
 
-/// A byte's distance from a value in 0 … 255 where both ends are one.
+/// Returns a byte's distance from a value on a circle of the length 255.
 pub fn around(byte: u8, value: f64) -> f64 {
     let apart = (f64::from(byte) - value).rem_euclid(255.0);
     apart.min(255.0 - apart)

@@ -1,4 +1,5 @@
-//! Colours at the corners of triangles, against barycentric coordinates computed from areas.
+//! Tests of colours at the corners of triangles, against barycentric coordinates computed from
+//! areas.
 
 use crate::looks::*;
 use glam::{DVec3, Vec3};
@@ -12,12 +13,12 @@ const CORNERS: [DVec3; 3] = [
 ];
 const COLORS: [Rgb; 3] = [[1.0, 0.0, 0.2], [0.0, 1.0, 0.4], [0.3, 0.1, 1.0]];
 
-/// A scene with a painted triangle that glows in 0.9 times its colours. Its own finish is another
-/// one.
-fn painted(shape: Shape) -> Scene {
+/// Returns a scene with a painted triangle that glows in 0.9 times its colours. Its own finish is
+/// another one.
+fn painting(shape: Shape) -> Scene {
     let mut scene = dark();
-    let glow = |ambient: Rgb| Finish { ambient, ..black() };
-    scene.finishes = vec![glow([0.9; 3]), glow([0.2, 0.9, 0.3])];
+    let glows = [[0.9; 3], [0.2, 0.9, 0.3]];
+    scene.finishes = glows.map(|ambient| Finish { ambient, ..black() }).to_vec();
     scene.elements.push(Element {
         finish: 1,
         paint: Some(Box::new(Paint {
@@ -29,14 +30,14 @@ fn painted(shape: Shape) -> Scene {
     scene
 }
 
-/// A light from the eye's side.
+/// Returns a light from the eye's side.
 fn lamp() -> Light {
     let towards = DVec3::new(0.2, 0.3, 1.0).normalize();
     Light::new(LightKind::Distant { towards }, [1.0; 3])
 }
 
-/// The colour of the triangle at a point of its plane, by areas; none outside.
-fn mixed(point: DVec3) -> Option<Vec3> {
+/// Returns the colour of the triangle at a point of its plane, by areas; `None` outside.
+fn colour_at(point: DVec3) -> Option<Vec3> {
     let [a, b, c] = CORNERS;
     let normal = (b - a).cross(c - a);
     let area = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).dot(normal);
@@ -49,7 +50,7 @@ fn mixed(point: DVec3) -> Option<Vec3> {
     })
 }
 
-/// Where the plane of the triangle, moved along its normal, meets a ray.
+/// Returns the foot on the triangle's plane of the point where a ray meets the plane at a height.
 fn meet((origin, direction): (DVec3, DVec3), height: f64) -> DVec3 {
     let [a, b, c] = CORNERS;
     let normal = (b - a).cross(c - a).normalize();
@@ -57,11 +58,11 @@ fn meet((origin, direction): (DVec3, DVec3), height: f64) -> DVec3 {
     origin + direction * t - normal * height
 }
 
-/// Compares all pixels whose rays meet the inside of the triangle, and says how many there were.
+/// Compares all pixels whose rays meet the inside of the triangle; returns their number.
 fn compare(scene: &Scene, height: f64, bound: f32) -> usize {
     let mut count = 0;
     for (pixel, ray) in draw(scene, SIZE).into_iter().zip(rays(scene, SIZE)) {
-        if let Some(color) = mixed(meet(ray, height)) {
+        if let Some(color) = colour_at(meet(ray, height)) {
             let seen = Vec3::from(pixel.map(f32::from));
             let off = (seen - color * (0.9 * 255.0)).abs().max_element();
             assert!(off <= bound, "{pixel:?} {color} {off}");
@@ -86,7 +87,7 @@ fn corners_colours_are_mixed_by_barycentric_shares() {
         ],
     };
     for shape in [flat, patch] {
-        let mut scene = painted(shape);
+        let mut scene = painting(shape);
         assert!(compare(&scene, 0.0, 1.0) > 100);
         // Beside a mirror, and under light: other ways of shading.
         let mirror = Finish {
@@ -106,7 +107,7 @@ fn paint_scatters_light_as_a_finish_of_its_colours() {
         corners: CORNERS,
         radius: 0.0,
     };
-    let mut scene = painted(flat);
+    let mut scene = painting(flat);
     scene.lights.push(lamp());
     let color = [0.5, 0.25, 0.75];
     scene.finishes[0].diffuse = [0.8; 3];
@@ -126,7 +127,7 @@ fn paint_scatters_light_as_a_finish_of_its_colours() {
 
 #[test]
 fn flesh_over_a_painted_triangle_takes_the_colour_of_the_foot() {
-    let mut scene = painted(Shape::Triangle {
+    let mut scene = painting(Shape::Triangle {
         corners: CORNERS,
         radius: 0.0,
     });

@@ -1,10 +1,11 @@
-//! Pictures: independence of tiles, passes, shadows, limits.
+//! Tests of pictures: independence of tiles, passes, shadows, limits.
 use glam::DVec3;
 use scene::{Finish, Flesh, Scene, Shape};
 use std::cell::Cell;
 use tracer::{Pass, Picture, SampleCache, Stats, Tile, tiles};
 use trials::scenes::{blend, clothe, element, empty, soft};
 
+/// Traces a picture tile by tile.
 fn whole(scene: &Scene, size: [u32; 2], side: u32, pass: Pass) -> (Vec<u8>, Stats) {
     let picture = Picture::new(scene, size);
     let mut pixels = vec![0; 4 * (size[0] * size[1]) as usize];
@@ -21,8 +22,8 @@ fn whole(scene: &Scene, size: [u32; 2], side: u32, pass: Pass) -> (Vec<u8>, Stat
     (pixels, stats)
 }
 
-/// A mixed scene: soft elements of all kinds and hard ones.
-fn mixed(seed: u64) -> Scene {
+/// Returns a mixed scene: soft elements of all kinds and hard ones.
+fn mixture(seed: u64) -> Scene {
     let mut scene = blend(seed, 7);
     scene.finishes.push(Finish {
         diffuse: [0.2, 0.9, 0.3],
@@ -47,7 +48,7 @@ fn mixed(seed: u64) -> Scene {
 fn a_picture_does_not_depend_on_its_tiles_or_threads() {
     let size = [83, 61];
     for seed in 0..trials::count(3) as u64 {
-        let scene = mixed(seed);
+        let scene = mixture(seed);
         for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
             let (once, _) = whole(&scene, size, 128, pass);
             for side in [16, 32, 64, 11] {
@@ -97,7 +98,7 @@ fn pictures_agree_with_exact_hits() {
 
 #[test]
 fn a_coarse_block_has_the_colour_of_its_middle() {
-    let scene = mixed(2);
+    let scene = mixture(2);
     let (coarse, stats) = whole(&scene, [64, 64], 64, Pass::Coarse);
     assert_eq!(stats.primary_rays, 64);
     for (i, p) in coarse.chunks_exact(4).enumerate() {
@@ -125,7 +126,6 @@ fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
     ));
     let size = [64, 64];
     let (full, _) = whole(&scene, size, 64, Pass::Full);
-    let brightness = |p: &[u8]| p.chunks_exact(4).map(|p| f64::from(p[0])).sum::<f64>() / 255.0;
     // The ball's outline is a circle in the picture: a cone of half angle asin(1/4).
     let tangent = (0.25f64 / (1.0 - 0.0625f64).sqrt()) / libm::tan(25f64.to_radians());
     let exact = core::f64::consts::PI * (tangent * 32.0).powi(2);
@@ -140,7 +140,8 @@ fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
         assert!(changed > 60 && changed < 300, "{changed}");
         let refined = (stats.primary_rays - 64 * 64) / u64::from(samples * samples);
         assert!(refined >= changed as u64 && refined < 500);
-        let error = (brightness(&smooth) - exact).abs();
+        let brightness = smooth.chunks_exact(4).map(|p| f64::from(p[0])).sum::<f64>() / 255.0;
+        let error = (brightness - exact).abs();
         assert!(error < previous.max(0.5), "{samples}: {error}");
         previous = error;
     }
@@ -219,7 +220,7 @@ fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
 fn samples_that_are_kept_change_nothing_and_are_taken_once() {
     // Not a multiple of packets, and with squares that are cut.
     let size = [135, 91];
-    let scene = mixed(1);
+    let scene = mixture(1);
     let picture = Picture::new(&scene, size);
     let all = u64::from(size[0] * size[1]);
     let trace = |side, pass, cache: &mut SampleCache| {
@@ -257,7 +258,7 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
             }
         }
     }
-    // Where no pass would ask for them nothing is kept.
+    // No samples are kept if no pass would ask for them.
     let mut plain = scene;
     plain.settings.samples = 1;
     let picture = Picture::new(&plain, size);
@@ -271,7 +272,7 @@ fn samples_that_are_kept_change_nothing_and_are_taken_once() {
 #[test]
 fn samples_that_another_took_are_as_good_as_ones_own() {
     let size = [135, 91];
-    let scene = mixed(1);
+    let scene = mixture(1);
     let picture = Picture::new(&scene, size);
     let tiles = tiles(size[0], size[1], 64);
     let trace = |tile, pass, cache: &mut SampleCache| {
@@ -286,25 +287,25 @@ fn samples_that_another_took_are_as_good_as_ones_own() {
     for tile in &tiles {
         let _ = trace(*tile, Pass::Full, first);
     }
-    let told: Vec<_> = tiles.iter().filter_map(|tile| first.tell(*tile)).collect();
-    assert_eq!(told.len(), tiles.len());
-    for known in &told {
-        let tile = known.tile();
-        // Only what is needed for this tile, in pieces.
+    let known: Vec<_> = tiles.iter().filter_map(|tile| first.tell(*tile)).collect();
+    assert_eq!(known.len(), tiles.len());
+    for own in &known {
+        let tile = own.tile();
+        // Only the samples that this tile needs, in pieces.
         let wanted = tracer::around(tile, size);
         let second = &mut picture.cache(100);
-        let parts = told.iter().filter_map(|other| other.part(wanted));
+        let parts = known.iter().filter_map(|other| other.part(wanted));
         parts.for_each(|part| second.learn(&part));
-        assert_eq!(second.tell(tile).as_ref(), Some(known));
-        let (own, rays) = trace(tile, Pass::Smooth, first);
-        let (its, again) = trace(tile, Pass::Smooth, second);
-        assert!(own == its, "{tile:?}");
+        assert_eq!(second.tell(tile).as_ref(), Some(own));
+        let (pixels, rays) = trace(tile, Pass::Smooth, first);
+        let (others, again) = trace(tile, Pass::Smooth, second);
+        assert!(pixels == others, "{tile:?}");
         assert_eq!(rays, again, "{tile:?}");
-        assert_eq!(known.part(tile).as_ref(), Some(known));
+        assert_eq!(own.part(tile).as_ref(), Some(own));
     }
     // Pieces of a picture that is larger.
     let cache = &mut Picture::new(&scene, [100, 60]).cache(100);
-    told.iter().for_each(|known| cache.learn(known));
+    known.iter().for_each(|known| cache.learn(known));
     assert_eq!(cache.squares(), 0);
     // Only whole packets are kept: 4×2 pixels.
     let odd = |x, y, width, height| Tile {
@@ -315,10 +316,8 @@ fn samples_that_another_took_are_as_good_as_ones_own() {
     };
     let learn = |tile| {
         let mut cache = picture.cache(100);
-        let part = |known: &tracer::Known| known.part(tile);
-        told.iter()
-            .filter_map(part)
-            .for_each(|part| cache.learn(&part));
+        let parts = known.iter().filter_map(|known| known.part(tile));
+        parts.for_each(|part| cache.learn(&part));
         cache
     };
     assert_eq!(learn(odd(13, 9, 6, 2)).tell(odd(13, 9, 6, 2)), None);
@@ -331,7 +330,7 @@ fn samples_that_another_took_are_as_good_as_ones_own() {
 
 #[test]
 fn the_edges_of_a_full_pass_foretell_what_the_smooth_one_takes() {
-    let (mut scene, size) = (mixed(1), [135, 91]);
+    let (mut scene, size) = (mixture(1), [135, 91]);
     let all = u64::from(size[0] * size[1]);
     let mut edges = |samples: u32, pass| {
         scene.settings.samples = samples;
@@ -351,7 +350,7 @@ fn the_edges_of_a_full_pass_foretell_what_the_smooth_one_takes() {
 
 #[test]
 fn a_cache_keeps_no_squares_for_strips_and_serves_no_other_size() {
-    let scene = mixed(1);
+    let scene = mixture(1);
     let size = [135, 91];
     let picture = Picture::new(&scene, size);
     let mut stats = Stats::default();
@@ -385,10 +384,10 @@ fn a_cache_keeps_no_squares_for_strips_and_serves_no_other_size() {
     assert_eq!(cache.squares(), 1);
 }
 
-/// Two sheets of 2048 pixels, of which the second is narrow.
+/// Pictures have two sheets of 2048 pixels, of which the second is narrow.
 #[test]
 fn a_picture_of_several_sheets_is_that_of_its_tiles() {
-    let scene = mixed(1);
+    let scene = mixture(1);
     for size in [[2101, 40], [40, 2101]] {
         let picture = Picture::new(&scene, size);
         let (rgba, _) = tracer::render(&Picture::new(&scene, size), 2, Pass::Smooth, &|_| {});
@@ -404,23 +403,25 @@ fn a_picture_of_several_sheets_is_that_of_its_tiles() {
 
 #[test]
 fn no_sample_is_taken_twice_whatever_the_number_of_threads() {
-    let scene = mixed(2);
+    let scene = mixture(2);
     let size = [150, 140];
     let (_, once) = whole(&scene, size, 256, Pass::Smooth);
     for threads in [1, 2, 5] {
-        let told = std::sync::Mutex::new(Vec::new());
-        let tell = |share| told.lock().unwrap().push(share);
-        let (_, stats) = tracer::render(&Picture::new(&scene, size), threads, Pass::Smooth, &tell);
+        let shares = std::sync::Mutex::new(Vec::new());
+        let picture = Picture::new(&scene, size);
+        let (_, stats) = tracer::render(&picture, threads, Pass::Smooth, &|share| {
+            shares.lock().unwrap().push(share);
+        });
         assert_eq!(stats.primary_rays, once.primary_rays);
-        let told = told.into_inner().unwrap();
-        assert_eq!(told.len(), 2 * 9);
-        assert!(told.contains(&1.0) && told.iter().all(|share| (0.0..=1.0).contains(share)));
+        let shares = shares.into_inner().unwrap();
+        assert_eq!(shares.len(), 2 * 9);
+        assert!(shares.contains(&1.0) && shares.iter().all(|share| (0.0..=1.0).contains(share)));
     }
 }
 
 #[test]
 fn a_tile_is_given_up_when_asked_to_stop() {
-    let scene = mixed(1);
+    let scene = mixture(1);
     let picture = Picture::new(&scene, [256, 256]);
     let tile = Tile {
         x: 0,
@@ -430,19 +431,24 @@ fn a_tile_is_given_up_when_asked_to_stop() {
     };
     for pass in [Pass::Coarse, Pass::Full, Pass::Smooth] {
         let asked = Cell::new(0);
-        let stop = || {
-            asked.set(asked.get() + 1);
-            asked.get() > 3
-        };
         let mut stats = Stats::default();
-        assert!(picture.trace(tile, pass, &stop, &mut stats).is_none());
+        let pixels = picture.trace(
+            tile,
+            pass,
+            &|| {
+                asked.set(asked.get() + 1);
+                asked.get() > 3
+            },
+            &mut stats,
+        );
+        assert!(pixels.is_none());
         assert_eq!(asked.get(), 4);
         assert!(stats.primary_rays < 1000);
     }
 }
 
 #[test]
-fn seen_from_inside_the_surface_is_lit() {
+fn a_surface_seen_from_inside_is_lit() {
     let mut scene = empty();
     clothe(&mut scene, vec![soft(-0.5, 1.0)]);
     scene.background = [0.0, 0.0, 1.0].into();
@@ -467,16 +473,16 @@ fn seen_from_inside_the_surface_is_lit() {
 fn strange_scenes_end() {
     let mut scenes = vec![Scene::default()];
     for bad in [0.0, -1.0, 1e-300, 1e300, f64::NAN, f64::INFINITY] {
-        let mut scene = mixed(4);
+        let mut scene = mixture(4);
         scene.camera.eye.x = bad;
         scenes.push(scene);
-        let mut scene = mixed(4);
+        let mut scene = mixture(4);
         scene.camera.eye = DVec3::splat(bad);
         scene.camera.target = DVec3::splat(bad);
         scene.camera.up = DVec3::ZERO;
         scene.camera.fov = bad;
         scenes.push(scene);
-        let mut scene = mixed(5);
+        let mut scene = mixture(5);
         for flesh in &mut scene.flesh {
             flesh.radius = bad;
         }
@@ -488,13 +494,13 @@ fn strange_scenes_end() {
         scene.settings.gamma = bad as f32;
         scene.settings.contrast = [bad as f32; 3];
         scenes.push(scene);
-        let mut scene = mixed(6);
+        let mut scene = mixture(6);
         for flesh in &mut scene.flesh {
             flesh.blobbiness = bad;
             flesh.strength = bad;
         }
         scenes.push(scene);
-        let mut scene = mixed(7);
+        let mut scene = mixture(7);
         for (i, e) in scene.elements.iter_mut().enumerate() {
             match &mut e.shape {
                 Shape::Sphere { center, .. } if i % 2 == 0 => center.y = bad,

@@ -1,9 +1,10 @@
-//! Hard shapes with mirrors and glass as POV-Ray draws them. Skipped where POV-Ray is not installed
-//! (Debian's package `povray`).
+//! Comparison of hard shapes with mirrors and glass to POV-Ray's pictures. The tests do nothing if
+//! POV-Ray (Debian's package `povray`) is not installed.
 //!
-//! One light model on both sides: no fall of reflection with the angle, a mirror's and a glass's
-//! share as given, light of a point without attenuation, linear colours. Edges differ by where rays
-//! run between two pixels, so shares of pixels are bounded, not each.
+//! Both sides use one model of light: reflection does not depend on the angle, the shares of
+//! mirrors and glass are as given, light of a point is not attenuated, colours are linear. Edges
+//! that fall between two pixels differ, so the share of differing pixels is bounded, not each
+//! difference.
 
 use crate::looks::*;
 use glam::DVec3;
@@ -18,16 +19,18 @@ const SIZE: [u32; 2] = [160, 120];
 /// fall between two pixels.
 const BOUND: (f64, f64) = (0.05, 0.002);
 
+/// Returns a vector in POV-Ray's language.
 fn vector(v: DVec3) -> String {
     format!("<{:e},{:e},{:e}>", v.x, v.y, v.z)
 }
 
+/// Returns a colour in POV-Ray's language.
 fn colour(c: [f32; 3]) -> String {
     format!("<{},{},{}>", c[0], c[1], c[2])
 }
 
-/// The look in POV-Ray's words. What lets light through has no diffuse colour here: its pigment is
-/// the filter.
+/// Returns a finish in POV-Ray's language. A transparent one must have no diffuse colour: its
+/// pigment is the filter.
 fn look(finish: &Finish) -> String {
     let pigment = if finish.transparent == [0.0; 3] {
         format!("pigment {{ rgb {} }}", colour(finish.diffuse))
@@ -38,7 +41,8 @@ fn look(finish: &Finish) -> String {
     };
     // A highlight of the light's colour, as both have it unless it is metallic.
     format!(
-        "{pigment} finish {{ ambient 0 diffuse {} phong {} phong_size {} reflection {{ rgb {} }} }} interior {{ ior {} }}",
+        "{pigment} finish {{ ambient 0 diffuse {} phong {} phong_size {} \
+         reflection {{ rgb {} }} }} interior {{ ior {} }}",
         f32::from(finish.transparent == [0.0; 3]),
         finish.specular[0],
         finish.shine,
@@ -47,15 +51,16 @@ fn look(finish: &Finish) -> String {
     )
 }
 
-/// A scene in POV-Ray's language. Of an arc only whole rings.
-fn translated(scene: &Scene) -> String {
+/// Translates a scene to POV-Ray's language. Arcs must be whole rings.
+fn translate(scene: &Scene) -> String {
     let camera = &scene.camera;
     let Background::Colour(behind) = scene.background else {
         panic!("a background of one colour");
     };
     let mut text = format!(
-        "#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level 12 adc_bailout 0.001 ambient_light 1 }}\n\
-         background {{ rgb {} }}\ncamera {{ perspective location {} sky {} up y right -x*{} angle {} look_at {} }}\n",
+        "#version 3.7;\nglobal_settings {{ assumed_gamma 1 max_trace_level 12 \
+         adc_bailout 0.001 ambient_light 1 }}\nbackground {{ rgb {} }}\n\
+         camera {{ perspective location {} sky {} up y right -x*{} angle {} look_at {} }}\n",
         colour(behind),
         vector(camera.eye),
         vector(camera.up),
@@ -141,7 +146,7 @@ fn translated(scene: &Scene) -> String {
     text
 }
 
-/// Whether POV-Ray is there.
+/// Whether POV-Ray is installed.
 fn is_installed() -> bool {
     let mut asked = Command::new("povray");
     let asked = asked
@@ -151,11 +156,11 @@ fn is_installed() -> bool {
     asked.status().is_ok_and(|status| status.success())
 }
 
-/// POV-Ray's picture of a scene.
-fn drawn_by_povray(scene: &Scene, name: &str) -> Vec<[u8; 3]> {
+/// Lets POV-Ray draw a scene.
+fn draw_by_povray(scene: &Scene, name: &str) -> Vec<[u8; 3]> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let [text, picture] = ["pov", "ppm"].map(|end| folder.join(format!("povray-{name}.{end}")));
-    std::fs::write(&text, translated(scene)).expect("the folder takes files");
+    std::fs::write(&text, translate(scene)).expect("the folder takes files");
     let output = Command::new("povray")
         .arg(format!("+I{}", text.display()))
         .arg(format!("+O{}", picture.display()))
@@ -164,15 +169,15 @@ fn drawn_by_povray(scene: &Scene, name: &str) -> Vec<[u8; 3]> {
         .stdin(Stdio::null())
         .output()
         .expect("povray runs");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
     let file = std::fs::read(&picture).expect("the picture");
     let wanted = 3 * (SIZE[0] * SIZE[1]) as usize;
     let pixels = &file[file.len() - wanted..];
     pixels.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect()
 }
 
-/// How two pictures differ.
+/// The difference of two pictures.
 struct Difference {
     /// Mean difference of the channels, of 255.
     mean: f64,
@@ -191,7 +196,7 @@ fn difference(ours: &[[u8; 3]], theirs: &[[u8; 3]]) -> Difference {
     }
 }
 
-/// A floor of stripes, so that what is mirrored or bent shows where it came from, and two lights.
+/// Returns a floor of stripes, on which reflection and refraction show, and two lights.
 fn room() -> Scene {
     let mut scene = dark();
     scene.background = Background::Colour([0.2, 0.35, 0.55]);
@@ -244,7 +249,7 @@ fn ring(center: DVec3, radius: f64) -> Shape {
     }
 }
 
-/// All shapes in a row, of one finish.
+/// Adds every shape, in a row and of one finish.
 fn shapes(scene: &mut Scene, finish: &Finish) {
     let list = [
         ball(DVec3::new(-2.4, -0.6, 0.0), 0.9),
@@ -283,7 +288,7 @@ fn check(name: &str, scene: &Scene, (mean, share): (f64, f64)) {
     let picture =
         PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("povray-{name}-ours.ppm"));
     std::fs::write(picture, file).expect("the folder takes files");
-    let found = difference(&ours, &drawn_by_povray(scene, name));
+    let found = difference(&ours, &draw_by_povray(scene, name));
     eprintln!("{name}: mean {:.3}, share {:.4}", found.mean, found.share);
     assert!(found.mean < mean, "{name}: mean {}", found.mean);
     assert!(found.share < share, "{name}: share {}", found.share);
@@ -323,9 +328,8 @@ fn clear_glass_of_all_shapes() {
     }
 }
 
-/// Where light is reflected totally, POV-Ray colours it as if it had passed, and leaves the
-/// mirror's share out; here total reflection is total. A ball that is looked into from outside has
-/// none.
+/// POV-Ray colours light that is reflected totally as if it had passed, and leaves the mirror's
+/// share out; here total reflection is total. A ball that is looked into from outside has none.
 #[test]
 fn a_ball_of_coloured_glass_that_mirrors_and_its_shadow() {
     let mut scene = room();

@@ -1,4 +1,4 @@
-//! Lens, soft shadows, shutter, sky and fog in pictures against their laws.
+//! Tests of lens, soft shadows, shutter, sky and fog in pictures against their laws.
 
 use crate::looks::*;
 use core::f64::consts::PI;
@@ -21,20 +21,22 @@ fn white() -> Finish {
     }
 }
 
-/// Pixels across the picture for one unit of length at the distance 1 from the eye.
+/// Returns the pixels across the picture for one unit of length at the distance 1 from the eye.
 fn scale(scene: &Scene, size: [u32; 2]) -> f64 {
     let half = libm::tan(scene.camera.fov.to_radians() * 0.5);
     0.5 * f64::from(size[0]) / half
 }
 
-/// The mean of a column's green values, 0 … 1.
+/// Returns the mean of each column's green values, 0 … 1.
 fn columns(picture: &[[u8; 3]], width: u32) -> Vec<f64> {
-    let height = picture.len() / width as usize;
-    let mean = |x: u32| {
-        let column = picture.iter().skip(x as usize).step_by(width as usize);
-        column.map(|p| f64::from(p[1]) / 255.0).sum::<f64>() / height as f64
-    };
-    (0..width).map(mean).collect()
+    let width = width as usize;
+    let height = (picture.len() / width) as f64;
+    (0..width)
+        .map(|x| {
+            let column = picture.iter().skip(x).step_by(width);
+            column.map(|p| f64::from(p[1]) / 255.0).sum::<f64>() / height
+        })
+        .collect()
 }
 
 /// The mean square distance from the middle of an even disc is half its radius' square, and adds to
@@ -86,7 +88,7 @@ fn what_is_in_focus_is_sharp() {
     assert_eq!(sharp, lens);
 }
 
-/// A floor seen from above, z = 0, with a wall's edge above that the eye does not see.
+/// Returns a floor, z = 0, seen from above, with a triangle that the eye does not see.
 fn floor(blocker: Option<[DVec3; 3]>) -> Scene {
     let mut scene = dark();
     scene.up = DVec3::Z;
@@ -175,7 +177,8 @@ fn a_spot_lights_its_cone() {
     assert!(full > 50 && soft > 50 && dark > 50, "{full} {soft} {dark}");
 }
 
-/// Against the sum over directions spread as their cosine, each met with the wall by hand.
+/// The share is held to a sum over directions spread as their cosine, each met with the wall by
+/// hand.
 #[test]
 fn a_wall_hides_its_share_of_the_sky() {
     const SIZE: [u32; 2] = [32, 8];
@@ -197,23 +200,20 @@ fn a_wall_hides_its_share_of_the_sky() {
     for x in 0..SIZE[0] as usize {
         let from = (x as f64 + 0.5 - 16.0) * pixel + 1.0;
         if from > 0.1 {
-            // The wall is a triangle with its top at y = 0, z = 1.
-            let share = |steps: u32| -> f64 {
-                let ray = |i: u32| -> f64 {
-                    let (a, b) = (i / steps, i % steps);
-                    let (r, angle) = (
-                        ((f64::from(a) + 0.5) / f64::from(steps)).sqrt(),
-                        2.0 * PI * (f64::from(b) + 0.5) / f64::from(steps),
-                    );
-                    let (dx, dy) = (r * libm::cos(angle), r * libm::sin(angle));
-                    let t = -from / dx;
-                    let (y, z) = (t * dy, t * (1.0 - r * r).sqrt());
-                    let below = 1.0 - y.abs() * 4001.0 / 4000.0;
-                    f64::from(u8::from(dx < 0.0 && z < below))
-                };
-                (0..steps * steps).map(ray).sum::<f64>() / f64::from(steps * steps)
-            };
-            let want = 1.0 - share(200);
+            const STEPS: u32 = 200;
+            let mut open = 0;
+            for i in 0..STEPS * STEPS {
+                let [a, b] =
+                    [i / STEPS, i % STEPS].map(|k| (f64::from(k) + 0.5) / f64::from(STEPS));
+                let (r, angle) = (a.sqrt(), 2.0 * PI * b);
+                let (dx, dy) = (r * libm::cos(angle), r * libm::sin(angle));
+                let t = -from / dx;
+                let (y, z) = (t * dy, t * (1.0 - r * r).sqrt());
+                // The wall is a triangle with its top at y = 0, z = 1.
+                let is_hidden = dx < 0.0 && z < 1.0 - y.abs() * 4001.0 / 4000.0;
+                open += u32::from(!is_hidden);
+            }
+            let want = f64::from(open) / f64::from(STEPS * STEPS);
             let got = hidden[x] / free[x];
             assert!((got - want).abs() < 0.02, "{from}: {got} {want}");
         }
@@ -236,8 +236,10 @@ fn an_open_shutter_shows_shares_of_time() {
         scene
     };
     let mut scene = at(from);
-    let moment = |i: u32| at(from + (to - from) * (f64::from(i) + 0.5) / f64::from(MOMENTS));
-    scene.moments = (0..MOMENTS).map(moment).collect();
+    for i in 0..MOMENTS {
+        let share = (f64::from(i) + 0.5) / f64::from(MOMENTS);
+        scene.moments.push(at(from + (to - from) * share));
+    }
     let picture = draw_pass(&scene, SIZE, Pass::Smooth);
     let still = draw_pass(&scene, SIZE, Pass::Full);
     let alone = draw_pass(&at(from), SIZE, Pass::Full);
@@ -292,7 +294,7 @@ fn fog_takes_light_by_the_exponential_law() {
     }
 }
 
-/// Everything at once, moving.
+/// Returns a scene with lens, sky, ground and a large light, moved along x.
 fn busy(x: f64) -> Scene {
     let mut scene = dark();
     scene.settings.samples = 2;
@@ -317,9 +319,10 @@ fn busy(x: f64) -> Scene {
             [0.8; 3],
         )
     });
-    let ball = |x: f64| ball(DVec3::new(x, 0.1, 0.3 * x), 0.6);
-    add_soft(&mut scene, ball(x - 0.4), white());
-    add_soft(&mut scene, ball(x + 0.5), glass(1.4));
+    for (x, finish) in [(x - 0.4, white()), (x + 0.5, glass(1.4))] {
+        let ball = ball(DVec3::new(x, 0.1, 0.3 * x), 0.6);
+        add_soft(&mut scene, ball, finish);
+    }
     let hard = Shape::Sphere {
         center: DVec3::new(0.9, -0.5, -1.0),
         radius: 0.5,

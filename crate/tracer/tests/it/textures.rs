@@ -1,4 +1,5 @@
-//! Textures in pictures: in the coordinates of their objects, and mixed by the shares of elements.
+//! Tests of textures in pictures, in the coordinates of their objects and mixed by the shares of
+//! elements.
 
 use crate::looks::*;
 use glam::{DAffine3, DQuat, DVec3, Vec3};
@@ -12,7 +13,7 @@ use tracer::Picture;
 
 const SIZE: [u32; 2] = [40, 30];
 
-/// A finish that glows as its textures say.
+/// Returns a finish that glows in the colours of its textures.
 fn glowing(layers: Vec<Texture>) -> Finish {
     Finish {
         ambient: [0.9, 0.8, 0.7],
@@ -29,8 +30,8 @@ fn bare() -> Surface {
     }
 }
 
-/// Checks each pixel that hits something against what `expect` says of the hit's position and
-/// normal.
+/// Compares each pixel that hits something with the colour that `expect` returns, given the hit's
+/// position and normal; returns the number of hits.
 fn check(scene: &Scene, expect: impl Fn(DVec3, DVec3) -> Vec3) -> usize {
     let picture = Picture::new(scene, SIZE);
     let hits = picture.cast(&rays(scene, SIZE));
@@ -154,11 +155,11 @@ fn index_and_shine_blend_by_shares() {
     let mut whole = dark();
     ruler(&mut whole, -3.0, 2.0);
     let mut mixed = whole.clone();
-    let shape = || ball(DVec3::ZERO, 1.0);
-    add_soft(&mut whole, shape(), glass(1.5));
-    add_soft(&mut whole, shape(), glass(1.5));
-    add_soft(&mut mixed, shape(), glass(1.3));
-    add_soft(&mut mixed, shape(), glass(1.7));
+    for (scene, indices) in [(&mut whole, [1.5, 1.5]), (&mut mixed, [1.3, 1.7])] {
+        for index in indices {
+            add_soft(scene, ball(DVec3::ZERO, 1.0), glass(index));
+        }
+    }
     let off = draw(&whole, SIZE).into_iter().zip(draw(&mixed, SIZE));
     let off = off
         .filter(|(a, b)| around(a[0], f64::from(b[0])) > 1.0)
@@ -232,11 +233,7 @@ fn layers_lie_upon_each_other_where_their_masks_let_them() {
     add(&mut scene, plane, glowing(vec![colour(DVec3::Y), tiles]));
     check(&scene, |point, _| {
         // Tiles of half a unit, those on the diagonal red, the others as green as the layer below.
-        let tile = |x: f64| ((x + 0.5) * 2.0).floor() as i64;
-        if (tile(point.x) + tile(point.y)) % 2 == 0 {
-            Vec3::X
-        } else {
-            Vec3::Y
-        }
+        let [x, y] = [point.x, point.y].map(|x| ((x + 0.5) * 2.0).floor() as i64);
+        if (x + y) % 2 == 0 { Vec3::X } else { Vec3::Y }
     });
 }

@@ -1,5 +1,5 @@
-//! Local convolution and contact, as pictures show them, against the reference: no crossing missed,
-//! none invented.
+//! Pictures of local convolution and contact, against the reference: no crossing missed, none
+//! invented.
 
 use crate::judged::{Range, distances, packet, reference};
 use contact::Bulge;
@@ -18,11 +18,11 @@ use trials::scenes::empty;
 enum Kind {
     /// A skeleton whose folds do not blend.
     Folds,
-    /// … and touch.
+    /// A skeleton whose folds touch.
     SelfContact,
-    /// Two bodies.
+    /// A pair of bodies.
     Pair,
-    /// Three to five bodies.
+    /// A crowd of three to five bodies.
     Crowd,
     /// A folded skeleton that touches a ball, with its own folds in contact.
     Grasp,
@@ -39,6 +39,7 @@ const KINDS: [Kind; 6] = [
     Kind::Star,
 ];
 
+/// Returns a bulge that starts at `least` or more.
 fn bulge(numbers: &mut Random, least: f64) -> Bulge {
     let c = numbers.range(least, 0.5);
     match numbers.below(3) as u32 {
@@ -56,6 +57,7 @@ fn bulge(numbers: &mut Random, least: f64) -> Bulge {
     }
 }
 
+/// Adds flesh to a scene; returns its number.
 fn flesh(numbers: &mut Random, scene: &mut Scene) -> u32 {
     let kernels = [None, Some(Kernel::Cauchy), Some(Kernel::Gauss)];
     scene.flesh.push(Flesh {
@@ -67,7 +69,7 @@ fn flesh(numbers: &mut Random, scene: &mut Scene) -> u32 {
     scene.flesh.len() as u32 - 1
 }
 
-/// A worm that goes to and fro, with a branch.
+/// Adds a worm that goes to and fro, maybe with a branch.
 fn worm(numbers: &mut Random, scene: &mut Scene, body: u32) {
     let count = 5 + numbers.below(3);
     let mut nodes = Vec::new();
@@ -99,7 +101,7 @@ fn worm(numbers: &mut Random, scene: &mut Scene, body: u32) {
     local(numbers, scene, body, (skeleton, detail, reach));
 }
 
-/// Six to nine curves from one node.
+/// Adds a skeleton of six to nine curves from one node.
 fn star(numbers: &mut Random, scene: &mut Scene) {
     let node = |position: DVec3, radius: f64| Node { position, radius };
     let mut nodes = vec![node(numbers.vector(0.2), numbers.range(0.1, 0.2))];
@@ -137,17 +139,16 @@ fn local(
     });
 }
 
-/// A ball or a limb of two segments.
-fn lump(numbers: &mut Random, scene: &mut Scene, body: u32) {
+/// Adds a ball or a limb of two segments.
+fn ball_or_limb(numbers: &mut Random, scene: &mut Scene, body: u32) {
     let flesh = flesh(numbers, scene);
-    let at = |numbers: &mut Random| numbers.vector(0.6);
     let shapes = if numbers.chance(0.4) {
         vec![Shape::Sphere {
-            center: at(numbers),
+            center: numbers.vector(0.6),
             radius: numbers.range(0.3, 0.6),
         }]
     } else {
-        let [a, b, c] = [0; 3].map(|_| at(numbers));
+        let [a, b, c] = [0; 3].map(|_| numbers.vector(0.6));
         let radius = numbers.range(0.2, 0.35);
         [(a, b), (b, c)]
             .map(|(base, apex)| Shape::Cylinder { base, apex, radius })
@@ -162,6 +163,7 @@ fn lump(numbers: &mut Random, scene: &mut Scene, body: u32) {
     }
 }
 
+/// Returns a scene of a kind.
 fn scene(kind: Kind, numbers: &mut Random) -> Scene {
     let mut scene = empty();
     let bodies = match kind {
@@ -175,7 +177,7 @@ fn scene(kind: Kind, numbers: &mut Random) -> Scene {
             Kind::Folds | Kind::SelfContact => worm(numbers, &mut scene, body),
             Kind::Star => star(numbers, &mut scene),
             Kind::Grasp if body == 0 => worm(numbers, &mut scene, body),
-            _ => lump(numbers, &mut scene, body),
+            _ => ball_or_limb(numbers, &mut scene, body),
         }
     }
     let all = bulge(numbers, 0.15);
@@ -196,14 +198,14 @@ fn scene(kind: Kind, numbers: &mut Random) -> Scene {
     scene
 }
 
-/// Where the scenes are.
+/// Box around the scenes.
 const RANGE: Range = Range {
     center: DVec3::ZERO,
     half: DVec3::new(0.8, 1.0, 0.3),
     far: 4.5,
 };
 
-/// Judges rays through scenes of a kind. With a fault that `spoil` makes, if it does.
+/// Judges rays through scenes of a kind; `spoil` may make faults in their hits.
 fn judge(kind: Kind, rays: usize, first: u64, spoil: fn(&mut Option<f64>, usize)) -> Row {
     let mut row = Row::default();
     let mut seed = first;
@@ -215,10 +217,10 @@ fn judge(kind: Kind, rays: usize, first: u64, spoil: fn(&mut Option<f64>, usize)
         let mut reference = reference(&scene);
         for _ in 0..6 {
             let rays = packet(&mut numbers, &RANGE, &picture, &mut reference);
-            let mut said = distances(&picture, &rays);
-            said.iter_mut().enumerate().for_each(|(i, t)| spoil(t, i));
-            let told = row.judge((&picture, &mut reference), &rays, &said, 9.0);
-            print!("{kind:?} seed {seed}\n{told}");
+            let mut found = distances(&picture, &rays);
+            found.iter_mut().enumerate().for_each(|(i, t)| spoil(t, i));
+            let faults = row.judge((&picture, &mut reference), &rays, &found, 9.0);
+            print!("{kind:?} seed {seed}\n{faults}");
         }
         seed += 1;
     }
@@ -226,6 +228,7 @@ fn judge(kind: Kind, rays: usize, first: u64, spoil: fn(&mut Option<f64>, usize)
     row
 }
 
+/// Tests that pictures of some kinds of scenes have no faults.
 fn certify(kinds: &[Kind]) {
     for &kind in kinds {
         let row = judge(kind, trials::count(600) / KINDS.len(), 0, |_, _| {});
@@ -254,21 +257,20 @@ fn bodies_in_contact_are_within_the_tolerance() {
 }
 
 #[test]
-fn faults_are_told() {
+fn faults_are_noticed() {
     for kind in [Kind::SelfContact, Kind::Pair, Kind::Grasp] {
-        let near = |t: &mut Option<f64>, _: usize| *t = t.map(|t| t - 0.02);
-        let row = judge(kind, 24, 900, near);
+        // Hits that are too near.
+        let row = judge(kind, 24, 900, |t, _| *t = t.map(|t| t - 0.02));
         assert!(2 * row.invented > row.hits, "{kind:?} {row:?}");
-        let none = |t: &mut Option<f64>, number: usize| {
+        // About half of the hits are left out.
+        let row = judge(kind, 24, 950, |t, number| {
             if number.is_multiple_of(2) {
                 *t = None;
             }
-        };
-        let row = judge(kind, 24, 950, none);
-        // Of the rays that meet something about half.
+        });
         assert!(3 * row.missed > row.hits + row.missed, "{kind:?} {row:?}");
-        let late = |t: &mut Option<f64>, _: usize| *t = t.map(|t| t + 0.05);
-        let row = judge(kind, 24, 970, late);
+        // Hits that are too far.
+        let row = judge(kind, 24, 970, |t, _| *t = t.map(|t| t + 0.05));
         assert!(
             2 * (row.missed + row.invented) > row.hits,
             "{kind:?} {row:?}"
@@ -276,8 +278,8 @@ fn faults_are_told() {
     }
 }
 
-/// Where something is a mirror pictures are shaded in another way, which mixes the materials of a
-/// body as the plain one does, wherever it stands.
+/// Pictures with a mirror are shaded in another way, which mixes the materials of a body as the
+/// plain one does.
 #[test]
 fn bodies_that_touch_keep_their_colours_beside_a_mirror() {
     let trace = |mirror: &str| {
@@ -289,13 +291,8 @@ fn bodies_that_touch_keep_their_colours_beside_a_mirror() {
              contact LEFT RIGHT\n{mirror}"
         );
         let compiled = rats::compile(&rats::Project::single(&text));
-        let errors = compiled.diagnostics.iter();
-        assert_eq!(
-            errors
-                .filter(|d| d.severity == rats::Severity::Error)
-                .count(),
-            0
-        );
+        let mut diagnostics = compiled.diagnostics.iter();
+        assert!(diagnostics.all(|d| d.severity != rats::Severity::Error));
         let picture = Picture::new(&compiled.scene, [48; 2]);
         let whole = Tile {
             x: 0,
@@ -309,15 +306,8 @@ fn bodies_that_touch_keep_their_colours_beside_a_mirror() {
     };
     let plain = trace("");
     let rich = trace("surface Mirror, reflective 0.5 0.5 0.5\nsphere Mirror 0.1, 30 0 9\n");
-    let is_other = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 1;
-    assert_eq!(
-        plain
-            .iter()
-            .zip(&rich)
-            .filter(|&pair| is_other(pair))
-            .count(),
-        0
-    );
-    let is_blue = |p: &&[u8]| p[2] > 60 && p[2] / 2 > p[0];
-    assert!(plain.chunks(4).filter(is_blue).count() > 50);
+    let mut pairs = plain.iter().zip(&rich);
+    assert!(pairs.all(|(a, b)| a.abs_diff(*b) <= 1));
+    let blue = plain.chunks(4).filter(|p| p[2] > 60 && p[2] / 2 > p[0]);
+    assert!(blue.count() > 50);
 }

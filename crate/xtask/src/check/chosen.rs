@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 pub struct Chosen {
     /// Packages, folders in `crate/`: all if `None`, the workspace's `default-members` if empty.
     packages: Option<Vec<String>>,
-    /// A part of the names of tests, or of files of browser tests.
+    /// Part of the names of tests, or of files of browser tests.
     pub test: Option<String>,
 }
 
@@ -23,7 +23,7 @@ impl Chosen {
         Self { packages, test }
     }
 
-    /// Interprets a filter as tests, where there are no packages.
+    /// Interprets a filter as tests, for parts without packages.
     pub fn tests(filter: Option<String>) -> Self {
         Self {
             packages: None,
@@ -31,14 +31,15 @@ impl Chosen {
         }
     }
 
-    /// The same, but without a filter what has been changed since the last commit.
+    /// Interprets a filter like [`Chosen::new`]; without one, selects the packages that have been
+    /// changed since the last commit.
     ///
     /// # Errors
     /// If git does not say what has been changed.
-    pub fn changed(filter: Option<String>) -> Result<Self> {
+    pub fn of_changes(filter: Option<String>) -> Result<Self> {
         let mut chosen = Self::new(filter);
         if chosen.test.is_some() {
-            // Tests of a name are looked for in the packages that are built soon.
+            // Tests of a name are looked for in the packages that build quickly.
             chosen.packages = Some(Vec::new());
         } else if chosen.packages.is_none() {
             let status = words("status --porcelain --no-renames -uall");
@@ -49,12 +50,12 @@ impl Chosen {
         Ok(chosen)
     }
 
-    /// Whether everything is meant.
+    /// Whether everything is selected.
     pub fn is_all(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Options that say to cargo which packages are meant.
+    /// Returns the options that tell cargo the packages.
     pub fn packages(&self) -> Vec<&str> {
         let Some(names) = &self.packages else {
             return vec!["--workspace"];
@@ -65,7 +66,7 @@ impl Chosen {
             .collect()
     }
 
-    /// Whether a package is among them.
+    /// Whether a package is selected.
     pub fn has(&self, package: &str) -> bool {
         let names = self.packages.as_deref().unwrap_or_default();
         names.is_empty() || names.iter().any(|name| name == package)
@@ -79,7 +80,7 @@ fn is_package(name: &str) -> bool {
     is_word && root().join("crate").join(name).join("Cargo.toml").is_file()
 }
 
-/// The packages with files that `git status --porcelain` lists.
+/// Returns the packages with files that `git status --porcelain` lists.
 fn packages_of(status: &str) -> Vec<String> {
     let names: BTreeSet<&str> = status
         .lines()
@@ -95,20 +96,22 @@ mod tests {
 
     #[test]
     fn a_filter_is_a_package_or_a_test() {
-        let chosen = |name: &str| Chosen::new(Some(name.to_owned()));
-        assert_eq!(chosen("field").packages(), ["--package", "field"]);
-        assert!(chosen("field").has("field") && !chosen("field").has("tracer"));
-        assert_eq!(chosen("far_out").packages(), ["--workspace"]);
-        assert_eq!(chosen("far_out").test.as_deref(), Some("far_out"));
-        assert!(Chosen::new(None).is_all() && !chosen("far_out").is_all());
+        fn choose(name: &str) -> Chosen {
+            Chosen::new(Some(name.to_owned()))
+        }
+        assert_eq!(choose("field").packages(), ["--package", "field"]);
+        assert!(choose("field").has("field") && !choose("field").has("tracer"));
+        assert_eq!(choose("far_out").packages(), ["--workspace"]);
+        assert_eq!(choose("far_out").test.as_deref(), Some("far_out"));
+        assert!(Chosen::new(None).is_all() && !choose("far_out").is_all());
         assert_eq!(
-            chosen("../crate/field").test.as_deref(),
+            choose("../crate/field").test.as_deref(),
             Some("../crate/field")
         );
     }
 
     #[test]
-    fn changed_packages_are_found() {
+    fn packages_of_changes_are_found() {
         let status = "M crate/tracer/src/lib.rs\n M crate/field/Cargo.toml\n\
             ?? crate/tracer/x y\n M README.md\n D crate/gone/a";
         assert_eq!(packages_of(status), ["field", "tracer"]);

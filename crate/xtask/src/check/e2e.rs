@@ -15,8 +15,8 @@ struct Built {
 }
 
 impl Built {
-    /// Returns `node --test` on a file in `tests/`, told of the page and the program: those of its
-    /// tests whose names have a pattern.
+    /// Returns the command `node --test` on a file in `tests/`, with the paths of the page and the
+    /// program: for those of its tests whose names contain `pattern`.
     fn tests(&self, pattern: Option<&str>, file: &str) -> Result<std::process::Command> {
         let screenshots = target().join("screenshots");
         std::fs::create_dir_all(&screenshots)?;
@@ -89,13 +89,13 @@ pub fn check(
     ))
 }
 
-/// Builds the page, and installs the packages that drive a browser: of a `release` the page that is
-/// shipped, else the one that is built soonest.
+/// Builds the page, and installs the packages that drive a browser. For a `release` it is the page
+/// that is shipped, else the one that builds fastest.
 pub fn build(watch: &mut Watch, release: bool) -> Result<PathBuf> {
     let page = if release {
         watch.step("page", dist::dist)?
     } else {
-        let page = page::served();
+        let page = page::serve_folder();
         watch.step("page", || page::build(Build::Development, &page))?;
         page
     };

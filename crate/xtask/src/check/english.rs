@@ -1,6 +1,6 @@
-//! The words of the code. It is to read as plain English, of which some things can be counted: what
-//! is counted here may only fall. `tests/english.txt` holds the counts of each crate; a run that
-//! finds fewer lowers them there.
+//! The words of the code, which is to read as plain English. Some things that are not can be
+//! counted, and their counts may only fall. `tests/english.txt` holds those of each crate; a run
+//! that finds fewer lowers them there.
 
 use crate::shell::{root, tell, words};
 use anyhow::{Context, Result, bail};
@@ -11,18 +11,19 @@ use std::path::Path;
 
 /// Words that a doc comment does not open with. It opens with the noun that it describes, or with
 /// what a function does: "Returns", "Computes".
-const ODD: &str = "also all and another any are as at before behind beside besides between beyond both \
-    but by each else for from further has have here how if in is it its likewise much nearly no not of on \
-    one only or other others same see so some such that their them there these they this those three to \
-    two until up what when where which while who whose with within";
+const ODD: &str = "also all and another any are as at before behind beside besides between beyond \
+    both but by each else for from further has have here how if in is it its likewise much nearly \
+    no not of on one only or other others same see so some such that their them there these they \
+    this those three to two until up what when where which while who whose with within";
 /// Articles, after which the first word counts.
 const ARTICLES: &str = "a an the";
-/// Participles beside those that end with "ed". A function is named by a verb:
-/// `turn`, not `turned`.
-const PARTICIPLES: &str = "begun bent born bought bound broken brought built chosen done drawn driven \
-    fallen felt forgotten found given gone grown heard held hidden kept known laid left lent lost made \
-    meant met paid risen said seen sent shaken shown shrunk spent stolen stood struck sunk swollen swung \
-    taken taught thrown told torn understood woken won worn wound written";
+/// Participles beside those that end with "ed". A function is named by a verb: `turn`, not
+/// `turned`.
+const PARTICIPLES: &str = "begun bent born bought bound broken brought built chosen done drawn \
+    driven fallen felt forgotten found given gone grown heard held hidden kept known laid left \
+    lent lost made meant met paid risen said seen sent shaken shown shrunk spent stolen stood \
+    struck sunk swollen swung taken taught thrown told torn understood woken won worn wound \
+    written";
 /// Words that end with "ed" and are no participles.
 const VERBS: &str = "bleed breed embed exceed feed heed need proceed seed shed speed succeed";
 /// Words for which the literature has another: blob.
@@ -112,7 +113,7 @@ fn read(folder: &Path, counts: &mut Counts) -> Result<()> {
 }
 
 impl Counts {
-    /// Adds those of a text.
+    /// Adds the counts of a text.
     fn add(&mut self, text: &str, file: &str) {
         let mut was_doc = false;
         for (line, number) in text.lines().zip(1..) {
@@ -145,7 +146,7 @@ fn is_in(list: &str, word: &str) -> bool {
     list.split_whitespace().any(|other| other == word)
 }
 
-/// Whether a doc comment opens with no noun and no verb.
+/// Whether a doc comment opens with neither a noun nor a verb.
 fn opens_oddly(doc: &str) -> bool {
     let first = doc
         .split_whitespace()
@@ -156,7 +157,7 @@ fn opens_oddly(doc: &str) -> bool {
     })
 }
 
-/// The name of the function that a line declares.
+/// Returns the name of the function that a line declares.
 fn function(code: &str) -> Option<&str> {
     let (before, after) = code.split_once("fn ")?;
     let is_word = before.is_empty() || before.ends_with(' ');
@@ -183,7 +184,7 @@ fn names_a_closure(code: &str) -> bool {
     is_name && value.trim_start_matches("move ").starts_with('|')
 }
 
-/// How many foreign words a line has.
+/// Counts the foreign words of a line.
 fn foreign(line: &str) -> usize {
     line.split(|c: char| !c.is_alphabetic())
         .filter(|word| is_in(FOREIGN, &word.to_lowercase()))
@@ -197,8 +198,8 @@ mod tests {
     #[test]
     fn each_thing_is_counted() {
         let text = "/// Those whose field is low.\n/// So it is.\npub fn turned(x: f64) -> f64 {\n\
-            \x20   let twice = |x| 2.0 * x;\n    let sum = 1.0 + x;\n}\n\n/// The field of a blob.\n\
-            fn need_lump() {}\n/// The same of an arc.\n// fn said(\n";
+            \x20   let twice = |x| 2.0 * x;\n    let sum = 1.0 + x;\n}\n\n\
+            /// The field of a blob.\nfn need_lump() {}\n/// The same of an arc.\n// fn said(\n";
         let long = format!("{text}// {}\n", "x".repeat(COLUMNS));
         let mut counts = Counts::default();
         counts.add(&long, "a.rs");

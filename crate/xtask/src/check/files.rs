@@ -1,4 +1,5 @@
-//! Files of tests: running them side by side, counting what passed, and telling which took longest.
+//! Files of tests: running them side by side, counting the tests that passed, and listing the files
+//! that took longest.
 
 use crate::shell::{at_once, say, tell};
 use anyhow::{Context, Result, bail};
@@ -7,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// A file of tests: a module of a crate's test program, or a script that drives a browser.
 pub struct File {
-    /// Its name, as `field chart`.
+    /// The name, such as `field chart`.
     pub name: String,
     /// The command that runs it alone.
     pub command: Command,
@@ -30,7 +31,7 @@ impl std::ops::AddAssign for Count {
 }
 
 impl Count {
-    /// Parses what libtest and node's test runner write when they end.
+    /// Parses the summary of libtest or node's test runner.
     pub fn read(output: &str) -> Self {
         let mut count = Self::default();
         for line in output.lines() {
@@ -65,7 +66,7 @@ impl Count {
     }
 }
 
-/// Seconds that steps and files of tests took, and numbers of tests.
+/// Times of steps and of files of tests, and numbers of tests.
 #[derive(Default)]
 pub struct Watch {
     steps: Vec<(&'static str, Duration)>,
@@ -75,19 +76,19 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Does something and keeps how long it takes.
+    /// Does something and records the time it takes.
     pub fn step<T>(&mut self, name: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
         let begun = Instant::now();
-        let done = work();
+        let result = work();
         self.steps.push((name, begun.elapsed()));
-        done
+        result
     }
 
-    /// Runs files of tests, as many at a time as there are cores, in their order, and gives how
-    /// many tests there were. A file that fails does not keep the others from being run.
+    /// Runs files of tests in their order, as many at a time as there are cores, and returns the
+    /// numbers of tests. A file that fails does not keep the others from running.
     ///
     /// # Errors
-    /// If a file fails: their names. What they wrote has been told.
+    /// If files fail. The message names them; their output has been printed.
     pub fn run(&mut self, files: Vec<File>) -> Result<Count> {
         let begun = Instant::now();
         let done = at_once(files.into_iter().map(|file| move || run(file)).collect());
@@ -125,8 +126,9 @@ impl Watch {
             return String::new();
         }
         let all: Duration = self.steps.iter().map(|(_, time)| *time).sum();
-        let step = |(name, time): &(&str, Duration)| format!("{name} {}", time.as_secs());
-        let steps: Vec<String> = self.steps.iter().map(step).collect();
+        let steps = self.steps.iter();
+        let steps = steps.map(|(name, time)| format!("{name} {}", time.as_secs()));
+        let steps: Vec<String> = steps.collect();
         format!(", {} s ({})", all.as_secs(), steps.join(", "))
     }
 
@@ -134,10 +136,10 @@ impl Watch {
     pub fn slowest(&self) -> String {
         let mut files: Vec<_> = self.files.iter().collect();
         files.sort_by_key(|(_, time)| std::cmp::Reverse(*time));
-        let line = |(name, time): &&(String, Duration)| {
-            format!("\n  {:6.1} s  {name}", time.as_secs_f64())
-        };
-        files.iter().take(10).map(line).collect()
+        let files = files.into_iter().take(10);
+        files
+            .map(|(name, time)| format!("\n  {:6.1} s  {name}", time.as_secs_f64()))
+            .collect()
     }
 }
 
@@ -150,7 +152,7 @@ struct Ran {
     error: Option<String>,
 }
 
-/// Runs a file, and tells how many tests passed, or all that it wrote if it failed.
+/// Runs a file, and prints the number of tests that passed, and all its output if it failed.
 fn run(File { name, mut command }: File) -> Ran {
     let begun = Instant::now();
     let output = command.stdin(Stdio::null()).output();
@@ -161,7 +163,7 @@ fn run(File { name, mut command }: File) -> Ran {
             let text = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
             count = Count::read(&text[0]);
             if !output.status.success() {
-                // A program that ended before it could tell has failed as a whole.
+                // A program that ended before its summary has failed as a whole.
                 count.failed = count.failed.max(1);
                 error = Some(output.status.to_string());
                 say(&command);
@@ -199,35 +201,33 @@ mod tests {
     fn tests_are_counted() {
         let libtest = "test a ... ok\ntest result: ok. 3 passed; 0 failed; 1 ignored; 0 measured\n\
             \ntest result: FAILED. 20 passed; 2 failed; 0 ignored; 0 measured";
-        let counts = |passed, failed, skipped| Count {
-            passed,
-            failed,
-            skipped,
-        };
-        assert_eq!(Count::read(libtest), counts(23, 2, 1));
         let node = "ℹ tests 5\nℹ pass 3\nℹ fail 1\nℹ cancelled 0\nℹ skipped 1\nℹ todo 0\n";
-        assert_eq!(Count::read(node), counts(3, 1, 1));
-        assert_eq!(Count::read("no tests to run!"), Count::default());
+        for (output, counts) in [
+            (libtest, [23, 2, 1]),
+            (node, [3, 1, 1]),
+            ("no tests to run!", [0; 3]),
+        ] {
+            let count = Count::read(output);
+            assert_eq!([count.passed, count.failed, count.skipped], counts);
+        }
     }
 
     #[test]
-    fn files_that_fail_are_told_and_the_others_run() {
-        let file = |name: &str, program: &str| File {
+    fn files_that_fail_are_named_and_the_others_run() {
+        let files = [("a", "there is no such program"), ("b", "true")];
+        let files = files.map(|(name, program)| File {
             name: name.into(),
             command: Command::new(program),
-        };
+        });
         let mut watch = Watch::default();
-        let done = watch.run(vec![
-            file("a", "there is no such program"),
-            file("b", "true"),
-        ]);
-        assert!(done.is_err_and(|error| error.to_string().starts_with("a: ")));
+        let result = watch.run(files.into());
+        assert!(result.is_err_and(|error| error.to_string().starts_with("a: ")));
         assert_eq!(watch.count.failed, 1);
         assert!(watch.slowest().contains(" s  b"));
     }
 
     #[test]
-    fn steps_are_told_with_their_seconds() {
+    fn steps_are_listed_with_their_seconds() {
         let mut watch = Watch::default();
         assert_eq!(watch.steps(), "");
         assert_eq!(watch.step("build", || Ok(3)).ok(), Some(3));

@@ -34,7 +34,7 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     Ok(String::from("clean"))
 }
 
-/// Checks that each file of tests is a module of its program: another one would never run.
+/// Checks that each file of tests is a module of its program; otherwise it would never run.
 fn modules() -> Result<()> {
     for package in fs::read_dir(root().join("crate"))? {
         let tests = package?.path().join("tests");

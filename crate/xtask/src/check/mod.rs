@@ -1,4 +1,4 @@
-//! All tests: `cargo xtask test`.
+//! Tests of everything: `cargo xtask test`.
 
 mod chosen;
 mod e2e;
@@ -14,7 +14,7 @@ use crate::shell::{in_lane, tell};
 use anyhow::{Result, bail};
 use chosen::Chosen;
 use clap::ValueEnum;
-use files::{Count, Watch};
+use files::Watch;
 use std::time::Instant;
 
 /// A part of the tests.
@@ -27,7 +27,7 @@ pub enum Part {
     Lint,
     /// Tests on this machine.
     Native,
-    /// The same bits and pictures as wasm.
+    /// Tests as wasm, which must give the same bits and pictures.
     Wasm,
     /// The page in a real browser.
     E2e,
@@ -38,25 +38,24 @@ pub enum Part {
     All,
 }
 
-/// As many random inputs as the tests name.
+/// Numbers of random inputs relative to those that the tests name.
 const BASIC: &str = "1";
-/// A tenth of that, and ten times that.
 const FEW: &str = "0.1";
 const MANY: &str = "10";
 
 /// Runs one part, or all but Firefox and the fuzzer. A part that fails does not keep the others
-/// from being run.
+/// from running.
 pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     let begun = Instant::now();
     let done = match part {
-        Some(Part::Quick) => vec![run(Part::Quick, &Chosen::changed(filter)?)],
+        Some(Part::Quick) => vec![run(Part::Quick, &Chosen::of_changes(filter)?)],
         Some(Part::E2e) => vec![run(Part::E2e, &Chosen::tests(filter))],
         Some(Part::All) => {
             tell("Ten times as many random inputs, Firefox and the fuzzer: this takes hours.");
             let mut done = all(MANY);
             done.push(run(Part::Firefox, &Chosen::default()));
             done.push(attempt(Part::All, Watch::default(), |_| {
-                crate::fuzz::guided(60)?;
+                crate::fuzz::run_targets(60)?;
                 Ok(String::from("the fuzzer found nothing"))
             }));
             done
@@ -68,27 +67,26 @@ pub fn test(part: Option<Part>, filter: Option<String>) -> Result<()> {
     let mut failed = Vec::new();
     println!("\nTested in {} s:", begun.elapsed().as_secs());
     for part in done {
-        println!("  {}", part.said);
+        println!("  {}", part.message);
         if part.failed {
             failed.push(name(part.part));
         }
         watch.add(part.watch);
     }
     println!("Files of tests that took longest:{}", watch.slowest());
-    let Count {
-        passed,
-        failed: fell,
-        skipped,
-    } = watch.count;
-    println!("\n{passed} passed, {fell} failed, {skipped} skipped");
+    let count = watch.count;
+    println!(
+        "\n{} passed, {} failed, {} skipped",
+        count.passed, count.failed, count.skipped
+    );
     if !failed.is_empty() {
         bail!("{} failed", failed.join(", "));
     }
     Ok(())
 }
 
-/// Runs all parts, in two lanes: the code's, and beside it the page is built. Its tests come last,
-/// as they want the machine for themselves.
+/// Runs all parts, in two lanes: one tests the code, the other builds the page. The tests of the
+/// page come last, as they need the machine for themselves.
 fn all(times: &'static str) -> Vec<Done> {
     let mut watch = Watch::default();
     let (mut done, page) = std::thread::scope(|scope| {
@@ -101,11 +99,11 @@ fn all(times: &'static str) -> Vec<Done> {
         });
         let done = code
             .join()
-            .map_or_else(|_| vec![panicked(Part::Native)], Vec::from);
+            .map_or_else(|_| vec![Done::panic(Part::Native)], Vec::from);
         (done, page.join())
     });
     done.push(page.map_or_else(
-        |_| panicked(Part::E2e),
+        |_| Done::panic(Part::E2e),
         |page| {
             attempt(Part::E2e, watch, |watch| {
                 // With the tests the program has been compiled as well.
@@ -119,18 +117,20 @@ fn all(times: &'static str) -> Vec<Done> {
 /// The result of a part.
 struct Done {
     part: Part,
-    said: String,
+    message: String,
     failed: bool,
     watch: Watch,
 }
 
-/// The result of a part whose lane panicked.
-fn panicked(part: Part) -> Done {
-    Done {
-        part,
-        said: format!("the lane of {} panicked", name(part)),
-        failed: true,
-        watch: Watch::default(),
+impl Done {
+    /// Returns the result of a part whose lane panicked.
+    fn panic(part: Part) -> Self {
+        Self {
+            part,
+            message: format!("the lane of {} panicked", name(part)),
+            failed: true,
+            watch: Watch::default(),
+        }
     }
 }
 
@@ -154,17 +154,17 @@ fn run_times(part: Part, chosen: &Chosen, times: &str) -> Done {
     })
 }
 
-/// Does the work of a part, or what is left of it, and tells its result.
+/// Does the work of a part, or the rest of it, and prints its result.
 fn attempt(part: Part, mut watch: Watch, work: impl FnOnce(&mut Watch) -> Result<String>) -> Done {
     tell(&format!("\n== {} ==", name(part)));
     let result = work(&mut watch);
     let failed = result.is_err();
-    let said = result.unwrap_or_else(|error| format!("FAILED: {error:#}"));
-    let said = format!("{}: {said}{}", name(part), watch.steps());
-    tell(&said);
+    let message = result.unwrap_or_else(|error| format!("FAILED: {error:#}"));
+    let message = format!("{}: {message}{}", name(part), watch.steps());
+    tell(&message);
     Done {
         part,
-        said,
+        message,
         failed,
         watch,
     }

@@ -8,11 +8,10 @@ use anyhow::{Result, bail};
 use std::path::PathBuf;
 
 /// The crates of this program. They are compiled apart from the others, as this program was:
-/// together features of others would reach what they depend on, and have it compiled anew.
+/// otherwise features of the others would reach their dependencies, which would be compiled anew.
 const OURS: [&str; 2] = ["xtask", "bench"];
 
-/// Options that choose the tests of all other crates. Examples are for `clippy` to check; they are
-/// not run.
+/// Options that choose the tests of all other crates. Examples are not run; `clippy` checks them.
 const OTHERS: [&str; 6] = [
     "--workspace",
     "--exclude",
@@ -22,13 +21,16 @@ const OTHERS: [&str; 6] = [
     "--tests",
 ];
 
-/// Tests that a build for any processor of this one's kind passes, too: some scenes have the same
-/// bits.
+/// Tests that a build for any processor of this one's kind passes, too: some scenes come out the
+/// same to the bit.
 const PORTABLE_TESTS: [&str; 2] = ["bits::", "pictures_are_as_pinned_4"];
 
 /// Returns the program `sinew` that the tests of the crates use.
 pub fn program() -> Result<PathBuf> {
-    executable(&programs::made(&OTHERS, None)?, "sinew")
+    let mut artifacts = programs::build(&OTHERS, None)?;
+    // Tests of its own are a program of this name, too.
+    artifacts.retain(|artifact| artifact["profile"]["test"] == false);
+    executable(&artifacts, "sinew")
 }
 
 /// Runs this part, with `times` as many random inputs as the tests name.
@@ -60,8 +62,9 @@ pub fn check(watch: &mut Watch, chosen: &Chosen, times: &str) -> Result<String> 
     files.extend(programs::files(&programs, chosen.test.as_deref(), times)?);
     if chosen.is_all() && cfg!(target_arch = "x86_64") {
         let options = ["--package", "worker", "--test", "it"];
-        let build = || programs::compile(&options, Some(PORTABLE));
-        let portable = watch.step("portable build", build)?;
+        let portable = watch.step("portable build", || {
+            programs::compile(&options, Some(PORTABLE))
+        })?;
         for test in PORTABLE_TESTS {
             for mut file in programs::files(&portable, Some(test), times)? {
                 file.name.insert_str(0, "portable ");

@@ -31,9 +31,9 @@ pub struct Program {
     path: PathBuf,
 }
 
-/// Returns what cargo makes to run the tests that some options of `cargo test` choose, perhaps in
-/// another way than is usual.
-pub fn made(options: &[&str], build: Option<Build>) -> Result<Vec<serde_json::Value>> {
+/// Builds what the tests need that some options of `cargo test` choose, in the usual way or as
+/// `build` says. Returns cargo's artifacts.
+pub fn build(options: &[&str], build: Option<Build>) -> Result<Vec<serde_json::Value>> {
     let mut cargo = cargo(&[
         "test",
         "--no-run",
@@ -48,12 +48,14 @@ pub fn made(options: &[&str], build: Option<Build>) -> Result<Vec<serde_json::Va
 }
 
 /// Compiles the tests that some options of `cargo test` choose.
-pub fn compile(options: &[&str], build: Option<Build>) -> Result<Vec<Program>> {
-    made(options, build)?
+pub fn compile(options: &[&str], way: Option<Build>) -> Result<Vec<Program>> {
+    build(options, way)?
         .iter()
-        .filter(|made| made["profile"]["test"] == true && made["executable"].is_string())
-        .map(|made| {
-            let [manifest, path] = [&made["manifest_path"], &made["executable"]]
+        .filter(|artifact| {
+            artifact["profile"]["test"] == true && artifact["executable"].is_string()
+        })
+        .map(|artifact| {
+            let [manifest, path] = [&artifact["manifest_path"], &artifact["executable"]]
                 .map(|text| Path::new(text.as_str().unwrap_or_default()));
             let folder = manifest.parent().and_then(Path::file_name);
             Ok(Program {
@@ -61,15 +63,15 @@ pub fn compile(options: &[&str], build: Option<Build>) -> Result<Vec<Program>> {
                     .context("a crate has a folder")?
                     .to_string_lossy()
                     .into_owned(),
-                of_modules: made["target"]["name"] == "it",
+                of_modules: artifact["target"]["name"] == "it",
                 path: path.to_owned(),
             })
         })
         .collect()
 }
 
-/// Returns the files of some programs, the longest first: those tests whose names contain `filter`.
-/// `times` as many random inputs as usual are taken.
+/// Returns the files of some programs, the longest first, with the tests whose names contain
+/// `filter`. They take `times` as many random inputs as usual.
 pub fn files(programs: &[Program], filter: Option<&str>, times: &str) -> Result<Vec<File>> {
     let mut files = Vec::new();
     for program in programs {
@@ -83,13 +85,15 @@ pub fn files(programs: &[Program], filter: Option<&str>, times: &str) -> Result<
             files.push(File { name, command });
         }
     }
-    let rank = |file: &File| LONGEST.iter().position(|name| file.name.starts_with(name));
-    files.sort_by_key(|file| rank(file).unwrap_or(LONGEST.len()));
+    files.sort_by_key(|file| {
+        let rank = LONGEST.iter().position(|name| file.name.starts_with(name));
+        rank.unwrap_or(LONGEST.len())
+    });
     Ok(files)
 }
 
 impl Program {
-    /// The command that runs all tests.
+    /// Returns the command that runs all tests.
     fn command(&self) -> Command {
         let mut command = if self.is_wasm() {
             tools::in_node(&self.path)
@@ -106,7 +110,7 @@ impl Program {
             .is_some_and(|extension| extension == "wasm")
     }
 
-    /// The names of the tests of each module.
+    /// Returns the names of the tests of each module.
     fn modules(&self, filter: Option<&str>) -> Result<BTreeMap<String, Vec<String>>> {
         let listed = read(self.command().args(["--list", "--format", "terse"]))
             .with_context(|| format!("{} does not list its tests", self.path.display()))?;

@@ -1,4 +1,4 @@
-//! After an edit: what is likely to tell that it was wrong, soon.
+//! Quick tests after an edit: those that are likely to find a mistake.
 
 use super::Chosen;
 use super::files::Watch;

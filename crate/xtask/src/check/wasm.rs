@@ -1,5 +1,5 @@
-//! The same bits as wasm: tests that compare results with what is kept of them, and the pins of
-//! pictures. Where these and the same tests on this machine pass, both have computed the same.
+//! Tests as wasm that compare results with stored ones to the bit, and the pins of pictures. Where
+//! these and the same tests on this machine pass, both have computed the same.
 
 use super::Chosen;
 use super::files::Watch;
@@ -30,8 +30,10 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
         );
     }
     let files = programs::files(&programs, chosen.test.as_deref(), super::BASIC)?;
-    let with_tests = |package: &&str| files.iter().any(|file| file.name.starts_with(*package));
-    if chosen.test.is_none() && !packages.iter().all(with_tests) {
+    let has_tests = packages
+        .iter()
+        .all(|package| files.iter().any(|file| file.name.starts_with(package)));
+    if chosen.test.is_none() && !has_tests {
         bail!("one of {packages:?} has no test as wasm");
     }
     let count = watch.run(files)?;

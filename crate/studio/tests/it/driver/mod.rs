@@ -9,7 +9,7 @@ use studio::app::{App, Parts};
 use studio::request::Request;
 use studio::{Backend, places, platform};
 
-/// A window and what lies behind it.
+/// A window and the parts of its app.
 pub struct Window {
     pub harness: Harness<'static, Option<App>>,
     pub parts: Parts,
@@ -21,7 +21,7 @@ impl Window {
     }
 
     pub fn open_with(width: f32, height: f32, parts: Parts) -> Self {
-        platform::set_troubled(false);
+        platform::set_stopped(false);
         let inner = parts.clone();
         let harness = Harness::builder()
             .with_size(vec2(width, height))

@@ -21,7 +21,7 @@ use wide::f32x8;
 /// Half the largest tolerance of pictures ([`Picture::tolerance`](crate::Picture::tolerance)).
 const COARSEST_OF_SPANS: f64 = 1e-4;
 
-/// A packet's hits, before refinement.
+/// The hits of a packet, before refinement.
 struct Hits<'a> {
     slabs: &'a Slabs<'a>,
     origin: [f32x8; 3],
@@ -30,12 +30,13 @@ struct Hits<'a> {
     start: f32x8,
     /// Crossings of the spans in double precision.
     exact: [f64; PACKET],
-    /// Largest distance of those from the surface.
+    /// Largest distance of those crossings from the surface.
     furthest: f32x8,
     /// Slabs of the hits, each with its lanes.
     places: &'a [(u32, u32)],
-    /// Lanes that hit, and those of them whose crossing is exact already.
+    /// Lanes that hit, a bit each.
     met: u32,
+    /// Lanes whose crossing is exact already, a bit each.
     isolated: u32,
 }
 
@@ -59,9 +60,9 @@ impl Soft {
     }
 
     /// Moves the hits of a packet onto the surface and samples it there; the result is
-    /// `scratch.flesh`. Lanes without a hit are meaningless. Ray parameters are counted from
+    /// `scratch.samples`. Lanes without a hit are meaningless. Ray parameters are counted from
     /// `base`.
-    pub fn flesh(
+    pub fn sample_hits(
         &self,
         slabs: &Slabs<'_>,
         rays: &[Ray],
@@ -111,15 +112,25 @@ impl Soft {
             }
             off
         };
-        let shared = self.off(&hits, &scratch.flesh, base, &of_slabs(|spent| spent.shared)) == 0;
+        let shared = self.off(
+            &hits,
+            &scratch.samples,
+            base,
+            &of_slabs(|spent| spent.shared),
+        ) == 0;
         if !shared {
             self.refine_hits(&hits, false, scratch);
         }
-        let mut blurred = self.off(&hits, &scratch.flesh, base, &of_slabs(|spent| spent.noise));
+        let mut blurred = self.off(
+            &hits,
+            &scratch.samples,
+            base,
+            &of_slabs(|spent| spent.noise),
+        );
         if blurred != 0 {
             // The slab's bound is larger than the noise at one point of it.
             let noise = self.noise(&hits, shared, scratch);
-            blurred &= self.off(&hits, &scratch.flesh, base, &noise);
+            blurred &= self.off(&hits, &scratch.samples, base, &noise);
         }
         for &(slab, lanes) in hits.places {
             let lanes = lanes & blurred;
@@ -132,7 +143,7 @@ impl Soft {
                 continue;
             }
             for lane in (0..PACKET).filter(|i| lanes >> i & 1 != 0) {
-                let t = &mut scratch.flesh.t[lane];
+                let t = &mut scratch.samples.t[lane];
                 *t = self.refine_exactly(&hits, ray(lane), lane, *t, &list);
                 scratch.evaluations += (list.len() * MOST_POLISHING) as u64;
             }
@@ -144,13 +155,13 @@ impl Soft {
     fn off(
         &self,
         hits: &Hits<'_>,
-        flesh: &SurfaceSamples,
+        samples: &SurfaceSamples,
         base: f64,
         error: &[f64; PACKET],
     ) -> u32 {
-        let gradients = flesh.gradients();
+        let gradients = samples.gradients();
         (0..PACKET).fold(0, |all, i| {
-            let tolerance = 0.1 * self.pixel * (base + flesh.t[i]);
+            let tolerance = 0.1 * self.pixel * (base + samples.t[i]);
             let most = tolerance.clamp(FINEST, COARSEST_OF_SPANS) * gradients[i].length();
             // NaN counts as off.
             let near = error[i] <= most;
@@ -164,7 +175,7 @@ impl Soft {
     #[inline(never)]
     fn noise(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) -> [f64; PACKET] {
         let rounding = self.precision.rounding as f32;
-        let at = f32x8::from_lanes(|i| scratch.flesh.t[i]);
+        let at = f32x8::from_lanes(|i| scratch.samples.t[i]);
         let point: [f32x8; 3] = core::array::from_fn(|k| hits.origin[k] + hits.direction[k] * at);
         let furthest = point
             .iter()
@@ -191,8 +202,8 @@ impl Soft {
         noise.to_array().map(f64::from)
     }
 
-    /// Refines a hit on the surface of some primitives by Newton steps in double precision; `start`
-    /// where no step improves it.
+    /// Refines a hit on the surface of some primitives by Newton steps in double precision. Returns
+    /// `start` if no step improves it.
     #[cold]
     fn refine_exactly(
         &self,
@@ -227,7 +238,9 @@ impl Soft {
 
     /// Refines and samples the hits, with shared interpolants or with all primitives.
     fn refine_hits(&self, hits: &Hits<'_>, shared: bool, scratch: &mut Scratch) {
-        let Scratch { active, flesh, .. } = scratch;
+        let Scratch {
+            active, samples, ..
+        } = scratch;
         active.collect(hits.slabs, hits.places, !shared, self.primitives.len());
         let &Hits {
             origin,
@@ -237,7 +250,7 @@ impl Soft {
             ..
         } = hits;
         let mut at = start;
-        let weights = &mut flesh.weights;
+        let weights = &mut samples.weights;
         let mut gradient = [f32x8::splat(0.0); 3];
         // Hits that are exact already stay.
         let free = mask(!hits.isolated);
@@ -289,9 +302,9 @@ impl Soft {
                 break;
             }
         }
-        flesh.gradient = gradient;
-        flesh.t = at.to_array().map(f64::from);
-        for (i, own) in flesh.t.iter_mut().enumerate() {
+        samples.gradient = gradient;
+        samples.t = at.to_array().map(f64::from);
+        for (i, own) in samples.t.iter_mut().enumerate() {
             if hits.isolated >> i & 1 != 0 {
                 *own = hits.exact[i];
             }
@@ -299,7 +312,7 @@ impl Soft {
     }
 }
 
-/// Evaluations at the hits. A Newton step from near the surface is exact to single precision, but
+/// Most evaluations at a hit. A Newton step from near the surface is exact to single precision, but
 /// normal and colours are those of its start.
 const MOST_POLISHING: usize = 3;
 /// Most primitives with which hits are refined in double precision.

@@ -11,9 +11,10 @@ use glam::Vec3;
 const MOST_PASSED: u32 = 64;
 
 impl World {
-    /// The share of light that passes along some rays up to their ends: the product of the
-    /// transparencies of all surfaces there. Light is not bent.
-    pub fn coloured(
+    /// Returns the share of light that passes along each of some rays up to its end: the product of
+    /// the transparencies of all surfaces there. Light is not bent. Where more than
+    /// [`MOST_PASSED`] surfaces are in the way it is 0.
+    pub fn transmission(
         &self,
         rich: &Rich,
         rays: &[(Ray, f64)],
@@ -30,11 +31,13 @@ impl World {
             if open.is_empty() {
                 return light;
             }
-            let free = |&(_, ray, _): &(usize, Ray, f64)| FreeRay {
-                ray,
-                front_only: false,
-            };
-            let free: Vec<FreeRay> = open.iter().map(free).collect();
+            let free: Vec<FreeRay> = open
+                .iter()
+                .map(|&(_, ray, _)| FreeRay {
+                    ray,
+                    front_only: false,
+                })
+                .collect();
             let hits = self.meet_free(&free, work, stats);
             let mut next = Vec::new();
             for ((i, ray, limit), hit) in open.into_iter().zip(hits) {
