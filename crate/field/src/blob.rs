@@ -18,7 +18,7 @@ use crate::kernel::gauss;
 use crate::ramp::Ramp;
 use crate::real::Scalar;
 use crate::term::{Evaluate, Frame, Prepared};
-use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, point};
+use crate::{Jet, Kernel, Primitive, Real, THRESHOLD};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
 
@@ -273,7 +273,7 @@ impl<S: Scalar> Blob<S> {
         }
         // Kernels fall and are convex in q, so that Newton's steps from 0 never leave the inside.
         (0..NEWTON).fold(0.0, |q, _| {
-            let [value, slope, ..] = self.kernel.derivatives(q).0;
+            let [value, slope, ..] = self.kernel.derivatives(q);
             (q + (wanted - value) / slope).min(1.0)
         })
     }
@@ -304,7 +304,7 @@ impl<S: Scalar> Blob<S> {
             let ramp = ramp.map_or(0.0, |ramp| scale * ramp.cast(|x| x.lane(0)).steepness());
             return (twice * core.max(0.5).sqrt() + ramp) * THRESHOLD;
         }
-        twice * self.amplitude.lane(0) * self.kernel.derivatives(core.max(0.0)).0[1].abs()
+        twice * self.amplitude.lane(0) * self.kernel.derivatives(core.max(0.0))[1].abs()
     }
 
     /// Whether it is a segment.
@@ -320,7 +320,7 @@ impl<S: Scalar> Blob<S> {
         let amplitude = R::lift(self.amplitude);
         let Some(segment) = &self.segment else {
             let scale = R::lift(self.scale);
-            let jet = point::jet(self.kernel, position.map(|x| x * scale));
+            let jet = self.kernel.jet(&Bone::Point, position.map(|x| x * scale));
             let steep = amplitude * scale;
             return Jet {
                 value: amplitude * jet.value,

@@ -10,7 +10,7 @@ use crate::envelope::{self, PEANO, Roughness};
 use crate::influence::Crowding;
 use crate::kernel::Tail;
 use crate::ripple::Ripple;
-use crate::{Cut, Kernel, Primitive, plane};
+use crate::{Cut, Kernel, Primitive};
 use glam::DVec3;
 use place::Place;
 
@@ -343,7 +343,7 @@ impl Bound {
     #[must_use]
     pub fn cancels(&self) -> f64 {
         if self.dimension == 2 && self.whole.is_finite() && !self.kernel.has_pole() {
-            let plane = self.endless * plane::jet(self.kernel, [0.0; 3]).value;
+            let plane = self.endless * self.kernel.plane(0.0).0;
             plane.at_most(self.whole)
         } else {
             0.0
@@ -477,7 +477,7 @@ impl Bound {
                 let far = near + self.size / core::f64::consts::PI;
                 core::f64::consts::PI * kernel.over_ring(near, far) * (1.0 + 1e-12)
             }
-            _ => plane::jet(kernel, [0.0, 0.0, u]).value,
+            _ => kernel.plane(u).0,
         };
         smaller(self.whole * point, self.endless * endless)
     }

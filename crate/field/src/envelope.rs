@@ -8,7 +8,7 @@
 //!
 //! The Cauchy kernel's envelopes are formulas; the other kernels' are tables, made once, from upper
 //! sums over steps of 1/64 octave.
-use crate::{Derivatives, Kernel};
+use crate::Kernel;
 use core::f64::consts::TAU;
 use std::sync::OnceLock;
 
@@ -195,7 +195,7 @@ fn integrate(places: &[f64], rough: &[f64], start: usize, plane_diverges: bool) 
 /// `12G″+48yG‴+16y²G⁗`.
 pub(crate) fn along_any_line(kernel: Kernel, order: usize, u: f64) -> f64 {
     let q = u * u;
-    let Derivatives([_, g1, g2, g3, g4]) = kernel.derivatives(q);
+    let [_, g1, g2, g3, g4] = kernel.derivatives(q);
     let at = |y: f64| match order {
         1 => (2.0 * y.sqrt() * g1).abs(),
         2 => (2.0 * g1 + 4.0 * y * g2).abs(),
@@ -222,7 +222,7 @@ mod tests {
 
     /// The kernel along a line that passes at distance √p2, at t.
     fn on_line(kernel: Kernel, p2: f64, t: f64) -> f64 {
-        kernel.derivatives(p2 + t * t).0[0]
+        kernel.derivatives(p2 + t * t)[0]
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use crate::bone::Bone;
 use crate::form::Form;
 use crate::kernel::Tail;
-use crate::{Cut, Kernel, Skeleton, plane, skeleton};
+use crate::{Cut, Kernel, Skeleton, skeleton};
 use core::f64::consts::PI;
 use glam::DVec3;
 
@@ -33,7 +33,7 @@ pub(crate) fn most_beyond(form: &Form<f64>, d: f64) -> f64 {
             disc(kernel, area, d).at_most(altitude * abreast(kernel, longest, d))
         }
         Bone::Polygon(polygon) => disc(kernel, polygon.area.abs(), d),
-        Bone::Plane => plane::jet(kernel, [0.0, 0.0, d]).value,
+        Bone::Plane => kernel.plane(d).0,
         Bone::Curve(curve) => curve.most_beyond(kernel, d),
     }
 }

@@ -1,5 +1,5 @@
 //! Kernels' widths and heights from the user's radius, blobbiness and strength.
-use crate::{Kernel, Skeleton, THRESHOLD, plane};
+use crate::{Kernel, Skeleton, THRESHOLD};
 use serde::{Deserialize, Serialize};
 
 /// Ways to read a blobbiness B (`blobscale`).
@@ -137,7 +137,7 @@ impl Shaping {
         let field_at_radius = match skeleton.dimension() {
             0 => self.kernel.value(x),
             1 => self.kernel.line(x) / s,
-            _ => plane::jet(self.kernel, [0.0, 0.0, x]).value / (s * s),
+            _ => self.kernel.plane(x).0 / (s * s),
         };
         let height = self.strength * THRESHOLD / field_at_radius;
         height.is_finite().then_some(height)
@@ -152,7 +152,7 @@ impl Shaping {
         let reference = |u: f64| match dimension {
             0 => kernel.value(u),
             1 => kernel.line(u),
-            _ => plane::jet(kernel, [0.0, 0.0, u]).value,
+            _ => kernel.plane(u).0,
         };
         let field_at = |radius: f64| {
             let shaping = Self { radius, ..*self };

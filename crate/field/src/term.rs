@@ -5,7 +5,7 @@ use crate::form::Form;
 use crate::kernel::cubed::cone::Cone;
 use crate::skeleton::{area_vector, cubic, orthonormal};
 use crate::waves::Waves;
-use crate::{Jet, Kernel, Real, Skeleton, point};
+use crate::{Jet, Kernel, Real, Skeleton};
 use glam::{DMat3, DVec3};
 
 /// Local coordinates: `axes·(p − origin)`; the axes are orthogonal and as long as the kernel's
@@ -123,7 +123,7 @@ impl<S: Copy> Term<S> {
             let x = (p[i] - origin[i]) * scale;
             x.min(horizon).max(-horizon)
         });
-        let jet = point::jet(self.form.kernel, local);
+        let jet = self.form.kernel.jet(&Bone::Point, local);
         let amplitude = R::lift(self.amplitude);
         let steep = amplitude * scale;
         Jet {

@@ -4,11 +4,9 @@
 //! multiplied by s, so that the kernel is `1/(1+r²)²`. Each file states its formula. They equal the
 //! thesis's, rearranged so that nearly equal numbers are not subtracted: then single precision
 //! suffices, and there are no special cases at axes, ends, edges or far away.
-use crate::bone::{Arc, Polygon, Segment, Triangle};
+use crate::bone::Bone;
 use crate::envelope::Roughness;
-use crate::kernel::cells::{self, Cells};
-use crate::kernel::falloff::{Falloff, Tail, closed_forms};
-use crate::kernel::taylor::Taylor;
+use crate::kernel::{ALONG, Cells, EDGE, Falloff, HEIGHT, Tail, cell, numeric};
 use crate::{Cut, Jet, Real};
 use core::f64::consts::PI;
 
@@ -17,7 +15,7 @@ pub mod polygon;
 pub mod segment;
 pub mod triangle;
 
-/// See the [module](self).
+/// The Cauchy kernel.
 pub(crate) struct Cauchy;
 
 impl Falloff for Cauchy {
@@ -29,22 +27,23 @@ impl Falloff for Cauchy {
         softening: 1.0,
     };
     const CELLS: Cells = Cells {
-        segment: cells::segment(
+        segment: cell(
+            "closed",
             "F = [ x/(2p²(p²+x²)) + atan(x/p)/(2p³) ] from x₁ to x₂,   p² = 1+ρ²",
+            ALONG,
         ),
-        arc: cells::arc("F = r₀ ∫ dφ/(A − B cos φ)²,   A = 1+r₀²+ρ²+z²,   B = 2r₀ρ")
-            .with("the integral is elementary; its angle δ runs from 0 to π without a branch"),
-        face: cells::face(
+        arc: cell(
+            "closed",
+            "F = r₀ ∫ dφ/(A − B cos φ)²,   A = 1+r₀²+ρ²+z²,   B = 2r₀ρ",
+            "the integral is elementary; its angle δ runs from 0 to π without a branch",
+        ),
+        face: cell(
+            "closed",
             "F = 1/(2c²) · Σ (h/w) · [atan(t/w)] along each edge,   c² = 1+z²,   w² = c²+h²",
+            EDGE,
         ),
-        plane: cells::plane("F = π/(1+d²)"),
+        plane: cell("closed", "F = π/(1+d²)", HEIGHT),
     };
-
-    #[inline(always)]
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N> {
-        let i = Taylor::constant(1.0) / (Taylor::constant(1.0) + q);
-        i * i
-    }
 
     fn derivatives(q: f64) -> [f64; 5] {
         let i = 1.0 / (1.0 + q);
@@ -74,12 +73,8 @@ impl Falloff for Cauchy {
         0.5 * (u / (1.0 + u * u) + libm::atan(u))
     }
 
-    fn over_disc(q: f64) -> f64 {
-        q / (1.0 + q)
-    }
-
     fn over_ring(p: f64, q: f64) -> f64 {
-        Self::over_disc(q) - Self::over_disc(p)
+        q / (1.0 + q) - p / (1.0 + p)
     }
 
     fn line(distance: f64) -> f64 {
@@ -99,18 +94,22 @@ impl Falloff for Cauchy {
         blobbiness.sqrt()
     }
 
-    closed_forms! { bone, p;
-        segment(Segment): segment::jet(bone, p);
-        arc(Arc): arc::jet(bone, p);
-        triangle(Triangle): triangle::jet(bone, p);
-        polygon(Polygon): polygon::jet(bone, p);
+    #[inline(always)]
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        match bone {
+            Bone::Segment(bone) => segment::jet(bone, p),
+            Bone::Arc(bone) => arc::jet(bone, p),
+            Bone::Triangle(bone) => triangle::jet(bone, p),
+            Bone::Polygon(bone) => polygon::jet(bone, p),
+            _ => numeric::jet::<Self, R>(bone, p),
+        }
     }
 
     fn arc_at_most(_length: f64, radius: f64, d: f64) -> f64 {
         circle(radius, d)
     }
 
-    /// With x = 1+u², along any ray `k(t) = (P²+t²)⁻²` it has
+    /// Computes the bounds by formulas. With x = 1+u², along any ray `k(t) = (P²+t²)⁻²` it has
     /// `|k⁗| = 24·|35w⁴−42w²+3|/(1+w²)²·X⁻⁴`, w = t/P, where X = P²(1+w²) is the value of x at t.
     /// The constants are upper envelopes of its integrals, checked numerically in this file's
     /// tests.

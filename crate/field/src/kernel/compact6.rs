@@ -1,7 +1,7 @@
 //! The compact6 kernel, `(1−u²)³` up to u = 1 (ours).
 use crate::kernel::polynomial::Polynomial;
 
-/// See the [module](self).
+/// The compact6 kernel.
 pub(crate) struct Compact6;
 
 impl Polynomial for Compact6 {

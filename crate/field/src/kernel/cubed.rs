@@ -2,12 +2,9 @@
 //!
 //! ε rounds the pole off as it does the [inverse](crate::kernel::inverse) kernel's: in every
 //! formula z² becomes z²+ε². All work in the primitive's own frame, in units of its radius.
-use crate::bone::{Arc, Curve, Polygon, Segment, Triangle};
-use crate::kernel::POLE2;
-use crate::kernel::cells::{self, Cells};
-use crate::kernel::falloff::{Falloff, Tail, closed_forms};
-use crate::kernel::taylor::Taylor;
-use crate::{Jet, Real, curve};
+use crate::bone::Bone;
+use crate::kernel::{ALONG, Cells, Falloff, HEIGHT, POLE2, Tail, cell, numeric, powers};
+use crate::{Jet, Real};
 use core::f64::consts::PI;
 
 pub mod arc;
@@ -15,7 +12,7 @@ pub mod cone;
 pub mod polygon;
 pub mod segment;
 
-/// See the [module](self).
+/// The cubed kernel.
 pub(crate) struct Cubed;
 
 impl Falloff for Cubed {
@@ -24,37 +21,26 @@ impl Falloff for Cubed {
     const FORMULA: &'static str = "h(u) = 1/u³";
     const TAIL: Tail = Tail::pole(3);
     const CELLS: Cells = Cells {
-        segment: cells::segment("F = [ x/√(ρ²+x²) ] / ρ² from x₁ to x₂"),
-        arc: cells::arc(
+        segment: cell("closed", "F = [ x/√(ρ²+x²) ] / ρ² from x₁ to x₂", ALONG),
+        arc: cell(
+            "Carlson",
             "F = r₀ ∫ dφ/√(A − B cos φ)³, elliptic integrals of the first and the second kind",
-        )
-        .by("Carlson")
-        .with("computed as Carlson's R_D"),
-        face: cells::face("F = ( 2πw − Σ [ atan2(zt, h√(h²+t²+z²)) ] along each edge ) / z").with(
+            "computed as Carlson's R_D",
+        ),
+        face: cell(
+            "closed",
+            "F = ( 2πw − Σ [ atan2(zt, h√(h²+t²+z²)) ] along each edge ) / z",
             "the solid angle at which the polygon is seen, over the height z; \
              w is the number of times the edges run around the foot of the point, \
              h its distance from the edge's line, and t runs along the edge",
         ),
-        plane: cells::plane("F = 2π/d"),
+        plane: cell("closed", "F = 2π/d", HEIGHT),
     };
     const HAS_CONES: bool = true;
 
-    #[inline(always)]
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N> {
-        let i = Taylor::constant(1.0) / (q + Taylor::constant(POLE2));
-        i * i.sqrt()
-    }
-
     fn derivatives(q: f64) -> [f64; 5] {
         let i = 1.0 / (q + POLE2);
-        let g = i * i.sqrt();
-        [
-            g,
-            -1.5 * g * i,
-            3.75 * g * i * i,
-            -13.125 * g * i * i * i,
-            59.0625 * g * i * i * i * i,
-        ]
+        powers(i * i.sqrt(), i, [1.0, -1.5, 3.75, -13.125, 59.0625])
     }
 
     #[inline(always)]
@@ -99,23 +85,15 @@ impl Falloff for Cubed {
         ((pi + pi) / c, Self::falling(z * z).0)
     }
 
-    /// There is no width: the unit of length is the radius.
-    fn width(_blobbiness: f64) -> f64 {
-        1.0
-    }
-
-    closed_forms! { bone, p;
-        segment(Segment): segment::jet(bone, p);
-        arc(Arc): arc::jet(bone, p);
-        triangle(Triangle): polygon::triangle(bone, p);
-        polygon(Polygon): polygon::jet(bone, p);
-    }
-
     #[inline(always)]
-    fn curve<R: Real>(bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R> {
-        match &bone.cone {
-            Some(cone) => cone::jet(cone, p),
-            None => curve::jet::<Self, R>(bone, p),
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        match bone {
+            Bone::Segment(bone) => segment::jet(bone, p),
+            Bone::Arc(bone) => arc::jet(bone, p),
+            Bone::Triangle(bone) => polygon::triangle(bone, p),
+            Bone::Polygon(bone) => polygon::jet(bone, p),
+            Bone::Curve(bone) if let Some(cone) = &bone.cone => cone::jet(cone, p),
+            _ => numeric::jet::<Self, R>(bone, p),
         }
     }
 }

@@ -1,12 +1,11 @@
-//! What is known of a kernel.
-use crate::bone::{Arc, Curve, Polygon, Segment, Triangle};
+//! Everything that the program knows of a kernel.
+use crate::bone::Bone;
 use crate::envelope::Roughness;
 use crate::influence::Crowding;
 use crate::kernel::POLE2;
 use crate::kernel::cells::{self, Cells};
 use crate::kernel::numeric;
-use crate::kernel::taylor::Taylor;
-use crate::{Jet, Real, curve};
+use crate::{Jet, Real};
 
 /// Number of Newton's steps to a value of a kernel.
 const NEWTON: usize = 64;
@@ -14,16 +13,17 @@ const NEWTON: usize = 64;
 /// The way in which a kernel goes to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tail {
-    /// It is 0 from u = 1 on.
+    /// The kernel is 0 from u = 1 on.
     Compact,
-    /// It is `(ε² + u²)^(−e/2)` everywhere: an infinite kernel, whose far field has an expansion.
+    /// The kernel is `(ε² + u²)^(−e/2)` everywhere: an infinite kernel, whose far field has an
+    /// expansion.
     Power {
         /// e, from 1 to 4.
         exponent: i32,
         /// ε²: 1, or [`POLE2`] where a pole is rounded off.
         softening: f64,
     },
-    /// It is infinite, and falls faster than u⁻⁴.
+    /// The kernel is infinite, and falls faster than u⁻⁴.
     Fast,
 }
 
@@ -42,20 +42,20 @@ impl Tail {
     }
 }
 
-/// All that is known of one kernel. In units of its width it is h(u) = G(q), q = u² ≥ 0; G falls
+/// A kernel. In units of its width it is h(u) = G(q), q = u² ≥ 0; G falls
 /// and is convex.
 ///
 /// Lengths are in kernel widths, and fields for a factor of 1.
-pub(crate) trait Falloff {
+pub(crate) trait Falloff: Sized {
     /// Name in the dataset language.
     const NAME: &'static str;
-    /// Its meaning in a few words, for the manual.
+    /// The meaning in a few words, for the manual.
     const MEANING: &'static str;
     /// h, for people.
     const FORMULA: &'static str;
     /// The way in which it goes to 0.
     const TAIL: Tail;
-    /// How its fields are computed, for people.
+    /// The formulas of its fields, and the methods of computing them, for people.
     const CELLS: Cells = cells::NUMERIC;
     /// The places u at which a derivative jumps, in increasing order: the last is 1, and there are
     /// at most two.
@@ -72,19 +72,14 @@ pub(crate) trait Falloff {
     /// Whether tapered segments have a closed form, a [`Cone`](crate::kernel::cubed::cone::Cone).
     const HAS_CONES: bool = false;
 
-    /// Computes G; at a kink its inner piece.
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N>;
-
     /// Computes G and its first four derivatives; at a kink those of the inner piece.
-    fn derivatives(q: f64) -> [f64; 5] {
-        let Taylor([a, b, c, d, e]) = Self::density(Taylor::variable(q));
-        [a, b, 2.0 * c, 6.0 * d, 24.0 * e]
-    }
+    fn derivatives(q: f64) -> [f64; 5];
 
     /// Computes G and −G′.
     #[inline(always)]
     fn falling<R: Real>(q: R) -> (R, R) {
-        let Taylor([value, slope]) = Self::density(Taylor::variable(q));
+        let [value, slope] =
+            [0, 1].map(|i| R::from_lanes(|lane| Self::derivatives(q.lane(lane))[i]));
         (value, -slope)
     }
 
@@ -120,19 +115,14 @@ pub(crate) trait Falloff {
         Self::along(b) - Self::along(a)
     }
 
-    /// Computes `∫ G` from 0 to q: over a disc around the point, of area πq, the kernel's integral
-    /// is π times this.
-    fn over_disc(q: f64) -> f64 {
-        Self::over_ring(0.0, q)
-    }
-
-    /// Computes `∫ G` from p to q, 0 ≤ p ≤ q.
+    /// Computes `∫ G` from p to q, 0 ≤ p ≤ q: over a ring around the point, of area π(q−p), the
+    /// kernel's integral is π times this.
     fn over_ring(p: f64, q: f64) -> f64 {
         numeric::ring::<Self>(p, q)
     }
 
     /// Computes the field of an infinite line at a distance; where that is infinite, of one of
-    /// half-length [`WINDOW`](crate::plane::WINDOW).
+    /// half-length [`WINDOW`](crate::kernel::WINDOW).
     fn line(distance: f64) -> f64 {
         numeric::line::<Self>(distance)
     }
@@ -145,7 +135,7 @@ pub(crate) trait Falloff {
     }
 
     /// Computes the field of an infinite plane at a height z above or below it; where that is
-    /// infinite, of a disc of radius [`WINDOW`](crate::plane::WINDOW). Then its derivative by z,
+    /// infinite, of a disc of radius [`WINDOW`](crate::kernel::WINDOW). Then its derivative by z,
     /// over −2πz.
     fn plane<R: Real>(z: R) -> (R, R) {
         numeric::plane::<Self, R>(z)
@@ -157,36 +147,16 @@ pub(crate) trait Falloff {
         numeric::width::<Self>(blobbiness)
     }
 
-    /// Computes a segment's field.
-    fn segment<R: Real>(bone: &Segment<R::Scalar>, p: [R; 3]) -> Jet<R> {
-        numeric::segment::<Self, R>(bone, p)
-    }
-
-    /// Computes an arc's field.
-    fn arc<R: Real>(bone: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
-        numeric::arc::<Self, R>(bone, p)
-    }
-
-    /// Computes a triangle's field.
-    fn triangle<R: Real>(bone: &Triangle<R::Scalar>, p: [R; 3]) -> Jet<R> {
-        numeric::face::<Self, R>(&bone.edges, p)
-    }
-
-    /// Computes a polygon's field.
-    fn polygon<R: Real>(bone: &Polygon<R::Scalar>, p: [R; 3]) -> Jet<R> {
-        numeric::face::<Self, R>(&bone.edges, p)
-    }
-
-    /// Computes the field of a curve, or of a bone whose width varies along it.
+    /// Computes a bone's field: by closed forms, a line for each bone that has one.
     #[inline(always)]
-    fn curve<R: Real>(bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R> {
-        curve::jet::<Self, R>(bone, p)
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        numeric::jet::<Self, R>(bone, p)
     }
 
     /// Computes a bound on the field of an arc at distance d or more from it.
     fn arc_at_most(length: f64, radius: f64, d: f64) -> f64 {
-        let value = |u: f64| Self::derivatives(u * u)[0];
-        Crowding::arc(length, radius).integral_bound(d, value, Self::between)
+        let crowding = Crowding::arc(length, radius);
+        crowding.integral_bound(d, |u| Self::derivatives(u * u)[0], Self::between)
     }
 
     /// Computes bounds on the highest derivative that exists everywhere, at distance u or more;
@@ -202,14 +172,3 @@ pub(crate) trait Falloff {
         None
     }
 }
-
-/// Writes the functions of [`Falloff`] that compute bones' fields, each by one formula.
-macro_rules! closed_forms {
-    ($name:ident, $p:ident; $($function:ident($bone:ident): $formula:expr;)*) => {$(
-        #[inline(always)]
-        fn $function<R: Real>($name: &$bone<R::Scalar>, $p: [R; 3]) -> Jet<R> {
-            $formula
-        }
-    )*};
-}
-pub(crate) use closed_forms;

@@ -1,8 +1,6 @@
 //! The Gaussian kernel, `h(r) = exp(−s²r²)`.
-use crate::bone::{Arc, Polygon, Segment, Triangle};
-use crate::kernel::cells::{self, Cells};
-use crate::kernel::falloff::{Falloff, Tail, closed_forms};
-use crate::kernel::taylor::Taylor;
+use crate::bone::Bone;
+use crate::kernel::{ALONG, Cells, Falloff, HEIGHT, Tail, cell, numeric};
 use crate::{Jet, Real};
 use core::f64::consts::PI;
 
@@ -10,7 +8,7 @@ pub mod arc;
 pub mod polygon;
 pub mod segment;
 
-/// See the [module](self).
+/// The Gaussian kernel.
 pub(crate) struct Gauss;
 
 impl Falloff for Gauss {
@@ -19,24 +17,25 @@ impl Falloff for Gauss {
     const FORMULA: &'static str = "h(u) = exp(−u²)";
     const TAIL: Tail = Tail::Fast;
     const CELLS: Cells = Cells {
-        segment: cells::segment("F = √π/2 · exp(−ρ²) · (erf x₂ − erf x₁)").by("error function"),
-        arc: cells::arc("F = r₀ · exp(−(r₀−ρ)²−z²) · ∫ exp(−2r₀ρ(1−cos φ)) dφ")
-            .by("Gauss–Legendre")
-            .with("the last integral by Gauss–Legendre where the arc is within reach"),
-        face: cells::face("F = exp(−z²)/2 · Σ ∫ (1 − exp(−h²−t²)) · h/(h²+t²) dt")
-            .by("Owen's T")
-            .with(
-                "a sum over the edges, h and t as seen from the point's foot in the plane, \
-                 z its height; each integral is an angle less Owen's T function",
-            ),
-        plane: cells::plane("F = π · exp(−d²)"),
+        segment: cell(
+            "error function",
+            "F = √π/2 · exp(−ρ²) · (erf x₂ − erf x₁)",
+            ALONG,
+        ),
+        arc: cell(
+            "Gauss–Legendre",
+            "F = r₀ · exp(−(r₀−ρ)²−z²) · ∫ exp(−2r₀ρ(1−cos φ)) dφ",
+            "the last integral by Gauss–Legendre where the arc is within reach",
+        ),
+        face: cell(
+            "Owen's T",
+            "F = exp(−z²)/2 · Σ ∫ (1 − exp(−h²−t²)) · h/(h²+t²) dt",
+            "a sum over the edges, h and t as seen from the point's foot in the plane, \
+             z its height; each integral is an angle less Owen's T function",
+        ),
+        plane: cell("closed", "F = π · exp(−d²)", HEIGHT),
     };
     const ENTIRE: bool = true;
-
-    #[inline(always)]
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N> {
-        (-q).exp()
-    }
 
     fn derivatives(q: f64) -> [f64; 5] {
         let g = libm::exp(-q);
@@ -73,12 +72,8 @@ impl Falloff for Gauss {
         PI.sqrt() / 2.0 * libm::erf(u)
     }
 
-    fn over_disc(q: f64) -> f64 {
-        -libm::expm1(-q)
-    }
-
     fn over_ring(p: f64, q: f64) -> f64 {
-        Self::over_disc(q) - Self::over_disc(p)
+        libm::expm1(-p) - libm::expm1(-q)
     }
 
     fn line(distance: f64) -> f64 {
@@ -101,10 +96,14 @@ impl Falloff for Gauss {
         blobbiness.sqrt()
     }
 
-    closed_forms! { bone, p;
-        segment(Segment): segment::jet(bone, p);
-        arc(Arc): arc::jet(bone, p);
-        triangle(Triangle): polygon::jet(&bone.edges, p);
-        polygon(Polygon): polygon::jet(&bone.edges, p);
+    #[inline(always)]
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        match bone {
+            Bone::Segment(bone) => segment::jet(bone, p),
+            Bone::Arc(bone) => arc::jet(bone, p),
+            Bone::Triangle(bone) => polygon::jet(&bone.edges, p),
+            Bone::Polygon(bone) => polygon::jet(&bone.edges, p),
+            _ => numeric::jet::<Self, R>(bone, p),
+        }
     }
 }

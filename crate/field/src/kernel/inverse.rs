@@ -2,12 +2,10 @@
 //!
 //! ε rounds the pole off. It acts like a distance in a fourth dimension: in every formula z²
 //! becomes z²+ε². All work in the primitive's own frame, in units of its radius.
-use crate::bone::{Arc, Polygon, Segment, Triangle};
-use crate::kernel::POLE2;
-use crate::kernel::cells::{self, Cells};
-use crate::kernel::falloff::{Falloff, Tail, closed_forms};
-use crate::kernel::taylor::Taylor;
-use crate::plane::WINDOW;
+use crate::bone::Bone;
+use crate::kernel::{
+    ALONG, Cells, EDGE, Falloff, POLE2, Tail, WINDOW, WINDOWED, cell, numeric, powers,
+};
 use crate::{Jet, Real};
 use core::f64::consts::PI;
 
@@ -15,7 +13,7 @@ pub mod arc;
 pub mod polygon;
 pub mod segment;
 
-/// See the [module](self).
+/// The inverse kernel.
 pub(crate) struct Inverse;
 
 impl Falloff for Inverse {
@@ -24,31 +22,23 @@ impl Falloff for Inverse {
     const FORMULA: &'static str = "h(u) = 1/u";
     const TAIL: Tail = Tail::pole(1);
     const CELLS: Cells = Cells {
-        segment: cells::segment("F = asinh(x₂/ρ) − asinh(x₁/ρ)"),
-        arc: cells::arc("F = r₀ ∫ dφ/√(A − B cos φ), an elliptic integral of the first kind")
-            .by("Carlson")
-            .with("computed as Carlson's R_F"),
-        face: cells::face(
-            "F = Σ [ h·asinh(t/k) − |z|·atan2(ht, k²+|z|r) ] along each edge,   k² = h²+z²",
+        segment: cell("closed", "F = asinh(x₂/ρ) − asinh(x₁/ρ)", ALONG),
+        arc: cell(
+            "Carlson",
+            "F = r₀ ∫ dφ/√(A − B cos φ), an elliptic integral of the first kind",
+            "computed as Carlson's R_F",
         ),
-        plane: cells::windowed("F = 2π·(√(d²+w²) − d)"),
+        face: cell(
+            "closed",
+            "F = Σ [ h·asinh(t/k) − |z|·atan2(ht, k²+|z|r) ] along each edge,   k² = h²+z²",
+            EDGE,
+        ),
+        plane: cell("windowed", "F = 2π·(√(d²+w²) − d)", WINDOWED),
     };
-
-    #[inline(always)]
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N> {
-        (Taylor::constant(1.0) / (q + Taylor::constant(POLE2))).sqrt()
-    }
 
     fn derivatives(q: f64) -> [f64; 5] {
         let i = 1.0 / (q + POLE2);
-        let g = i.sqrt();
-        [
-            g,
-            -0.5 * g * i,
-            0.75 * g * i * i,
-            -1.875 * g * i * i * i,
-            6.5625 * g * i * i * i * i,
-        ]
+        powers(i.sqrt(), i, [1.0, -0.5, 0.75, -1.875, 6.5625])
     }
 
     #[inline(always)]
@@ -93,16 +83,15 @@ impl Falloff for Inverse {
         (value, window / ((near + far) * near * far))
     }
 
-    /// There is no width: the unit of length is the radius.
-    fn width(_blobbiness: f64) -> f64 {
-        1.0
-    }
-
-    closed_forms! { bone, p;
-        segment(Segment): segment::jet(bone, p);
-        arc(Arc): arc::jet(bone, p);
-        triangle(Triangle): polygon::triangle(bone, p);
-        polygon(Polygon): polygon::jet(bone, p);
+    #[inline(always)]
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        match bone {
+            Bone::Segment(bone) => segment::jet(bone, p),
+            Bone::Arc(bone) => arc::jet(bone, p),
+            Bone::Triangle(bone) => polygon::triangle(bone, p),
+            Bone::Polygon(bone) => polygon::jet(bone, p),
+            _ => numeric::jet::<Self, R>(bone, p),
+        }
     }
 }
 

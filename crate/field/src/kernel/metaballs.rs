@@ -7,11 +7,9 @@
 //! that the Gauss–Legendre rule serves better. The outer pieces stay ⅓ away from the root's branch
 //! points, so that it converges like a geometric series; each file states its error.
 
-use crate::bone::{Arc, Polygon, Segment, Triangle};
-use crate::kernel::cells::{self, Cells};
-use crate::kernel::falloff::{Falloff, Tail, closed_forms};
-use crate::kernel::polynomial::{self, GAUSS4};
-use crate::kernel::taylor::Taylor;
+use crate::bone::Bone;
+use crate::kernel::polynomial::{GAUSS4, face};
+use crate::kernel::{Cells, Falloff, Tail, cell, numeric};
 use crate::{Jet, Real};
 use core::f64::consts::PI;
 
@@ -24,7 +22,7 @@ pub const INNER: f64 = 1.0 / 3.0;
 /// Square of [`INNER`].
 pub const INNER2: f64 = 1.0 / 9.0;
 
-/// See the [module](self).
+/// The metaballs kernel.
 pub(crate) struct Metaballs;
 
 impl Falloff for Metaballs {
@@ -33,32 +31,26 @@ impl Falloff for Metaballs {
     const FORMULA: &'static str = "h(u) = 1−3u² up to u = ⅓, then 3/2·(1−u)² up to 1";
     const TAIL: Tail = Tail::Compact;
     const CELLS: Cells = Cells {
-        segment: cells::segment(
+        segment: cell(
+            "closed",
             "F = ∫ 3/2·(1−√(ρ²+x²))² dx, inside u < ⅓ replaced by ∫ (1−3(ρ²+x²)) dx",
-        )
-        .with(
             "both integrals are elementary; \
              the line is cut where it enters and leaves the two spheres",
         ),
-        arc: cells::arc(
+        arc: cell(
+            "Gauss–Legendre",
             "F = r₀ ∫ 3/2·(1−√(A − B cos φ))² dφ, an elliptic integral of the second kind",
-        )
-        .by("Gauss–Legendre")
-        .with("by Gauss–Legendre; the arc is cut where it enters and leaves the two spheres"),
-        face: polynomial::FACE.by("Gauss–Legendre"),
-        plane: cells::plane("F = 2π ∫ h(u) u du from u = d to 1")
-            .with("elementary; d is the distance from the plane"),
+            "by Gauss–Legendre; the arc is cut where it enters and leaves the two spheres",
+        ),
+        face: face("Gauss–Legendre"),
+        plane: cell(
+            "closed",
+            "F = 2π ∫ h(u) u du from u = d to 1",
+            "elementary; d is the distance from the plane",
+        ),
     };
     const KINKS: &'static [f64] = &[INNER, 1.0];
     const SMOOTHNESS: usize = 1;
-
-    #[inline(always)]
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N> {
-        let one = Taylor::constant(1.0);
-        let rest = one - q.sqrt();
-        let outer = q.split(1.0, 1.5 * (rest * rest), Taylor::constant(0.0));
-        q.split(INNER2, one - 3.0 * q, outer)
-    }
 
     fn derivatives(q: f64) -> [f64; 5] {
         if q <= INNER2 {
@@ -91,40 +83,33 @@ impl Falloff for Metaballs {
     }
 
     fn along(u: f64) -> f64 {
-        let cone = |u: f64| (1.0 - (1.0 - u.min(1.0)).powi(3)) / 3.0;
-        1.5 * cone(u) - cone(3.0 * u) / 6.0
-    }
-
-    fn over_disc(q: f64) -> f64 {
-        // 2∫(1−u)²u du from 0.
-        let cone = |u: f64| {
-            let rest = 1.0 - u.min(1.0);
-            (1.0 - rest * rest * rest * (1.0 + 3.0 * u.min(1.0))) / 6.0
-        };
-        let u = q.sqrt();
-        1.5 * cone(u) - cone(3.0 * u) / 18.0
+        let [outer, inner] = [u, 3.0 * u].map(|u| (1.0 - (1.0 - u.min(1.0)).powi(3)) / 3.0);
+        1.5 * outer - inner / 6.0
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {
-        Self::over_disc(q) - Self::over_disc(p)
+        let [inner, outer] = [p, q].map(|q| {
+            let u = q.sqrt();
+            1.5 * cone_on_disc(u) - cone_on_disc(3.0 * u) / 18.0
+        });
+        outer - inner
     }
 
     fn line(distance: f64) -> f64 {
         1.5 * cone_on_line(distance) - cone_on_line(3.0 * distance) / 6.0
     }
 
-    /// From `P(z) = (π/6)(1−z)³(1+3z)` as `1.5·P(z) − P(3z)/18`.
+    /// Computes `1.5·P(z) − P(3z)/18`, `P(z) = (π/6)(1−z)³(1+3z)`.
     #[inline(always)]
     fn plane<R: Real>(z: R) -> (R, R) {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let height = z.abs();
-        let part = |scale: f64| {
+        let [outer, inner] = [1.0, 3.0].map(|scale| {
             let u = height * R::splat(scale);
             let rest = (one - u).max(zero);
             rest * rest * rest * (one + R::splat(3.0) * u)
-        };
-        let value =
-            R::splat(PI / 6.0) * (R::splat(1.5) * part(1.0) - R::splat(1.0 / 18.0) * part(3.0));
+        });
+        let value = R::splat(PI / 6.0) * (R::splat(1.5) * outer - R::splat(1.0 / 18.0) * inner);
         (value, Self::falling(z * z).0)
     }
 
@@ -137,15 +122,25 @@ impl Falloff for Metaballs {
         }
     }
 
-    closed_forms! { bone, p;
-        segment(Segment): segment::jet(bone, p);
-        arc(Arc): arc::jet(bone, p);
-        triangle(Triangle): polygon::jet(&bone.edges, p);
-        polygon(Polygon): polygon::jet(&bone.edges, p);
+    #[inline(always)]
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        match bone {
+            Bone::Segment(bone) => segment::jet(bone, p),
+            Bone::Arc(bone) => arc::jet(bone, p),
+            Bone::Triangle(bone) => polygon::jet(&bone.edges, p),
+            Bone::Polygon(bone) => polygon::jet(&bone.edges, p),
+            _ => numeric::jet::<Self, R>(bone, p),
+        }
     }
 }
 
-/// The integral of `(1−u)²` within u ≤ 1, over a line at a distance.
+/// Computes `2∫(1−u)²u du` from 0 to u or 1.
+fn cone_on_disc(u: f64) -> f64 {
+    let rest = 1.0 - u.min(1.0);
+    (1.0 - rest * rest * rest * (1.0 + 3.0 * u.min(1.0))) / 6.0
+}
+
+/// Computes the integral of `(1−u)²` within u ≤ 1, over a line at a distance.
 fn cone_on_line(x: f64) -> f64 {
     if x >= 1.0 {
         return 0.0;

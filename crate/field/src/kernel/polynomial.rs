@@ -4,10 +4,8 @@
 //! over a polygon Green's theorem leaves polynomials along the edges. So every cell is exact once
 //! the bone is clipped to the ball v ≥ 0. Nothing is subtracted: outside, the field is 0 to the
 //! last bit, and short pieces keep their digits.
-use crate::bone::{Arc, Polygon, Segment, Triangle};
-use crate::kernel::cells::{self, Cell, Cells};
-use crate::kernel::falloff::{Falloff, Tail, closed_forms};
-use crate::kernel::taylor::Taylor;
+use crate::bone::Bone;
+use crate::kernel::{ALONG, AROUND, Cell, Cells, Falloff, HEIGHT, Tail, cell, numeric};
 use crate::{Jet, Real};
 use core::f64::consts::PI;
 
@@ -22,20 +20,21 @@ pub(crate) const GAUSS4: [[f64; 2]; 2] = [
     [0.861_136_311_594_052_6, 0.347_854_845_137_453_86],
 ];
 
-/// The chart's entry of faces.
-pub(crate) const FACE: Cell = cells::face(
-    "F = Σ h·[P(t)] along the part of each edge inside the disc, and G·(angle) along the rest",
-)
-.with(
-    "the disc is where the kernel's sphere meets the plane; \
-     P is a polynomial, G the field of the whole disc",
-);
+/// Makes the chart's entry of faces.
+pub(crate) const fn face(way: &'static str) -> Cell {
+    cell(
+        way,
+        "F = Σ h·[P(t)] along the part of each edge inside the disc, and G·(angle) along the rest",
+        "the disc is where the kernel's sphere meets the plane; \
+         P is a polynomial, G the field of the whole disc",
+    )
+}
 
 /// A kernel of this kind.
 pub(crate) trait Polynomial {
     /// Name in the dataset language.
     const NAME: &'static str;
-    /// Its meaning, for the manual.
+    /// The meaning, for the manual.
     const MEANING: &'static str;
     /// h, for people.
     const FORMULA: &'static str;
@@ -56,12 +55,18 @@ impl<P: Polynomial> Falloff for P {
     const FORMULA: &'static str = <P as Polynomial>::FORMULA;
     const TAIL: Tail = Tail::Compact;
     const CELLS: Cells = Cells {
-        segment: cells::segment(
+        segment: cell(
+            "closed",
             "F = ∫ (polynomial in 1−ρ²−x²) dx between the ends, cut to x² ≤ 1−ρ²",
+            ALONG,
         ),
-        arc: cells::arc("F = r₀ ∫ (polynomial in 1 − A + B cos φ) dφ, cut to where it is positive"),
-        face: FACE,
-        plane: cells::plane(P::PLANE),
+        arc: cell(
+            "closed",
+            "F = r₀ ∫ (polynomial in 1 − A + B cos φ) dφ, cut to where it is positive",
+            AROUND,
+        ),
+        face: face("closed"),
+        plane: cell("closed", P::PLANE, HEIGHT),
     };
     const KINKS: &'static [f64] = &[1.0];
     const SMOOTHNESS: usize = <P as Polynomial>::SMOOTHNESS;
@@ -70,17 +75,6 @@ impl<P: Polynomial> Falloff for P {
         let [c2, c3] = P::COEFFICIENTS;
         [24.0 * c2 + 72.0 * c3, 24.0 * c2 + 288.0 * c3]
     };
-
-    #[inline(always)]
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N> {
-        let [c2, c3] = P::COEFFICIENTS;
-        let v = Taylor::constant(1.0) - q;
-        q.split(
-            1.0,
-            v * v * (Taylor::constant(c2) + c3 * v),
-            Taylor::constant(0.0),
-        )
-    }
 
     fn derivatives(q: f64) -> [f64; 5] {
         let [c2, c3] = P::COEFFICIENTS;
@@ -115,15 +109,14 @@ impl<P: Polynomial> Falloff for P {
         u * (c2 * fourth + c3 * sixth)
     }
 
-    fn over_disc(q: f64) -> f64 {
-        let [c2, c3] = P::COEFFICIENTS;
-        let v = (1.0 - q).max(0.0);
-        let v3 = v * v * v;
-        c2 * (1.0 - v3) / 3.0 + c3 * (1.0 - v3 * v) / 4.0
-    }
-
     fn over_ring(p: f64, q: f64) -> f64 {
-        Self::over_disc(q) - Self::over_disc(p)
+        let [c2, c3] = P::COEFFICIENTS;
+        let [inner, outer] = [p, q].map(|q| {
+            let v = (1.0 - q).max(0.0);
+            let v3 = v * v * v;
+            c2 * (1.0 - v3) / 3.0 + c3 * (1.0 - v3 * v) / 4.0
+        });
+        outer - inner
     }
 
     fn line(distance: f64) -> f64 {
@@ -145,10 +138,14 @@ impl<P: Polynomial> Falloff for P {
         <P as Polynomial>::width(blobbiness)
     }
 
-    closed_forms! { bone, p;
-        segment(Segment): segment::jet(P::COEFFICIENTS, bone, p);
-        arc(Arc): arc::jet(P::COEFFICIENTS, bone, p);
-        triangle(Triangle): polygon::jet(P::COEFFICIENTS, &bone.edges, p);
-        polygon(Polygon): polygon::jet(P::COEFFICIENTS, &bone.edges, p);
+    #[inline(always)]
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        match bone {
+            Bone::Segment(bone) => segment::jet(P::COEFFICIENTS, bone, p),
+            Bone::Arc(bone) => arc::jet(P::COEFFICIENTS, bone, p),
+            Bone::Triangle(bone) => polygon::jet(P::COEFFICIENTS, &bone.edges, p),
+            Bone::Polygon(bone) => polygon::jet(P::COEFFICIENTS, &bone.edges, p),
+            _ => numeric::jet::<Self, R>(bone, p),
+        }
     }
 }

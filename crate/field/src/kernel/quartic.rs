@@ -1,7 +1,7 @@
 //! The quartic kernel, `(1−u²)²` up to u = 1.
 use crate::kernel::polynomial::Polynomial;
 
-/// See the [module](self).
+/// The quartic kernel.
 pub(crate) struct Quartic;
 
 impl Polynomial for Quartic {

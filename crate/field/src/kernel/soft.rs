@@ -1,7 +1,7 @@
 //! The soft objects' kernel, `1 − (4/9)u⁶ + (17/9)u⁴ − (22/9)u²` up to u = 1.
 use crate::kernel::polynomial::Polynomial;
 
-/// See the [module](self).
+/// The soft objects' kernel.
 pub(crate) struct Soft;
 
 impl Polynomial for Soft {

@@ -1,12 +1,10 @@
 //! The squared kernel, `h(r) = 1/(r²+ε²)`.
 //!
 //! ε rounds the pole off as it does the [inverse](crate::kernel::inverse) kernel's.
-use crate::bone::{Arc, Polygon, Segment, Triangle};
-use crate::kernel::POLE2;
-use crate::kernel::cells::{self, Cells};
-use crate::kernel::falloff::{Falloff, Tail, closed_forms};
-use crate::kernel::taylor::Taylor;
-use crate::plane::WINDOW;
+use crate::bone::Bone;
+use crate::kernel::{
+    ALONG, AROUND, Cells, EDGE, Falloff, POLE2, Tail, WINDOW, WINDOWED, cell, numeric, powers,
+};
 use crate::{Jet, Real};
 use core::f64::consts::PI;
 
@@ -14,7 +12,7 @@ pub mod arc;
 pub mod polygon;
 pub mod segment;
 
-/// See the [module](self).
+/// The squared kernel.
 pub(crate) struct Squared;
 
 impl Falloff for Squared {
@@ -23,26 +21,23 @@ impl Falloff for Squared {
     const FORMULA: &'static str = "h(u) = 1/u²";
     const TAIL: Tail = Tail::pole(2);
     const CELLS: Cells = Cells {
-        segment: cells::segment("F = (atan(x₂/ρ) − atan(x₁/ρ)) / ρ"),
-        arc: cells::arc("F = r₀ ∫ dφ/(A − B cos φ),   A = r₀²+ρ²+z²,   B = 2r₀ρ"),
-        face: cells::face("F = ½ · Σ ∫ ln(1 + (h²+t²)/z²) · h/(h²+t²) dt").by("dilogarithm"),
-        plane: cells::windowed("F = π·ln(1 + w²/d²)"),
+        segment: cell("closed", "F = (atan(x₂/ρ) − atan(x₁/ρ)) / ρ", ALONG),
+        arc: cell(
+            "closed",
+            "F = r₀ ∫ dφ/(A − B cos φ),   A = r₀²+ρ²+z²,   B = 2r₀ρ",
+            AROUND,
+        ),
+        face: cell(
+            "dilogarithm",
+            "F = ½ · Σ ∫ ln(1 + (h²+t²)/z²) · h/(h²+t²) dt",
+            EDGE,
+        ),
+        plane: cell("windowed", "F = π·ln(1 + w²/d²)", WINDOWED),
     };
-
-    #[inline(always)]
-    fn density<R: Real, const N: usize>(q: Taylor<R, N>) -> Taylor<R, N> {
-        Taylor::constant(1.0) / (q + Taylor::constant(POLE2))
-    }
 
     fn derivatives(q: f64) -> [f64; 5] {
         let i = 1.0 / (q + POLE2);
-        [
-            i,
-            -i * i,
-            2.0 * i * i * i,
-            -6.0 * i * i * i * i,
-            24.0 * i * i * i * i * i,
-        ]
+        powers(i, i, [1.0, -1.0, 2.0, -6.0, 24.0])
     }
 
     #[inline(always)]
@@ -78,15 +73,14 @@ impl Falloff for Squared {
         (R::splat(PI) * ratio.ln_1p(), ratio / (q + window))
     }
 
-    /// There is no width: the unit of length is the radius.
-    fn width(_blobbiness: f64) -> f64 {
-        1.0
-    }
-
-    closed_forms! { bone, p;
-        segment(Segment): segment::jet(bone, p);
-        arc(Arc): arc::jet(bone, p);
-        triangle(Triangle): polygon::triangle(bone, p);
-        polygon(Polygon): polygon::jet(bone, p);
+    #[inline(always)]
+    fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
+        match bone {
+            Bone::Segment(bone) => segment::jet(bone, p),
+            Bone::Arc(bone) => arc::jet(bone, p),
+            Bone::Triangle(bone) => polygon::triangle(bone, p),
+            Bone::Polygon(bone) => polygon::jet(bone, p),
+            _ => numeric::jet::<Self, R>(bone, p),
+        }
     }
 }
