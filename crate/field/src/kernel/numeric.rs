@@ -33,13 +33,15 @@ fn end<K: Falloff>() -> f64 {
     if K::TAIL == Tail::Compact { 1.0 } else { FAR }
 }
 
-/// Integrates functions from a to b that vary over the length `grain` around some places, and over
-/// longer ones further away.
-fn around<const N: usize>(
+/// Integrates functions of t and of the squared distance q(t), from a to b. They vary over the
+/// length `grain` around some places, and over longer ones further away; q is monotonic between
+/// places.
+fn around<K: Falloff, const N: usize>(
     places: &[f64],
     grain: f64,
     [a, b]: [f64; 2],
-    f: impl Fn(f64) -> [f64; N],
+    q: impl Fn(f64) -> f64,
+    f: impl Fn(f64, f64) -> [f64; N],
 ) -> [f64; N] {
     let mut breaks = vec![a, b];
     for place in places {
@@ -52,7 +54,35 @@ fn around<const N: usize>(
     }
     breaks.retain(|t| (a..=b).contains(t));
     heap_sort(&mut breaks, |a, b| a < b);
-    core::array::from_fn(|i| integral(&mut |t| f(t)[i], &breaks, TOLERANCE))
+    for i in 1..breaks.len() {
+        for kink in K::KINKS {
+            let [mut low, mut high] = [breaks[i - 1], breaks[i]];
+            let starts_inside = q(low) < kink * kink;
+            if starts_inside != (q(high) < kink * kink) {
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if starts_inside == (q(middle) < kink * kink) {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                breaks.push(low);
+            }
+        }
+    }
+    heap_sort(&mut breaks, |a, b| a < b);
+    core::array::from_fn(|i| integral(&mut |t| f(t, q(t))[i], &breaks, TOLERANCE))
+}
+
+/// Integrates functions of t and of the squared distance `rest + t²`.
+fn on_line<K: Falloff, const N: usize>(
+    rest: f64,
+    ends: [f64; 2],
+    f: impl Fn(f64, f64) -> [f64; N],
+) -> [f64; N] {
+    let grain = (softening::<K>() + rest).sqrt();
+    around::<K, N>(&[0.0], grain, ends, |t| rest + t * t, f)
 }
 
 /// Computes [`Falloff::jet`]: of points, planes and curves for all kernels, of other bones for
@@ -89,23 +119,19 @@ pub(crate) fn jet<K: Falloff, R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet
 
 /// Computes [`Falloff::along`].
 pub(super) fn along<K: Falloff>(u: f64) -> f64 {
-    around(&[0.0], softening::<K>().sqrt(), [0.0, u], |t| {
-        pair::<K>(t * t)
-    })[0]
+    on_line::<K, 2>(0.0, [0.0, u], |_, q| pair::<K>(q))[0]
 }
 
 /// Computes [`Falloff::over_ring`].
 pub(super) fn ring<K: Falloff>(p: f64, q: f64) -> f64 {
-    around(&[p], softening::<K>() + p, [p, q], pair::<K>)[0]
+    let grain = softening::<K>() + p;
+    around::<K, 2>(&[p], grain, [p, q], |q| q, |_, q| pair::<K>(q))[0]
 }
 
 /// Computes [`Falloff::line`].
 pub(super) fn line<K: Falloff>(distance: f64) -> f64 {
-    let rest = distance * distance;
-    let grain = (softening::<K>() + rest).sqrt();
-    2.0 * around(&[0.0], grain, [0.0, end::<K>()], |t| {
-        pair::<K>(rest + t * t)
-    })[0]
+    let ends = [0.0, end::<K>()];
+    2.0 * on_line::<K, 2>(distance * distance, ends, |_, q| pair::<K>(q))[0]
 }
 
 /// Computes [`Falloff::plane`].
@@ -147,22 +173,19 @@ fn by_lanes<R: Real>(p: [R; 3], jet: impl Fn([f64; 3]) -> [f64; 4]) -> Jet<R> {
     Jet { value, gradient }
 }
 
-/// Computes G and its gradient by the place, at a distance vector.
-fn point<K: Falloff>([x, y, z]: [f64; 3]) -> [f64; 4] {
-    let [value, slope] = pair::<K>(x * x + y * y + z * z);
-    [value, 2.0 * x * slope, 2.0 * y * slope, 2.0 * z * slope]
-}
-
 /// Computes a segment's field.
 fn segment<K: Falloff, R: Real>(bone: &Segment<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let half = bone.half.lane(0);
     by_lanes(p, |[x, y, z]| {
-        let grain = (softening::<K>() + y * y + z * z).sqrt();
-        around(&[x], grain, [-half, half], |t| point::<K>([x - t, y, z]))
+        on_line::<K, 4>(y * y + z * z, [-half - x, half - x], |t, q| {
+            let [value, slope] = pair::<K>(q);
+            [value, -2.0 * t * slope, 2.0 * y * slope, 2.0 * z * slope]
+        })
     })
 }
 
-/// Computes an arc's field.
+/// Computes an arc's field. Around the point's azimuth, at an angle w, it is
+/// `q = d² + 4ρr·sin²(w/2)`, d the distance from the circle.
 fn arc<K: Falloff, R: Real>(bone: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let [radius, side, half] = [bone.radius, bone.side, bone.half_angle].map(|x| x.lane(0));
     by_lanes(p, |[x, y, z]| {
@@ -171,11 +194,21 @@ fn arc<K: Falloff, R: Real>(bone: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
         let (azimuth, rho) = (libm::atan2(y, x), (x * x + y * y).sqrt());
         let rest = (rho - radius) * (rho - radius) + z * z;
         let grain = ((softening::<K>() + rest) / (rho * radius)).sqrt().min(1.0);
-        let turns = [azimuth - TAU, azimuth, azimuth + TAU];
-        let [value, x, y, z] = around(&turns, grain, [-half, half], |angle| {
-            let (sine, cosine) = libm::sincos(angle);
-            point::<K>([x - radius * cosine, y - radius * sine, z])
-        });
+        let [value, x, y, z] = around::<K, 4>(
+            &[-TAU, -PI, 0.0, PI, TAU],
+            grain,
+            [-half - azimuth, half - azimuth],
+            |angle| {
+                let sine = libm::sin(0.5 * angle);
+                rest + 4.0 * rho * radius * sine * sine
+            },
+            |angle, q| {
+                let (sine, cosine) = libm::sincos(azimuth + angle);
+                let [value, slope] = pair::<K>(q);
+                let by = [x - radius * cosine, y - radius * sine, z].map(|d| 2.0 * d * slope);
+                [value, by[0], by[1], by[2]]
+            },
+        );
         [value, side * x, y, z].map(|sum| radius * sum)
     })
 }
@@ -189,15 +222,14 @@ fn face<K: Falloff, R: Real>(edges: &[Edge<R::Scalar>], p: [R; 3]) -> Jet<R> {
     by_lanes(p, |[x, y, z]| {
         let mut sum = [0.0; 4];
         // Nearer to the foot differences lose their digits: there M and ΔG/ρ² are means.
-        let near = softening::<K>() + z * z;
+        let near = 1e-3 * (softening::<K>() + z * z);
         for edge in edges {
             let [ax, ay] = edge.along.map(|a| a.lane(0));
             let start = edge.start.lane(0) - (ax * x + ay * y);
             let h = ax * y - ay * x - edge.offset.lane(0);
             let ends = [start, start + edge.length.lane(0)];
-            let own = around(&[0.0], (near + h * h).sqrt(), ends, |t| {
+            let own = on_line::<K, 4>(z * z + h * h, ends, |t, q| {
                 let (height, square) = (z * z, h * h + t * t);
-                let q = height + square;
                 let [mean, rise] = if square < near {
                     [0, 1].map(|i| {
                         of_one_panel(
