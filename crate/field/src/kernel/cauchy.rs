@@ -65,10 +65,6 @@ impl Falloff for Cauchy {
         (g, R::splat(2.0) * g * i)
     }
 
-    fn square_of(ratio: f64) -> f64 {
-        ratio.sqrt() - 1.0
-    }
-
     fn along(u: f64) -> f64 {
         0.5 * (u / (1.0 + u * u) + libm::atan(u))
     }

@@ -50,10 +50,6 @@ impl Falloff for Cubed {
         (g, R::splat(1.5) * g * i)
     }
 
-    fn square_of(ratio: f64) -> f64 {
-        libm::cbrt(ratio * ratio) - POLE2
-    }
-
     fn along(u: f64) -> f64 {
         u / (POLE2 * (u * u + POLE2).sqrt())
     }

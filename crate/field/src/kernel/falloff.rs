@@ -98,11 +98,23 @@ pub(crate) trait Falloff: Sized {
     /// Returns the q at which G is `1/ratio`, negative if G is nowhere so large. Newton's steps
     /// from 0 never leave the inside, as G falls and is convex.
     fn square_of(ratio: f64) -> f64 {
-        let wanted = 1.0 / ratio;
-        (0..NEWTON).fold(0.0, |q, _| {
-            let [value, slope, ..] = Self::derivatives(q);
-            q + (wanted - value) / slope
-        })
+        let Tail::Power {
+            exponent,
+            softening,
+        } = Self::TAIL
+        else {
+            return (0..NEWTON).fold(0.0, |q, _| {
+                let [value, slope, ..] = Self::derivatives(q);
+                q + (1.0 / ratio - value) / slope
+            });
+        };
+        let square = match exponent {
+            1 => ratio * ratio,
+            2 => ratio,
+            3 => libm::cbrt(ratio * ratio),
+            _ => ratio.sqrt(),
+        };
+        square - softening
     }
 
     /// Computes `∫₀ᵘ h`, along a line through the point.

@@ -48,10 +48,6 @@ impl Falloff for Inverse {
         (g, R::splat(0.5) * g * i)
     }
 
-    fn square_of(ratio: f64) -> f64 {
-        ratio * ratio - POLE2
-    }
-
     fn along(u: f64) -> f64 {
         libm::asinh(u / POLE2.sqrt())
     }

@@ -33,56 +33,35 @@ fn end<K: Falloff>() -> f64 {
     if K::TAIL == Tail::Compact { 1.0 } else { FAR }
 }
 
-/// Integrates functions of t and of the squared distance q(t), from a to b. They vary over the
-/// length `grain` around some places, and over longer ones further away; q is monotonic between
-/// places.
-fn around<K: Falloff, const N: usize>(
-    places: &[f64],
-    grain: f64,
+/// Integrates functions from a to b that vary over the length `grain` around 0, and over longer
+/// ones further away; `kinks` are places on either side where a derivative jumps.
+fn around_0<const N: usize>(
     [a, b]: [f64; 2],
-    q: impl Fn(f64) -> f64,
-    f: impl Fn(f64, f64) -> [f64; N],
+    grain: f64,
+    kinks: impl Iterator<Item = f64>,
+    f: impl Fn(f64) -> [f64; N],
 ) -> [f64; N] {
-    let mut breaks = vec![a, b];
-    for place in places {
-        breaks.push(*place);
-        let mut step = grain;
-        while step < (a - place).abs().max((b - place).abs()) {
-            breaks.extend([place - step, place + step]);
-            step *= 2.0;
-        }
+    let mut breaks = vec![a, b, 0.0];
+    breaks.extend(kinks.flat_map(|t| [-t, t]));
+    let mut step = grain;
+    while step < a.abs().max(b.abs()) {
+        breaks.extend([-step, step]);
+        step *= 2.0;
     }
     breaks.retain(|t| (a..=b).contains(t));
     heap_sort(&mut breaks, |a, b| a < b);
-    for i in 1..breaks.len() {
-        for kink in K::KINKS {
-            let [mut low, mut high] = [breaks[i - 1], breaks[i]];
-            let starts_inside = q(low) < kink * kink;
-            if starts_inside != (q(high) < kink * kink) {
-                for _ in 0..60 {
-                    let middle = 0.5 * (low + high);
-                    if starts_inside == (q(middle) < kink * kink) {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                breaks.push(low);
-            }
-        }
-    }
-    heap_sort(&mut breaks, |a, b| a < b);
-    core::array::from_fn(|i| integral(&mut |t| f(t, q(t))[i], &breaks, TOLERANCE))
+    core::array::from_fn(|i| integral(&mut |t| f(t)[i], &breaks, TOLERANCE))
 }
 
-/// Integrates functions of t and of the squared distance `rest + t²`.
+/// Integrates functions of t and of the squared distance q = rest + t².
 fn on_line<K: Falloff, const N: usize>(
     rest: f64,
     ends: [f64; 2],
     f: impl Fn(f64, f64) -> [f64; N],
 ) -> [f64; N] {
+    let kinks = K::KINKS.iter().map(|u| (u * u - rest).max(0.0).sqrt());
     let grain = (softening::<K>() + rest).sqrt();
-    around::<K, N>(&[0.0], grain, ends, |t| rest + t * t, f)
+    around_0(ends, grain, kinks, |t| f(t, rest + t * t))
 }
 
 /// Computes [`Falloff::jet`]: of points, planes and curves for all kernels, of other bones for
@@ -124,8 +103,10 @@ pub(super) fn along<K: Falloff>(u: f64) -> f64 {
 
 /// Computes [`Falloff::over_ring`].
 pub(super) fn ring<K: Falloff>(p: f64, q: f64) -> f64 {
-    let grain = softening::<K>() + p;
-    around::<K, 2>(&[p], grain, [p, q], |q| q, |_, q| pair::<K>(q))[0]
+    let kinks = K::KINKS.iter().map(|u| u * u - p);
+    around_0([0.0, q - p], softening::<K>() + p, kinks, |t| {
+        pair::<K>(p + t)
+    })[0]
 }
 
 /// Computes [`Falloff::line`].
@@ -193,23 +174,30 @@ fn arc<K: Falloff, R: Real>(bone: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
         let x = side * (x + radius);
         let (azimuth, rho) = (libm::atan2(y, x), (x * x + y * y).sqrt());
         let rest = (rho - radius) * (rho - radius) + z * z;
-        let grain = ((softening::<K>() + rest) / (rho * radius)).sqrt().min(1.0);
-        let [value, x, y, z] = around::<K, 4>(
-            &[-TAU, -PI, 0.0, PI, TAU],
-            grain,
-            [-half - azimuth, half - azimuth],
-            |angle| {
+        let reach = 4.0 * rho * radius;
+        let grain = ((softening::<K>() + rest) / reach).sqrt().min(0.5);
+        let mut sum = [0.0; 4];
+        // Both ways round, so that the nearest place is at 0.
+        for turn in [-TAU, 0.0, TAU] {
+            let [a, b] = [-half, half].map(|end| (end + turn - azimuth).clamp(-PI, PI));
+            if a >= b {
+                continue;
+            }
+            let kinks = K::KINKS.iter().map(|u| {
+                let square = ((u * u - rest) / reach).clamp(0.0, 1.0);
+                2.0 * libm::asin(square.sqrt())
+            });
+            let part = around_0([a, b], 2.0 * grain, kinks, |angle| {
                 let sine = libm::sin(0.5 * angle);
-                rest + 4.0 * rho * radius * sine * sine
-            },
-            |angle, q| {
+                let [value, slope] = pair::<K>(rest + reach * sine * sine);
                 let (sine, cosine) = libm::sincos(azimuth + angle);
-                let [value, slope] = pair::<K>(q);
                 let by = [x - radius * cosine, y - radius * sine, z].map(|d| 2.0 * d * slope);
                 [value, by[0], by[1], by[2]]
-            },
-        );
-        [value, side * x, y, z].map(|sum| radius * sum)
+            });
+            sum = core::array::from_fn(|i| sum[i] + radius * part[i]);
+        }
+        let [value, x, y, z] = sum;
+        [value, side * x, y, z]
     })
 }
 
@@ -246,9 +234,7 @@ fn face<K: Falloff, R: Real>(edges: &[Edge<R::Scalar>], p: [R; 3]) -> Jet<R> {
                 let value = pair::<K>(q)[0];
                 [0.5 * h * mean, -ay * value, ax * value, z * h * rise]
             });
-            for (sum, own) in sum.iter_mut().zip(own) {
-                *sum += own;
-            }
+            sum = core::array::from_fn(|i| sum[i] + own[i]);
         }
         sum
     })

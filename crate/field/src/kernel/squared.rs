@@ -46,10 +46,6 @@ impl Falloff for Squared {
         (i, i * i)
     }
 
-    fn square_of(ratio: f64) -> f64 {
-        ratio - POLE2
-    }
-
     fn along(u: f64) -> f64 {
         let pole = POLE2.sqrt();
         libm::atan(u / pole) / pole
