@@ -1,4 +1,4 @@
-//! A kernel on a bone. The formulas stand in the kernels' files; BENCHMARKS.md lists the cost of each
+//! A kernel on a bone. The formulas stand in the kernels' files; BENCHMARKS.md lists each one's cost
 //! and its worst error in single precision.
 use crate::bone::Bone;
 use crate::{Jet, Kernel, Real};
