@@ -1,5 +1,5 @@
-//! A kernel on a bone. The formulas stand in the kernels' files; BENCHMARKS.md lists each one's cost
-//! and its worst error in single precision.
+//! A kernel on a bone. The formulas stand in the kernels' files; BENCHMARKS.md lists their costs
+//! and worst errors in single precision.
 use crate::bone::Bone;
 use crate::{Jet, Kernel, Real};
 
