@@ -1,11 +1,11 @@
 //! Primitives made ready for evaluation: a closed form, and the frame in which it is written.
 use crate::bone::curve::Law;
 use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
-use crate::cubed::cone::Cone;
 use crate::form::Form;
+use crate::kernel::cubed::cone::Cone;
 use crate::skeleton::{area_vector, cubic, orthonormal};
 use crate::waves::Waves;
-use crate::{Jet, Kernel, Real, Skeleton, point};
+use crate::{Jet, Kernel, Real, Skeleton};
 use glam::{DMat3, DVec3};
 
 /// Local coordinates: `axes·(p − origin)`; the axes are orthogonal and as long as the kernel's
@@ -123,7 +123,7 @@ impl<S: Copy> Term<S> {
             let x = (p[i] - origin[i]) * scale;
             x.min(horizon).max(-horizon)
         });
-        let jet = point::jet(self.form.kernel, local);
+        let jet = self.form.kernel.jet(&Bone::Point, local);
         let amplitude = R::lift(self.amplitude);
         let steep = amplitude * scale;
         Jet {
@@ -321,12 +321,12 @@ pub(crate) fn curve_with_taper(
                 _ => [DVec3::ZERO; 4],
             };
             let cubics = [local(control)];
-            if let (Kernel::Cubed, Skeleton::Segment { base, apex }) = (kernel, skeleton) {
+            if let (true, Skeleton::Segment { base, apex }) = (kernel.has_cones(), skeleton) {
                 let half = 0.5 * frame.local_vector(*apex - *base).length();
                 // A kernel's width parameter is 1/R.
                 let radii = [0.0, 1.0].map(|end| 1.0 / law(end)[1].sqrt());
                 if let Some(cone) = Cone::new(half, radii) {
-                    return Curve::straight(cone, cubics[0], law);
+                    return Curve::straight(kernel, cone, cubics[0], law);
                 }
             }
             Curve::new(kernel, &cubics, &cubics, Some(law))
