@@ -110,23 +110,12 @@ impl Curves {
 
     /// The shapes that stand for the curves in drafts: cones, and balls between them.
     pub(crate) fn draft(&self, to_world: &DAffine3, growth: f64) -> Vec<Shape> {
-        let balls = self
-            .points()
-            .filter(|(_, radius)| *radius > 0.0)
-            .map(|(center, radius)| Shape::Sphere {
-                center: to_world.transform_point3(center),
-                radius: radius * growth,
-            });
-        balls
-            .chain(
-                self.pieces()
-                    .map(|[(base, start), (apex, end)]| Shape::Cone {
-                        base: to_world.transform_point3(base),
-                        base_radius: start * growth,
-                        apex: to_world.transform_point3(apex),
-                        apex_radius: end * growth,
-                    }),
-            )
-            .collect()
+        let place = |p: DVec3| to_world.transform_point3(p);
+        let balls = self.points().filter(|(_, radius)| *radius > 0.0);
+        let balls = balls.map(|(center, radius)| Shape::sphere(place(center), radius * growth));
+        let cones = self.pieces().map(|[(base, start), (apex, end)]| {
+            Shape::cone(place(base), start * growth, place(apex), end * growth)
+        });
+        balls.chain(cones).collect()
     }
 }

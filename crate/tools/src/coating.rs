@@ -62,7 +62,7 @@ pub(crate) fn ball(radius: f64) -> Arc<Scene> {
     let center = glam::DVec3::ZERO;
     scene.elements.push(scene::Element {
         flesh: Some(0),
-        ..scene::Element::new(scene::Shape::Sphere { center, radius })
+        ..scene::Element::new(scene::Shape::sphere(center, radius))
     });
     Arc::new(scene)
 }

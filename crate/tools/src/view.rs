@@ -308,10 +308,7 @@ mod tests {
         let ball = |x: f64, finish, flesh| Element {
             flesh,
             finish,
-            ..Element::new(Shape::Sphere {
-                center: DVec3::new(x, 0.0, 0.0),
-                radius: 1.0,
-            })
+            ..Element::new(Shape::sphere(DVec3::new(x, 0.0, 0.0), 1.0))
         };
         scene.elements = vec![
             ball(0.0, 0, Some(0)),

@@ -646,7 +646,7 @@ mod tests {
         let radius = 0.25;
         scene.elements = vec![Element {
             kernel: Kernel::Gauss,
-            ..element(Shape::Sphere { center, radius }, 0)
+            ..element(Shape::sphere(center, radius), 0)
         }];
         let surfaces = scene.soft_surfaces();
         Soft::new(scene, surfaces)

@@ -1280,7 +1280,7 @@ mod tests {
         for i in 0..400 {
             let center = numbers.vector(1.0);
             let carves = carving != 0.0 && i % 20 == 0;
-            let shape = Shape::Sphere { center, radius };
+            let shape = Shape::sphere(center, radius);
             scene.elements.push(element(shape, u32::from(carves)));
         }
         let surfaces = scene.soft_surfaces();

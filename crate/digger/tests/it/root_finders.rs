@@ -48,20 +48,17 @@ fn easy() -> Scene {
     clothe(&mut scene, vec![soft(-2.0, 1.0)]);
     let radius = 0.25;
     for shape in [
-        Shape::Cylinder {
-            base: DVec3::new(-1.0, 0.0, 0.1),
-            apex: DVec3::new(1.0, 0.0, 0.1),
+        Shape::cylinder(
+            DVec3::new(-1.0, 0.0, 0.1),
+            DVec3::new(1.0, 0.0, 0.1),
             radius,
-        },
-        Shape::Cylinder {
-            base: DVec3::new(0.1, -1.0, 0.0),
-            apex: DVec3::new(0.0, 1.0, 0.0),
+        ),
+        Shape::cylinder(
+            DVec3::new(0.1, -1.0, 0.0),
+            DVec3::new(0.0, 1.0, 0.0),
             radius,
-        },
-        Shape::Sphere {
-            center: DVec3::new(0.7, 0.7, 0.2),
-            radius,
-        },
+        ),
+        Shape::sphere(DVec3::new(0.7, 0.7, 0.2), radius),
     ] {
         scene.elements.push(element(shape, 0));
     }
@@ -110,9 +107,7 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
         let mut scene = blend(seed, 2 + seed as usize % 7);
         scene.settings.influence = 1e-9;
         // Rays that leave through the far end of a plane are beyond what is compared.
-        scene
-            .elements
-            .retain(|e| !matches!(e.shape, Shape::Plane { .. }));
+        scene.elements.retain(|e| e.shape.bounds(0.0).is_some());
         let exact = Picture::new(&scene, [8, 8]);
         let field = scene.soft_surfaces().swap_remove(0).sum;
         for digger in [Digger::Lg, Digger::Sphere] {
@@ -188,14 +183,9 @@ fn rays_along_the_surface_come_to_an_end() {
     // All along the ray the field of the plane is T, and its slope 0.
     let mut scene = empty();
     clothe(&mut scene, vec![soft(-1.0, 1.0)]);
-    scene.elements.push(element(
-        Shape::Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::Y,
-            radius: 0.25,
-        },
-        0,
-    ));
+    scene
+        .elements
+        .push(element(Shape::plane(DVec3::ZERO, DVec3::Y, 0.25), 0));
     for digger in ALL {
         let picture = dig(&scene, digger);
         for y in [0.25, 0.25 + 1e-13, 0.25 - 1e-13, 0.0] {
@@ -267,7 +257,7 @@ fn a_ray_through_very_many_primitives_comes_to_an_end() {
     for _ in 0..5_000 {
         let center = n.vector(0.3);
         let radius = 0.25;
-        let ball = Shape::Sphere { center, radius };
+        let ball = Shape::sphere(center, radius);
         scene.elements.push(element(ball, 0));
     }
     for digger in ALL {

@@ -4,6 +4,7 @@ use fidget_core::context::Tree;
 use fidget_jit::JitShape;
 use fidget_mesh::{Octree, Settings};
 use field::Kernel;
+use field::Skeleton;
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
 use nalgebra::Matrix4;
@@ -16,7 +17,7 @@ use scene::{Element, Scene, Shape};
 /// Anything else in the scene.
 pub fn tree(scene: &Scene) -> Result<Tree, String> {
     let ball = |element: &Element| {
-        let Shape::Sphere { center, .. } = element.shape else {
+        let Some(&Skeleton::Point { center }) = element.shape.skeleton() else {
             return Err("only balls can be given to fidget");
         };
         let flesh = element.flesh.and_then(|i| scene.flesh.get(i as usize));

@@ -42,15 +42,11 @@ fn soft(shapes: impl IntoIterator<Item = Shape>) -> Scene {
 }
 
 fn sphere(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere { center, radius }
+    Shape::sphere(center, radius)
 }
 
 fn plane(radius: f64) -> Shape {
-    Shape::Plane {
-        point: DVec3::ZERO,
-        normal: DVec3::Y,
-        radius,
-    }
+    Shape::plane(DVec3::ZERO, DVec3::Y, radius)
 }
 
 #[test]
@@ -159,10 +155,9 @@ fn polygons_with_corners_on_their_sides_make_closed_prisms() {
         corner(1.0, 1.5),
     ];
     let mut scene = Scene::default();
-    scene.elements.push(Element::new(Shape::Polygon {
-        rings: vec![outer, hole],
-        radius: 0.1,
-    }));
+    scene
+        .elements
+        .push(Element::new(Shape::polygon(vec![outer, hole], 0.1)));
     let model = meshed(&scene, &coarse()).unwrap();
     let part = &model.parts[0];
     assert!(part.is_closed);

@@ -441,9 +441,7 @@ fn functions_have_a_hard_form() {
         panic!("no function");
     };
     let ball = function.draft().remove(0);
-    let Shape::Sphere { center, radius } = ball else {
-        panic!("no ball");
-    };
+    let (center, radius) = (ball.middle(), ball.radius());
     let hits = picture.hits(center + 10.0 * DVec3::Z, DVec3::NEG_Z);
     assert!(hits.iter().any(|hit| (hit.t - 10.0 + radius).abs() < 1e-9));
 }
@@ -580,10 +578,7 @@ fn molecules(number: u32, apart: bool) -> Scene {
         let center = numbers.vector(1.0);
         let body = if apart { i } else { 0 };
         for around in [DVec3::X, DVec3::Y, DVec3::Z] {
-            let shape = Shape::Sphere {
-                center: center + 0.5 * radius * around,
-                radius: 0.6 * radius,
-            };
+            let shape = Shape::sphere(center + 0.5 * radius * around, 0.6 * radius);
             let element = Element {
                 kernel: Kernel::Gauss,
                 body,
