@@ -86,95 +86,155 @@ pub trait Map {
     fn affine(&self) -> DAffine3;
 }
 
-/// Geometry of a bone; see [`Skeleton`]'s methods of the same names.
-pub(crate) trait Geometry {
-    fn name(&self) -> &'static str;
-
-    fn dimension(&self) -> u8;
-
-    fn measure(&self) -> f64;
-
-    fn most_length(&self) -> f64 {
-        self.measure()
-    }
-
-    /// Returns a length from which the number of kernel widths across the bone follows.
-    fn size(&self) -> f64 {
-        self.bounding_sphere().map_or(0.0, |(_, r)| 2.0 * r)
-    }
-
-    fn nearest(&self, point: DVec3) -> DVec3;
-
-    fn bounding_sphere(&self) -> Option<(DVec3, f64)>;
-
-    fn bounds(&self, radius: f64) -> Option<(DVec3, DVec3)> {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for (p, _) in self.landmarks() {
-            if p.is_nan() {
-                return Some((DVec3::NAN, DVec3::NAN));
-            }
-            (low, high) = (low.min(p - radius), high.max(p + radius));
+/// Writes the trait of a bone's geometry, which the file of each bone implements, and the methods
+/// of [`Skeleton`] that ask it.
+macro_rules! geometry {
+    (
+        each {$(
+            $(#[$doc:meta])*
+            $vis:vis fn $name:ident(&$own:ident $(, $arg:ident: $type:ty)*) -> $out:ty;
+        )+}
+        most {$(
+            $(#[$doc_:meta])*
+            $vis_:vis fn $name_:ident(&$own_:ident $(, $arg_:ident: $type_:ty)*) -> $out_:ty
+            $body:block
+        )+}
+    ) => {
+        /// Geometry of a bone.
+        trait Geometry {
+            $($(#[$doc])* fn $name(&$own $(, $arg: $type)*) -> $out;)+
+            $($(#[$doc_])* fn $name_(&$own_ $(, $arg_: $type_)*) -> $out_ $body)+
         }
-        Some((low, high))
+
+        impl Skeleton {
+            $($(#[$doc])* #[must_use]
+            $vis fn $name(&$own $(, $arg: $type)*) -> $out {
+                $own.with(|bone| bone.$name($($arg),*))
+            })+
+            $($(#[$doc_])* #[must_use]
+            $vis_ fn $name_(&$own_ $(, $arg_: $type_)*) -> $out_ {
+                $own_.with(|bone| bone.$name_($($arg_),*))
+            })+
+        }
+    };
+}
+
+geometry! {
+    each {
+        /// Returns the bone's name: "point", "segment" …
+        pub fn name(&self) -> &'static str;
+        /// Returns 0 for points, 1 for segments, arcs and curves, 2 for triangles, polygons and
+        /// planes.
+        pub fn dimension(&self) -> u8;
+        /// Computes length or area; 1 for a point, infinite for a plane.
+        pub fn measure(&self) -> f64;
+        /// Computes the point nearest to `point` (one of them, where there are several).
+        pub fn nearest(&self, point: DVec3) -> DVec3;
+        /// Returns a sphere (centre, radius) that holds the bone; `None` for a plane.
+        pub fn bounding_sphere(&self) -> Option<(DVec3, f64)>;
+        /// Returns a place in the bone's middle.
+        pub fn middle(&self) -> DVec3;
+        /// Returns the points by which it is given, or by which a person knows it, with their
+        /// names.
+        pub fn landmarks(&self) -> Vec<(DVec3, &'static str)>;
+        /// Maps the bone.
+        pub fn mapped(&self, map: &dyn Map) -> Skeleton;
+        /// Computes the local frame and the bone in it, for a kernel and its width parameter s.
+        pub(crate) fn place(&self, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>);
     }
 
-    fn middle(&self) -> DVec3;
+    most {
+        /// Computes a length that is not less than [`Skeleton::measure`], and fast: that of a
+        /// curve's control polygon.
+        pub fn most_length(&self) -> f64 {
+            self.measure()
+        }
 
-    fn landmarks(&self) -> Vec<(DVec3, &'static str)>;
+        /// Returns a length that with the width parameter tells how many kernel widths large it is.
+        pub(crate) fn size(&self) -> f64 {
+            self.bounding_sphere().map_or(0.0, |(_, radius)| 2.0 * radius)
+        }
 
-    fn is_within(&self, limit: f64) -> bool {
-        self.landmarks().iter().all(|(p, _)| fits(*p, limit))
-    }
+        /// Returns the lowest and the highest corner of a box that holds all within `radius` of the
+        /// bone; `None` for a plane. NaN if a coordinate is NaN.
+        pub fn bounds(&self, radius: f64) -> Option<(DVec3, DVec3)> {
+            let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            for (p, _) in self.landmarks() {
+                if p.is_nan() {
+                    return Some((DVec3::NAN, DVec3::NAN));
+                }
+                (low, high) = (low.min(p - radius), high.max(p + radius));
+            }
+            Some((low, high))
+        }
 
-    fn is_finite(&self) -> bool {
-        self.is_within(f64::MAX)
-    }
+        /// Whether no coordinate or radius is larger than a limit, or not finite.
+        pub fn is_within(&self, limit: f64) -> bool {
+            self.landmarks().iter().all(|(p, _)| fits(*p, limit))
+        }
 
-    fn fault(&self) -> Option<&'static str> {
-        None
-    }
+        /// Whether all its numbers are finite and its radius, if any, is not negative.
+        pub fn is_finite(&self) -> bool {
+            self.is_within(f64::MAX)
+        }
 
-    fn at(&self, share: f64) -> DVec3 {
-        let _ = share;
-        self.middle()
-    }
+        /// Returns how it falls short of its dimension, as what follows on "this" and a noun;
+        /// `None` if it does not.
+        pub fn fault(&self) -> Option<&'static str> {
+            None
+        }
 
-    fn tangent(&self, share: f64) -> Option<DVec3> {
-        let _ = share;
-        None
-    }
+        /// Computes the point of a line at a share of its parameter; the middle of others.
+        pub fn at(&self, share: f64) -> DVec3 {
+            let _ = share;
+            self.middle()
+        }
 
-    fn normal(&self) -> Option<DVec3> {
-        None
-    }
+        /// Computes the unit tangent of a line at a share of its parameter.
+        pub fn tangent(&self, share: f64) -> Option<DVec3> {
+            let _ = share;
+            None
+        }
 
-    fn samples(&self) -> Vec<DVec3> {
-        (0..=8).map(|i| self.at(f64::from(i) / 8.0)).collect()
-    }
+        /// Computes the unit normal of a face.
+        pub fn normal(&self) -> Option<DVec3> {
+            None
+        }
 
-    fn polyline(&self, size: f64) -> Vec<Vec<DVec3>>;
+        /// Returns points of the bone, as many as suit a quick look at its field.
+        pub fn samples(&self) -> Vec<DVec3> {
+            let steps = if self.dimension() == 1 { 8 } else { 0 };
+            (0..=steps).map(|i| self.at(f64::from(i) / 8.0)).collect()
+        }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton;
+        /// Returns the lines by which it is drawn, each through some points. `size` is the length
+        /// of lines for bones without a size: a cross at a point (0.3 times as long), a piece of a
+        /// plane.
+        pub fn lines(&self, size: f64) -> Vec<Vec<DVec3>> {
+            match self.dimension() {
+                0 => cross(self.middle(), size),
+                _ => vec![(0..=64).map(|i| self.at(f64::from(i) / 64.0)).collect()],
+            }
+        }
 
-    fn part(&self, from: f64, to: f64) -> Option<Skeleton> {
-        let _ = (from, to);
-        None
-    }
+        /// Returns the piece of a line between two shares of its parameter; `None` for others.
+        pub fn part(&self, from: f64, to: f64) -> Option<Skeleton> {
+            let _ = (from, to);
+            None
+        }
 
-    /// Computes the local frame and the bone in it, for a kernel and its width parameter s.
-    fn place(&self, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>);
-
-    /// Returns cubic Bézier curves that together are a line: as close to it as double precision
-    /// needs for s = 0, as single precision needs for a width parameter s. None for others.
-    fn cubics(&self, s: f64) -> Vec<[DVec3; 4]> {
-        let _ = s;
-        Vec::new()
+        /// Returns cubic Bézier curves that together are a line: as close to it as double precision
+        /// needs for s = 0, as single precision needs for a width parameter s. None for others.
+        pub(crate) fn cubics(&self, s: f64) -> Vec<[DVec3; 4]> {
+            let _ = s;
+            Vec::new()
+        }
     }
 }
 
 impl Skeleton {
     /// Calls a function with the bone's geometry.
-    pub(crate) fn with<T>(&self, f: impl FnOnce(&dyn Geometry) -> T) -> T {
+    fn with<T>(&self, f: impl FnOnce(&dyn Geometry) -> T) -> T {
         match *self {
             Self::Point { center } => f(&point::Point { center }),
             Self::Segment { base, apex } => f(&segment::Segment { base, apex }),
@@ -198,128 +258,10 @@ impl Skeleton {
         }
     }
 
-    /// Returns the bone's name: "point", "segment" …
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        self.with(|bone| bone.name())
-    }
-
-    /// Returns 0 for points, 1 for segments, arcs and curves, 2 for triangles, polygons and planes.
-    #[must_use]
-    pub fn dimension(&self) -> u8 {
-        self.with(|bone| bone.dimension())
-    }
-
-    /// Length or area; 1 for a point, infinite for a plane.
-    #[must_use]
-    pub fn measure(&self) -> f64 {
-        self.with(|bone| bone.measure())
-    }
-
-    /// Computes a length that is not less than [`Skeleton::measure`], and fast: that of a curve's
-    /// control polygon.
-    #[must_use]
-    pub fn most_length(&self) -> f64 {
-        self.with(|bone| bone.most_length())
-    }
-
-    /// The point of the skeleton nearest to `point` (one of them, where there are several).
-    #[must_use]
-    pub fn nearest(&self, point: DVec3) -> DVec3 {
-        self.with(|bone| bone.nearest(point))
-    }
-
     /// Distance of a point from the skeleton.
     #[must_use]
     pub fn distance(&self, point: DVec3) -> f64 {
         (point - self.nearest(point)).length()
-    }
-
-    /// Returns a sphere (centre, radius) that holds the skeleton; `None` for a plane.
-    #[must_use]
-    pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
-        self.with(|bone| bone.bounding_sphere())
-    }
-
-    /// Returns the lowest and the highest corner of a box that holds all within `radius` of the
-    /// bone; `None` for a plane. NaN if a coordinate is NaN.
-    #[must_use]
-    pub fn bounds(&self, radius: f64) -> Option<(DVec3, DVec3)> {
-        self.with(|bone| bone.bounds(radius))
-    }
-
-    /// Returns a place in the bone's middle.
-    #[must_use]
-    pub fn middle(&self) -> DVec3 {
-        self.with(|bone| bone.middle())
-    }
-
-    /// Returns the points by which it is given, or by which a person knows it, each with a name.
-    #[must_use]
-    pub fn landmarks(&self) -> Vec<(DVec3, &'static str)> {
-        self.with(|bone| bone.landmarks())
-    }
-
-    /// Whether no coordinate or radius is larger than a limit, or not finite.
-    #[must_use]
-    pub fn is_within(&self, limit: f64) -> bool {
-        self.with(|bone| bone.is_within(limit))
-    }
-
-    /// Whether all its numbers are finite and its radius, if any, is not negative.
-    #[must_use]
-    pub fn is_finite(&self) -> bool {
-        self.with(|bone| bone.is_finite())
-    }
-
-    /// Returns how it falls short of its dimension, as what follows on "this" and a noun; `None` if
-    /// it does not.
-    #[must_use]
-    pub fn fault(&self) -> Option<&'static str> {
-        self.with(|bone| bone.fault())
-    }
-
-    /// Computes the point of a line at a share of its parameter; the middle of others.
-    #[must_use]
-    pub fn at(&self, share: f64) -> DVec3 {
-        self.with(|bone| bone.at(share))
-    }
-
-    /// Computes the unit tangent of a line at a share of its parameter.
-    #[must_use]
-    pub fn tangent(&self, share: f64) -> Option<DVec3> {
-        self.with(|bone| bone.tangent(share))
-    }
-
-    /// Computes the unit normal of a face.
-    #[must_use]
-    pub fn normal(&self) -> Option<DVec3> {
-        self.with(|bone| bone.normal())
-    }
-
-    /// Returns points of the bone, as many as suit a quick look at its field.
-    #[must_use]
-    pub fn samples(&self) -> Vec<DVec3> {
-        self.with(|bone| bone.samples())
-    }
-
-    /// Returns the lines by which it is drawn, each through some points. `size` is the length of
-    /// lines for bones without a size: half a cross at a point, a piece of a plane.
-    #[must_use]
-    pub fn polyline(&self, size: f64) -> Vec<Vec<DVec3>> {
-        self.with(|bone| bone.polyline(size))
-    }
-
-    /// Maps the bone.
-    #[must_use]
-    pub fn mapped(&self, map: &dyn Map) -> Self {
-        self.with(|bone| bone.mapped(map))
-    }
-
-    /// Returns the piece of a line between two shares of its parameter; `None` for others.
-    #[must_use]
-    pub fn part(&self, from: f64, to: f64) -> Option<Self> {
-        self.with(|bone| bone.part(from, to))
     }
 }
 

@@ -171,7 +171,7 @@ impl Prepared {
 
 /// The local frame and closed form of a skeleton, for the kernel's width parameter s.
 pub(crate) fn place(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Form<f64>) {
-    let (frame, bone) = skeleton.with(|bone| bone.place(kernel, s));
+    let (frame, bone) = skeleton.place(kernel, s);
     (frame, Form { kernel, bone })
 }
 
@@ -184,7 +184,7 @@ pub(crate) fn curve_with_taper(
     law: Law<'_>,
 ) -> Curve<f64> {
     let cubics = |s: f64| -> Vec<_> {
-        let cubics = skeleton.with(|bone| bone.cubics(s)).into_iter();
+        let cubics = skeleton.cubics(s).into_iter();
         let local = cubics.map(|control| cubic(control.map(|p| frame.local_point(p))));
         local.collect()
     };

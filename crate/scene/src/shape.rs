@@ -310,7 +310,7 @@ impl Shape {
     #[must_use]
     pub fn lines(&self, size: f64) -> Vec<Vec<DVec3>> {
         match self {
-            Self::Bone(bone) => bone.skeleton.polyline(size),
+            Self::Bone(bone) => bone.skeleton.lines(size),
             Self::Box(cuboid) => cuboid.edges(),
             Self::Function(function) if function.curves().is_some() => {
                 let pieces = function.curves().into_iter().flat_map(Curves::pieces);

@@ -6,9 +6,6 @@ use crate::term::{Frame, frame};
 use core::f64::consts::{FRAC_PI_8, PI, TAU};
 use glam::{DMat3, DVec3};
 
-/// Number of lines that draw an arc.
-const LINES: usize = 64;
-
 pub(super) struct Arc {
     pub center: DVec3,
     pub u: DVec3,
@@ -97,11 +94,6 @@ impl Geometry for Arc {
     fn tangent(&self, share: f64) -> Option<DVec3> {
         let (sine, cosine) = libm::sincos(self.angle * share);
         (self.v * cosine - self.u * sine).try_normalize()
-    }
-
-    fn polyline(&self, _: f64) -> Vec<Vec<DVec3>> {
-        let shares = (0..=LINES).map(|i| i as f64 / LINES as f64);
-        vec![shares.map(|share| self.at(share)).collect()]
     }
 
     fn mapped(&self, map: &dyn Map) -> Skeleton {

@@ -93,7 +93,7 @@ impl Geometry for Curve {
         along.try_normalize().or((d - a).try_normalize())
     }
 
-    fn polyline(&self, _: f64) -> Vec<Vec<DVec3>> {
+    fn lines(&self, _: f64) -> Vec<Vec<DVec3>> {
         let [a, b, c, d] = self.control;
         let shares = (0..=LINES).map(|i| i as f64 / LINES as f64);
         let line = shares.map(|share| self.at(share)).collect();

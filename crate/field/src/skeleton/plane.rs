@@ -52,12 +52,8 @@ impl Geometry for Plane {
         self.normal.try_normalize()
     }
 
-    fn samples(&self) -> Vec<DVec3> {
-        vec![self.point]
-    }
-
     /// A square of the plane, and the normal.
-    fn polyline(&self, size: f64) -> Vec<Vec<DVec3>> {
+    fn lines(&self, size: f64) -> Vec<Vec<DVec3>> {
         let (u, v) = self.normal.any_orthonormal_pair();
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
         let corners = corners.map(|(a, b)| self.point + (u * a + v * b) * size);

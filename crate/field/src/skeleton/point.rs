@@ -1,5 +1,5 @@
 //! A point.
-use super::{Geometry, Map, Skeleton, cross};
+use super::{Geometry, Map, Skeleton};
 use crate::Kernel;
 use crate::bone::Bone;
 use crate::term::{Frame, frame};
@@ -36,14 +36,6 @@ impl Geometry for Point {
 
     fn landmarks(&self) -> Vec<(DVec3, &'static str)> {
         vec![(self.center, "the centre")]
-    }
-
-    fn samples(&self) -> Vec<DVec3> {
-        vec![self.center]
-    }
-
-    fn polyline(&self, size: f64) -> Vec<Vec<DVec3>> {
-        cross(self.center, size)
     }
 
     fn mapped(&self, map: &dyn Map) -> Skeleton {

@@ -74,7 +74,7 @@ impl Geometry for Polygon<'_> {
         corners.copied().take(MOST_SAMPLES).collect()
     }
 
-    fn polyline(&self, _: f64) -> Vec<Vec<DVec3>> {
+    fn lines(&self, _: f64) -> Vec<Vec<DVec3>> {
         self.rings.iter().map(|ring| closed(ring)).collect()
     }
 

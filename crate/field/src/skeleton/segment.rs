@@ -52,7 +52,7 @@ impl Geometry for Segment {
         (self.apex - self.base).try_normalize()
     }
 
-    fn polyline(&self, _: f64) -> Vec<Vec<DVec3>> {
+    fn lines(&self, _: f64) -> Vec<Vec<DVec3>> {
         vec![vec![self.base, self.apex]]
     }
 

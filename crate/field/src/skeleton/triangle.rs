@@ -92,7 +92,7 @@ impl Geometry for Triangle {
         [middle].into_iter().chain(halfway).collect()
     }
 
-    fn polyline(&self, _: f64) -> Vec<Vec<DVec3>> {
+    fn lines(&self, _: f64) -> Vec<Vec<DVec3>> {
         vec![polygon::closed(&self.corners)]
     }
 
