@@ -168,7 +168,7 @@ fn softs(scene: &Value) -> Result<Vec<Soft<'_>>> {
         };
         let is_fragile = settings["fragile"][fragile] == true;
         let radius: f64 = read(&if is_fragile { flesh } else { bone }["radius"])?;
-        let mut a = read::<f64>(&flesh["blobbiness"])?.abs();
+        let mut a = read::<f64>(&flesh["blobbiness"])?;
         if settings["blob_scale"] != "Absolute" {
             a /= radius * radius;
         }
@@ -225,7 +225,7 @@ mod tests {
         let text = |shape: Value| {
             let scene = json!({
                 "elements": [{ "shape": shape, "flesh": 0 }],
-                "flesh": [{ "blobbiness": -4.0, "radius": 9.0 }],
+                "flesh": [{ "blobbiness": 4.0, "radius": 9.0 }],
                 "finishes": [{ "ambient": [0.1, 0.1, 0.1], "diffuse": [0.5, 0.5, 0.5] }],
                 "lights": [{ "kind": { "Point": { "position": [1.0, 2.0, 3.0] } } }],
                 "camera": { "eye": [0, 0, 5], "up": [0, 1, 0], "target": [0, 0, 0], "fov": 45.0 },

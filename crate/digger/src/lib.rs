@@ -5,7 +5,7 @@
 //! use scene::{Digger, Element, Flesh, Scene, Shape};
 //!
 //! let mut scene = Scene::default();
-//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+//! scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
 //! let ball = Shape::sphere(DVec3::ZERO, 0.5);
 //! scene.elements.push(Element { flesh: Some(0), ..Element::new(ball) });
 //! scene.settings.digger = Digger::Brent;

@@ -102,7 +102,7 @@ impl Primitive {
         let peak = profile.map_or(1.0, |p| p.largest());
         let usable = skeleton.is_finite() && peak.is_finite() && height != 0.0;
         let size = skeleton.size();
-        let numeric = tapered.is_some() || matches!(skeleton, Skeleton::Curve { .. });
+        let numeric = tapered.is_some() || skeleton.is_numeric();
         if numeric && shaping.widths_along(skeleton.measure()) > LONGEST {
             return None;
         }

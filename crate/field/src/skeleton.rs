@@ -7,6 +7,7 @@ mod polygon;
 mod segment;
 mod triangle;
 
+pub(crate) use arc::orthonormal;
 pub use curve::{cubic, halves};
 pub use polygon::{area_vector, ring_vector};
 pub(crate) use segment::nearest as nearest_on_segment;
@@ -138,7 +139,7 @@ geometry! {
         /// names.
         pub fn landmarks(&self) -> Vec<(DVec3, &'static str)>;
         /// Maps the bone.
-        pub fn mapped(&self, map: &dyn Map) -> Skeleton;
+        pub fn transform(&self, map: &dyn Map) -> Skeleton;
         /// Computes the local frame and the bone in it, for a kernel and its width parameter s.
         pub(crate) fn place(&self, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>);
     }
@@ -166,6 +167,11 @@ geometry! {
                 (low, high) = (low.min(p - radius), high.max(p + radius));
             }
             Some((low, high))
+        }
+
+        /// Whether its field is integrated numerically with every kernel, from its cubics.
+        pub fn is_numeric(&self) -> bool {
+            false
         }
 
         /// Whether no coordinate or radius is larger than a limit, or not finite.
@@ -266,11 +272,12 @@ impl Skeleton {
 }
 
 /// Whether a place is finite, and no coordinate larger than a limit.
-fn fits(place: DVec3, limit: f64) -> bool {
+#[must_use]
+pub fn fits(place: DVec3, limit: f64) -> bool {
     place.abs().max_element() <= limit && place.is_finite()
 }
 
-/// The one of some places that is nearest to a point.
+/// Finds the place that is nearest to a point.
 fn nearest_of(point: DVec3, places: impl Iterator<Item = DVec3>) -> Option<DVec3> {
     places.min_by(|p, q| {
         p.distance_squared(point)

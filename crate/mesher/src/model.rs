@@ -125,7 +125,7 @@ impl Model {
 /// use scene::{Element, Flesh, Scene, Shape};
 ///
 /// let mut scene = Scene::default();
-/// scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+/// scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
 /// scene.elements.push(Element {
 ///     flesh: Some(0),
 ///     ..Element::new(Shape::sphere(glam::DVec3::ZERO, 1.0))

@@ -85,7 +85,7 @@ pub fn tessellate(shape: &Shape, radius: f64, tolerance: f64, limits: &Aabb) -> 
         Skeleton::Polygon { ref rings } => prism(rings, radius),
         Skeleton::Plane { point, normal } => plane(point, normal, radius, limits),
         // The balls and cylinders that pictures show.
-        Skeleton::Curve { .. } => {
+        _ => {
             let parts = shape.parts(radius);
             let mut solid = union(parts.iter().map(|part| (part, radius)), tolerance, limits);
             // Pieces of no length have none.

@@ -22,7 +22,7 @@ fn taper(random: &mut Random, kernel: Kernel) -> Shaping {
     let radius = random.pick(&[any, any, slim, 0.0]);
     let shaping = random.shaping(1.0);
     let other = random.decades(-1.0, 1.0);
-    let blobbiness = random.pick(&[shaping.blobbiness, shaping.blobbiness, -other]);
+    let blobbiness = random.pick(&[shaping.blobbiness, shaping.blobbiness, other]);
     Shaping {
         kernel,
         taper: Some(Taper { radius, blobbiness }),

@@ -90,7 +90,7 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     let mut pool = Pool::new(|| {});
     let mut scene = Scene::clone(&scene());
     scene.flesh.push(scene::Flesh {
-        blobbiness: -1.0,
+        blobbiness: Some(1.0),
         ..Default::default()
     });
     for x in [-0.6, 0.6] {

@@ -109,7 +109,7 @@ impl Solid {
             },
             Skeleton::Plane { point, normal } => Self::plane(point, normal, radius),
             // Made of several solids.
-            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => None,
+            _ => None,
         }?;
         let numbers = solid.a.iter().chain(&solid.b);
         (solid.origin.is_finite()

@@ -353,7 +353,7 @@ mod tests {
     fn transforms() {
         let shape = arc(DVec3::X, DVec3::Z, 2.0, 0.5, 10.0, 80.0);
         let turn = Transform::rotation(DVec3::Z, 90.0);
-        let turned = shape.mapped(&turn);
+        let turned = shape.transform(&turn);
         for i in 0..=4 {
             let share = f64::from(i) / 4.0;
             assert!(near(
@@ -363,7 +363,7 @@ mod tests {
         }
         let mirror = Transform::scaling(DVec3::new(-2.0, 2.0, 2.0));
         assert!(mirror.uniform);
-        let mirrored = shape.mapped(&mirror);
+        let mirrored = shape.transform(&mirror);
         assert!(near(
             point_at(&mirrored, 0.7),
             mirror.linear * point_at(&shape, 0.7)
@@ -371,7 +371,7 @@ mod tests {
         assert_eq!(mirrored.radius(), 1.0);
         let plane = Shape::plane(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0).normalize(), 0.0);
         let uneven = Transform::scaling(DVec3::new(2.0, 1.0, 1.0));
-        let plane = plane.mapped(&uneven);
+        let plane = plane.transform(&uneven);
         let normal = plane
             .skeleton()
             .and_then(Skeleton::normal)
@@ -404,12 +404,15 @@ mod tests {
             Shape::cuboid(center, axes),
             Shape::Quadric(Box::new(quadric)),
         ] {
-            assert!(near(corner(&shape.mapped(&map)), map.point(corner(&shape))));
+            assert!(near(
+                corner(&shape.transform(&map)),
+                map.point(corner(&shape))
+            ));
         }
         // Normals stay across.
         let corners = [DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), DVec3::Y];
         let normals = [(corners[1]).cross(corners[2]); 3];
-        let patch = Shape::patch(corners, normals).mapped(&map);
+        let patch = Shape::patch(corners, normals).transform(&map);
         let bone = patch.bone().expect("a patch");
         let Skeleton::Triangle { corners } = bone.skeleton else {
             panic!("no patch");
@@ -421,6 +424,6 @@ mod tests {
         let cone = Shape::cone(DVec3::ZERO, 1.0, DVec3::X, 0.5);
         let twice = Transform::scaling(DVec3::splat(-2.0));
         let grown = Shape::cone(DVec3::ZERO, 2.0, DVec3::X * -2.0, 1.0);
-        assert_eq!(cone.mapped(&twice), grown);
+        assert_eq!(cone.transform(&twice), grown);
     }
 }

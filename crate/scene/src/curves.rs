@@ -7,7 +7,7 @@ use skeleton::{Polyline, Scheme, Skeleton};
 use std::sync::OnceLock;
 
 /// The blobbiness of curves whose material has none.
-pub const BLOBBINESS: f64 = -2.0;
+pub const BLOBBINESS: f64 = 2.0;
 
 /// Curves on a graph of nodes, refined to a level. Their polyline's segments are convolved, each
 /// with radii that vary evenly along it.
@@ -110,11 +110,13 @@ impl Curves {
 
     /// The shapes that stand for the curves in drafts: cones, and balls between them.
     pub(crate) fn draft(&self, to_world: &DAffine3, growth: f64) -> Vec<Shape> {
-        let place = |p: DVec3| to_world.transform_point3(p);
         let balls = self.points().filter(|(_, radius)| *radius > 0.0);
-        let balls = balls.map(|(center, radius)| Shape::sphere(place(center), radius * growth));
+        let balls = balls.map(|(center, radius)| {
+            Shape::sphere(to_world.transform_point3(center), radius * growth)
+        });
         let cones = self.pieces().map(|[(base, start), (apex, end)]| {
-            Shape::cone(place(base), start * growth, place(apex), end * growth)
+            let [base, apex] = [base, apex].map(|p| to_world.transform_point3(p));
+            Shape::cone(base, start * growth, apex, end * growth)
         });
         balls.chain(cones).collect()
     }

@@ -12,7 +12,7 @@
 //! use scene::{Element, Flesh, Scene, Shape};
 //!
 //! let mut scene = Scene::default();
-//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+//! scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
 //! let center = DVec3::ZERO;
 //! scene.elements.push(Element {
 //!     flesh: Some(0),

@@ -17,8 +17,7 @@ const CHANGE: f64 = 1.25;
 /// bone as it is.
 #[must_use]
 pub fn cut(skeleton: Skeleton, shaping: Shaping) -> Vec<(Skeleton, Shaping)> {
-    let is_curved = matches!(skeleton, Skeleton::Curve { .. });
-    if !is_curved && !shaping.varies_along(&skeleton) {
+    if !skeleton.is_numeric() && !shaping.varies_along(&skeleton) {
         return vec![(skeleton, shaping)];
     }
     let count = pieces(&skeleton, &shaping);
@@ -81,10 +80,7 @@ fn pieces(skeleton: &Skeleton, shaping: &Shaping) -> usize {
         shaping.radius / end.radius,
         shaping.blobbiness / end.blobbiness,
     ]
-    .map(|ratio| {
-        let ratio = ratio.abs();
-        libm::log(ratio.max(1.0 / ratio)) / libm::log(CHANGE)
-    });
+    .map(|ratio| libm::log(ratio.max(1.0 / ratio)) / libm::log(CHANGE));
     let wanted = by_length.max(by_radius.max(by_blobbiness));
     // A number that is no number, or infinite at a tip of radius 0, is taken for very many.
     if wanted < MOST as f64 {

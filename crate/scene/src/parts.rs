@@ -25,11 +25,11 @@ impl Shape {
                 .into_iter()
                 .map(|corners| Self::triangle(corners, radius))
                 .collect(),
-            curve @ Skeleton::Curve { .. } => {
-                let mut base = curve.at(0.0);
+            line if line.is_numeric() => {
+                let mut base = line.at(0.0);
                 let mut parts = vec![Self::sphere(base, radius)];
                 for i in 1..=PIECES {
-                    let apex = curve.at(i as f64 / PIECES as f64);
+                    let apex = line.at(i as f64 / PIECES as f64);
                     parts.push(Self::cylinder(base, apex, radius));
                     parts.push(Self::sphere(apex, radius));
                     base = apex;

@@ -3,7 +3,7 @@
 
 use crate::{Curves, Function, Quadric};
 use field::Skeleton;
-use field::skeleton::{Map, cross};
+use field::skeleton::{Map, cross, fits};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -103,7 +103,7 @@ impl Cuboid {
         edges
     }
 
-    fn mapped(&self, map: &dyn Map) -> Self {
+    fn transform(&self, map: &dyn Map) -> Self {
         Self {
             center: map.point(self.center),
             axes: self.axes.map(|axis| map.vector(axis)),
@@ -314,9 +314,9 @@ impl Shape {
             Self::Box(cuboid) => cuboid.edges(),
             Self::Function(function) if function.curves().is_some() => {
                 let pieces = function.curves().into_iter().flat_map(Curves::pieces);
-                let place = |p| function.to_world.transform_point3(p);
+                let to_world = &function.to_world;
                 pieces
-                    .map(|ends| ends.map(|(p, _)| place(p)).to_vec())
+                    .map(|ends| ends.map(|(p, _)| to_world.transform_point3(p)).to_vec())
                     .collect()
             }
             Self::Quadric(_) | Self::Function(_) => cross(self.middle(), size),
@@ -326,15 +326,16 @@ impl Shape {
     /// Whether no coordinate or length is larger than a limit, or not finite.
     #[must_use]
     pub fn is_within(&self, limit: f64) -> bool {
-        let is_near = |p: DVec3| p.abs().max_element() <= limit && p.is_finite();
         let is_placed = match self {
             Self::Bone(bone) => bone.skeleton.is_within(limit),
-            Self::Box(Cuboid { center, axes }) => {
-                is_near(*center) && axes.map(is_near) == [true; 3]
-            }
+            Self::Box(Cuboid {
+                center,
+                axes: [x, y, z],
+            }) => [center, x, y, z].iter().all(|p| fits(**p, limit)),
             Self::Quadric(quadric) => Self::Box(quadric.cuboid()).is_within(limit),
             Self::Function(function) => {
-                <[DVec3; 2]>::from(function.corners()).map(is_near) == [true; 2]
+                let (low, high) = function.corners();
+                fits(low, limit) && fits(high, limit)
             }
         };
         is_placed && self.radius().abs() <= limit
@@ -361,19 +362,19 @@ impl Shape {
 
     /// Maps the shape. If the map is not uniform, round shapes stay round.
     #[must_use]
-    pub fn mapped(&self, map: &dyn Map) -> Self {
+    pub fn transform(&self, map: &dyn Map) -> Self {
         match self {
             Self::Bone(bone) => Self::Bone(Bone {
-                skeleton: bone.skeleton.mapped(map),
+                skeleton: bone.skeleton.transform(map),
                 radius: map.length(bone.radius),
                 end_radius: bone.end_radius.map(|radius| map.length(radius)),
                 ends: bone.ends,
                 normals: (bone.normals.as_ref())
                     .map(|normals| Box::new(normals.map(|normal| map.normal(normal)))),
             }),
-            Self::Box(cuboid) => Self::Box(cuboid.mapped(map)),
+            Self::Box(cuboid) => Self::Box(cuboid.transform(map)),
             Self::Quadric(quadric) => {
-                let Cuboid { center, axes } = quadric.cuboid().mapped(map);
+                let Cuboid { center, axes } = quadric.cuboid().transform(map);
                 Self::Quadric(Box::new(Quadric {
                     center,
                     axes,

@@ -114,10 +114,9 @@ impl Scene {
         }
         let shaping = self.shaping(element, &flesh, self.radius(element));
         element.shape.skeleton().is_some_and(|skeleton| {
-            let is_curve = matches!(skeleton, Skeleton::Curve { .. });
-            let is_numeric = is_curve || skeleton.dimension() == 1 && shaping.taper.is_some();
-            let widths = || shaping.widths_along(skeleton.most_length());
-            is_numeric && widths() > field::primitive::LONGEST
+            let is_line = skeleton.dimension() == 1;
+            let is_numeric = skeleton.is_numeric() || is_line && shaping.taper.is_some();
+            is_numeric && shaping.widths_along(skeleton.most_length()) > field::primitive::LONGEST
         })
     }
 
@@ -128,11 +127,7 @@ impl Scene {
         function: &'a Function,
         flesh: &'a Flesh,
     ) -> impl Iterator<Item = (Skeleton, field::Shaping)> + 'a {
-        let blobbiness = if flesh.is_soft() {
-            flesh.blobbiness
-        } else {
-            curves::BLOBBINESS
-        };
+        let blobbiness = flesh.blobbiness.unwrap_or(curves::BLOBBINESS);
         let growth = function.growth();
         let pieces = function.curves().into_iter().flat_map(Curves::pieces);
         pieces.map(move |[(base, start), (apex, end)]| {
@@ -167,17 +162,18 @@ impl Scene {
             }
             None => (radius, flesh.end_radius),
         };
+        let blobbiness = flesh.blobbiness.unwrap_or(curves::BLOBBINESS);
         let tapers = end_radius.is_some() || flesh.end_blobbiness.is_some();
         field::Shaping {
             kernel: flesh.kernel.unwrap_or(element.kernel),
             radius,
-            blobbiness: flesh.blobbiness,
+            blobbiness,
             blob_scale: self.settings.blob_scale,
             strength: flesh.strength,
             influence: self.settings.influence,
             taper: tapers.then(|| field::Taper {
                 radius: end_radius.unwrap_or(radius),
-                blobbiness: flesh.end_blobbiness.unwrap_or(flesh.blobbiness),
+                blobbiness: flesh.end_blobbiness.unwrap_or(blobbiness),
             }),
         }
     }
@@ -240,7 +236,8 @@ impl Scene {
         let profile = match skeleton {
             Skeleton::Triangle { .. } => flesh.whole_profile(),
             // They have no parameters that a profile could follow.
-            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => None,
+            Skeleton::Polygon { .. } => None,
+            ref line if line.is_numeric() => None,
             _ => flesh.profile,
         };
         // A profile runs along the whole skeleton.

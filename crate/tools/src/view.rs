@@ -302,7 +302,7 @@ mod tests {
             ..Scene::default()
         };
         scene.flesh.push(Flesh {
-            blobbiness: -2.0,
+            blobbiness: Some(2.0),
             ..Flesh::default()
         });
         let ball = |x: f64, finish, flesh| Element {

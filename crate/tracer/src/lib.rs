@@ -11,7 +11,7 @@
 //!
 //! // Two soft balls that blend.
 //! let mut scene = Scene::default();
-//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+//! scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
 //! for x in [-0.6, 0.6] {
 //!     let center = DVec3::X * x;
 //!     let shape = Shape::sphere(center, 0.5);

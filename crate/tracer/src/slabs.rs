@@ -1276,7 +1276,7 @@ mod tests {
     fn cloud(radius: f64, strength: f64, carving: f64) -> Soft {
         let mut numbers = Random::new(3);
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-2.0, strength), soft(-0.5, carving)]);
+        clothe(&mut scene, vec![soft(2.0, strength), soft(0.5, carving)]);
         for i in 0..400 {
             let center = numbers.vector(1.0);
             let carves = carving != 0.0 && i % 20 == 0;

@@ -89,7 +89,7 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     scene.camera.eye = DVec3::Z * 4.0;
     scene.camera.target = DVec3::ZERO;
     scene.camera.fov = 1.0;
-    scenes::clothe(&mut scene, vec![scenes::soft(-4.0, 1.0); 2]);
+    scenes::clothe(&mut scene, vec![scenes::soft(4.0, 1.0); 2]);
     // Bodies of points alone take the way of `far_march`.
     let line = Shape::cylinder(DVec3::Z * -3.0, DVec3::Z * -3.1, 0.003);
     scene.elements.push(scenes::element(line, 0));

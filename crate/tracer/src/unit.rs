@@ -64,7 +64,7 @@ impl Unit {
     fn apply(&self, scene: &mut Scene) {
         let k = self.scale;
         for element in &mut scene.elements {
-            element.shape = element.shape.mapped(self);
+            element.shape = element.shape.transform(self);
         }
         for frame in &mut scene.frames {
             frame.growth *= k;

@@ -73,7 +73,7 @@ pub fn element(shape: Shape, index: u32) -> Element {
 /// Returns flesh of radius 0.25.
 pub fn soft(blobbiness: f64, strength: f64) -> Flesh {
     Flesh {
-        blobbiness,
+        blobbiness: Some(blobbiness),
         strength,
         radius: 0.25,
         ..Flesh::default()
@@ -120,7 +120,7 @@ pub fn empty() -> Scene {
 pub fn blend(seed: u64, count: usize) -> Scene {
     let mut n = Random::new(seed);
     let mut scene = empty();
-    let flesh = vec![soft(-0.5, 1.0), soft(-4.0, 1.0), soft(-1.0, -0.7)];
+    let flesh = vec![soft(0.5, 1.0), soft(4.0, 1.0), soft(1.0, -0.7)];
     clothe(&mut scene, flesh);
     scene.finishes[0].diffuse = [0.9, 0.3, 0.1];
     scene.finishes[1].diffuse = [0.1, 0.5, 0.9];
@@ -261,7 +261,7 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
         };
         let mut flesh = Flesh {
             radius: radius * world.scale,
-            blobbiness: -blobbiness,
+            blobbiness: Some(blobbiness),
             kernel: Some(kernel),
             ..Flesh::default()
         };
@@ -280,7 +280,7 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
         if kind == Kind::Taper || (kind == Kind::Mixed && n.chance(0.2)) {
             flesh.end_radius = Some(flesh.radius * n.range(0.02, 1.5));
             if n.chance(0.3) {
-                flesh.end_blobbiness = Some(flesh.blobbiness * n.range(0.3, 3.0));
+                flesh.end_blobbiness = Some(blobbiness * n.range(0.3, 3.0));
             }
         }
         if kind == Kind::Restricted {

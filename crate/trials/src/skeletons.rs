@@ -184,7 +184,7 @@ impl Random {
     /// Returns a shaping of a radius R, whose width is about 1/R.
     pub fn shaping(&mut self, radius: f64) -> Shaping {
         Shaping {
-            blobbiness: -self.decades(-1.0, 1.0),
+            blobbiness: self.decades(-1.0, 1.0),
             strength: self.pick(&[1.0, 1.0, 1.5, -1.0]),
             ..shaping(radius, 1.0)
         }
@@ -226,7 +226,7 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
     }
     let shaping = Shaping {
         kernel,
-        ..shaping(0.4, -2.0)
+        ..shaping(0.4, 2.0)
     };
     let count = points.len() as u32 - 1;
     let limbs = (0..count).map(|i| {
@@ -367,5 +367,5 @@ impl Map for Motion {
 /// Returns a skeleton turned, scaled and shifted.
 #[must_use]
 pub fn move_by(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
-    skeleton.mapped(&Motion { turn, scale, shift })
+    skeleton.transform(&Motion { turn, scale, shift })
 }

@@ -13,7 +13,7 @@ pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
     let radius = 2.0 / libm::cbrt(f64::from(count)) / apart;
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -4.0,
+        blobbiness: Some(4.0),
         ..Flesh::default()
     });
     scene.elements = (0..count)

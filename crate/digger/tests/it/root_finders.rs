@@ -45,7 +45,7 @@ fn meets(picture: &Picture, origin: DVec3, direction: DVec3) -> Option<f64> {
 fn easy() -> Scene {
     let mut scene = empty();
     scene.settings.influence = 1e-6;
-    clothe(&mut scene, vec![soft(-2.0, 1.0)]);
+    clothe(&mut scene, vec![soft(2.0, 1.0)]);
     let radius = 0.25;
     for shape in [
         Shape::cylinder(
@@ -182,7 +182,7 @@ fn pictures_of_all_diggers_are_much_alike() {
 fn rays_along_the_surface_come_to_an_end() {
     // All along the ray the field of the plane is T, and its slope 0.
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-1.0, 1.0)]);
+    clothe(&mut scene, vec![soft(1.0, 1.0)]);
     scene
         .elements
         .push(element(Shape::plane(DVec3::ZERO, DVec3::Y, 0.25), 0));
@@ -251,7 +251,7 @@ fn a_map_shows_costs_and_does_not_depend_on_tiles() {
 fn a_ray_through_very_many_primitives_comes_to_an_end() {
     let mut scene = empty();
     // Balls so weak that all together they never reach T, so that a ray meets all of them.
-    clothe(&mut scene, vec![soft(-1.0, 2e-5)]);
+    clothe(&mut scene, vec![soft(1.0, 2e-5)]);
     scene.settings.influence = 1e-9;
     let mut n = Random::new(1);
     for _ in 0..5_000 {

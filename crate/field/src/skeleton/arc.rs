@@ -96,7 +96,7 @@ impl Geometry for Arc {
         (self.v * cosine - self.u * sine).try_normalize()
     }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton {
+    fn transform(&self, map: &dyn Map) -> Skeleton {
         let [u, v] = map.axes([self.u, self.v]);
         Skeleton::Arc {
             center: map.point(self.center),
@@ -160,7 +160,7 @@ impl Geometry for Arc {
 }
 
 /// Unit vectors in the plane of u and v, the first along u.
-fn orthonormal(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
+pub(crate) fn orthonormal(u: DVec3, v: DVec3) -> (DVec3, DVec3) {
     let u = u.try_normalize().unwrap_or(DVec3::X);
     let v = (v - u * u.dot(v))
         .try_normalize()

@@ -23,6 +23,10 @@ impl Geometry for Curve {
         1
     }
 
+    fn is_numeric(&self) -> bool {
+        true
+    }
+
     fn measure(&self) -> f64 {
         let c = cubic(self.control);
         let breaks: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0).collect();
@@ -100,7 +104,7 @@ impl Geometry for Curve {
         vec![line, vec![a, b], vec![c, d]]
     }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton {
+    fn transform(&self, map: &dyn Map) -> Skeleton {
         let control = self.control.map(|p| map.point(p));
         Skeleton::Curve { control }
     }

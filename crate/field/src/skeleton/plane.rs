@@ -58,12 +58,12 @@ impl Geometry for Plane {
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
         let corners = corners.map(|(a, b)| self.point + (u * a + v * b) * size);
         vec![
-            polygon::closed(&corners),
+            polygon::close(&corners),
             vec![self.point, self.point + self.normal * size],
         ]
     }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton {
+    fn transform(&self, map: &dyn Map) -> Skeleton {
         Skeleton::Plane {
             point: map.point(self.point),
             normal: map.normal(self.normal),

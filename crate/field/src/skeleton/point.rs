@@ -38,7 +38,7 @@ impl Geometry for Point {
         vec![(self.center, "the centre")]
     }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton {
+    fn transform(&self, map: &dyn Map) -> Skeleton {
         let center = map.point(self.center);
         Skeleton::Point { center }
     }

@@ -75,10 +75,10 @@ impl Geometry for Polygon<'_> {
     }
 
     fn lines(&self, _: f64) -> Vec<Vec<DVec3>> {
-        self.rings.iter().map(|ring| closed(ring)).collect()
+        self.rings.iter().map(|ring| close(ring)).collect()
     }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton {
+    fn transform(&self, map: &dyn Map) -> Skeleton {
         let rings = self.rings.iter();
         let moved = rings.map(|ring| ring.iter().map(|p| map.point(*p)).collect());
         Skeleton::Polygon {
@@ -103,8 +103,8 @@ impl Geometry for Polygon<'_> {
     }
 }
 
-/// The corners of a ring, and the first one again.
-pub(super) fn closed(ring: &[DVec3]) -> Vec<DVec3> {
+/// Returns the corners of a ring, and the first one again.
+pub(super) fn close(ring: &[DVec3]) -> Vec<DVec3> {
     ring.iter().chain(ring.first()).copied().collect()
 }
 

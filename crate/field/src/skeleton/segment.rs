@@ -56,7 +56,7 @@ impl Geometry for Segment {
         vec![vec![self.base, self.apex]]
     }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton {
+    fn transform(&self, map: &dyn Map) -> Skeleton {
         let [base, apex] = [self.base, self.apex].map(|p| map.point(p));
         Skeleton::Segment { base, apex }
     }

@@ -93,10 +93,10 @@ impl Geometry for Triangle {
     }
 
     fn lines(&self, _: f64) -> Vec<Vec<DVec3>> {
-        vec![polygon::closed(&self.corners)]
+        vec![polygon::close(&self.corners)]
     }
 
-    fn mapped(&self, map: &dyn Map) -> Skeleton {
+    fn transform(&self, map: &dyn Map) -> Skeleton {
         let corners = self.corners.map(|corner| map.point(corner));
         Skeleton::Triangle { corners }
     }

@@ -46,7 +46,7 @@ fn cases() -> Vec<(Primitive, f64)> {
             };
             let taper = (i % 4 == 3).then(|| Taper {
                 radius: size * random.range(0.3, 0.9),
-                blobbiness: -2.0,
+                blobbiness: 2.0,
             });
             let shaping = field::Shaping {
                 kernel: Kernel::Gauss,
@@ -109,7 +109,7 @@ fn other_bones_have_none() {
         let shaping = field::Shaping {
             kernel,
             strength,
-            ..trials::skeletons::shaping(1.0, -1.0)
+            ..trials::skeletons::shaping(1.0, 1.0)
         };
         primitive(skeleton, &shaping, None).blob_chain()
     };

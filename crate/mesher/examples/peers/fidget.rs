@@ -26,7 +26,7 @@ pub fn tree(scene: &Scene) -> Result<Tree, String> {
             return Err("only the quartic kernel can be given to fidget");
         }
         let radius = scene.radius(element);
-        let reach = radius * (1.0 + 2.0 / flesh.blobbiness.abs()).sqrt();
+        let reach = radius * (1.0 + 2.0 / flesh.blobbiness.unwrap_or(0.0)).sqrt();
         let square = |of: Tree, middle: f64| (of - middle as f32).square();
         let distance =
             square(Tree::x(), center.x) + square(Tree::y(), center.y) + square(Tree::z(), center.z);

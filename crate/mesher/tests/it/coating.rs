@@ -13,7 +13,7 @@ fn shaping(radius: f64) -> Shaping {
     Shaping {
         kernel: Kernel::Gauss,
         radius,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
@@ -238,7 +238,7 @@ fn rings_and_branches_and_faces_are_closed() {
 fn scenes_are_coated_and_what_cannot_be_is_left_out() {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius: 0.2,
         ..Flesh::default()
     });
@@ -323,7 +323,7 @@ fn no_webs_between_limbs() {
 fn scattered(limbs: usize, (length, radius): (f64, f64), seed: u64) -> Scene {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         ..Flesh::default()
     });
     let mut random = Random::new(seed);

@@ -28,7 +28,7 @@ fn coarse() -> Wishes {
 fn soft(shapes: impl IntoIterator<Item = Shape>) -> Scene {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius: 0.3,
         ..Flesh::default()
     });
@@ -171,7 +171,7 @@ fn surfaces_that_touch_are_told() {
     let shaping = Shaping {
         kernel: Kernel::Gauss,
         radius: 1.0,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,

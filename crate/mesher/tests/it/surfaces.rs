@@ -17,7 +17,7 @@ fn shaping(kernel: Kernel, radius: f64) -> Shaping {
     Shaping {
         kernel,
         radius,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
@@ -362,7 +362,7 @@ fn each_phase_reports_often_and_can_be_cancelled() {
     use scene::{Element, Flesh, Scene, Shape};
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius: 0.4,
         ..Flesh::default()
     });
@@ -426,7 +426,7 @@ fn shares_are_of_the_size_that_the_mesh_has() {
     {
         let mut scene = Scene::default();
         scene.flesh.push(Flesh {
-            blobbiness: -1.0,
+            blobbiness: Some(1.0),
             radius: 0.3,
             ..Flesh::default()
         });

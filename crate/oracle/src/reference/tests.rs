@@ -11,7 +11,7 @@ fn scene(kernel: Kernel, seed: u64) -> Scene {
     let mut n = Random::new(seed * 8 + kernel as u64);
     let mut scene = empty();
     for i in 0..1 + seed % 3 {
-        let mut material = soft(-libm::exp(n.range(-2.0, 3.0)), 1.0);
+        let mut material = soft(libm::exp(n.range(-2.0, 3.0)), 1.0);
         material.kernel = Some(kernel);
         if i == 2 {
             material.strength = -0.7;
@@ -165,7 +165,7 @@ fn slopes_change_no_faster_than_the_bound() {
 #[test]
 fn a_ball_is_found_to_the_last_digits() {
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-4.0, 1.0)]);
+    clothe(&mut scene, vec![soft(4.0, 1.0)]);
     scene
         .elements
         .push(element(Shape::sphere(DVec3::X, 0.25), 0));

@@ -281,7 +281,7 @@ fn the_radius_that_counts_is_drawn_and_carving_is_not() {
     let mut scene = ball(bright, Vec::new());
     scene.flesh.push(Flesh {
         radius: 2.0,
-        blobbiness: -1.0,
+        blobbiness: Some(1.0),
         ..Flesh::default()
     });
     scene.elements[0].flesh = Some(0);
@@ -511,7 +511,7 @@ fn mesh_takes_the_place_of_soft_elements_alone() {
     }];
     let mut scene = ball(shiny(), lights.clone());
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         ..Flesh::default()
     });
     scene.elements[0].flesh = Some(0);

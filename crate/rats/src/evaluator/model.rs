@@ -46,7 +46,7 @@ impl Part {
         let (curves, skeleton) = (self.element.shape.curves(), self.element.shape.skeleton());
         match (&self.element.shape, skeleton) {
             (_, Some(Skeleton::Polygon { rings })) => rings.iter().map(Vec::len).sum(),
-            (_, Some(Skeleton::Curve { .. })) => CURVE_WEIGHT,
+            (_, Some(line)) if line.is_numeric() => CURVE_WEIGHT,
             (Shape::Function(function), _) => curves.map_or_else(
                 || function.weight(),
                 |curves| {
@@ -333,7 +333,7 @@ impl<'a> Model<'a> {
     /// Applies a transform to shapes.
     pub fn transform(&mut self, range: Range<usize>, transform: &Transform) {
         for part in &mut self.parts[range] {
-            part.element.shape = part.element.shape.mapped(transform);
+            part.element.shape = part.element.shape.transform(transform);
             part.growth *= transform.growth;
             let before = part.moved.as_deref().copied().unwrap_or_default();
             part.moved = Some(Box::new(transform.affine() * before));

@@ -140,7 +140,7 @@ fn frame_of(
 /// Whether an element's flesh has a profile that its shape has no parameters for.
 fn ignores_profile(scene: &Scene, element: &Element) -> bool {
     let has_no_parameters = match element.shape.skeleton() {
-        Some(skeleton) => matches!(skeleton, Skeleton::Polygon { .. } | Skeleton::Curve { .. }),
+        Some(bone) => bone.is_numeric() || matches!(bone, Skeleton::Polygon { .. }),
         None => element.shape.curves().is_some(),
     };
     has_no_parameters

@@ -718,7 +718,7 @@ fn add_mesh<'a>(
     for (index, shape) in assets::shapes(mesh).enumerate() {
         let own = tinted.as_ref().map_or(material, |own| own[index]);
         let shape = match transform {
-            Some(transform) => shape.mapped(transform),
+            Some(transform) => shape.transform(transform),
             None => shape,
         };
         result = run.add_of(command, own, shape, Kernel::Cauchy).map(drop);

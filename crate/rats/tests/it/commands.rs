@@ -256,7 +256,7 @@ fn surfaces() {
     assert_eq!((s.specular, s.shine), ([1.0; 3], 40.0));
     assert_eq!(
         (soft.radius, soft.blobbiness, soft.strength),
-        (0.3, -8.0, 2.0)
+        (0.3, Some(8.0), 2.0)
     );
     assert_eq!(soft.kernel, None);
     assert_eq!(scene.elements[0].kernel, Kernel::Cauchy);

@@ -128,7 +128,7 @@ fn icicle() {
         assert_eq!(scene.radius(element), 0.25);
         assert_eq!(
             scene.flesh[element.flesh.expect("soft") as usize].blobbiness,
-            -0.3
+            Some(0.3)
         );
     }
 }

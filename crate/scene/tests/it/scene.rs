@@ -10,7 +10,7 @@ use scene::{
 
 fn soft(radius: f64) -> Flesh {
     Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius,
         ..Flesh::default()
     }
@@ -214,11 +214,11 @@ fn limbs_are_cut_without_a_trace() {
     ];
     for kernel in [Kernel::Cauchy, Kernel::Gauss, Kernel::Quartic] {
         for bone in &bones {
-            for end in [None, Some((0.1, -3.0)), Some((0.0, -1.0))] {
+            for end in [None, Some((0.1, 3.0)), Some((0.0, 1.0))] {
                 let shaping = Shaping {
                     kernel,
                     radius: 0.4,
-                    blobbiness: -1.0,
+                    blobbiness: 1.0,
                     blob_scale: BlobScale::Relative,
                     strength: 1.0,
                     influence: 1e-3,

@@ -337,7 +337,7 @@ mod tests {
     /// Returns a cloud of balls of some finishes, in the scene's own places.
     fn cloud(kernel: Kernel, count: u32, finishes: u32, numbers: &mut Random) -> Soft {
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-4.0, 1.0); finishes as usize]);
+        clothe(&mut scene, vec![soft(4.0, 1.0); finishes as usize]);
         for i in 0..count {
             let shape = Shape::sphere(numbers.vector(1.0), numbers.range(0.02, 0.07));
             scene.elements.push(Element {
@@ -477,7 +477,7 @@ mod tests {
     fn edits_give_the_picture_of_a_fresh_scene() {
         let mut numbers = Random::new(8);
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-4.0, 1.0); 2]);
+        clothe(&mut scene, vec![soft(4.0, 1.0); 2]);
         for i in 0..300 {
             let shape = Shape::sphere(numbers.vector(1.0), numbers.range(0.02, 0.07));
             let kernel = Kernel::Cauchy;

@@ -102,7 +102,7 @@ impl Solid {
             },
             Skeleton::Plane { point, normal } => Plane::new(point, normal, radius).map(Self::Plane),
             // Several solids: see `Shape::parts`.
-            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => None,
+            _ => None,
         }
     }
 

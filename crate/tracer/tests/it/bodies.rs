@@ -571,7 +571,7 @@ fn a_smooth_maximum_is_within_the_tolerance() {
 /// own.
 fn molecules(number: u32, apart: bool) -> Scene {
     let mut scene = trials::scenes::empty();
-    trials::scenes::clothe(&mut scene, vec![trials::scenes::soft(-4.0, 1.0)]);
+    trials::scenes::clothe(&mut scene, vec![trials::scenes::soft(4.0, 1.0)]);
     let mut numbers = Random::new(5);
     let radius = 0.7 / libm::cbrt(f64::from(number));
     for i in 0..number {

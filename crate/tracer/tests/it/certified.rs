@@ -166,7 +166,7 @@ fn pictures_show_what_is_there() {
     for case in 0..count(4) {
         let mut scene = empty();
         let joined = case % 2 == 1;
-        clothe(&mut scene, vec![soft(-3.0, 1.0)]);
+        clothe(&mut scene, vec![soft(3.0, 1.0)]);
         for k in 0..if joined { 40 } else { 5 } {
             let blob = k % 2 == 0;
             let at = n.vector(1.0);
@@ -195,7 +195,7 @@ fn pictures_show_what_is_there() {
 #[test]
 fn a_thin_bone_beside_blobs_is_not_stepped_over() {
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-4.0, 1.0)]);
+    clothe(&mut scene, vec![soft(4.0, 1.0)]);
     scene.camera.eye = DVec3::new(0.0, 0.0, 0.02);
     scene.camera.fov = 0.2;
     let blob = Shape::sphere(DVec3::new(0.0, 3.0, 0.0), 0.8);

@@ -59,7 +59,7 @@ fn rays_through_random_blends_cross_where_marching_says() {
 #[test]
 fn a_ray_grazing_a_ball_finds_both_crossings_or_none() {
     let mut scene = empty();
-    clothe(&mut scene, vec![trials::scenes::soft(-4.0, 1.0)]);
+    clothe(&mut scene, vec![trials::scenes::soft(4.0, 1.0)]);
     scene
         .elements
         .push(element(Shape::sphere(DVec3::ZERO, 0.25), 0));
@@ -89,7 +89,7 @@ fn scenes_far_away_and_of_any_size_are_hit_alike() {
         (1e-3, 50.0),
     ] {
         let mut scene = empty();
-        clothe(&mut scene, vec![trials::scenes::soft(-1.0, 1.0)]);
+        clothe(&mut scene, vec![trials::scenes::soft(1.0, 1.0)]);
         let center = DVec3::splat(shift);
         let radius = 0.25 * scale;
         scene.flesh[0].radius = radius;
@@ -110,7 +110,7 @@ fn hard_and_soft_crossings_come_in_one_order() {
     let mut scene = empty();
     clothe(
         &mut scene,
-        vec![trials::scenes::soft(-1.0, 1.0), scene::Flesh::default()],
+        vec![trials::scenes::soft(1.0, 1.0), scene::Flesh::default()],
     );
     for (x, material) in [(-1.0, 0), (0.0, 1), (1.0, 0)] {
         let center = DVec3::X * x;

@@ -15,7 +15,7 @@ pub fn dark() -> Scene {
             ..Camera::default()
         },
         flesh: vec![Flesh {
-            blobbiness: -2.0,
+            blobbiness: Some(2.0),
             ..Flesh::default()
         }],
         ..Scene::default()

@@ -123,7 +123,7 @@ fn paint_scatters_light_as_a_finish_of_its_colours() {
 fn flesh_over_a_painted_triangle_takes_the_colour_of_the_foot() {
     let mut scene = painting(Shape::triangle(CORNERS, 0.0));
     scene.elements[0].flesh = Some(0);
-    scene.flesh[0].blobbiness = -30.0;
+    scene.flesh[0].blobbiness = Some(30.0);
     scene.flesh[0].radius = 0.05;
     // The height of the flesh moves the foot a little: the ray is not at right angles to the plane.
     assert!(compare(&scene, 0.05, 12.0) > 100);

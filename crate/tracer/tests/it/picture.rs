@@ -161,7 +161,7 @@ fn where_nothing_differs_each_pixel_has_one_ray() {
 fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
     for material in [0, 1] {
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-4.0, 1.0), Flesh::default()]);
+        clothe(&mut scene, vec![soft(4.0, 1.0), Flesh::default()]);
         scene.finishes[0].specular = [0.0; 3];
         // Light straight along z, past the eye; eye from the side.
         scene.lights[0].kind = scene::LightKind::Distant { towards: DVec3::Z };
@@ -437,7 +437,7 @@ fn a_tile_is_given_up_when_asked_to_stop() {
 #[test]
 fn a_surface_seen_from_inside_is_lit() {
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-0.5, 1.0)]);
+    clothe(&mut scene, vec![soft(0.5, 1.0)]);
     scene.background = [0.0, 0.0, 1.0].into();
     scene.camera.eye = DVec3::ZERO;
     scene.camera.target = DVec3::X;
@@ -483,7 +483,7 @@ fn strange_scenes_end() {
         scenes.push(scene);
         let mut scene = mixture(6);
         for flesh in &mut scene.flesh {
-            flesh.blobbiness = bad;
+            flesh.blobbiness = Some(bad);
             flesh.strength = bad;
         }
         scenes.push(scene);

@@ -63,7 +63,7 @@ fn flesh(numbers: &mut Random, scene: &mut Scene) -> u32 {
     scene.flesh.push(Flesh {
         radius: numbers.range(0.15, 0.25),
         kernel: numbers.pick(&kernels),
-        blobbiness: -numbers.range(1.0, 4.0),
+        blobbiness: Some(numbers.range(1.0, 4.0)),
         ..Flesh::default()
     });
     scene.flesh.len() as u32 - 1

@@ -52,7 +52,7 @@ enum Solid<'a> {
     Quadric(&'a Quadric),
 }
 
-fn named(shape: &Shape) -> Solid<'_> {
+fn name(shape: &Shape) -> Solid<'_> {
     let bone = match shape {
         Shape::Bone(bone) => bone,
         Shape::Box(Cuboid { center, axes }) => {
@@ -119,7 +119,7 @@ pub fn first(scene: &Scene, eye: DVec3, direction: DVec3) -> Option<Met> {
             let mut normal = normal(&element.shape, radius, eye + direction * distance);
             if let Solid::Patch {
                 corners: [a, b, c], ..
-            } = named(&element.shape)
+            } = name(&element.shape)
             {
                 // A patch is seen from the side that its face shows, at most edge-on.
                 let face = (b - a).cross(c - a);
@@ -145,7 +145,7 @@ pub fn first(scene: &Scene, eye: DVec3, direction: DVec3) -> Option<Met> {
 /// Distance to the first point in front of the eye where the ray enters or leaves the shape.
 fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<f64> {
     // A flat thing has no inside: where the ray pierces its plane.
-    match named(shape) {
+    match name(shape) {
         Solid::Plane { point, normal, .. } => {
             let slope = direction.dot(normal);
             let height = (eye - point).dot(normal);
@@ -166,7 +166,7 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
         _ => {}
     }
     // A flat thing with normals of its own is where its plane is.
-    if let Solid::Patch { corners, .. } = named(shape) {
+    if let Solid::Patch { corners, .. } = name(shape) {
         let flat = Shape::triangle(corners, 0.0);
         return boundary(&flat, 0.0, eye, direction);
     }
@@ -200,7 +200,7 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
 }
 
 fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
-    match named(shape) {
+    match name(shape) {
         Solid::Sphere { center, .. } => (center, 1.01 * radius),
         Solid::Cylinder { base, apex, .. } => {
             (base.midpoint(apex), base.distance(apex) * 0.5 + radius)
@@ -266,7 +266,7 @@ fn about_axis(base: DVec3, apex: DVec3, p: DVec3) -> (f64, f64) {
 
 /// Whether an open surface is there at all, or cut off.
 fn reaches(shape: &Shape, p: DVec3) -> bool {
-    match named(shape) {
+    match name(shape) {
         Solid::Pipe { base, apex, .. } => (0.0..=1.0).contains(&about_axis(base, apex, p).0),
         Solid::Quadric(quadric) => in_quadric(quadric, p).abs().max_element() <= 1.0,
         _ => true,
@@ -291,7 +291,7 @@ fn inside_edges(corners: [DVec3; 3], p: DVec3) -> bool {
 }
 
 fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
-    match named(shape) {
+    match name(shape) {
         Solid::Sphere { center, .. } => p.distance(center) <= radius,
         Solid::Cylinder { base, apex, .. } => {
             let axis = (apex - base).normalize();
@@ -336,7 +336,7 @@ fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
 /// The normal of the face that a point of the surface is nearest to.
 fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
     let mut faces: Vec<(f64, DVec3)> = Vec::new();
-    match named(shape) {
+    match name(shape) {
         Solid::Sphere { center, .. } => return (p - center).normalize(),
         Solid::Plane { normal, .. } => return normal,
         Solid::Patch { corners, normals } => {
