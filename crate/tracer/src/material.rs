@@ -338,7 +338,6 @@ fn chart(shape: &Shape, to: &DAffine3) -> Chart {
         Shape::Function(function) => return Chart::Sphere(point(function.middle())),
     };
     match *skeleton {
-        Skeleton::Point { center } => Chart::Sphere(point(center)),
         Skeleton::Segment { base, apex } => Chart::Segment([point(base), point(apex)]),
         Skeleton::Arc {
             center,
@@ -377,6 +376,7 @@ fn chart(shape: &Shape, to: &DAffine3) -> Chart {
                 None => Chart::Plane([first, normal]),
             }
         }
+        ref other => Chart::Sphere(point(other.middle())),
     }
 }
 

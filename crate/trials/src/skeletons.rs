@@ -152,13 +152,7 @@ impl Random {
                 let center = rings[0].iter().sum::<DVec3>() / rings[0].len() as f64;
                 self.pick(&[p, p + (q - p) * around, p + (center - p) * inside, center])
             }
-            Skeleton::Curve {
-                control: [a, b, c, d],
-            } => {
-                let t = self.pick(&[0.0, 1.0, inside, inside]);
-                let s = 1.0 - t;
-                a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
-            }
+            ref line => line.at(self.pick(&[0.0, 1.0, inside, inside])),
         }
     }
 

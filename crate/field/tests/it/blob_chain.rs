@@ -54,9 +54,9 @@ fn cases() -> Vec<(Primitive, f64)> {
                 ..trials::skeletons::shaping(
                     size,
                     if i % 4 == 2 {
-                        -random.range(0.5, 16.0)
+                        random.range(0.5, 16.0)
                     } else {
-                        -random.range(0.5, 6.0)
+                        random.range(0.5, 6.0)
                     },
                 )
             };

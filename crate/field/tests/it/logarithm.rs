@@ -152,7 +152,7 @@ fn others_have_no_logarithm() {
     let ball = Skeleton::Point {
         center: DVec3::ZERO,
     };
-    for shaping in [shaping(Kernel::Cauchy, 1.0), shaping(Kernel::Gauss, 1.0)] {
+    for shaping in [shaping(Kernel::Cauchy, 1.0), shaping(Kernel::Gauss, -1.0)] {
         let sum: Sum = Primitive::new(ball.clone(), &shaping, None)
             .into_iter()
             .collect();
