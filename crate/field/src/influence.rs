@@ -85,7 +85,7 @@ impl Crowding {
         let length = measure * width;
         let [radius, gathers] = match skeleton {
             Skeleton::Arc { radius, .. } => [radius * width, PI],
-            Skeleton::Curve { control } => [length, gathers(*control)],
+            line if line.is_numeric() => [length, line.cubics(0.0).into_iter().map(gathers).sum()],
             _ => return None,
         };
         (length > 0.0).then_some(Self {

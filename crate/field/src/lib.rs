@@ -8,7 +8,7 @@
 //! let shaping = Shaping {
 //!     kernel: Kernel::Cauchy,
 //!     radius: 0.3,
-//!     blobbiness: -1.0,
+//!     blobbiness: 1.0,
 //!     blob_scale: BlobScale::Relative,
 //!     strength: 1.0,
 //!     influence: 1e-3,

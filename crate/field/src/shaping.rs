@@ -28,7 +28,7 @@ pub struct Taper {
     /// Radius in isolation there. One that is smaller than [`SLIMMEST`] of the larger end's, 0 for
     /// example, is taken to be that, so that the field at a tip is finite.
     pub radius: f64,
-    /// Blobbiness there.
+    /// Blobbiness there, > 0.
     pub blobbiness: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct Shaping {
     pub kernel: Kernel,
     /// Radius in isolation R.
     pub radius: f64,
-    /// Blobbiness B; only its magnitude counts.
+    /// Blobbiness B, > 0.
     pub blobbiness: f64,
     /// Way to read `blobbiness`.
     pub blob_scale: BlobScale,
@@ -58,9 +58,9 @@ impl Shaping {
     /// Whether a skeleton with this shaping has a different kernel at every place.
     #[must_use]
     pub fn varies_along(&self, skeleton: &Skeleton) -> bool {
-        let differs = self.taper.is_some_and(|end| {
-            end.radius != self.radius || end.blobbiness.abs() != self.blobbiness.abs()
-        });
+        let differs = self
+            .taper
+            .is_some_and(|end| end.radius != self.radius || end.blobbiness != self.blobbiness);
         differs && skeleton.dimension() == 1
     }
 
@@ -81,7 +81,7 @@ impl Shaping {
         };
         Self {
             radius: mix(slim(self.radius), slim(end.radius)),
-            blobbiness: mix(self.blobbiness.abs(), end.blobbiness.abs()),
+            blobbiness: mix(self.blobbiness, end.blobbiness),
             taper: None,
             ..*self
         }
@@ -98,7 +98,7 @@ impl Shaping {
     /// Returns the blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given
     /// absolutely.
     fn relative(&self) -> f64 {
-        let b = self.blobbiness.abs();
+        let b = self.blobbiness;
         match self.blob_scale {
             BlobScale::Relative => b,
             BlobScale::Absolute => b * self.radius * self.radius,
@@ -106,7 +106,7 @@ impl Shaping {
     }
 
     /// The kernel's width parameter, an inverse length: distances times it are the kernel's u
-    /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative (the radius), or
+    /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative, or
     /// not finite.
     ///
     /// Cauchy and Gauss `√|B|/R`. Compact kernels have the depth 1/s at which their logarithmic
@@ -117,7 +117,7 @@ impl Shaping {
         let b = self.relative();
         let width = self.kernel.width(b) / self.radius;
         let usable = |x: f64| x.is_finite() && x > 0.0;
-        (usable(self.radius) && b.is_finite() && usable(width)).then_some(width)
+        (usable(self.radius) && b.is_finite() && b >= 0.0 && usable(width)).then_some(width)
     }
 
     /// The factor on the integral of the kernel over a skeleton of this kind (thesis, section

@@ -42,10 +42,7 @@ pub(crate) fn cuboid(center: DVec3, axes: [DVec3; 3]) -> Vec<Shape> {
                 middle - x + y,
             ];
             for corners in [[a, b, c], [a, c, d]] {
-                patches.push(Shape::Patch {
-                    corners,
-                    normals: [x.cross(y); 3],
-                });
+                patches.push(Shape::patch(corners, [x.cross(y); 3]));
             }
         }
     }
@@ -86,10 +83,10 @@ pub(crate) fn quadric(quadric: &Quadric, cells: usize) -> Vec<Shape> {
     let values: Vec<f64> = grid(side).map(|at| quadric.value(place(at)).0).collect();
     let mut patches = Vec::new();
     let mut add = |corners: [DVec3; 3]| {
-        patches.push(Shape::Patch {
-            corners: corners.map(|q| quadric.place(q)),
-            normals: corners.map(|q| to_normal * quadric.value(q).1),
-        });
+        patches.push(Shape::patch(
+            corners.map(|q| quadric.place(q)),
+            corners.map(|q| to_normal * quadric.value(q).1),
+        ));
     };
     for cell in grid(side - 1) {
         for order in &ORDERS {

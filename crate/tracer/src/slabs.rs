@@ -1276,11 +1276,11 @@ mod tests {
     fn cloud(radius: f64, strength: f64, carving: f64) -> Soft {
         let mut numbers = Random::new(3);
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-2.0, strength), soft(-0.5, carving)]);
+        clothe(&mut scene, vec![soft(2.0, strength), soft(0.5, carving)]);
         for i in 0..400 {
             let center = numbers.vector(1.0);
             let carves = carving != 0.0 && i % 20 == 0;
-            let shape = Shape::Sphere { center, radius };
+            let shape = Shape::sphere(center, radius);
             scene.elements.push(element(shape, u32::from(carves)));
         }
         let surfaces = scene.soft_surfaces();

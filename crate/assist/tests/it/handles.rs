@@ -421,7 +421,7 @@ fn knobs_follow_along_their_own_way() {
         let handles = of(&project, 0);
         let handle = with_label(&handles, label);
         let anchor = compile(&project).scene.elements[0].clone();
-        let scene::Shape::Arc { center, u, v, .. } = anchor.shape else {
+        let Some(&field::Skeleton::Arc { center, u, v, .. }) = anchor.shape.skeleton() else {
             panic!("{anchor:?}")
         };
         let to = match handle.kind {

@@ -26,7 +26,7 @@ fn bits_are_the_same_on_every_platform() {
             let tapered = |random: &mut Random| Shaping {
                 taper: Some(Taper {
                     radius: random.pick(&[0.0, 0.4, 1.7]),
-                    blobbiness: -random.decades(-1.0, 1.0),
+                    blobbiness: random.decades(-1.0, 1.0),
                 }),
                 ..shaping(random, kernel)
             };

@@ -12,13 +12,7 @@ use scene::{
 /// A ball of radius 1 at the origin, seen from z = 5.
 fn ball(finish: Finish, lights: Vec<Light>) -> Scene {
     Scene {
-        elements: vec![element(
-            Shape::Sphere {
-                center: DVec3::ZERO,
-                radius: 1.0,
-            },
-            0,
-        )],
+        elements: vec![element(Shape::sphere(DVec3::ZERO, 1.0), 0)],
         finishes: vec![finish],
         lights,
         background: [0.1, 0.2, 0.3].into(),
@@ -121,18 +115,15 @@ fn colours_at_the_corners_of_a_triangle_are_mixed() {
         ..Finish::default()
     });
     scene.finishes = finishes.to_vec();
-    let flat = Shape::Triangle {
+    let flat = Shape::triangle(corners, 0.0);
+    let patch = Shape::patch(
         corners,
-        radius: 0.0,
-    };
-    let patch = Shape::Patch {
-        corners,
-        normals: [
+        [
             DVec3::Z,
             DVec3::new(0.3, 0.1, 1.0),
             DVec3::new(0.0, 0.4, 1.0),
         ],
-    };
+    );
     let size = [48, 48];
     let projection = scene.camera.projection(size[0], size[1]);
     let whole = area(corners[0], corners[1], corners[2]);
@@ -205,11 +196,7 @@ fn four_samples_are_averaged_as_light() {
     // but for an odd height the middle row is half of each.
     let mut scene = Scene {
         elements: vec![element(
-            Shape::Plane {
-                point: DVec3::new(0.0, -0.01, 0.0),
-                normal: DVec3::Y,
-                radius: 0.0,
-            },
+            Shape::plane(DVec3::new(0.0, -0.01, 0.0), DVec3::Y, 0.0),
             0,
         )],
         finishes: vec![Finish {
@@ -291,7 +278,7 @@ fn the_radius_that_counts_is_drawn_and_carving_is_not() {
     let mut scene = ball(bright, Vec::new());
     scene.flesh.push(Flesh {
         radius: 2.0,
-        blobbiness: -1.0,
+        blobbiness: Some(1.0),
         ..Flesh::default()
     });
     scene.elements[0].flesh = Some(0);
@@ -346,53 +333,20 @@ fn scenes_without_sense_are_drawn_without_harm() {
         for b in numbers {
             let p = DVec3::new(a, 1.0, b);
             for shape in [
-                Shape::Sphere {
-                    center: p,
-                    radius: a,
-                },
-                Shape::Cylinder {
-                    base: p,
-                    apex: DVec3::new(b, a, 0.0),
-                    radius: b,
-                },
+                Shape::sphere(p, a),
+                Shape::cylinder(p, DVec3::new(b, a, 0.0), b),
                 arc(p, DQuat::IDENTITY, a, b, 1.0),
                 arc(DVec3::ZERO, DQuat::IDENTITY, 1.0, a, b),
-                Shape::Arc {
-                    center: p,
-                    u: DVec3::splat(a),
-                    v: DVec3::splat(b),
-                    sweep: 1.0,
-                    angle: 2.0,
-                    radius: 0.1,
-                },
-                Shape::Triangle {
-                    corners: [p, DVec3::new(b, a, b), DVec3::splat(a)],
-                    radius: b,
-                },
-                Shape::Plane {
-                    point: p,
-                    normal: DVec3::new(b, a, 0.0),
-                    radius: a,
-                },
-                Shape::Cone {
-                    base: p,
-                    base_radius: a,
-                    apex: DVec3::new(b, a, 0.0),
-                    apex_radius: b,
-                },
-                Shape::Pipe {
-                    base: p,
-                    apex: DVec3::new(b, a, 0.0),
-                    radius: b,
-                },
-                Shape::Box {
-                    center: p,
-                    axes: [DVec3::X * a, DVec3::Y * b, DVec3::new(a, b, 1.0)],
-                },
-                Shape::Patch {
-                    corners: [p, DVec3::new(b, a, b), DVec3::splat(a)],
-                    normals: [p, DVec3::Z, DVec3::X * a],
-                },
+                Shape::arc(p, [DVec3::splat(a), DVec3::splat(b)], 1.0, 2.0, 0.1),
+                Shape::triangle([p, DVec3::new(b, a, b), DVec3::splat(a)], b),
+                Shape::plane(p, DVec3::new(b, a, 0.0), a),
+                Shape::cone(p, a, DVec3::new(b, a, 0.0), b),
+                Shape::pipe(p, DVec3::new(b, a, 0.0), b),
+                Shape::cuboid(p, [DVec3::X * a, DVec3::Y * b, DVec3::new(a, b, 1.0)]),
+                Shape::patch(
+                    [p, DVec3::new(b, a, b), DVec3::splat(a)],
+                    [p, DVec3::Z, DVec3::X * a],
+                ),
                 Shape::Quadric(Box::new(Quadric {
                     square: DMat3::from_diagonal(DVec3::new(a, b, 1.0)),
                     linear: p,
@@ -450,13 +404,7 @@ fn hundreds_of_thousands_of_elements_are_limited() {
     let elements = (0..count)
         .map(|i| {
             let place = DVec3::new((i % side) as f64, (i / side) as f64, 0.0);
-            element(
-                Shape::Sphere {
-                    center: place,
-                    radius: 0.4,
-                },
-                i as u32,
-            )
+            element(Shape::sphere(place, 0.4), i as u32)
         })
         .collect();
     let mut scene = Scene {
@@ -556,19 +504,13 @@ fn mesh_takes_the_place_of_soft_elements_alone() {
     }];
     let mut scene = ball(shiny(), lights.clone());
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         ..Flesh::default()
     });
     scene.elements[0].flesh = Some(0);
     // A hard ball beside it.
     let (aside, small) = (DVec3::new(0.95, 0.95, 0.0), 0.3);
-    scene.elements.push(element(
-        Shape::Sphere {
-            center: aside,
-            radius: small,
-        },
-        0,
-    ));
+    scene.elements.push(element(Shape::sphere(aside, small), 0));
     let (vertices, triangles) = round(60, looks(&scene)[0]);
     let (origin, unit) = (DVec3::new(0.1, -0.1, 0.0), 0.5);
     let mesh = Mesh {

@@ -77,7 +77,7 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
     let is_endless = soft
         .elements
         .iter()
-        .any(|element| matches!(element.shape, scene::Shape::Plane { .. }));
+        .any(|element| element.shape.bounds(0.0).is_none());
     if soft.elements.is_empty() || is_endless || soft.elements.len() > MOST {
         return (plain, None);
     }

@@ -179,10 +179,11 @@ fn set_flesh(options: &Options<'_>, flesh: &mut Flesh) -> Outcome<()> {
         (flesh.radius, flesh.end_radius) = (radius, end);
     }
     for (blobbiness, end) in options.all(&BLOBBINESS) {
-        flesh.blobbiness = blobbiness;
+        // The published datasets write it negative; only its magnitude counts.
+        flesh.blobbiness = (blobbiness != 0.0).then(|| blobbiness.abs());
         flesh.end_blobbiness = None;
         if let Some((at_end, span)) = end {
-            flesh.end_blobbiness = Some(at_end);
+            flesh.end_blobbiness = Some(at_end.abs());
             if at_end == 0.0 || blobbiness == 0.0 {
                 return Err(Problem::new(
                     &span,

@@ -73,14 +73,13 @@ pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
 
 /// An arc in the plane that a rotation makes of the xy-plane.
 pub fn arc(center: DVec3, rotation: DQuat, sweep: f64, angle: f64, radius: f64) -> Shape {
-    Shape::Arc {
+    Shape::arc(
         center,
-        u: rotation * DVec3::X,
-        v: rotation * DVec3::Y,
+        [rotation * DVec3::X, rotation * DVec3::Y],
         sweep,
         angle,
         radius,
-    }
+    )
 }
 
 pub fn look(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {
