@@ -1,4 +1,4 @@
-// b0 b1 b2 b3 b4 b5 b6 b7 b8 b9 b10 b11 b12 | 25+5: 0 1 2 3 4
+// b0 b1 b2 b3 b4 b5 b6 b7 b8 b9 b10 b11 b12 | 37+5: 0 1 2 3 4
 fn cauchy_taper(at: u32, count: u32, p: vec3<f32>) -> vec4<f32> {
     let c0 = constant(at + 0u);
     let c1 = constant(at + 1u);

@@ -8,11 +8,11 @@ fn quartic_plane(at: u32, count: u32, p: vec3<f32>) -> vec4<f32> {
     let t2 = min((t1 + (c2.w * (p.z - c0.z))), 1000000000.0);
     let t3 = max(t2, (-1000000000.0));
     let t4 = max((1.0 - (t3 * t3)), 0.0);
-    let t5 = 0.0 * t4;
-    let t6 = t4 * t4;
-    let t7 = c3.x * ((t6 * t4) * (1.0471976 + t5));
+    let t5 = t4 * t4;
+    let t6 = 0.0 * t4;
+    let t7 = c3.x * ((t5 * t4) * (1.0471976 + t6));
     let t8 = c3.x * 0.0;
-    let t9 = c3.x * (((-6.2831855) * t3) * (t6 * (1.0 + t5)));
+    let t9 = c3.x * (((-6.2831855) * t3) * (t5 * (1.0 + t6)));
     let t10 = ((c0.w * t8) + (c1.z * t8)) + (c2.y * t9);
     let t11 = ((c1.x * t8) + (c1.w * t8)) + (c2.z * t9);
     let t12 = ((c1.y * t8) + (c2.x * t8)) + (c2.w * t9);

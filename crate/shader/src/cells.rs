@@ -84,7 +84,7 @@ fn shaping(kernel: Kernel) -> Shaping {
     Shaping {
         kernel,
         radius: 0.3,
-        blobbiness: -1.0,
+        blobbiness: 1.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
@@ -123,14 +123,16 @@ fn elements(kernel: Kernel) -> Vec<Primitive> {
     let tapered = Shaping {
         taper: Some(Taper {
             radius: 0.2,
-            blobbiness: -1.0,
+            blobbiness: 1.0,
         }),
         ..plain
     };
     let straight = straight.map(|skeleton| (skeleton, plain));
     let bent = [arc, segment].map(|skeleton| (skeleton, tapered));
     (straight.into_iter().chain(bent))
-        .filter_map(|(skeleton, shaping)| Primitive::new(skeleton, &shaping, None))
+        .map(|(skeleton, shaping)| {
+            Primitive::new(skeleton, &shaping, None).expect("an element of the usual size")
+        })
         .collect()
 }
 
