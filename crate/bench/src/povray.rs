@@ -51,7 +51,9 @@ pub fn time(file: &str, smooth: bool) -> Result<Cost> {
 
 /// The figures of its statistics.
 fn cost(said: &str) -> Option<Cost> {
-    let number = |text: &str| text.split_whitespace().next()?.parse().ok();
+    fn number(text: &str) -> Option<f64> {
+        text.split_whitespace().next()?.parse().ok()
+    }
     let rays = number(said.split_once("\nRays:")?.1)?;
     let (_, after) = said.split_once("Trace Time:")?;
     let seconds = number(after.split_once("thread(s) with ")?.1)?;
@@ -185,11 +187,16 @@ fn softs(scene: &Value) -> Result<Vec<Soft<'_>>> {
 /// A scene with background, camera and light, and a surface, but for its look and the end.
 fn whole(scene: &Value, surface: &str) -> Result<String> {
     let camera = &scene["camera"];
-    let place = |value: &Value| Ok::<_, anyhow::Error>(point(read(value)?));
-    let [eye, up, target] = ["eye", "up", "target"].map(|name| place(&camera[name]));
+    let [eye, up, target, background, light] = [
+        &camera["eye"],
+        &camera["up"],
+        &camera["target"],
+        &scene["background"]["Colour"],
+        &scene["lights"][0]["kind"]["Point"]["position"],
+    ]
+    .map(|value| Ok::<_, anyhow::Error>(point(read(value)?)));
     let (eye, up, target, fov) = (eye?, up?, target?, &camera["fov"]);
-    let background = place(&scene["background"]["Colour"])?;
-    let light = place(&scene["lights"][0]["kind"]["Point"]["position"])?;
+    let (background, light) = (background?, light?);
     let finish = &scene["finishes"][0];
     let (ambient, diffuse): (DVec3, DVec3) = (read(&finish["ambient"])?, read(&finish["diffuse"])?);
     // Its ambient light is this share of the colour.

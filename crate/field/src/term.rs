@@ -1,11 +1,11 @@
 //! Primitives made ready for evaluation: a closed form, and the frame in which it is written.
 use crate::bone::curve::Law;
 use crate::bone::{Bone, Curve};
-use crate::cubed::cone::Cone;
 use crate::form::Form;
+use crate::kernel::cubed::cone::Cone;
 use crate::skeleton::cubic;
 use crate::waves::Waves;
-use crate::{Jet, Kernel, Real, Skeleton, point};
+use crate::{Jet, Kernel, Real, Skeleton};
 use glam::{DMat3, DVec3};
 
 /// Local coordinates: `axes·(p − origin)`; the axes are orthogonal and as long as the kernel's
@@ -123,7 +123,7 @@ impl<S: Copy> Term<S> {
             let x = (p[i] - origin[i]) * scale;
             x.min(horizon).max(-horizon)
         });
-        let jet = point::jet(self.form.kernel, local);
+        let jet = self.form.kernel.jet(&Bone::Point, local);
         let amplitude = R::lift(self.amplitude);
         let steep = amplitude * scale;
         Jet {
@@ -189,12 +189,12 @@ pub(crate) fn curve_with_taper(
         local.collect()
     };
     let fine = cubics(0.0);
-    if let (Kernel::Cubed, Skeleton::Segment { base, apex }) = (kernel, skeleton) {
+    if let (true, Skeleton::Segment { base, apex }) = (kernel.has_cones(), skeleton) {
         let half = 0.5 * frame.local_vector(*apex - *base).length();
         // A kernel's width parameter is 1/R.
         let radii = [0.0, 1.0].map(|end| 1.0 / law(end)[1].sqrt());
         if let Some(cone) = Cone::new(half, radii) {
-            return Curve::straight(cone, fine[0], law);
+            return Curve::straight(kernel, cone, fine[0], law);
         }
     }
     let scale = DVec3::from_array(frame.axes[0]).length();

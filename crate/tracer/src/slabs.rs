@@ -23,7 +23,7 @@ use crate::shared::{CORNERS, Cell, Shared, Sums};
 use crate::spans::{KnownPart, Node};
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
-use field::{Cut, Kernel, Primitive, THRESHOLD};
+use field::{Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -921,7 +921,7 @@ impl<'a> Slabs<'a> {
     fn is_at_pole(&self, id: u32, magnitude: f64, touches: bool) -> bool {
         let primitive = self.list[id as usize] as usize;
         let kernel = self.terms.primitives[primitive].kernel;
-        kernel.has_pole() && (magnitude >= POLAR || touches && kernel != Kernel::Inverse)
+        kernel.has_pole() && (magnitude >= POLAR || touches && kernel.is_finite_over(1))
     }
 
     /// Estimates a list entry's largest relative slope at a distance ([`Bound::relative_slope`]).

@@ -24,15 +24,16 @@ impl Maker<'_> {
     pub fn handles(&self) -> Vec<Handle> {
         let mut handles = Vec::new();
         for (index, operand) in self.seen.operands.iter().enumerate() {
-            let mut label = operand.parameter.meaning.to_owned();
-            let count = |operands: &[Operand]| {
-                let meanings = operands.iter().map(|operand| operand.parameter.meaning);
-                meanings.filter(|meaning| *meaning == label).count()
+            let meaning = operand.parameter.meaning;
+            let [number, count] = [index + 1, self.seen.operands.len()].map(|end| {
+                let operands = self.seen.operands[..end].iter();
+                operands.filter(|o| o.parameter.meaning == meaning).count()
+            });
+            let label = if count > 1 {
+                format!("{meaning} ({number})")
+            } else {
+                meaning.to_owned()
             };
-            let number = count(&self.seen.operands[..=index]);
-            if count(&self.seen.operands) > 1 {
-                label = format!("{label} ({number})");
-            }
             match operand.parameter.kind {
                 // A quadric's triples are factors and bounds.
                 Takes::Vector if matches!(self.element.shape, Shape::Quadric(_)) => {}

@@ -186,9 +186,9 @@ fn frame_sees_everything_and_no_more_than_needed() {
             let v = projection.world_from_view.transpose() * (center - camera.eye);
             assert!(-v.z > radius);
             // Well inside: the bounding sphere of the whole scene touches the margin.
-            let reach = |x: f64, half: f64| (x.abs() + radius) / (-v.z - radius) / half;
-            widest = widest.max(reach(v.x, projection.half_width));
-            widest = widest.max(reach(v.y, projection.half_height));
+            for (x, half) in [(v.x, projection.half_width), (v.y, projection.half_height)] {
+                widest = widest.max((x.abs() + radius) / (-v.z - radius) / half);
+            }
         }
         assert!(widest < 1.3 && widest > 0.3, "{widest} at {size:?}");
     }

@@ -98,6 +98,9 @@ fn phong_with_point_and_distant_lights_and_gamma() {
 
 #[test]
 fn colours_at_the_corners_of_a_triangle_are_mixed() {
+    fn area(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+        (b - a).cross(c - a).z
+    }
     let corners = [[1.3, -0.8], [0.1, 1.2], [-1.2, -1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
     // Multiples of 1/31 and 1/63.
     let colors = [
@@ -123,12 +126,6 @@ fn colours_at_the_corners_of_a_triangle_are_mixed() {
     );
     let size = [48, 48];
     let projection = scene.camera.projection(size[0], size[1]);
-    let place = |x: u32, y: u32| {
-        let [u, v] = [x, y].map(|i| (f64::from(i) + 0.5) / 48.0);
-        let ray = projection.direction(u, v);
-        projection.eye - ray * (projection.eye.z / ray.z)
-    };
-    let area = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).z;
     let whole = area(corners[0], corners[1], corners[2]);
     for shape in [flat, patch] {
         scene.elements = vec![Element {
@@ -143,7 +140,9 @@ fn colours_at_the_corners_of_a_triangle_are_mixed() {
             let picture = gpu.draw(&scene, size);
             let mut seen = 0;
             for (x, y) in (0..48).flat_map(|y| (0..48).map(move |x| (x, y))) {
-                let point = place(x, y);
+                let [u, v] = [x, y].map(|i| (f64::from(i) + 0.5) / 48.0);
+                let ray = projection.direction(u, v);
+                let point = projection.eye - ray * (projection.eye.z / ray.z);
                 let shares = [0, 1, 2]
                     .map(|k| area(point, corners[(k + 1) % 3], corners[(k + 2) % 3]) / whole);
                 if shares.iter().all(|share| *share > 1e-3) {
@@ -217,11 +216,9 @@ fn four_samples_are_averaged_as_light() {
         draft.set_sampling(Sampling::Four);
         let picture = gpu.render(&mut draft, &scene.camera, [9, 7]);
         assert_eq!(picture.size, [9, 7]);
-        let encode = |rgb: [f64; 3]| rgb.map(|c| libm::pow(c, 1.0 / f64::from(gamma)));
-        for x in 0..9 {
-            assert!(close(picture.at(x, 0), encode([0.0, 0.5, 1.0])));
-            assert!(close(picture.at(x, 3), encode([0.5, 0.5, 0.5])));
-            assert!(close(picture.at(x, 6), encode([1.0, 0.5, 0.0])));
+        for (y, rgb) in [(0, [0.0, 0.5, 1.0]), (3, [0.5; 3]), (6, [1.0, 0.5, 0.0])] {
+            let encoded = rgb.map(|c| libm::pow(c, 1.0 / f64::from(gamma)));
+            assert!((0..9).all(|x| close(picture.at(x, y), encoded)));
         }
     }
 }
@@ -248,14 +245,14 @@ fn sizes_and_generations() {
 
 #[test]
 fn more_lights_than_fit_leaves_the_weakest() {
-    let light = |strength: f32| Light {
+    let weak = Light {
         kind: LightKind::Distant { towards: DVec3::Z },
-        colour: [strength; 3],
+        colour: [0.001; 3],
         shadow: false,
         size: 0.0,
     };
-    let mut lights = vec![light(0.001); 40];
-    lights.push(light(0.5));
+    let mut lights = vec![weak; 41];
+    lights[40].colour = [0.5; 3];
     let scene = ball(
         Finish {
             ambient: [0.0; 3],
@@ -286,18 +283,14 @@ fn the_radius_that_counts_is_drawn_and_carving_is_not() {
     });
     scene.elements[0].flesh = Some(0);
     scene.camera.fov = 60.0;
-    let covered = |scene: &Scene| -> Vec<usize> {
-        gpus()
-            .iter()
-            .map(|gpu| {
-                let picture = gpu.draw(scene, [40, 40]);
-                picture.pixels.iter().filter(|p| p[0] == 255).count()
-            })
-            .collect()
-    };
-    let own = covered(&scene);
-    scene.settings.fragile = scene::Fragile::ALL;
-    let fragile = covered(&scene);
+    let [own, fragile] = [scene.settings.fragile, scene::Fragile::ALL].map(|fragile| {
+        scene.settings.fragile = fragile;
+        let counts = gpus().iter().map(|gpu| {
+            let picture = gpu.draw(&scene, [40, 40]);
+            picture.pixels.iter().filter(|p| p[0] == 255).count()
+        });
+        counts.collect::<Vec<usize>>()
+    });
     for (own, fragile) in own.iter().zip(&fragile) {
         // Twice the radius, four times the area, more as it comes nearer.
         assert!((4.0..5.5).contains(&(*fragile as f64 / *own as f64)));
@@ -539,13 +532,10 @@ fn mesh_takes_the_place_of_soft_elements_alone() {
         let mut counts = [0; 3];
         for y in 0..size[1] {
             for x in 0..size[0] {
-                let share = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
-                let ray = projection.world_from_view
-                    * DVec3::new(
-                        share(x, size[0]) * projection.half_width,
-                        -share(y, size[1]) * projection.half_height,
-                        -1.0,
-                    );
+                let [u, v] = [(x, size[0]), (y, size[1])]
+                    .map(|(i, n)| (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0);
+                let (right, up) = (u * projection.half_width, -v * projection.half_height);
+                let ray = projection.world_from_view * DVec3::new(right, up, -1.0);
                 let ray = ray.normalize();
                 // Where the ray meets a ball, and how near it passes the middle, in radii.
                 let meet = |center: DVec3, radius: f64| {

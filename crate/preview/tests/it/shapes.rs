@@ -287,13 +287,15 @@ fn patches() {
 
 #[test]
 fn quadrics() {
-    let cut = |square: DMat3, linear: DVec3, constant: f64| {
+    fn cut(square: DMat3, linear: DVec3, constant: f64) -> Shape {
         let half = DVec3::new(0.9, 1.0, 0.8);
         let mut quadric = Quadric::new(square, linear, constant, -half, half).expect("a quadric");
         quadric.axes = quadric.axes.map(|axis| rotation() * axis);
         Shape::Quadric(Box::new(quadric))
-    };
-    let diagonal = |x, y, z| DMat3::from_diagonal(DVec3::new(x, y, z));
+    }
+    fn diagonal(x: f64, y: f64, z: f64) -> DMat3 {
+        DMat3::from_diagonal(DVec3::new(x, y, z))
+    }
     for (what, shape) in [
         ("ellipsoid", cut(diagonal(2.0, 1.3, 3.0), DVec3::ZERO, -1.0)),
         ("cut ball", cut(diagonal(1.0, 1.0, 1.0), DVec3::ZERO, -1.2)),
@@ -470,12 +472,12 @@ fn a_grain_far_from_the_middle_of_a_large_scene_is_sharp() {
 /// A ball of patches, of which no ray passes between two.
 #[test]
 fn a_mesh_of_patches_has_no_gaps() {
-    let at = |i: u32, j: u32| {
+    fn at(i: u32, j: u32) -> DVec3 {
         let (a, b) = (f64::from(i) * TAU / 48.0, f64::from(j) * TAU / 80.0 - 0.3);
         let (sine, cosine) = libm::sincos(a);
         let (low, high) = libm::sincos(b);
         DVec3::new(cosine * high, sine * high, low)
-    };
+    }
     // More than the half of the ball that is seen, in one colour.
     let mut shapes = Vec::new();
     for i in 0..48 {

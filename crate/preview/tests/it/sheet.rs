@@ -15,7 +15,9 @@ fn examples() -> PathBuf {
 
 /// The scene of an example, with the files that its text names.
 fn scene(name: &str) -> Scene {
-    let read = |name: &str| std::fs::read(examples().join(name)).unwrap();
+    fn read(name: &str) -> Vec<u8> {
+        std::fs::read(examples().join(name)).unwrap()
+    }
     let text = String::from_utf8(read(&format!("{name}.rat"))).unwrap();
     let mut files = vec![File {
         name: format!("{name}.rat"),

@@ -31,7 +31,7 @@ use crate::root_isolation::BoundedTerms;
 use crate::surface_samples::SurfaceSamples;
 use crate::walk::Quest;
 use field::far_field::{Cell, FEW_NEAR, LOOSE, SMALLEST};
-use field::{Cut, FarField, Kernel, Primitive, THRESHOLD};
+use field::{Cut, FarField, Primitive, THRESHOLD};
 use glam::DVec3;
 use piece::{Piece, leaves};
 use points::Points;
@@ -117,7 +117,7 @@ impl FarBody {
     ) -> Option<Self> {
         // A field that falls as 1/r is so large where there are many elements that its rounding
         // leaves nothing to save.
-        if primitives.iter().any(|p| p.kernel == Kernel::Inverse) {
+        if !primitives.iter().all(|p| p.kernel.is_finite_over(1)) {
             return None;
         }
         if primitives.len() < FEWEST || !(radius > 0.0 && radius < f64::INFINITY) {

@@ -7,11 +7,11 @@
 //! `f = θ/ρ`.
 //!
 //! Gradient: `∂f/∂x = 1/A − 1/B = −4cx/(AB)`, and `∂f/∂y = −2y·∫du/(ρ²+u²)²`, where the integral is
-//! the [Cauchy kernel](crate::cauchy::segment)'s with ρ for its p:
+//! the [Cauchy kernel](crate::kernel::cauchy::segment)'s with ρ for its p:
 //! `(θ − sin θ cos θ)/(2ρ³) + 2c/(AB)`.
 use crate::angle::angle;
 use crate::bone::Segment;
-use crate::inverse::POLE2;
+use crate::kernel::POLE2;
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.

@@ -9,9 +9,10 @@
 //! `f = Σ ∫ h(1/c − 1/√(k²+t²))/(h²+t²) dt = (1/c)·Σ W`,
 //!
 //! where W is the solid angle at which the point sees the triangle between q and the edge, as for
-//! the [inverse kernel](crate::inverse::polygon). Beside the polygon, nearly in its plane, the sum
-//! of all W is a small rest. But with Δ, the angle at which q sees the edge, `W = Δ − D`, and the Δ
-//! add up to a multiple of 2π that is known beforehand (w is the winding number of q, 0 outside):
+//! the [inverse kernel](crate::kernel::inverse::polygon). Beside the polygon, nearly in its plane,
+//! the sum of all W is a small rest. But with Δ, the angle at which q sees the edge, `W = Δ − D`,
+//! and the Δ add up to a multiple of 2π that is known beforehand (w is the winding number of q, 0
+//! outside):
 //!
 //! `f = (2πw − Σ D)/c`, `D = arctan(c·t/(|h|ρ))` at t₁ less that at t₀
 //! `= atan2(c|h|N, h²ρ₀ρ₁+c²t₀t₁)`,
@@ -31,7 +32,7 @@
 use super::Ends;
 use crate::angle::{arctangent_shortfall, direction};
 use crate::bone::{Edge, Polygon, Triangle};
-use crate::inverse::POLE2;
+use crate::kernel::POLE2;
 use crate::real::Scalar;
 use crate::{Jet, Kernel, Real, far};
 use core::f64::consts::TAU;

@@ -19,9 +19,10 @@
 //! Outside the polygon terms of both signs cancel. In single precision that leaves an error of
 //! about 10⁻⁷ times the perimeter, 2·10⁻⁶ of the largest field at a radius from the skeleton; where
 //! a polygon is small compared to its distance the [cubature](crate::far) replaces the sum.
-use super::{POLE2, surplus};
+use super::surplus;
 use crate::angle::direction;
 use crate::bone::{Edge, Polygon, Triangle};
+use crate::kernel::POLE2;
 use crate::real::Scalar;
 use crate::{Jet, Kernel, Real, far};
 

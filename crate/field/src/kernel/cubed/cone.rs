@@ -25,7 +25,7 @@
 //! integrand is smooth, and a Gauss–Legendre rule takes their place: from 3c off, at least, its n
 //! nodes are right to 5.8^{−2n}.
 use super::Ends;
-use crate::inverse::POLE2;
+use crate::kernel::POLE2;
 use crate::legendre;
 use crate::{Jet, Real};
 

@@ -1,8 +1,8 @@
 //! The metaballs kernel along a circular arc.
 //!
-//! Seen from the point, the squared distance of the circle's place at the azimuth w is
-//! `u² = g² + 4ρr sin²(w/2)`, see [polynomials](crate::polynomial::arc). The arc's pieces in |w| <
-//! W₃, where u < ⅓, have the closed form of the polynomial `1 − 3u² = ⅔ + 3v`, `v = 1/9 − u²`.
+//! Seen from the point, the squared distance of the circle's place at the azimuth w is `u² = g² +
+//! 4ρr sin²(w/2)`, see [polynomials](crate::kernel::polynomial::arc). The arc's pieces in |w| < W₃,
+//! where u < ⅓, have the closed form of the polynomial `1 − 3u² = ⅔ + 3v`, `v = 1/9 − u²`.
 //!
 //! On those in W₃ < |w| < W₁, up to u = 1, the integrals of u and 1/u are elliptic. In
 //! Carlson's form they are the sum of two functions of w of about the size of the whole at each
@@ -15,7 +15,7 @@
 use super::INNER;
 use super::rule_arc;
 use crate::bone::Arc;
-use crate::polynomial::arc::{
+use crate::kernel::polynomial::arc::{
     AzimuthRange, Azimuths, FromCircle, Moments, PieceFrame, eighth_turn, quarter_turn,
 };
 use crate::{Jet, Real};
@@ -39,7 +39,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
     place.jet(arc, sum, p)
 }
 
-/// Computes the integrals of [`polynomial::arc`](crate::polynomial::arc) for `⅔ + 3v`.
+/// Computes the integrals of [`polynomial::arc`](crate::kernel::polynomial::arc) for `⅔ + 3v`.
 #[inline(always)]
 fn integrate_inner<R: Real>(
     arc: &Arc<R::Scalar>,
@@ -62,7 +62,7 @@ fn integrate_inner<R: Real>(
     ])
 }
 
-/// Computes the integrals of [`polynomial::arc`](crate::polynomial::arc) for `1.5(1−u)²`.
+/// Computes the integrals of [`polynomial::arc`](crate::kernel::polynomial::arc) for `1.5(1−u)²`.
 #[inline(always)]
 fn integrate_outer<R: Real>(
     arc: &Arc<R::Scalar>,

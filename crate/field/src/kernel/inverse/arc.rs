@@ -1,11 +1,11 @@
 //! The inverse kernel along a circular arc: one elliptic integral.
 //!
-//! The frame and the distances ε, σ, α, ρ, A, Δ, D₁, D₂, C are those of the
-//! [squared kernel's arc](crate::squared::arc); `n, m = z²+ε²+(ρ∓r)²` are the squares of the
-//! nearest and the farthest distance from the circle, and `s = sin(α/2)`. The thesis has no
-//! formula. With t = tan(θ/2) the integral over the arc is that of one over the root of two
-//! quadratics, which Carlson (A table of elliptic integrals: two quadratic factors, 1992) gives
-//! between any two limits as one R_F:
+//! The frame and the distances ε, σ, α, ρ, A, Δ, D₁, D₂, C are those of the [squared kernel's
+//! arc](crate::kernel::squared::arc); `n, m = z²+ε²+(ρ∓r)²` are the squares of the nearest and the
+//! farthest distance from the circle, and `s = sin(α/2)`. The thesis has no formula. With t =
+//! tan(θ/2) the integral over the arc is that of one over the root of two quadratics, which Carlson
+//! (A table of elliptic integrals: two quadratic factors, 1992) gives between any two limits as one
+//! R_F:
 //!
 //! `f = 4rs·R_F(M, M+s²n, M+s²m)`, `M = ½(√(D₁D₂) + C)`.
 //!
@@ -18,7 +18,7 @@
 //! `R_m = R_D(M, M+s²n, M+s²m)`. `∇M/√M` is computed as a whole, since M may be 0.
 use crate::bone::Arc;
 use crate::carlson::elliptic;
-use crate::squared::arc::Places;
+use crate::kernel::squared::arc::Places;
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.

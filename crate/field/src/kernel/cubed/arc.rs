@@ -1,12 +1,12 @@
 //! The cubed kernel along a circular arc: elliptic integrals of the first and the second kind,
 //! incomplete but for a closed circle.
 //!
-//! The frame and the distances ε, σ, α, ρ, A, D₁, D₂, C are those of the
-//! [squared kernel's arc](crate::squared::arc); n, m, s and M those of the [inverse
-//! kernel's](crate::inverse::arc). Every squared distance contains `ζ = z²+ε²`, so that the cubed
-//! kernel is −2 times the inverse kernel's derivative by ζ: `f = −2∂f₁/∂ζ`,
-//! `f₁ = 4rs·R_F(M, y, z)`, `y = M+s²n`, `z = M+s²m`. M moves all three arguments at once, and the
-//! sum of R_F's three derivatives is elementary:
+//! The frame and the distances ε, σ, α, ρ, A, D₁, D₂, C are those of the [squared kernel's
+//! arc](crate::kernel::squared::arc); n, m, s and M those of the [inverse
+//! kernel's](crate::kernel::inverse::arc). Every squared distance contains `ζ = z²+ε²`, so that the
+//! cubed kernel is −2 times the inverse kernel's derivative by ζ: `f = −2∂f₁/∂ζ`, `f₁ = 4rs·R_F(M,
+//! y, z)`, `y = M+s²n`, `z = M+s²m`. M moves all three arguments at once, and the sum of R_F's
+//! three derivatives is elementary:
 //!
 //! `f = 4rs·[2g′/√(yz) + s²(R_y + R_z)/3]`, `R_y = R_D(M, z, y)`, `R_z = R_D(M, y, z)`, `g = √M`,
 //! `g′ = ∂g/∂ζ`.
@@ -22,7 +22,7 @@
 //! where S are [sums of second derivatives](crate::carlson) of R_F.
 use crate::bone::Arc;
 use crate::carlson::elliptic_second;
-use crate::squared::arc::Places;
+use crate::kernel::squared::arc::Places;
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.

@@ -16,7 +16,7 @@
 //! `(1+pq)/ρ² = (1/A² + 1/B² − ρ²/(A²B²))/(1−pq)`.
 use super::Ends;
 use crate::bone::Segment;
-use crate::inverse::POLE2;
+use crate::kernel::POLE2;
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.

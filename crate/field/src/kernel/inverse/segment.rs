@@ -11,8 +11,9 @@
 //! and nothing cancels beside the segment, beyond its ends, on its axis or far away.
 //!
 //! Gradient: with `s = A+B`, `∂f/∂x = 1/A−1/B = −4cx/(ABs)` and `∂f/∂y = −4c·s·y/(AB·g·(s+2c))`.
-use super::{POLE2, surplus};
+use super::surplus;
 use crate::bone::Segment;
+use crate::kernel::POLE2;
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.

@@ -1,9 +1,9 @@
 //! The squared kernel along a circular arc.
 //!
-//! The frame is that of the [Cauchy arc](crate::cauchy::arc): the origin is the middle of the arc
-//! (σ = 1) or of its gap (σ = −1) on the circle of radius r, whose centre is at (−r, 0, 0); α is
-//! half the arc's angle. With `X = r+x`, `ρ² = X²+y²`, `A = r²+ρ²+z²+ε²`,
-//! `Δ = A²−4r²ρ² = (z²+ε²+(ρ−r)²)(z²+ε²+(ρ+r)²)` and D₁, D₂ = ε² + squared distances from the ends:
+//! The frame is that of the [Cauchy arc](crate::kernel::cauchy::arc): the origin is the middle of
+//! the arc (σ = 1) or of its gap (σ = −1) on the circle of radius r, whose centre is at (−r, 0, 0);
+//! α is half the arc's angle. With `X = r+x`, `ρ² = X²+y²`, `A = r²+ρ²+z²+ε²`, `Δ = A²−4r²ρ² =
+//! (z²+ε²+(ρ−r)²)(z²+ε²+(ρ+r)²)` and D₁, D₂ = ε² + squared distances from the ends:
 //!
 //! `f = 2rδ/√Δ`, `√(D₁D₂)·(sin δ, cos δ) = (√Δ sin α, C)`, `C = A cos α − 2σrX`.
 //!
@@ -13,7 +13,7 @@
 //! Gradient: `∇f = −2r·[(δ − sin δ cos δ)/2·∇Δ/Δ^{3/2} + sin α·∇C/(D₁D₂)]`.
 use crate::angle::angle;
 use crate::bone::Arc;
-use crate::inverse::POLE2;
+use crate::kernel::POLE2;
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.

@@ -30,7 +30,7 @@
 use crate::angle::direction;
 use crate::bone::{Edge, Polygon, Triangle};
 use crate::clausen::{InDisc, imaginary_dilogarithm};
-use crate::inverse::POLE2;
+use crate::kernel::POLE2;
 use crate::real::Scalar;
 use crate::{Jet, Kernel, Real, far};
 use core::f64::consts::{FRAC_PI_2, TAU};

@@ -14,7 +14,7 @@
 //! terms that are not smooth at the axis cancel to the last bit and leave `1 − 3u²`.
 use super::INNER;
 use crate::bone::Segment;
-use crate::polynomial::segment::within;
+use crate::kernel::polynomial::segment::within;
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.

@@ -1,8 +1,8 @@
 //! The metaballs kernel over a planar polygon, or a triangle.
 //!
-//! As for [polynomials](crate::polynomial::polygon), Green's theorem makes the field a sum over the
-//! edges' parts inside the disc `s² + z² ≤ 1` around the point's foot, `Σ h·∫ Φ/s² dt`, and an
-//! angle of those outside. With q = u² = s²+z², and H(q) the kernel, the radial primitive is
+//! As for [polynomials](crate::kernel::polynomial::polygon), Green's theorem makes the field a sum
+//! over the edges' parts inside the disc `s² + z² ≤ 1` around the point's foot, `Σ h·∫ Φ/s² dt`,
+//! and an angle of those outside. With q = u² = s²+z², and H(q) the kernel, the radial primitive is
 //! `Φ = ½∫H dq` from q = z². An edge's part inside has up to three pieces: the middle one, u < ⅓,
 //! where Φ/s² is a polynomial of degree 2, and those on either side of it. The gradient in the
 //! plane is `Σ n·∫H dt`, across it `−2z` times the same sum for the kernel −H′.
@@ -25,7 +25,7 @@
 //! in double.
 use super::{INNER, INNER2, rule, rule_inside};
 use crate::bone::Edge;
-use crate::polynomial::polygon::{Clipped, whole_turns};
+use crate::kernel::polynomial::polygon::{Clipped, whole_turns};
 use crate::{Jet, Real};
 
 /// Value and gradient at a local position.
