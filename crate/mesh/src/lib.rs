@@ -24,6 +24,7 @@ mod aabb;
 mod bvh;
 mod color;
 mod error;
+pub mod formats;
 mod half_edge;
 mod heights;
 mod intersect;
