@@ -12,7 +12,8 @@ use std::collections::VecDeque;
 /// Radius of a node or an end whose file gives none that is above 0.
 pub(crate) const UNKNOWN: f64 = 0.0;
 
-/// Graph that a reader is still adding to: limbs may be listed twice, have no length, or lack radii.
+/// Graph that a reader is still adding to: limbs may be listed twice, have no length, or lack
+/// radii.
 #[derive(Default)]
 pub(crate) struct Draft {
     graph: Graph,
@@ -197,10 +198,15 @@ impl Draft {
                 }
             }
         }
-        let is_known = |node: &Node| node.radius > UNKNOWN;
-        let unknown = graph.nodes.iter().filter(|node| !is_known(node)).count();
+        let unknown = graph
+            .nodes
+            .iter()
+            .filter(|node| node.radius <= UNKNOWN)
+            .count();
         if unknown > 0 {
-            let known = (0..).zip(&graph.nodes).filter(|(_, node)| is_known(node));
+            let known = (0..)
+                .zip(&graph.nodes)
+                .filter(|(_, node)| node.radius > UNKNOWN);
             let mut queue: VecDeque<u32> = known.map(|(i, _)| i).collect();
             let none_known = queue.is_empty();
             let around = graph.around();
@@ -209,14 +215,14 @@ impl Draft {
                 for limb in &around[i as usize] {
                     for end in graph.limbs[*limb as usize].ends {
                         let node = &mut graph.nodes[end as usize];
-                        if !is_known(node) {
+                        if node.radius <= UNKNOWN {
                             node.radius = radius;
                             queue.push_back(end);
                         }
                     }
                 }
             }
-            for node in graph.nodes.iter_mut().filter(|node| !is_known(node)) {
+            for node in graph.nodes.iter_mut().filter(|node| node.radius <= UNKNOWN) {
                 let Some(radius) = default else {
                     return fail(
                         "this file gives no radii above 0: give the material, or the skeleton, a \

@@ -87,7 +87,7 @@ pub struct Graph {
     pub clips: Vec<Clip>,
     /// Millimetres of the unit, where the format or the file says it.
     pub millimetres: Option<f64>,
-    /// What was left out of the file, changed or guessed.
+    /// Sentences about what was left out of the file, changed or guessed.
     pub remarks: Vec<Remark>,
 }
 
@@ -164,16 +164,15 @@ impl Graph {
     /// Adds a length to all radii. A negative one thins: limbs of which nothing is left are taken
     /// out, with a remark, and no radius falls below a thousandth of what it was.
     pub fn thicken(&mut self, by: f64) {
-        let thicker = |radius: f64| (radius + by).max(1e-3 * radius);
         let before = self.limbs.len() + self.nodes.iter().filter(|node| node.is_ball).count();
         self.limbs
             .retain(|limb| limb.radii.iter().any(|radius| radius + by > 0.0));
         for limb in &mut self.limbs {
-            limb.radii = limb.radii.map(thicker);
+            limb.radii = limb.radii.map(|radius| thicken(radius, by));
         }
         for node in &mut self.nodes {
             node.is_ball &= node.radius + by > 0.0;
-            node.radius = thicker(node.radius);
+            node.radius = thicken(node.radius, by);
         }
         let after = self.limbs.len() + self.nodes.iter().filter(|node| node.is_ball).count();
         if after < before {
@@ -206,24 +205,25 @@ impl Graph {
     /// Takes out the nodes that are neither balls nor ends of limbs.
     pub(crate) fn drop_lonely_nodes(&mut self) {
         let degrees = self.degrees();
-        let kept = |(node, degree): (&Node, &u32)| node.is_ball || *degree > 0;
+        let mut is_kept: Vec<bool> = degrees.into_iter().map(|degree| degree > 0).collect();
         let mut count = 0;
-        let places: Vec<u32> = self
-            .nodes
-            .iter()
-            .zip(&degrees)
-            .map(|pair| {
-                count += u32::from(kept(pair));
-                count.saturating_sub(1)
-            })
-            .collect();
-        let mut degree = degrees.iter();
-        self.nodes
-            .retain(|node| degree.next().is_some_and(|degree| kept((node, degree))));
+        let mut places: Vec<u32> = Vec::with_capacity(is_kept.len());
+        for (node, is_kept) in self.nodes.iter().zip(&mut is_kept) {
+            *is_kept |= node.is_ball;
+            places.push(count);
+            count += u32::from(*is_kept);
+        }
+        let mut is_kept = is_kept.into_iter();
+        self.nodes.retain(|_| is_kept.next() == Some(true));
         for limb in &mut self.limbs {
             limb.ends = limb.ends.map(|end| places[end as usize]);
         }
     }
+}
+
+/// Adds a length to a radius, of which a thousandth remains at least.
+fn thicken(radius: f64, by: f64) -> f64 {
+    (radius + by).max(1e-3 * radius)
 }
 
 /// Returns the cube root of a map's change of volume: what it does to radii.

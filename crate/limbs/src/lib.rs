@@ -3,7 +3,11 @@
 //!
 //! - [`Graph`]: nodes with radii, [`Limb`]s between them with a radius at either end, names of
 //!   their kinds, and remarks about what a file says otherwise.
-//! - [`read`] makes one of the bytes of a file.
+//! - [`read`] makes one of the bytes of a file: SWC, 3MF with beam lattices, VTK's polygonal data,
+//!   tables of a tree's cylinders, OBJ and PLY with lines, molecules in XYZ and PDB.
+//! - [`Graph::scale`], [`Graph::thicken`], [`Graph::merge`], [`Graph::simplify`] change one;
+//!   [`Graph::facts`] counts its parts, cycles and ends.
+//! - [`Graph::write_swc`], [`Graph::write_obj`], [`Graph::write_block`] write one.
 //!
 //! ```
 //! let swc = b"1 1 0 0 0 5 -1\n2 3 0 8 0 1.5 1\n3 3 0 20 0 1 2\n";

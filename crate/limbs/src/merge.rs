@@ -44,19 +44,20 @@ impl Graph {
             .map(|node| Aabb::of_points([node.position]))
             .collect();
         let bvh = Bvh::new(&boxes);
-        let position = |i: u32| self.nodes[i as usize].position;
         let mut order: Vec<u32> = (0..self.nodes.len() as u32).collect();
-        order.sort_by(|a, b| compare(position(*a), position(*b)));
+        order.sort_by(|a, b| compare(self.position(*a), self.position(*b)));
         let mut places: Vec<Option<u32>> = vec![None; self.nodes.len()];
         for leader in order {
             if places[leader as usize].is_some() {
                 continue;
             }
             let reach = DVec3::splat(within);
-            let around = Aabb::of_points([position(leader) - reach, position(leader) + reach]);
+            let around =
+                Aabb::of_points([self.position(leader) - reach, self.position(leader) + reach]);
             for other in bvh.overlapping(&around) {
                 let place = &mut places[other as usize];
-                if place.is_none() && position(other).distance(position(leader)) <= within {
+                if place.is_none() && self.position(other).distance(self.position(leader)) <= within
+                {
                     *place = Some(leader);
                 }
             }
@@ -68,6 +69,11 @@ impl Graph {
             .zip(0..)
             .map(|(place, i)| place.unwrap_or(i))
             .collect()
+    }
+
+    /// Returns a node's place.
+    fn position(&self, node: u32) -> DVec3 {
+        self.nodes[node as usize].position
     }
 
     /// Leads limbs through the nodes that they pass within a distance.

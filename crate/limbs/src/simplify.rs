@@ -1,7 +1,7 @@
 //! Fewer limbs for the same lines.
 
 use crate::error::Remark;
-use crate::graph::{Graph, Limb};
+use crate::graph::{Cap, Graph, Limb};
 use crate::merge::compare;
 use std::collections::HashSet;
 
@@ -123,11 +123,8 @@ impl Graph {
     fn is_passed(&self, node: u32, limbs: &[u32]) -> bool {
         let &[a, b] = limbs else { return false };
         let [a, b] = [a, b].map(|limb| &self.limbs[limb as usize]);
-        let radius = |limb: &Limb| limb.radii[usize::from(limb.ends[1] == node)];
-        !self.nodes[node as usize].is_ball
-            && a.group == b.group
-            && a.clip == b.clip
-            && radius(a) == radius(b)
+        let [r, s] = [a, b].map(|limb| limb.radii[usize::from(limb.ends[1] == node)]);
+        !self.nodes[node as usize].is_ball && a.group == b.group && a.clip == b.clip && r == s
     }
 
     /// Whether the other direction of a line is the one that does not depend on numbering.
@@ -181,8 +178,7 @@ impl Graph {
         (start..end).all(|i| {
             let piece = self.span(chain, i, i + 1);
             let [p, q] = piece.ends.map(|node| self.nodes[node as usize].position);
-            let share = |x: glam::DVec3| (x - a).dot(axis) / axis.length_squared();
-            let [s, t] = [share(p), share(q)];
+            let [s, t] = [p, q].map(|end| (end - a).dot(axis) / axis.length_squared());
             // The distance is largest at an end; the difference of radii also where the nearest
             // place becomes an end of the limb.
             let kinks = [0.0, 1.0].map(|end| ((end - s) / (t - s)).clamp(0.0, 1.0));
@@ -200,15 +196,17 @@ impl Graph {
         })
     }
 
+    /// Returns the radius and the cap of a limb at its first end along a line, or at its last.
+    fn side(&self, (limb, is_forward): (u32, bool), is_last: bool) -> (f64, Cap) {
+        let limb = &self.limbs[limb as usize];
+        let side = usize::from(is_last == is_forward);
+        (limb.radii[side], limb.caps[side])
+    }
+
     /// Returns the limb between two nodes of a line.
     fn span(&self, chain: &Chain, start: usize, end: usize) -> Limb {
-        let side = |(limb, is_forward): (u32, bool), last: bool| {
-            let limb = &self.limbs[limb as usize];
-            let side = usize::from(last == is_forward);
-            (limb.radii[side], limb.caps[side])
-        };
-        let first = side(chain.limbs[start], false);
-        let last = side(chain.limbs[end - 1], true);
+        let first = self.side(chain.limbs[start], false);
+        let last = self.side(chain.limbs[end - 1], true);
         Limb {
             ends: [chain.nodes[start], chain.nodes[end]],
             radii: [first.0, last.0],
@@ -218,6 +216,7 @@ impl Graph {
     }
 }
 
+/// Sorts two numbers.
 fn sort([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }

@@ -62,15 +62,14 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> 
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let heading = bytes
         .split(|byte| *byte == b'\n')
-        .find(|line| !line.trim_ascii().is_empty());
+        .find(|line| !matches!(line.trim_ascii(), [] | [b'#', ..]));
     let heading = heading.unwrap_or_default();
-    let counts = |delimiter: &u8| heading.iter().filter(|byte| *byte == delimiter).count();
-    let delimiter = *[b',', b';', b'\t', b' ']
-        .iter()
-        .max_by_key(|d| (counts(d), **d == b','))
-        .unwrap_or(&b',');
+    // A comma wins where others are as many.
+    let delimiter = [b' ', b'\t', b';', b',']
+        .into_iter()
+        .max_by_key(|delimiter| heading.iter().filter(|byte| *byte == delimiter).count());
     let mut reader = ReaderBuilder::new()
-        .delimiter(delimiter)
+        .delimiter(delimiter.unwrap_or(b','))
         .flexible(true)
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
@@ -209,34 +208,20 @@ impl Columns {
                 }
             }
         }
-        let one = |spellings: &[&str]| {
-            spellings
-                .iter()
-                .find_map(|spelling| plain_names.iter().position(|name| name == spelling))
-        };
-        let three = |spellings: &[&str]| {
-            spellings.iter().find_map(|spelling| {
-                let axes = ["x", "y", "z"].map(|axis| one(&[&spelling.replace('?', axis)]));
-                let [Some(x), Some(y), Some(z)] = axes else {
-                    return None;
-                };
-                Some([x, y, z])
-            })
-        };
         let radius = match radii {
-            Some(name) => one(&[&plain(name)]),
-            None => one(&RADIUS),
+            Some(name) => one(&plain_names, &[&plain(name)]),
+            None => one(&plain_names, &RADIUS),
         };
-        let end = three(&END);
-        let axis = three(&AXIS).zip(one(&LENGTH));
-        match (three(&START), radius) {
+        let end = three(&plain_names, &END);
+        let axis = three(&plain_names, &AXIS).zip(one(&plain_names, &LENGTH));
+        match (three(&plain_names, &START), radius) {
             (Some(start), Some(radius)) if end.is_some() || axis.is_some() => Ok(Self {
                 start,
                 end,
                 axis,
                 radius,
-                id: one(&ID),
-                parent: one(&PARENT),
+                id: one(&plain_names, &ID),
+                parent: one(&plain_names, &PARENT),
             }),
             _ => fail(format!(
                 "line 1: a table of cylinders needs columns of a start, an end (or an axis and a \
@@ -254,16 +239,12 @@ impl Columns {
         record: &StringRecord,
         line: usize,
     ) -> Result<Cylinder, Error> {
-        let triple = |[x, y, z]: [usize; 3]| {
-            let [x, y, z] = [x, y, z].map(|column| number(names, record, line, column));
-            Ok::<_, Error>(DVec3::new(x?, y?, z?))
-        };
-        let start = triple(self.start)?;
+        let start = triple(names, record, line, self.start)?;
         let end = match (self.end, self.axis) {
-            (Some(end), _) => triple(end)?,
+            (Some(end), _) => triple(names, record, line, end)?,
             (None, Some((axis, length))) => {
                 let length = number(names, record, line, length)?;
-                start + triple(axis)?.normalize_or_zero() * length
+                start + triple(names, record, line, axis)?.normalize_or_zero() * length
             }
             (None, None) => start,
         };
@@ -278,6 +259,36 @@ impl Columns {
             parent,
         })
     }
+}
+
+/// Finds the column of the first spelling that there is.
+fn one(names: &[String], spellings: &[&str]) -> Option<usize> {
+    let mut places = spellings
+        .iter()
+        .map(|spelling| names.iter().position(|name| name == spelling));
+    places.find_map(|place| place)
+}
+
+/// Finds three columns by the first spelling, with the axis for `?`, of which there are all.
+fn three(names: &[String], spellings: &[&str]) -> Option<[usize; 3]> {
+    spellings.iter().find_map(|spelling| {
+        let axes = ["x", "y", "z"].map(|axis| one(names, &[&spelling.replace('?', axis)]));
+        let [Some(x), Some(y), Some(z)] = axes else {
+            return None;
+        };
+        Some([x, y, z])
+    })
+}
+
+/// Reads three numbers.
+fn triple(
+    names: &StringRecord,
+    record: &StringRecord,
+    line: usize,
+    columns: [usize; 3],
+) -> Result<DVec3, Error> {
+    let [x, y, z] = columns.map(|column| number(names, record, line, column));
+    Ok(DVec3::new(x?, y?, z?))
 }
 
 /// Reads a number.

@@ -1,8 +1,8 @@
 //! Molecules: XYZ files with a count and element symbols, and PDB files. Atoms are balls of their
 //! van der Waals radius, in ångströms.
 
-use super::Reading;
 use super::elements::{ELEMENTS, Element};
+use super::{Reading, place};
 use crate::draft::Draft;
 use crate::error::{Error, fail, fail_at, shorten};
 use crate::graph::{Cap, Graph, Limb};
@@ -40,11 +40,10 @@ pub(super) fn read_xyz(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Gra
     for (line, content) in lines.skip(1).take(count) {
         let mut words = content.split_ascii_whitespace();
         let symbol = words.next().unwrap_or_default();
-        let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
-        let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
+        let Some(place) = place(&mut words) else {
             return fail_at(line, "an atom is its element's symbol and three numbers");
         };
-        molecule.atom(line, symbol, DVec3::new(x, y, z))?;
+        molecule.atom(line, symbol, place)?;
     }
     let found = molecule.atoms.len();
     if found < count {
@@ -68,19 +67,15 @@ pub(super) fn read_pdb(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Err
     let mut joined: Vec<[i64; 2]> = Vec::new();
     let (mut is_over, mut alternatives) = (false, 0);
     for (line, content) in (1..).zip(text.lines()) {
-        let field = |start: usize, end: usize| {
-            let end = end.min(content.len());
-            content.get(start - 1..end).unwrap_or_default()
-        };
-        match field(1, 6).trim_end() {
+        match field(content, 1, 6).trim_end() {
             "ATOM" | "HETATM" if !is_over => {
-                if !matches!(field(17, 17), " " | "" | "A" | "1") {
+                if !matches!(field(content, 17, 17), " " | "" | "A" | "1") {
                     alternatives += 1;
                     continue;
                 }
                 let [x, y, z] =
                     [(31, 38, "x"), (39, 46, "y"), (47, 54, "z")].map(|(a, b, name)| {
-                        let word = field(a, b).trim();
+                        let word = field(content, a, b).trim();
                         match word.parse::<f64>() {
                             Ok(number) => Ok(number),
                             Err(_) => fail_at(
@@ -92,12 +87,12 @@ pub(super) fn read_pdb(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Err
                             ),
                         }
                     });
-                let symbol = match field(77, 78).trim() {
-                    "" => symbol_of(field(13, 16)),
+                let symbol = match field(content, 77, 78).trim() {
+                    "" => symbol_of(field(content, 13, 16)),
                     symbol => symbol.into(),
                 };
                 let atom = molecule.atom(line, &symbol, DVec3::new(x?, y?, z?))?;
-                if let Ok(serial) = field(7, 11).trim().parse() {
+                if let Ok(serial) = field(content, 7, 11).trim().parse() {
                     serials.entry(serial).or_insert(atom);
                 }
             }
@@ -106,7 +101,7 @@ pub(super) fn read_pdb(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Err
                 let serials = [(7, 11), (12, 16), (17, 21), (22, 26), (27, 31)];
                 let mut serials = serials
                     .into_iter()
-                    .map_while(|(a, b)| field(a, b).trim().parse().ok());
+                    .map_while(|(a, b)| field(content, a, b).trim().parse().ok());
                 if let Some(first) = serials.next() {
                     joined.extend(serials.map(|other| [first, other]));
                 }
@@ -126,6 +121,11 @@ pub(super) fn read_pdb(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Err
         }
     }
     molecule.finish(reading)
+}
+
+/// Returns some columns of a line, counted from 1.
+fn field(line: &str, start: usize, end: usize) -> &str {
+    line.get(start - 1..end.min(line.len())).unwrap_or_default()
 }
 
 /// Atoms so far.

@@ -3,12 +3,11 @@
 //! OBJ has no radii. Those that [`crate::Graph::write_obj`] writes stand in texture coordinates,
 //! behind the comment [`RADII_IN_VT`].
 
-use super::Reading;
+use super::{Reading, place};
 use crate::draft::{Draft, UNKNOWN};
 use crate::error::{Error, fail, fail_at, shorten};
 use crate::graph::{Cap, Graph, Limb};
 use crate::limits::MAX_POINTS;
-use glam::DVec3;
 
 /// Comment that says that each `vt` is a radius.
 pub(crate) const RADII_IN_VT: &str = "# vt: radius";
@@ -63,11 +62,10 @@ impl Reader {
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => {
-                let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
-                let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
+                let Some(place) = place(&mut words) else {
                     return fail("three numbers are needed here");
                 };
-                self.draft.node(DVec3::new(x, y, z), UNKNOWN, 0)?;
+                self.draft.node(place, UNKNOWN, 0)?;
             }
             Some("vt") if self.has_radii => {
                 let radius = words.next().and_then(|word| word.parse::<f64>().ok());

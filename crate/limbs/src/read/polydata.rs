@@ -17,7 +17,7 @@ pub(super) struct Array {
 /// Points, lines through them, and arrays of single numbers.
 #[derive(Default)]
 pub(super) struct PolyData {
-    /// Three coordinates for each point.
+    /// Coordinates, three for each point.
     pub(super) points: Vec<f64>,
     /// Indices of points, line by line.
     pub(super) corners: Vec<f64>,
@@ -72,8 +72,7 @@ impl PolyData {
             start = *end as usize;
             let own = value(&self.of_cells, of_cells, self.vertices + line);
             for pair in corners.windows(2) {
-                let is_there = |i: &f64| *i >= 0.0 && *i < count as f64 && *i == i.trunc();
-                if let Some(beyond) = pair.iter().find(|i| !is_there(i)) {
+                if let Some(beyond) = pair.iter().find(|i| !is_index(**i, count)) {
                     return fail(format!(
                         "a line of this file has point {beyond} (from 0) of {count}"
                     ));
@@ -94,6 +93,11 @@ impl PolyData {
         }
         Ok(())
     }
+}
+
+/// Whether a number is an index into a list of some length.
+fn is_index(i: f64, count: usize) -> bool {
+    i >= 0.0 && i < count as f64 && i == i.trunc()
 }
 
 /// Returns a radius of an array; [`UNKNOWN`] without one.

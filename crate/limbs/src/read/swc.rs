@@ -1,7 +1,7 @@
 //! SWC: a node in each line, with its type, place, radius and the node before it.
 //!
-//! The seven columns are those of Cannon et al., J. Neurosci. Methods 84 (1998); the meaning of types
-//! and of a soma of three nodes are NeuroMorpho.Org's.
+//! The seven columns are those of Cannon et al., J. Neurosci. Methods 84 (1998); the meaning of
+//! types and of a soma of three nodes are NeuroMorpho.Org's.
 
 use super::Reading;
 use crate::draft::Draft;
@@ -95,37 +95,23 @@ fn rows(text: &str, draft: &mut Draft) -> Result<BTreeMap<i64, Row>, Error> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     for (line, content) in (1..).zip(text.lines()) {
         let (content, comment) = content.split_once('#').unwrap_or((content, ""));
-        let mut words = content.split(|c: char| c.is_ascii_whitespace() || c == ',');
-        let mut words = words.by_ref().filter(|word| !word.is_empty()).peekable();
+        let words = content.split(|c: char| c.is_ascii_whitespace() || c == ',');
+        let mut words = words.filter(|word| !word.is_empty()).peekable();
         if words.peek().is_none() {
             remark_scale(line, comment, draft);
             continue;
         }
-        let mut next = |column: &str| {
-            let Some(word) = words.next() else {
-                return fail_at(
-                    line,
-                    format!(
-                        "`{column}` is missing: a node of an SWC file is `id type x y z radius \
-                         parent`"
-                    ),
-                );
-            };
-            match word.parse::<f64>() {
-                Ok(number) if number.is_finite() => Ok(number),
-                _ => fail_at(
-                    line,
-                    format!("`{column}` is `{}`, which is no number", shorten(word)),
-                ),
-            }
-        };
-        let id = whole(line, "id", next("id")?)?;
+        let id = whole(line, "id", number(line, "id", &mut words)?)?;
+        let kind = whole(line, "type", number(line, "type", &mut words)?)?;
+        let x = number(line, "x", &mut words)?;
+        let y = number(line, "y", &mut words)?;
+        let z = number(line, "z", &mut words)?;
         let row = Row {
             line,
-            kind: whole(line, "type", next("type")?)?,
-            position: DVec3::new(next("x")?, next("y")?, next("z")?),
-            radius: next("radius")?,
-            parent: whole(line, "parent", next("parent")?)?,
+            kind,
+            position: DVec3::new(x, y, z),
+            radius: number(line, "radius", &mut words)?,
+            parent: whole(line, "parent", number(line, "parent", &mut words)?)?,
         };
         if row.radius <= 0.0 {
             draft.remark(
@@ -176,6 +162,25 @@ fn remark_scale(line: usize, comment: &str, draft: &mut Draft) {
     if is_scale && is_other {
         let text = "this scale is not applied: coordinates are taken for micrometres";
         draft.remark(Some(line), text);
+    }
+}
+
+/// Reads the next word of a line as a number.
+fn number<'a>(
+    line: usize,
+    column: &str,
+    words: &mut impl Iterator<Item = &'a str>,
+) -> Result<f64, Error> {
+    let Some(word) = words.next() else {
+        let form = "a node of an SWC file is `id type x y z radius parent`";
+        return fail_at(line, format!("`{column}` is missing: {form}"));
+    };
+    match word.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => fail_at(
+            line,
+            format!("`{column}` is `{}`, which is no number", shorten(word)),
+        ),
     }
 }
 

@@ -18,22 +18,15 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>,
     let millimetres = package.millimetres();
     let mut draft = Draft::new(Some(1.0));
     let mut counts = Counts::default();
-    let mut failed = None;
-    let visited = package.visit(|part, object, place| {
+    package.visit(|part, object, place| {
         let place = DAffine3::from_scale(DVec3::splat(millimetres)) * *place;
+        counts.triangles += object.triangles.len();
         let Some(lattice) = &object.lattice else {
-            counts.triangles += object.triangles.len();
             return Ok(());
         };
-        add(part, object, lattice, &place, &mut draft, &mut counts).map_err(|error| {
-            failed = Some(error.clone());
-            mesh::Error(error.0)
-        })
-    });
-    if let Some(error) = failed {
-        return Err(error);
-    }
-    visited?;
+        add(part, object, lattice, &place, &mut draft, &mut counts)
+            .map_err(|Error(text)| mesh::Error(text))
+    })?;
     if draft.is_bare() {
         return Ok(None);
     }
@@ -76,7 +69,6 @@ fn add(
         .iter()
         .any(|scale| (scale - growth).abs() > UNEVEN * growth);
     counts.uneven += usize::from(is_uneven);
-    counts.triangles += object.triangles.len();
     let clip = clip(part, lattice, place)?;
     counts.clips += usize::from(clip.is_some());
     let clip = clip.map(|clip| draft.clip(clip));

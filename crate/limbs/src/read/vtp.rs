@@ -17,7 +17,7 @@ use std::borrow::Cow;
 /// The tag behind which data begin that are no XML.
 const APPENDED: &[u8] = b"<AppendedData";
 
-/// How numbers are written.
+/// Way in which numbers are written.
 #[derive(Clone, Copy, Default)]
 struct Coding<'a> {
     big_endian: bool,
@@ -44,7 +44,7 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> 
         .map_err(|_| Error("this VTP file is no text before its appended data".into()))?;
     let mut coding = Coding::default();
     if cut.is_some() {
-        coding.appended = Some(appended(rest)?);
+        coding.appended = Some(data_behind(rest)?);
     }
     let mut reader = Reader::new(tags);
     let mut draft = Draft::new(None);
@@ -61,15 +61,11 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> 
                     coding.read(&tag, line)?;
                 }
                 "Piece" => {
-                    let number = |name: &str| {
-                        let count = tag.get(name)?.unwrap_or_default();
-                        Ok::<_, Error>(count.trim().parse::<usize>().unwrap_or(0))
-                    };
                     piece = Piece {
-                        points: check_count(number("NumberOfPoints")?, MAX_POINTS, "points")?,
+                        points: check_count(count(&tag, "NumberOfPoints")?, MAX_POINTS, "points")?,
                         ..Piece::default()
                     };
-                    piece.data.vertices = number("NumberOfVerts")?;
+                    piece.data.vertices = count(&tag, "NumberOfVerts")?;
                 }
                 name @ ("Points" | "Lines" | "PointData" | "CellData" | "Verts" | "Polys"
                 | "Strips" | "FieldData") => section = name.into(),
@@ -110,8 +106,14 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> 
     finish(draft, reading)
 }
 
+/// Returns a count of a tag, 0 without it.
+fn count(tag: &Tag<'_>, name: &str) -> Result<usize, Error> {
+    let count = tag.get(name)?.unwrap_or_default();
+    Ok(count.trim().parse().unwrap_or(0))
+}
+
 /// Returns the data behind the tag and whether they are base64.
-fn appended(bytes: &[u8]) -> Result<(&[u8], bool), Error> {
+fn data_behind(bytes: &[u8]) -> Result<(&[u8], bool), Error> {
     let tag_end = bytes.iter().position(|b| *b == b'>');
     let (tag, rest) = bytes.split_at(tag_end.unwrap_or(bytes.len()));
     let start = rest.iter().position(|b| *b == b'_');
@@ -219,8 +221,8 @@ impl Encoded<'_> {
         }
     }
 
-    /// Returns the first bytes, exactly as many. Units of base64 may follow on each other, each with
-    /// its padding.
+    /// Returns the first bytes, exactly as many. Units of base64 may follow on each other, each
+    /// with its padding.
     fn take(&self, count: usize) -> Result<Cow<'_, [u8]>, Error> {
         let text = match self {
             Self::Raw(bytes) => {
@@ -266,8 +268,7 @@ struct Listed {
 
 impl Listed {
     fn read(tag: &Tag<'_>, line: usize) -> Result<Self, Error> {
-        let get = |name: &str| Ok::<_, Error>(tag.get(name)?.unwrap_or_default());
-        let kind = match &get("type")?[..] {
+        let kind = match &*tag.get("type")?.unwrap_or_default() {
             "Int8" => Kind::I8,
             "UInt8" => Kind::U8,
             "Int16" => Kind::I16,
@@ -281,17 +282,27 @@ impl Listed {
             // Arrays of text, which are passed over.
             _ => Kind::U8,
         };
-        let format = get("format")?;
+        let format = tag.get("format")?.unwrap_or_default();
         if !matches!(&format[..], "" | "ascii" | "binary" | "appended") {
             let format = shorten(&format);
             return fail_at(line, format!("`{format}` is no format of arrays"));
         }
         Ok(Self {
-            name: get("Name")?.into_owned(),
+            name: tag.get("Name")?.unwrap_or_default().into_owned(),
             kind,
-            components: get("NumberOfComponents")?.trim().parse().unwrap_or(1),
+            components: tag
+                .get("NumberOfComponents")?
+                .unwrap_or_default()
+                .trim()
+                .parse()
+                .unwrap_or(1),
             format: format.into_owned(),
-            offset: get("offset")?.trim().parse().unwrap_or(0),
+            offset: tag
+                .get("offset")?
+                .unwrap_or_default()
+                .trim()
+                .parse()
+                .unwrap_or(0),
         })
     }
 

@@ -18,11 +18,15 @@ impl Graph {
             remarks: Vec::new(),
         };
         let out = &mut written.text;
-        let material = |group: u32| {
-            let own = &self.groups[group as usize].name;
-            let given = materials.iter().find(|(group, _)| group == own);
-            given.map_or(otherwise, |(_, material)| *material)
-        };
+        // The material of each group.
+        let own: Vec<&str> = self
+            .groups
+            .iter()
+            .map(|group| {
+                let given = materials.iter().find(|(name, _)| *name == group.name);
+                given.map_or(otherwise, |(_, material)| *material)
+            })
+            .collect();
         let mut names: Vec<&str> = vec![otherwise];
         for (_, material) in materials {
             if !names.contains(material) {
@@ -30,7 +34,10 @@ impl Graph {
             }
         }
         for sn in names {
-            let limbs = self.limbs.iter().filter(|limb| material(limb.group) == sn);
+            let limbs = self
+                .limbs
+                .iter()
+                .filter(|limb| own[limb.group as usize] == sn);
             let part = self.part(limbs);
             if !part.limbs.is_empty() {
                 let behind = if sn == otherwise { "" } else { sn };
@@ -41,7 +48,7 @@ impl Graph {
                 out.push_str("}\n");
             }
             let balls = self.nodes.iter().filter(|node| node.is_ball);
-            for ball in balls.filter(|ball| material(ball.group) == sn) {
+            for ball in balls.filter(|ball| own[ball.group as usize] == sn) {
                 let [x, y, z] = ball.position.to_array();
                 let _ = writeln!(out, "sphere {sn} {} <{x} {y} {z}>", ball.radius);
             }

@@ -6,12 +6,12 @@ mod swc;
 
 use crate::error::Remark;
 
-/// Text of a file, and what it does not say.
+/// Text of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     /// The text.
     pub text: String,
-    /// What the format cannot say of the graph.
+    /// Sentences about what the format cannot say of the graph.
     pub remarks: Vec<Remark>,
 }
 

@@ -6,8 +6,8 @@ use crate::read::TYPES;
 use std::fmt::Write as _;
 
 impl Graph {
-    /// Writes an SWC file, in the graph's own unit. Groups whose names are none of the format's types
-    /// are 7 and above, as a comment tells.
+    /// Writes an SWC file, in the graph's own unit. Groups whose names are none of the format's
+    /// types are 7 and above, as a comment tells.
     #[must_use]
     pub fn write_swc(&self) -> Written {
         let mut written = Written {
@@ -34,12 +34,11 @@ impl Graph {
         let mut id = 0;
         let (mut cuts, mut jumps) = (0, 0);
         // Somas are roots, then free ends, then what is left: cycles.
-        let rank = |node: &u32| {
+        let mut roots: Vec<u32> = (0..self.nodes.len() as u32).collect();
+        roots.sort_by_key(|node| {
             let node = *node as usize;
             (!self.nodes[node].is_ball, around[node].len() != 1)
-        };
-        let mut roots: Vec<u32> = (0..self.nodes.len() as u32).collect();
-        roots.sort_by_key(rank);
+        });
         let mut is_used = vec![false; self.limbs.len()];
         for root in roots {
             // A node to be written, the limb that leads to it, and the id and radius it comes from.

@@ -21,30 +21,36 @@ const FILES: [(&str, &str); 8] = [
     ),
     (
         "a.ply",
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float \
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty \
+         float \
          z\nproperty float radius\nelement edge 2\nproperty int vertex1\nproperty int \
          vertex2\nend_header\n0 0 0 .1\n1 0 0 .1\n1 1 0 .1\n0 1\n1 2\n",
     ),
     (
         "a.csv",
-        "id,parent,startX,startY,startZ,endX,endY,endZ,radius\n1,0,0,0,0,0,0,1,.2\n2,1,0,0,1,1,0,2,.1\n",
+        "id,parent,startX,startY,startZ,endX,endY,endZ,radius\n1,0,0,0,0,0,0,1,.2\n\
+         2,1,0,0,1,1,0,2,.1\n",
     ),
     ("a.xyz", "2\n\nC 0 0 0\nO 1.2 0 0\n"),
     (
         "a.pdb",
-        "ATOM      1  CA  GLY A   1      10.000   0.000   0.000  1.00  0.00           C\nCONECT    1    2\n",
+        "ATOM      1  CA  GLY A   1      10.000   0.000   0.000  1.00  0.00           C\nCONECT  \
+           1    2\n",
     ),
     (
         "a.vtk",
-        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 1 1\nLINES 1 3\n2 0 \
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 0 0 1 1 \
+         1\nLINES 1 3\n2 0 \
          1\nPOINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n1 1\n",
     ),
     (
         "a.vtp",
         "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"2\"><PointData><DataArray \
          type=\"Float32\" Name=\"radius\">1 2</DataArray></PointData><Points><DataArray \
-         type=\"Float32\" NumberOfComponents=\"3\">0 0 0 1 1 1</DataArray></Points><Lines><DataArray \
-         type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1</DataArray><DataArray type=\"Int64\" \
+         type=\"Float32\" NumberOfComponents=\"3\">0 0 0 1 1 \
+          1</DataArray></Points><Lines><DataArray \
+         type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1</DataArray><DataArray \
+          type=\"Int64\" \
          Name=\"offsets\" format=\"binary\">CAAAAAIAAAAAAAAA</DataArray></Lines></Piece></PolyData>\
          </VTKFile>",
     ),
@@ -115,12 +121,16 @@ fn readers_survive_anything() {
 
 #[test]
 fn packages_survive_anything() {
-    let xml = "<model unit=\"inch\"><resources><object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" \
+    let xml = "<model unit=\"inch\"><resources><object id=\"1\"><mesh><vertices><vertex x=\"0\" \
+     y=\"0\" \
                z=\"0\"/><vertex x=\"5\" y=\"0\" z=\"0\"/></vertices><b:beamlattice radius=\"1\" \
-               clippingmode=\"inside\" clippingmesh=\"1\"><b:beams><b:beam v1=\"0\" v2=\"1\" r1=\"2\"/>\
+               clippingmode=\"inside\" clippingmesh=\"1\"><b:beams><b:beam v1=\"0\" v2=\"1\" \
+                r1=\"2\"/>\
                </b:beams><b:balls><b:ball vindex=\"0\"/></b:balls></b:beamlattice></mesh></object>\
-               <object id=\"2\"><components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 \
-               0\"/></components></object></resources><build><item objectid=\"2\"/></build></model>";
+               <object id=\"2\"><components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 \
+                0 1 0 0 \
+               0\"/></components></object></resources><build><item \
+                objectid=\"2\"/></build></model>";
     trials(|u| {
         let xml = change(xml.as_bytes(), u)?;
         let description = archive::Member {

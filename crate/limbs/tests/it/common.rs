@@ -1,4 +1,4 @@
-//! What the tests of several subjects share.
+//! Functions that the tests of several subjects share.
 
 use limbs::{Graph, Reading};
 

@@ -30,27 +30,26 @@ fn ply(format: &str, radius: &str) -> Vec<u8> {
         }
         return file;
     }
-    let mut put = |mut bytes: Vec<u8>| {
-        if format == "binary_big_endian" {
-            bytes.reverse();
-        }
-        file.extend(bytes);
-    };
+    let mut values: Vec<Vec<u8>> = Vec::new();
     for [y, x, r, z] in vertices {
-        put((y as f32).to_le_bytes().to_vec());
-        put(vec![7]);
-        put(f64::from(x as f32).to_le_bytes().to_vec());
-        put((r as f32).to_le_bytes().to_vec());
-        put((z as f32).to_le_bytes().to_vec());
+        values.push((y as f32).to_le_bytes().to_vec());
+        values.push(vec![7]);
+        values.push(f64::from(x as f32).to_le_bytes().to_vec());
+        values.push((r as f32).to_le_bytes().to_vec());
+        values.push((z as f32).to_le_bytes().to_vec());
     }
-    put(vec![3]);
-    for junk in [-1_i16, -2, -3] {
-        put(junk.to_le_bytes().to_vec());
-    }
+    values.push(vec![3]);
+    values.extend([-1_i16, -2, -3].map(|junk| junk.to_le_bytes().to_vec()));
     for [a, b] in edges {
-        put(i32::to_le_bytes(a).to_vec());
-        put(i32::to_le_bytes(b).to_vec());
-        put(vec![0]);
+        values.push(i32::to_le_bytes(a).to_vec());
+        values.push(i32::to_le_bytes(b).to_vec());
+        values.push(vec![0]);
+    }
+    for mut value in values {
+        if format == "binary_big_endian" {
+            value.reverse();
+        }
+        file.extend(value);
     }
     file
 }

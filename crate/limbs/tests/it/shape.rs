@@ -34,6 +34,10 @@ fn random_graph(random: &mut Random) -> Graph {
     graph("a.obj", text)
 }
 
+fn is_set(row: &[u64], column: usize) -> bool {
+    row[column / 64] >> (column % 64) & 1 == 1
+}
+
 /// Returns the rank of the incidence matrix of nodes and limbs over the numbers 0 and 1.
 fn rank(graph: &Graph) -> usize {
     let mut rows: Vec<Vec<u64>> = graph
@@ -49,13 +53,15 @@ fn rank(graph: &Graph) -> usize {
         .collect();
     let mut rank = 0;
     for column in 0..graph.nodes.len() {
-        let is_set = |row: &Vec<u64>| row[column / 64] >> (column % 64) & 1 == 1;
-        let Some(pivot) = (rank..rows.len()).find(|i| is_set(&rows[*i])) else {
+        let Some(pivot) = (rank..rows.len()).find(|i| is_set(&rows[*i], column)) else {
             continue;
         };
         rows.swap(rank, pivot);
         let pivot = rows[rank].clone();
-        for row in rows[rank + 1..].iter_mut().filter(|row| is_set(row)) {
+        for row in rows[rank + 1..]
+            .iter_mut()
+            .filter(|row| is_set(row, column))
+        {
             row.iter_mut().zip(&pivot).for_each(|(a, b)| *a ^= b);
         }
         rank += 1;
@@ -123,6 +129,11 @@ fn thickening_adds_to_radii_and_thinning_takes_limbs_out() {
     assert!(graph.remarks[0].text.starts_with("1 limbs or balls"));
 }
 
+/// Returns a line of an OBJ file through vertices that follow on each other.
+fn run(from: usize, to: usize) -> String {
+    (from..=to).fold(String::from("l"), |line, i| format!("{line} {i}/{i}"))
+}
+
 /// Returns the least of the larger of the distances in place and in radius, from a point of a line
 /// to a graph, by sampling it.
 fn distance(place: DVec3, radius: f64, graph: &Graph) -> f64 {
@@ -140,7 +151,7 @@ fn distance(place: DVec3, radius: f64, graph: &Graph) -> f64 {
 }
 
 #[test]
-fn simplified_lines_are_where_they_were() {
+fn lines_stay_where_they_are_when_they_are_simplified() {
     let mut random = Random::new(5);
     for _ in 0..count(6) {
         // A tree of wobbly lines, with a cycle.
@@ -152,9 +163,6 @@ fn simplified_lines_are_where_they_were() {
             radius = (radius + random.range(-0.02, 0.02)).clamp(0.1, 0.5);
             let _ = writeln!(text, "v {} {} {}\nvt {radius}", at.x, at.y, at.z);
         }
-        let run = |from: usize, to: usize| {
-            (from..=to).fold(String::from("l"), |line, i| format!("{line} {i}/{i}"))
-        };
         let _ = writeln!(
             text,
             "{}\n{}\nl 20/20 81/81\nl 120/120 90/90",
@@ -248,6 +256,13 @@ fn merging_joins_lines_that_run_together() {
     assert_eq!(drawing(&graph), before);
 }
 
+/// Returns the places of all ends of limbs.
+fn places(graph: &Graph) -> Vec<[f64; 3]> {
+    let drawing = drawing(graph);
+    let ends = drawing.iter().flatten();
+    ends.map(|end| [end[0], end[1], end[2]]).collect()
+}
+
 #[test]
 fn merging_does_not_depend_on_order() {
     let mut random = Random::new(6);
@@ -268,14 +283,6 @@ fn merging_does_not_depend_on_order() {
         if !a.limbs.is_empty() {
             check(&a);
         }
-        let places = |graph: &Graph| {
-            let drawing = drawing(graph);
-            drawing
-                .iter()
-                .flatten()
-                .map(|end| [end[0], end[1], end[2]])
-                .collect::<Vec<_>>()
-        };
         assert_eq!(places(&a), places(&b));
         for node in &a.nodes {
             assert!(graph.nodes.iter().any(|old| old.position == node.position));

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 const HEAD: &str = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
                     xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\" \
-                    xmlns:b2=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/balls/2020/07\" \
+                    xmlns:b2=\"http://x/balls/2020/07\" \
                     xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" \
                     requiredextensions=\"b p\"";
 
@@ -20,7 +20,8 @@ fn model(unit: &str, content: &str) -> String {
 /// Returns a package of parts: the first is the main one.
 fn package(parts: &[(&str, &str)]) -> Vec<u8> {
     let relations = format!(
-        "<Relationships><Relationship Target=\"/{}\" Id=\"a\" Type=\"http://x/3dmodel\"/></Relationships>",
+        "<Relationships><Relationship Target=\"/{}\" Id=\"a\" \
+         Type=\"http://x/3dmodel\"/></Relationships>",
         parts[0].0
     );
     let mut members = vec![Member::new("_rels/.rels", relations.as_bytes())];
@@ -63,13 +64,13 @@ fn lattice(id: u32, attributes: &str, beam: &str) -> String {
 
 const PLAIN: &str = "radius=\"1\" minlength=\"0.001\" cap=\"sphere\"";
 
-fn built(object: &str, item: &str) -> String {
+fn with_item(object: &str, item: &str) -> String {
     format!("<resources>{object}</resources><build>{item}</build>")
 }
 
 #[test]
 fn a_cage_of_beams_is_a_graph() {
-    let content = built(&lattice(4, PLAIN, ""), "<item objectid=\"4\"/>");
+    let content = with_item(&lattice(4, PLAIN, ""), "<item objectid=\"4\"/>");
     let graph = graph("a.3mf", single("millimeter", &content));
     check(&graph);
     let facts = graph.facts();
@@ -83,12 +84,14 @@ fn a_cage_of_beams_is_a_graph() {
     assert!((volume - 120.0 * PI).abs() < 1e-9);
 }
 
+/// Returns the first limb of a lattice with some attributes.
+fn read(attributes: &str, beam: &str) -> limbs::Limb {
+    let content = with_item(&lattice(4, attributes, beam), "<item objectid=\"4\"/>");
+    graph("a.3mf", single("millimeter", &content)).limbs[0]
+}
+
 #[test]
 fn radii_and_caps_are_the_beams_own_or_the_lattices() {
-    let read = |attributes: &str, beam: &str| {
-        let content = built(&lattice(4, attributes, beam), "<item objectid=\"4\"/>");
-        graph("a.3mf", single("millimeter", &content)).limbs[0]
-    };
     assert_eq!(read(PLAIN, " r1=\"2\" r2=\"0.5\"").radii, [2.0, 0.5]);
     assert_eq!(read(PLAIN, " r1=\"2\"").radii, [2.0, 2.0]);
     assert_eq!(read(PLAIN, "").caps, [Cap::Round; 2]);
@@ -108,7 +111,7 @@ fn units_transforms_and_components_place_lattices() {
            <component objectid=\"4\" transform=\"-0.05 0 0 0 0.05 0 0 0 0.05 9 0 0\"/>\
            </components></object>";
     let item = "<item objectid=\"5\" transform=\"1 0 0 0 1 0 0 0 1 0 0 2\"/>";
-    let graph = graph("a.3mf", single("inch", &built(&objects, item)));
+    let graph = graph("a.3mf", single("inch", &with_item(&objects, item)));
     check(&graph);
     assert_eq!(graph.limbs.len(), 24);
     assert_eq!(graph.facts().components, 2);
@@ -121,12 +124,6 @@ fn units_transforms_and_components_place_lattices() {
                 .all(|radius| (radius - 1.27).abs() < 1e-9)
         );
     }
-    let corner = |p: DVec3| {
-        graph
-            .nodes
-            .iter()
-            .any(|node| node.position.distance(p * 25.4) < 1e-9)
-    };
     // (x, y) goes to (1 - y/20, x/20), and to (9 - x/20, y/20).
     for p in [
         [1.0, 0.5, 2.0],
@@ -134,12 +131,17 @@ fn units_transforms_and_components_place_lattices() {
         [8.5, 0.0, 2.5],
         [9.0, 0.5, 2.0],
     ] {
-        assert!(corner(DVec3::from(p)), "{p:?}");
+        let place = DVec3::from(p) * 25.4;
+        let mut nodes = graph.nodes.iter();
+        assert!(
+            nodes.any(|node| node.position.distance(place) < 1e-9),
+            "{p:?}"
+        );
     }
     let uneven = "<item objectid=\"4\" transform=\"1 0 0 0 1 0 0 0 8 0 0 0\"/>";
     let graph = crate::common::graph(
         "a.3mf",
-        single("micron", &built(&lattice(4, PLAIN, ""), uneven)),
+        single("micron", &with_item(&lattice(4, PLAIN, ""), uneven)),
     );
     assert!(
         (graph.limbs[0].radii[0] - 0.002).abs() < 1e-12,
@@ -152,7 +154,7 @@ fn units_transforms_and_components_place_lattices() {
 fn parts_of_the_production_extension_are_followed() {
     let main = model(
         "millimeter",
-        &built(
+        &with_item(
             "<object id=\"1\"><components>\
              <component p:path=\"/3D/Objects/Cage.model\" objectid=\"4\"/>\
              <component p:path=\"/3D/Objects/Cage.model\" objectid=\"4\" \
@@ -160,10 +162,10 @@ fn parts_of_the_production_extension_are_followed() {
             "<item objectid=\"1\"/><item p:path=\"/3D/inches.model\" objectid=\"7\"/>",
         ),
     );
-    let cage = model("millimeter", &built(&lattice(4, PLAIN, ""), ""));
+    let cage = model("millimeter", &with_item(&lattice(4, PLAIN, ""), ""));
     let inches = model(
         "inch",
-        &built(&lattice(7, PLAIN, ""), "<item objectid=\"7\"/>"),
+        &with_item(&lattice(7, PLAIN, ""), "<item objectid=\"7\"/>"),
     );
     let parts = [
         ("3D/main.model", &main[..]),
@@ -195,7 +197,7 @@ fn clipping_meshes_come_along() {
         ("clippingmode=\"none\"", None),
     ] {
         let attributes = format!("{PLAIN} {mode} clippingmesh=\"2\"");
-        let content = built(
+        let content = with_item(
             &(cutter.clone() + &lattice(4, &attributes, "")),
             "<item objectid=\"4\" transform=\"1 0 0 0 1 0 0 0 1 0 0 5\"/>",
         );
@@ -229,11 +231,11 @@ fn materials_and_balls_are_read() {
         );
     let graph = graph(
         "a.3mf",
-        single("millimeter", &built(&objects, "<item objectid=\"4\"/>")),
+        single("millimeter", &with_item(&objects, "<item objectid=\"4\"/>")),
     );
     check(&graph);
-    let name = |limb: usize| &graph.groups[graph.limbs[limb].group as usize].name[..];
-    assert_eq!((name(0), name(1)), ("a < b", "steel"));
+    let names = [0, 1].map(|limb| &graph.groups[graph.limbs[limb].group as usize].name[..]);
+    assert_eq!(names, ["a < b", "steel"]);
     assert_eq!(
         graph.groups[graph.limbs[0].group as usize].color,
         Some([1.0, 0.0, 0.0])
@@ -247,29 +249,37 @@ fn materials_and_balls_are_read() {
     assert_eq!(balls, [2.0, 3.0]);
 }
 
+/// Returns what is said of a description in which something is replaced.
+fn message_of(good: &str, from: &str, to: &str) -> String {
+    let text = good.replacen(from, to, 1);
+    assert_ne!(text, good, "{from}");
+    message("a.3mf", package(&[("x.model", &text)]))
+}
+
 #[test]
-fn broken_packages_are_told() {
+fn faults_are_told() {
     let good = model(
         "millimeter",
-        &built(&lattice(4, PLAIN, ""), "<item objectid=\"4\"/>"),
+        &with_item(&lattice(4, PLAIN, ""), "<item objectid=\"4\"/>"),
     );
-    let told = |from: &str, to: &str| {
-        let text = good.replacen(from, to, 1);
-        assert_ne!(text, good, "{from}");
-        message("a.3mf", package(&[("x.model", &text)]))
-    };
-    assert!(told("v1=\"0\"", "v1=\"99\"").contains("vertex 99 (from 0) of 8"));
+    assert!(message_of(&good, "v1=\"0\"", "v1=\"99\"").contains("vertex 99 (from 0) of 8"));
     assert!(
-        told("v1=\"0\"", "v1=\"x\"")
+        message_of(&good, "v1=\"0\"", "v1=\"x\"")
             .starts_with("line 3: a `beam` of this 3MF file has no number `v1`")
     );
-    assert!(told("radius=\"1\"", "radius=\"-1\"").contains("no number `radius`"));
-    assert!(told("radius=\"1\"", "radius=\"NaN\"").contains("no number `radius`"));
-    assert!(told("x=\"10\"", "x=\"inf\"").contains("coordinates must be"));
-    assert!(told("</b:beams>", "").contains("broken"));
-    assert!(told("objectid=\"4\"", "objectid=\"5\"").contains("no object 5"));
-    assert!(told("<model ", "<!DOCTYPE m [<!ENTITY a \"b\">]><model ").contains("document type"));
-    assert!(told("name=\"cage\"", "name=\"&boom;\"").contains("line 3: this XML is broken"));
+    assert!(message_of(&good, "radius=\"1\"", "radius=\"-1\"").contains("no number `radius`"));
+    assert!(message_of(&good, "radius=\"1\"", "radius=\"NaN\"").contains("no number `radius`"));
+    assert!(message_of(&good, "x=\"10\"", "x=\"inf\"").contains("coordinates must be"));
+    assert!(message_of(&good, "</b:beams>", "").contains("broken"));
+    assert!(message_of(&good, "objectid=\"4\"", "objectid=\"5\"").contains("no object 5"));
+    assert!(
+        message_of(&good, "<model ", "<!DOCTYPE m [<!ENTITY a \"b\">]><model ")
+            .contains("document type")
+    );
+    assert!(
+        message_of(&good, "name=\"cage\"", "name=\"&boom;\"")
+            .contains("line 3: this XML is broken")
+    );
     let cut = &good[..good.len() / 2];
     assert!(message("a.3mf", package(&[("x.model", cut)])).contains("broken"));
     let cut = good.strip_suffix("</model>").unwrap();
@@ -277,14 +287,15 @@ fn broken_packages_are_told() {
     let zip = package(&[("x.model", &good)]);
     assert!(message("a.3mf", &zip[..zip.len() / 2]).contains("cut off or no zip"));
     // Objects in each other, across parts.
-    let one = "<object id=\"1\"><components><component p:path=\"/b.model\" objectid=\"1\"/></components></object>";
+    let one = "<object id=\"1\"><components><component p:path=\"/b.model\" \
+     objectid=\"1\"/></components></object>";
     let two = one.replace("/b.model", "/a.model");
     let circle = [
         (
             "a.model",
-            &model("millimeter", &built(one, "<item objectid=\"1\"/>"))[..],
+            &model("millimeter", &with_item(one, "<item objectid=\"1\"/>"))[..],
         ),
-        ("b.model", &model("millimeter", &built(&two, ""))),
+        ("b.model", &model("millimeter", &with_item(&two, ""))),
     ];
     assert!(message("a.3mf", package(&circle)).contains("contains itself"));
     // Objects that double what they hold, over and over.
@@ -296,7 +307,7 @@ fn broken_packages_are_told() {
             "<object id=\"{i}\"><components>{inner}{inner}</components></object>"
         );
     }
-    let content = built(&doubling, "<item objectid=\"39\"/>");
+    let content = with_item(&doubling, "<item objectid=\"39\"/>");
     let told = message("a.3mf", single("millimeter", &content));
     assert!(told.contains("more than"), "{told}");
     // Many zeros, packed to little.
@@ -306,9 +317,10 @@ fn broken_packages_are_told() {
 
 #[test]
 fn a_package_without_beams_is_none() {
-    let content = built(
+    let content = with_item(
         &format!(
-            "<object id=\"1\"><mesh>{}<triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object>",
+            "<object id=\"1\"><mesh>{}<triangles><triangle v1=\"0\" v2=\"1\" \
+             v3=\"2\"/></triangles></mesh></object>",
             vertices()
         ),
         "<item objectid=\"1\"/>",
@@ -327,7 +339,7 @@ fn lattices_that_touch_are_joined_there() {
         "<item objectid=\"4\"/><item objectid=\"4\" transform=\"1 0 0 0 1 0 0 0 1 10 10 10\"/>";
     let graph = graph(
         "a.3mf",
-        single("millimeter", &built(&lattice(4, PLAIN, ""), items)),
+        single("millimeter", &with_item(&lattice(4, PLAIN, ""), items)),
     );
     assert_eq!((graph.nodes.len(), graph.limbs.len()), (15, 24));
     assert_eq!(graph.facts().components, 1);

@@ -55,7 +55,8 @@ fn the_spellings_of_four_programs_mean_the_same() {
         ),
         // aRchi.
         table(
-            "\"startX\";\"startY\";\"startZ\";\"endX\";\"endY\";\"endZ\";\"cyl_ID\";\"parent_ID\";\"radius_cyl\"",
+            "\"startX\";\"startY\";\"startZ\";\"endX\";\"endY\";\"endZ\";\"cyl_ID\";\
+             \"parent_ID\";\"radius_cyl\"",
             ";",
             &[2, 3, 4, 5, 6, 7, 0, 1, 8],
             false,

@@ -18,7 +18,7 @@ const POINTS: [[f64; 4]; 8] = [
 const LINES: [&[i64]; 2] = [&[0, 1, 2, 3], &[4, 5, 6, 7]];
 const RADII: &str = "MaximumInscribedSphereRadius";
 
-/// How arrays are written.
+/// Way in which arrays are written.
 #[derive(Clone, Copy, Debug)]
 struct Coding {
     format: &'static str,
@@ -244,39 +244,43 @@ fn all_codings_of_xml_mean_the_same() {
     }
 }
 
+/// Puts values of a legacy file behind their heading.
+fn put(is_text: bool, file: &mut Vec<u8>, heading: &str, values: &[f64], kind: &str) {
+    file.extend(heading.bytes());
+    file.push(b'\n');
+    for value in values {
+        match (is_text, kind) {
+            (true, _) => file.extend(format!("{value} ").bytes()),
+            (false, "int") => file.extend((*value as i32).to_be_bytes()),
+            (false, "vtktypeint64") => file.extend((*value as i64).to_be_bytes()),
+            (false, "double") => file.extend(value.to_be_bytes()),
+            (false, _) => file.extend((*value as f32).to_be_bytes()),
+        }
+    }
+    file.push(b'\n');
+}
+
 /// Writes a legacy file.
 fn legacy(is_text: bool, version: u32) -> Vec<u8> {
     let kind = if is_text { "ASCII" } else { "BINARY" };
     let mut file =
         format!("# vtk DataFile Version {version}.0\nmade up\n{kind}\nDATASET POLYDATA\n")
             .into_bytes();
-    let put = |file: &mut Vec<u8>, heading: &str, values: &[f64], kind: &str| {
-        file.extend(heading.bytes());
-        file.push(b'\n');
-        for value in values {
-            match (is_text, kind) {
-                (true, _) => file.extend(format!("{value} ").bytes()),
-                (false, "int") => file.extend((*value as i32).to_be_bytes()),
-                (false, "vtktypeint64") => file.extend((*value as i64).to_be_bytes()),
-                (false, "double") => file.extend(value.to_be_bytes()),
-                (false, _) => file.extend((*value as f32).to_be_bytes()),
-            }
-        }
-        file.push(b'\n');
-    };
     let points: Vec<f64> = POINTS.iter().flat_map(|p| p[..3].to_vec()).collect();
-    put(&mut file, "POINTS 8 double", &points, "double");
+    put(is_text, &mut file, "POINTS 8 double", &points, "double");
     file.extend(b"METADATA\nINFORMATION 1\nNAME L2 LOCATION x\nDATA 2 0 1\n\n");
     let corners: Vec<f64> = LINES.concat().iter().map(|i| *i as f64).collect();
     if version == 5 {
         file.extend(b"LINES 3 8\n");
         put(
+            is_text,
             &mut file,
             "OFFSETS vtktypeint64",
             &[0.0, 4.0, 8.0],
             "vtktypeint64",
         );
         put(
+            is_text,
             &mut file,
             "CONNECTIVITY vtktypeint64",
             &corners,
@@ -287,20 +291,33 @@ fn legacy(is_text: bool, version: u32) -> Vec<u8> {
             .iter()
             .flat_map(|line| std::iter::once(4.0).chain(line.iter().map(|i| *i as f64)))
             .collect();
-        put(&mut file, "LINES 2 10", &cells, "int");
+        put(is_text, &mut file, "LINES 2 10", &cells, "int");
     }
     put(
+        is_text,
         &mut file,
         "CELL_DATA 2\nSCALARS which int 1\nLOOKUP_TABLE default",
         &[0.0, 1.0],
         "int",
     );
     file.extend(b"POINT_DATA 8\n");
-    put(&mut file, "NORMALS n float", &[0.0; 24], "float");
+    put(is_text, &mut file, "NORMALS n float", &[0.0; 24], "float");
     file.extend(b"FIELD FieldData 2\n");
-    put(&mut file, "Abscissas 1 8 float", &[0.5; 8], "float");
+    put(
+        is_text,
+        &mut file,
+        "Abscissas 1 8 float",
+        &[0.5; 8],
+        "float",
+    );
     let radii: Vec<f64> = POINTS.iter().map(|p| p[3]).collect();
-    put(&mut file, &format!("{RADII} 1 8 double"), &radii, "double");
+    put(
+        is_text,
+        &mut file,
+        &format!("{RADII} 1 8 double"),
+        &radii,
+        "double",
+    );
     file
 }
 
@@ -379,7 +396,7 @@ fn radii_are_found_by_usual_names_or_the_one_given() {
 }
 
 #[test]
-fn broken_files_are_told() {
+fn faults_are_told() {
     let good = String::from_utf8(ASCII.file()).unwrap();
     for (from, to, told) in [
         (" 4\n", " four\n", "`four` is no number"),

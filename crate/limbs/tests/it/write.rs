@@ -1,4 +1,4 @@
-//! What is written is read again.
+//! Writers: files are read as they were written.
 
 use crate::common::{check, drawing, graph};
 use limbs::Graph;
@@ -6,7 +6,8 @@ use limbs::Graph;
 const NEURON: &str = "1 1 0 0 0 6 -1\n2 3 1 9 0 1.75 1\n4 3 1 21 0 1.25 2\n7 3 -3 25.5 0 0.7 4\n\
                       8 4 7 33 0 0.8 4\n11 2 1 -9 0 1 1\n12 2 1 -31 0 0.5 11\n";
 
-const RING: &str = "# vt: radius\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.1 0.7 3e-5\nvt 0.1\nvt 0.2\nvt 0.3\n\
+const RING: &str = "# vt: radius\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0.1 0.7 3e-5\nvt 0.1\nvt 0.2\nvt \
+ 0.3\n\
                     usemtl steel\nl 1/1 2/2 3/3 1/1\nusemtl brass\nl 3/2 4/1\n";
 
 fn groups(graph: &Graph) -> Vec<&str> {
@@ -28,13 +29,22 @@ fn swc_is_read_as_it_was_written() {
     check(&after);
     assert_eq!(drawing(&after), drawing(&before));
     assert_eq!(groups(&after), groups(&before));
-    let balls = |graph: &Graph| graph.nodes.iter().filter(|node| node.is_ball).count();
-    assert_eq!((balls(&before), balls(&after)), (1, 1));
+    for graph in [&before, &after] {
+        assert_eq!(graph.nodes.iter().filter(|node| node.is_ball).count(), 1);
+    }
     // Once more, the text is the same.
     assert_eq!(
         after.write_swc().text,
         graph("a.swc", after.write_swc().text).write_swc().text
     );
+}
+
+/// Returns the places of each limb's ends.
+fn places(graph: &Graph) -> Vec<[[f64; 3]; 2]> {
+    let ends = drawing(graph);
+    ends.iter()
+        .map(|ends| ends.map(|[x, y, z, _]| [x, y, z]))
+        .collect()
 }
 
 #[test]
@@ -50,12 +60,6 @@ fn what_swc_cannot_say_is_told() {
     assert!(written.text.contains("# type 7: steel\n# type 8: brass\n"));
     let after = graph("a.swc", &written.text);
     assert_eq!(after.limbs.len(), ring.limbs.len());
-    let places = |graph: &Graph| {
-        let ends = drawing(graph);
-        ends.iter()
-            .map(|ends| ends.map(|[x, y, z, _]| [x, y, z]))
-            .collect::<Vec<_>>()
-    };
     assert_eq!(places(&after), places(&ring));
 }
 
