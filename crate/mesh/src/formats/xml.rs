@@ -27,10 +27,10 @@ impl Tag<'_> {
         let mut attributes = self.start.attributes();
         // Comparing each with each takes long where there are many.
         for attribute in attributes.with_checks(false) {
-            let attribute = attribute.map_err(|error| broken(self.line, error))?;
+            let attribute = attribute.map_err(|error| fault(self.line, error))?;
             if local(attribute.key.into_inner()) == name {
                 let value = attribute.normalized_value(XmlVersion::Implicit1_0);
-                return value.map(Some).map_err(|error| broken(self.line, error));
+                return value.map(Some).map_err(|error| fault(self.line, error));
             }
         }
         Ok(None)
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
                 }
                 Ok(Any::Eof) => return Ok(None),
                 Ok(_) => {}
-                Err(error) => return Err(broken(self.line(), error)),
+                Err(error) => return Err(fault(self.line(), error)),
             }
         }
     }
@@ -138,7 +138,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn broken(line: usize, error: impl core::fmt::Display) -> Error {
+fn fault(line: usize, error: impl core::fmt::Display) -> Error {
     Error(format!("line {line}: this XML is broken: {error}"))
 }
 
