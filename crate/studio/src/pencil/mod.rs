@@ -22,10 +22,10 @@ use crate::{places, platform};
 use drawn::{Spot, crossing, node_at, spot_at};
 use edits::{Beginning, Brush, Root, Wish};
 use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
+use field::Skeleton;
 use glam::DVec3;
 use grip::Grip;
 use rats::TextEdit;
-use scene::Shape;
 use sketch::{Mark, Stroke};
 use tool::Tool;
 
@@ -691,7 +691,7 @@ impl Pencil {
             let element = element as usize;
             let shape = &scene.elements[element];
             let alone = !session.compilation().placements[element].repeated;
-            if matches!(shape.shape, Shape::Sphere { .. }) && alone {
+            if matches!(shape.shape.skeleton(), Some(Skeleton::Point { .. })) && alone {
                 let origin = shape.origin;
                 let (file, span) = (
                     origin.file as usize,
