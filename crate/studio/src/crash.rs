@@ -1,6 +1,6 @@
 //! Saves the text and shows a message when the program stops unexpectedly.
 
-use crate::app::Parts;
+use crate::page::Parts;
 use crate::platform;
 use std::cell::{Cell, RefCell};
 use wasm_bindgen::JsValue;

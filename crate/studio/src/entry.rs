@@ -1,7 +1,8 @@
 //! Entry point of the page's program.
 
-use crate::app::{App, Parts};
-use crate::request::Request;
+use crate::app::App;
+use crate::page::Parts;
+use crate::scripts::request::Request;
 use crate::{boot, crash, emulation, handle, platform};
 use std::cell::Cell;
 use wasm_bindgen::prelude::*;

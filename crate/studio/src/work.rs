@@ -41,6 +41,8 @@ pub struct Work {
     shelf: Rc<RefCell<Shelf>>,
     /// The user's own work that was open before the link was.
     before: Option<String>,
+    /// Number of works that were opened.
+    opened: u64,
     /// Time of the first change that is not written yet, seconds.
     changed: Option<f64>,
     /// The session's revision and camera that were last put on the shelf.
@@ -59,6 +61,7 @@ impl Work {
             origin: Origin::Own,
             shelf,
             before: None,
+            opened: 0,
             changed: None,
             noted: (0, None),
         };
@@ -178,6 +181,7 @@ impl Work {
         self.name = name;
         self.origin = Origin::Own;
         self.before = None;
+        self.opened += 1;
         self.session.open(kept);
         self.note();
         Ok(())
@@ -225,6 +229,12 @@ impl Work {
     #[must_use]
     pub fn before(&self) -> Option<&str> {
         self.before.as_deref()
+    }
+
+    /// Returns a number that rises when another work is opened.
+    #[must_use]
+    pub fn opened(&self) -> u64 {
+        self.opened
     }
 
     /// Notes changes, and writes them [`DELAY`] seconds after the first. Returns a message if they
@@ -332,6 +342,7 @@ impl Work {
         self.name = name;
         self.origin = origin;
         self.before = None;
+        self.opened += 1;
         self.changed = None;
         self.session.open(kept);
         self.note();

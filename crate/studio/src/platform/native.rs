@@ -1,8 +1,8 @@
 //! Stand-ins for tests: an address and a storage in memory, one for each thread.
 
+use crate::film::recording::{EncodedVideo, Kind, VideoFormat};
 use crate::intake::Incoming;
-use crate::recording::{EncodedVideo, Kind, VideoFormat};
-use crate::request::{Request, Requests};
+use crate::scripts::request::{Request, Requests};
 use crate::storage::Store;
 use ::picture::{Format, Picture, file};
 use egui_wgpu::wgpu;

@@ -1,7 +1,7 @@
 //! Services of the browser.
 
 use crate::intake::{self, Incoming};
-use crate::request::{Request, Requests};
+use crate::scripts::request::{Request, Requests};
 use crate::storage::Store;
 use egui_wgpu::wgpu;
 use std::collections::BTreeMap;

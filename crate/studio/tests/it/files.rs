@@ -6,9 +6,9 @@ use egui_kittest::kittest::Queryable;
 use rats::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use studio::app::Parts;
 use studio::intake::Incoming;
-use studio::request::Request;
+use studio::page::Parts;
+use studio::scripts::request::Request;
 use studio::{platform, share, storage};
 
 const TEXT: &str = "\

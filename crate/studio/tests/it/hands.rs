@@ -6,7 +6,7 @@ use assist::handles::Editable;
 use egui::{Key, Modifiers, Pos2, Rect, TextEdit, vec2};
 use egui_kittest::kittest::Queryable;
 use std::time::Instant;
-use studio::hands::Sight;
+use studio::stage::hands::Sight;
 use studio::{examples, places};
 use tracer::Picker;
 

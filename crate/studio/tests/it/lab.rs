@@ -6,8 +6,9 @@ use egui_kittest::kittest::Queryable;
 use lab::{Lesson, Report};
 use rats::{File, Project};
 use studio::Backend;
-use studio::app::{App, Parts};
-use studio::request::Request;
+use studio::app::App;
+use studio::page::Parts;
+use studio::scripts::request::Request;
 use studio::{places, platform};
 
 const TEXT: &str = "\

@@ -3,10 +3,10 @@
 use crate::driver::Window;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use studio::app::Parts;
 use studio::intake::Incoming;
+use studio::page::Parts;
 use studio::picture::Image;
-use studio::request::Request;
+use studio::scripts::request::Request;
 use studio::{picture, places, platform};
 
 const SCENE: &str = "\

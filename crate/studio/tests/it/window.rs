@@ -8,8 +8,9 @@ use rats::{File, Project};
 use std::cell::RefCell;
 use std::rc::Rc;
 use studio::Backend;
-use studio::app::{App, Parts};
-use studio::request::Request;
+use studio::app::App;
+use studio::page::Parts;
+use studio::scripts::request::Request;
 use studio::{platform, share};
 
 const TEXT: &str = "\

@@ -5,8 +5,9 @@
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, vec2};
 use egui_kittest::Harness;
 use rats::{File, Project};
-use studio::app::{App, Parts};
-use studio::request::Request;
+use studio::app::App;
+use studio::page::Parts;
+use studio::scripts::request::Request;
 use studio::{Backend, places, platform};
 
 /// A window and the parts of its app.
