@@ -2,8 +2,9 @@
 
 use crate::app::App;
 use crate::page::Parts;
+use crate::scripts::handle;
 use crate::scripts::request::Request;
-use crate::{boot, crash, emulation, handle, platform};
+use crate::{boot, crash, emulation, platform};
 use std::cell::Cell;
 use wasm_bindgen::prelude::*;
 
