@@ -37,6 +37,7 @@
 
 pub mod assembly;
 mod assign;
+pub mod clock;
 mod core;
 pub mod job;
 pub mod life;

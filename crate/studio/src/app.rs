@@ -6,13 +6,12 @@
 
 use crate::export::MeshPanel;
 use crate::film::FilmPanel;
-use crate::fit::fitting::Fitting;
+use crate::fit::FitPanel;
 use crate::help::Help;
 use crate::lessons::Lessons;
 use crate::notice::Notice;
 use crate::page::{Dialog, Moment, Page, Parts, Screen, Tab};
 use crate::panel::{Panel, Panels};
-use crate::reading::MeshReading;
 use crate::render::{Phase, Renderer};
 use crate::scripts::Scripts;
 use crate::scripts::request::{Answer, Request};
@@ -24,9 +23,14 @@ use crate::text::TextPanel;
 use crate::text::keyboard::Keyboard;
 use crate::tray::Tray;
 use crate::wish::{LabWish, Wish, Wishes, WorkWish};
-use crate::work::{Origin, Work};
 use crate::works::gallery::Gallery;
-use crate::{Backend, examples, fonts, keys, layout, platform, screen, theme, work};
+use crate::{fonts, keys, layout, screen, theme};
+use browser::Backend;
+use document::examples;
+use document::fitting::Fitting;
+use document::reading::MeshReading;
+use document::work;
+use document::work::{Origin, Work};
 use egui::{Context, Ui};
 use lab::{Lab, Lesson};
 use pool::{Pool, Tools};
@@ -65,7 +69,7 @@ fn is_drawn_by_processor(backend: Backend, state: Option<&egui_wgpu::RenderState
         || state.is_some_and(|state| {
             let info = state.adapter.get_info();
             info.device_type == egui_wgpu::wgpu::DeviceType::Cpu
-                || crate::backend::is_processor(&info.name)
+                || browser::is_processor(&info.name)
         })
 }
 
@@ -78,10 +82,10 @@ impl App {
         backend: Backend,
         parts: Parts,
     ) -> Self {
-        let is_calm = !platform::has_stopped_before();
+        let is_calm = !browser::has_stopped_before();
         // Until the start has gone well, a stop counts as a bad start.
-        platform::set_stopped(true);
-        let hash = platform::hash();
+        browser::set_stopped(true);
+        let hash = browser::hash();
         let lesson = Lesson::of_hash(&hash);
         // A link to a lesson or to an example carries no work.
         let to_example = examples::of_hash(&hash).is_some();
@@ -90,7 +94,8 @@ impl App {
         } else {
             &hash
         };
-        let (work, trouble) = Work::start(parts.shelf.clone(), carried, is_calm);
+        let (work, trouble) =
+            Work::start(parts.shelf.clone(), browser::unix_time, carried, is_calm);
         parts.requests.attach(ctx);
         if to_example {
             parts.requests.ask(Request::HashChanged);
@@ -144,7 +149,7 @@ impl App {
                 text: TextPanel::default(),
                 stage: Stage::new(render_state, tools.clone()),
                 sliders: Sliders::default(),
-                fit: Fitting::new(tools.clone()),
+                fit: FitPanel(Fitting::new(tools.clone())),
                 film: FilmPanel::default(),
                 tray: Tray::default(),
                 mesh: MeshPanel::new(tools),
@@ -154,7 +159,7 @@ impl App {
                 lab: Lessons(lab),
             },
         };
-        app.greet(trouble, platform::now(ctx));
+        app.greet(trouble, browser::now(ctx));
         app
     }
 
@@ -169,7 +174,7 @@ impl App {
             page.warn(format!("{trouble} You see your own work instead."));
         } else if page.work.origin == Origin::Link {
             self.welcome_link();
-        } else if !platform::has_storage() {
+        } else if !browser::has_storage() {
             page.warn(
                 "This browser stores nothing for this page, so your work lasts until you \
                     close it. Share makes a link that keeps it.",
@@ -202,18 +207,19 @@ impl App {
     /// Does the work of timers and messages. Call it before each frame, and also while the tab is
     /// hidden.
     pub fn tick(&mut self, ctx: &Context) {
-        let now = platform::now(ctx);
+        let now = browser::now(ctx);
         let at = Moment { ctx, now };
         let started = *self.started.get_or_insert(now);
         let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
         if !dropped.is_empty() {
-            platform::read_dropped(dropped, &self.page.parts.requests);
+            browser::read_dropped(dropped, self.page.parts.requests.taker());
         }
         let mut answers = Vec::new();
         for request in self.page.parts.requests.take() {
             self.serve(request, &at, &mut answers);
         }
         let page = &mut self.page;
+        page.settle(now);
         if let Some(trouble) = page.work.tick(now) {
             page.warn(trouble);
         }
@@ -224,7 +230,7 @@ impl App {
         panels.mesh.film = panels.film.length();
         panels.mesh.tick(page, &at);
         panels.fit.tick(page, &at);
-        page.is_reading = page.reading.current().is_some() || panels.fit.is_reading();
+        page.is_reading = page.reading.current().is_some() || panels.fit.0.is_reading();
         panels.stage.tick(page, &at);
         if page.settings != self.saved_settings {
             self.saved_settings = page.settings.clone();
@@ -233,14 +239,14 @@ impl App {
         let title = panels.lab.0.title().unwrap_or(&page.work.name);
         if self.tab_title != title {
             self.tab_title = title.to_owned();
-            platform::set_title(&self.tab_title);
+            browser::set_title(&self.tab_title);
         }
         panels.film.tick(page, &at);
         self.trace(&at);
         let page = &mut self.page;
         if page.work.session.is_enabled() && !self.is_healthy && now - started > HEALTHY {
             self.is_healthy = true;
-            platform::set_stopped(false);
+            browser::set_stopped(false);
         }
         self.panels.tray.tick(page, &at);
         if let Some(notice) = &page.notice
@@ -315,17 +321,17 @@ impl App {
         let mut wishes = Wishes::default();
         keys::listen(&self.page, &self.panels, &ctx, &mut wishes);
         layout::show(&mut self.page, &mut self.panels, ui, &mut wishes);
-        let now = platform::now(&ctx);
+        let now = browser::now(&ctx);
         let at = Moment { ctx: &ctx, now };
         let acts = !wishes.is_empty();
         for wish in wishes {
             self.carry_out(wish, &at);
         }
-        self.page.work.settle(now);
+        self.page.settle(now);
         // Workers need not wait for this frame to be drawn.
         self.trace(&at);
         let is_short = self.page.is_short_of_time();
-        platform::set_frames_slow(is_short);
+        browser::set_frames_slow(is_short);
         match (acts, is_short) {
             (true, true) => ctx.request_repaint(),
             (true, false) => repaint_once(&ctx),
@@ -443,7 +449,7 @@ impl App {
     /// Follows the fragment of the address to a lesson, an example, a shared work, or back to the
     /// editor.
     fn follow_address(&mut self, at: &Moment<'_>) {
-        let hash = platform::hash();
+        let hash = browser::hash();
         let lesson = Lesson::of_hash(&hash);
         self.carry_out(LabWish::Follow(lesson).into(), at);
         at.ctx.request_repaint();

@@ -5,8 +5,8 @@ use crate::icon::{self, Icon};
 use crate::page::Dialog;
 use crate::page::Page;
 use crate::wish::{LabWish, SculptWish, Setting, TextWish, Wish, Wishes, WorkWish};
-use crate::work::{Origin, Work};
 use crate::{download, places, theme};
+use document::work::{Origin, Work};
 use egui::{Align, Button, Layout, RichText, TextEdit, Ui};
 
 /// Shows the bar.

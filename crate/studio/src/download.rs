@@ -1,11 +1,11 @@
 //! The menu of everything that the page can save as a file.
 
 use crate::film::FilmPanel;
-use crate::film::recording::Kind;
 use crate::page::Dialog;
 use crate::page::Page;
 use crate::wish::{FilmWish, ViewWish, Wish, Wishes, WorkWish};
 use crate::{places, theme};
+use browser::recording::Kind;
 use egui::{Button, RichText, Ui};
 
 /// Lists what there is to download.

@@ -9,10 +9,9 @@ use crate::stage::pencil;
 use crate::text::files;
 use crate::theme::{self, STRIP};
 use crate::wish::{Setting, ViewWish, Wish, Wishes};
-use crate::{
-    bar, download, fit, intake, notice, places, problems, screen, sculpt, size, sliders, status,
-    tray,
-};
+use crate::{bar, download, fit, notice, places, problems, screen, sculpt, sliders, status, tray};
+use document::intake;
+use document::size;
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
     RichText, ScrollArea, Stroke, Ui, pos2, vec2,
@@ -94,7 +93,7 @@ fn text_side(page: &Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes)
             .frame(inset)
             .show(ui, |ui| problems::show(page, ui, wishes));
     }
-    if panels.fit.open {
+    if panels.fit.0.open {
         Panel::bottom("fit")
             .exact_size(fit::HEIGHT)
             .frame(inset)
@@ -156,7 +155,7 @@ fn picture_head(page: &Page, panels: &Panels, ui: &mut Ui, place: Rect, wishes: 
             wishes.push(ViewWish::ShowAll);
         }
         size_menu(page, ui, wishes);
-        if panels.fit.is_offered() {
+        if panels.fit.0.is_offered() {
             panels.fit.button(ui, wishes);
         }
         reset_view(page, ui, wishes);
@@ -281,8 +280,8 @@ fn stage(page: &mut Page, panels: &mut Panels, ui: &mut Ui, mut place: Rect, wis
         panels.tray.show(page, &mut strip, wishes);
     }
     panels.stage.caret = panels.text.editor.caret();
-    panels.stage.points = if panels.fit.open {
-        panels.fit.points()
+    panels.stage.points = if panels.fit.0.open {
+        panels.fit.0.points()
     } else {
         Vec::new()
     };
@@ -392,7 +391,7 @@ fn tab_row(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishe
         };
         tabs.push((tab, title));
     }
-    if panels.fit.is_offered() {
+    if panels.fit.0.is_offered() {
         tabs.push((Tab::Fit, String::from("Fit")));
     } else if page.tab == Tab::Fit {
         page.tab = Tab::Text;
@@ -413,7 +412,7 @@ fn tab_row(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishe
         places::note(ui.ctx(), format!("tab {tab:?}").to_lowercase(), button.rect);
         if button.clicked() {
             page.tab = tab;
-            panels.fit.open |= tab == Tab::Fit;
+            panels.fit.0.open |= tab == Tab::Fit;
         }
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

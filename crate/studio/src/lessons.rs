@@ -4,9 +4,9 @@ use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
 use crate::wish::{Setting, Wish, Wishes, WorkWish};
-use crate::{examples, platform};
+use document::examples;
 use egui::{Context, Ui};
-use lab::{Lab, Lesson};
+use lab::{Dataset, Lab, Lesson};
 
 /// Wishes about the lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,13 +34,13 @@ impl Lessons {
             LabWish::Open(lesson) => open(lab, lesson),
             LabWish::Show => open(lab, lab.lesson()),
             LabWish::Close => {
-                platform::push_hash(lab.came_from());
+                browser::push_hash(lab.came_from());
                 lab.close();
             }
             LabWish::Follow(Some(lesson)) => lab.open(lesson, ""),
             LabWish::Follow(None) => lab.close(),
             LabWish::Share => {
-                let link = format!("{}{}", platform::page(), lab.lesson().hash());
+                let link = format!("{}{}", browser::page(), lab.lesson().hash());
                 at.ctx.copy_text(link);
                 lab.say("Link to this lesson copied.", at.now);
             }
@@ -49,19 +49,23 @@ impl Lessons {
 }
 
 fn open(lab: &mut Lab, lesson: Lesson) {
-    lab.open(lesson, &platform::hash());
-    platform::push_hash(&lesson.hash());
+    lab.open(lesson, &browser::hash());
+    browser::push_hash(&lesson.hash());
 }
 
 impl Panel for Lessons {
     fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
-        let renderer = &page.renderer;
+        let (session, renderer) = (&page.work.session, &page.renderer);
         let is_busy = renderer.phase() == Phase::Tracing;
         let frame = lab::Frame {
-            dataset: page.work.session.dataset(),
+            dataset: Dataset {
+                generation: session.generation(),
+                scene: session.scene().map(AsRef::as_ref),
+                camera: session.camera(),
+            },
             tracing: is_busy.then(|| renderer.progress().fraction),
             theme: page.settings.theme,
-            now: platform::now(ui.ctx()),
+            now: browser::now(ui.ctx()),
         };
         let mut commands = Vec::new();
         lab::show(&mut self.0, &frame, ui, &mut commands);

@@ -2,16 +2,19 @@
 //! the page.
 
 use crate::notice::Notice;
-use crate::reading::MeshReading;
 use crate::render::{Phase, Renderer};
+use crate::screen;
 use crate::scripts::report::Shared;
 use crate::scripts::request::Requests;
 use crate::settings::Settings;
-use crate::storage::Shelf;
 use crate::wish::{Wish, Wishes};
-use crate::work::Work;
-use crate::{Backend, platform, screen, size};
+use browser::Backend;
+use document::reading::MeshReading;
+use document::size;
+use document::storage::Shelf;
+use document::work::Work;
 use egui::Context;
+use lab::Lesson;
 use pool::Pool;
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
@@ -62,7 +65,7 @@ impl Parts {
     /// Parts on the browser's storage (natively: in memory).
     #[must_use]
     pub fn new() -> Self {
-        let shelf = Shelf::new(platform::store(), platform::random_word());
+        let shelf = Shelf::new(browser::store(), browser::random_word());
         Self {
             shelf: Rc::new(RefCell::new(shelf)),
             requests: Requests::default(),
@@ -162,7 +165,15 @@ impl Page {
     /// the lesson.
     pub fn leave_lesson(&self) {
         if self.is_lab_open {
-            platform::push_hash("");
+            browser::push_hash("");
+        }
+    }
+
+    /// Puts a changed work on the shelf, and compiles it.
+    pub fn settle(&mut self, now: f64) {
+        // The work in a link is not the one on the screen any more.
+        if self.work.settle(now) && Lesson::of_hash(&browser::hash()).is_none() {
+            browser::set_hash("");
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::export::MeshPanel;
 use crate::film::FilmPanel;
-use crate::fit::fitting::Fitting;
+use crate::fit::FitPanel;
 use crate::help::Help;
 use crate::lessons::Lessons;
 use crate::page::{Moment, Page};
@@ -42,7 +42,7 @@ pub struct Panels {
     /// The variables marked `hot`.
     pub sliders: Sliders,
     /// Fitting a mesh to measured points.
-    pub fit: Fitting,
+    pub fit: FitPanel,
     /// The film of an animated work.
     pub film: FilmPanel,
     /// The results of the text's jobs on pictures.

@@ -4,7 +4,7 @@
 //! pause, so that a large scene is not prepared anew at every key. The running picture is given up
 //! at the change itself, which frees the workers for the next one.
 
-use crate::picture;
+use document::picture;
 use egui::{ColorImage, TextureHandle, TextureOptions};
 use pool::{Assembly, Change, Image, Job, Pool, Progress};
 use scene::{Camera, Scene};

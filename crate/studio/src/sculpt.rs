@@ -1,16 +1,17 @@
 //! Sculpting in the page: opens and begins texts of strokes in the sculpting view (crate
 //! `modeling`), and carries out its wishes.
 
-use crate::asset::{self, Kind};
-use crate::export::mesh_export::Order;
 use crate::page::{Dialog, Moment, Page};
 use crate::panel::Panel;
-use crate::project_file::Project;
 use crate::scripts::report;
 use crate::scripts::request::Request;
-use crate::session::Session;
 use crate::wish::{FitWish, Setting, TextWish, ViewWish, Wish, Wishes, WorkWish};
-use crate::{examples, places, platform, theme};
+use crate::{places, theme};
+use document::asset::{self, Kind};
+use document::examples;
+use document::mesh_export::Order;
+use document::project_file::Project;
+use document::session::Session;
 use egui::{Button, Context, RichText, Ui};
 use modeling::{Flesh, Outside, Sculpting};
 use rats::{Asset, File, TextEdit, is_strokes};
@@ -260,9 +261,9 @@ impl Panel for SculptPanel {
         let traced = page.renderer.texture().zip(page.renderer.image());
         let traced = traced.filter(|_| page.is_fresh());
         let outside = Outside {
-            now: platform::now(ui.ctx()),
+            now: browser::now(ui.ctx()),
             theme: page.settings.theme,
-            pressure: platform::pen_pressure(),
+            pressure: browser::pen_pressure(),
             traced: traced.map(|((texture, _), image)| (texture.id(), image.size)),
             errors: session.errors(),
             depth: [session.can_undo(), session.can_redo()],
@@ -323,7 +324,7 @@ fn begin(page: &mut Page, start: &str, is_new: bool, now: f64) {
         };
         let result = page.work.open_files(project);
         if result.is_ok() {
-            platform::set_hash("");
+            browser::set_hash("");
         }
         result
     } else {
@@ -366,7 +367,7 @@ fn mesh_model(page: &mut Page, now: f64) {
 fn sculpt_mesh(page: &mut Page, result: Result<Vec<u8>, String>, now: f64) {
     let session = &mut page.work.session;
     let result = result.and_then(|bytes| {
-        let asset = crate::intake::asset(&session.free_name("model.ply"), bytes)?;
+        let asset = document::intake::asset(&session.free_name("model.ply"), bytes)?;
         let strokes = File {
             name: FIRST.to_owned(),
             text: format!("strokes 1\nstart file {}\n", asset.name),
@@ -519,7 +520,7 @@ pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
     heading(ui, "An example, stroke by stroke");
     ui.horizontal_wrapped(|ui| {
         for (index, example) in examples::ALL.iter().enumerate() {
-            if example.group == crate::examples::SCULPTED && choice(ui, example.title) {
+            if example.group == document::examples::SCULPTED && choice(ui, example.title) {
                 wishes.push(WorkWish::OpenExample(index));
                 wishes.push(SculptWish::Show);
             }

@@ -1,7 +1,8 @@
 //! The user's choices about the page, kept in the browser apart from the works.
 
 use crate::page::Page;
-use crate::{size, theme};
+use crate::theme;
+use document::size;
 use egui::Context;
 use serde::{Deserialize, Serialize};
 

@@ -1,12 +1,12 @@
 //! The strip at the bottom: progress and facts of the picture.
 
-use crate::Backend;
-use crate::numerals::{count, duration};
 use crate::page::Page;
 use crate::render::{Phase, Renderer, pass_label};
 use crate::stage::StandIn;
 use crate::wish::{ViewWish, Wishes};
 use crate::{places, theme};
+use browser::Backend;
+use document::numerals::{count, duration};
 use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, vec2};
 
 /// Returns the state of the work in a few words. `reading` is the mesh file that is being read,

@@ -1,19 +1,19 @@
 //! The dialog that shows the model as a mesh and saves it.
 
-pub mod mesh_export;
-
 use crate::page::{Dialog, Moment, Page};
 use crate::panel::Panel;
-use crate::session::Session;
 use crate::wish::{Wish, Wishes};
-use crate::{asset, places, platform, scripts, theme, work};
+use crate::{places, theme};
+use document::asset;
+use document::mesh_export::{self, Film, MOST_EDGES, Made, MeshExport, State};
+use document::session::Session;
+use document::work;
 use egui::{
     Align, Button, Color32, ColorImage, DragValue, Layout, ProgressBar, Response, RichText,
     ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 use glam::DVec3;
 use mesh::Format;
-use mesh_export::{Film, MOST_EDGES, Made, MeshExport, State};
 use pool::Tools;
 use tools::{MeshFacts, Written};
 use viewport::{Frame, Look, View};
@@ -97,7 +97,7 @@ impl MeshPanel {
         let MeshWish::Save = wish;
         let files = self.export.files();
         for file in files {
-            platform::download(&file.name, "application/octet-stream", &file.bytes);
+            browser::download(&file.name, "application/octet-stream", &file.bytes);
         }
         let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
         if !names.is_empty() {
@@ -107,7 +107,7 @@ impl MeshPanel {
 
     /// Returns the state for scripts while the dialog is open.
     #[must_use]
-    pub fn report(&self, page: &Page) -> Option<scripts::report::Mesh> {
+    pub fn report(&self, page: &Page) -> Option<mesh_export::Report> {
         let is_open = page.dialog == Some(Dialog::Mesh);
         is_open.then(|| self.export.report(&page.work.session, self.film))?
     }

@@ -1,20 +1,19 @@
 //! The film of an animated work: the strip below the picture, playback, and saving the frames.
 
-pub mod player;
-pub mod recording;
 mod timeline;
 
-use crate::export::mesh_export;
 use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
 use crate::scripts::request::Request;
 use crate::settings::Show;
 use crate::wish::Wishes;
-use crate::{asset, platform, work};
+use browser::recording::{Kind, Recording, VideoFormat};
+use document::asset;
+use document::mesh_export;
+use document::player::{Playback, Player};
+use document::work;
 use egui::{Context, Ui};
-use player::{Playback, Player};
-use recording::{Kind, Recording, VideoFormat};
 
 /// Wishes about the film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,7 +162,7 @@ impl FilmPanel {
         let kind = saving.recording.kind;
         let stem = work::file_stem(&page.work.name);
         let name = format!("{stem}-film.{}", kind.extension());
-        platform::download(&name, kind.mime(), bytes);
+        browser::download(&name, kind.mime(), bytes);
         let size = asset::size(bytes.len());
         page.screen.forced = saving.forced;
         page.go_to_frame(saving.before);
@@ -183,7 +182,7 @@ impl Panel for FilmPanel {
         if is_animated && self.formats.is_none() {
             self.formats = Some(Vec::new());
             let requests = page.parts.requests.clone();
-            platform::video_formats(move |formats| requests.ask(Request::Videos(formats)));
+            browser::video_formats(move |formats| requests.ask(Request::Videos(formats)));
         }
         if self.saving.is_some() {
             self.player.pause();

@@ -2,12 +2,12 @@
 //! film is saved the strip shows its progress.
 
 use super::FilmPanel;
-use crate::film::player::{MAX_FRAMES, MAX_RATE, Playback, Player};
-use crate::film::recording::Recording;
 use crate::icon::{self, Icon};
 use crate::page::Page;
 use crate::wish::{FilmWish, Wishes};
-use crate::{download, places, platform, slider, theme};
+use crate::{download, places, slider, theme};
+use browser::recording::Recording;
+use document::player::{MAX_FRAMES, MAX_RATE, Playback, Player};
 use egui::{
     Align, Button, DragValue, Layout, Popup, PopupCloseBehavior, ProgressBar, RichText, Slider, Ui,
 };
@@ -157,7 +157,7 @@ fn settings(ui: &mut Ui, player: &Player, wishes: &mut Wishes) {
 /// Shows the progress of a film, and a button that stops it.
 fn progress(ui: &mut Ui, recording: &Recording, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
-    let now = platform::now(ui.ctx());
+    let now = browser::now(ui.ctx());
     ui.horizontal_centered(|ui| {
         ui.add_space(12.0);
         let words = RichText::new(recording.words(now)).color(palette.text);

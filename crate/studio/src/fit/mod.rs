@@ -1,14 +1,12 @@
 //! The panel *Fit*: measured files, the mesh to fit, settings, and progress.
 
-pub mod fitting;
-
 use crate::icon::{self, Icon};
 use crate::page::{Moment, Page, Tab};
 use crate::panel::Panel;
 use crate::wish::{TextWish, Wishes, WorkWish};
 use crate::{places, screen, slider, theme};
+use document::fitting::{Fitting, Surface, Target};
 use egui::{Button, Context, Painter, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
-use fitting::{Fitting, Surface, Target};
 
 /// Height of the panel beside the text.
 pub const HEIGHT: f32 = 326.0;
@@ -35,42 +33,39 @@ pub enum FitWish {
     Stop,
 }
 
-impl Fitting {
+/// The panel.
+pub struct FitPanel(pub Fitting);
+
+impl FitPanel {
     /// Carries out a wish.
     pub fn act(&mut self, wish: FitWish, page: &mut Page, at: &Moment<'_>) {
-        let session = &mut page.work.session;
+        let (fitting, session) = (&mut self.0, &mut page.work.session);
         match wish {
             FitWish::Show(open) => {
-                self.open = open;
+                fitting.open = open;
                 page.tab = if open { Tab::Fit } else { Tab::Text };
             }
             FitWish::Take { name, bytes } => {
-                self.add(name, bytes);
+                fitting.add(name, bytes);
                 page.tab = Tab::Fit;
             }
             FitWish::Choose(file) => {
                 if session.is_compiled() {
-                    self.choose(session, &file);
+                    fitting.choose(session, &file);
                 }
             }
-            FitWish::Start => self.start(session, at.now),
+            FitWish::Start => fitting.start(session, at.now),
             FitWish::Stop => {
-                self.stop(session, at.now);
+                fitting.stop(session, at.now);
                 session.compile();
             }
         }
     }
 
-    /// Whether there is something to fit, so that the panel is offered.
-    #[must_use]
-    pub fn is_offered(&self) -> bool {
-        self.open || !self.targets.is_empty()
-    }
-
     /// Shows the button that shows and hides the panel.
     pub fn button(&self, ui: &mut Ui, wishes: &mut Wishes) {
         let palette = theme::palette(ui.visuals());
-        let colour = if self.open {
+        let colour = if self.0.open {
             palette.accent
         } else {
             palette.text
@@ -79,16 +74,16 @@ impl Fitting {
         places::note(ui.ctx(), "fit", button.rect);
         let button = button.on_hover_text("Bring a mesh onto measured points and outlines");
         if button.clicked() {
-            wishes.push(FitWish::Show(!self.open));
+            wishes.push(FitWish::Show(!self.0.open));
         }
     }
 }
 
-impl Panel for Fitting {
+impl Panel for FitPanel {
     fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         let palette = theme::palette(ui.visuals());
         places::note(ui.ctx(), "fit panel", ui.max_rect());
-        let targets = self.targets.clone();
+        let targets = self.0.targets.clone();
         ui.horizontal(|ui| {
             ui.label(
                 RichText::new("Fit to measurements")
@@ -101,26 +96,32 @@ impl Panel for Fitting {
                 }
             });
         });
-        files(self, ui, wishes);
-        target(self, ui, &targets);
-        kind(self, ui);
-        weights(self, ui, &targets);
-        buttons(self, page.work.session.can_undo(), ui, &targets, wishes);
-        progress(self, ui);
+        files(&mut self.0, ui, wishes);
+        target(&mut self.0, ui, &targets);
+        kind(&mut self.0, ui);
+        weights(&mut self.0, ui, &targets);
+        buttons(
+            &mut self.0,
+            page.work.session.can_undo(),
+            ui,
+            &targets,
+            wishes,
+        );
+        progress(&self.0, ui);
     }
 
     fn tick(&mut self, page: &mut Page, at: &Moment<'_>) {
-        if self.take_in(&mut page.work.session, at.now) {
+        if self.0.tick(&mut page.work.session, at.now) {
             page.work.session.compile();
         }
     }
 
     fn wait(&self, _page: &Page, now: f64) -> Option<f64> {
-        self.seconds_left(now)
+        self.0.wait(now)
     }
 
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
-        self.end();
+        self.0.forget();
     }
 }
 

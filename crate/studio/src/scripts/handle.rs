@@ -57,14 +57,14 @@
 //! the size of the traced picture (without arguments: back to what the user chose), and `panic()`,
 //! which stops the program as a mistake in it would.
 
-use crate::export::mesh_export::Order;
-use crate::intake::Incoming;
 use crate::page::Parts;
-use crate::picture;
-use crate::platform;
 use crate::scripts::request::Request;
-use crate::share;
 use crate::wish::ViewWish;
+use browser;
+use document::intake::Incoming;
+use document::mesh_export::Order;
+use document::picture;
+use document::share;
 use js_sys::{Function, JSON, Object, Promise, Reflect};
 use rats::{File, Project};
 use wasm_bindgen::prelude::*;
@@ -128,7 +128,7 @@ fn texts(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
     let p = parts.clone();
     method(sinew, "link", move |_, _| {
         let outbox = p.outbox.borrow();
-        share::link(&platform::page(), &outbox.project, outbox.chosen)
+        share::link(&browser::page(), &outbox.project, outbox.chosen)
             .map(Into::into)
             .map_err(|reason| js_sys::Error::new(&reason).into())
     })
@@ -158,7 +158,7 @@ fn state(sinew: &Object, parts: &Parts) -> Result<(), JsValue> {
                         picture::png(image)
                             .map_err(|error| js_sys::Error::new(&error.to_string()).into())
                     })
-                    .and_then(|bytes| platform::blob("image/png", &bytes));
+                    .and_then(|bytes| browser::blob("image/png", &bytes));
                 match blob {
                     Ok(blob) => call(&yes, &blob),
                     Err(reason) => call(&no, &reason),

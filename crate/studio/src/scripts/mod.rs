@@ -94,7 +94,7 @@ impl Scripts {
         state.name.clone_from(&page.work.name);
         state.saved = !page.parts.shelf.borrow().is_dirty();
         state.reading = page.reading.current().map(|(name, _)| name.to_owned());
-        state.fit = panels.fit.report();
+        state.fit = panels.fit.0.report();
         state.mesh = panels.mesh.report(page);
         state.drawing = panels.stage.pencil.tool().map(Tool::id);
         state.frame = session.is_animated().then(|| session.film_frame());

@@ -1,5 +1,6 @@
 //! The page's state as scripts read it.
 
+use document::{fitting, mesh_export};
 use rats::{Diagnostic, Project};
 use scene::Camera;
 use serde::Serialize;
@@ -49,9 +50,9 @@ pub struct Report {
     /// Name of the mesh that is being read.
     pub reading: Option<String>,
     /// The fit of a mesh that runs, or ran last.
-    pub fit: Option<Fit>,
+    pub fit: Option<fitting::Report>,
     /// The mesh of the dialog, once one was asked for.
-    pub mesh: Option<Mesh>,
+    pub mesh: Option<mesh_export::Report>,
     /// The frame on show of an animated work.
     pub frame: Option<u32>,
     /// The tool for drawing that is in hand: `draw`, `move` or `cut`.
@@ -62,37 +63,6 @@ pub struct Report {
     pub name: String,
     /// Whether all changes are written to the browser's storage.
     pub saved: bool,
-}
-
-/// The model as a mesh.
-#[derive(Clone, Debug, Default, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct Mesh {
-    /// Whether the mesh that was asked for is being made.
-    pub running: bool,
-    /// Triangles on show.
-    pub shown: usize,
-    /// Triangles of the mesh that was asked for.
-    pub triangles: Option<usize>,
-    /// Length of the files together.
-    pub bytes: Option<usize>,
-    /// The reason why there is none.
-    pub said: Option<String>,
-}
-
-/// A fit of a mesh.
-#[derive(Clone, Debug, Default, Serialize)]
-pub struct Fit {
-    /// Whether it runs.
-    pub running: bool,
-    /// Iterations that were written into the text.
-    pub iteration: u32,
-    /// Residual after the last iteration.
-    pub residual: f64,
-    /// Measured points that are read.
-    pub points: usize,
-    /// The message in the panel.
-    pub said: Option<String>,
 }
 
 /// Seconds from the start of the picture.

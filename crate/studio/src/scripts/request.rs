@@ -1,11 +1,11 @@
 //! Requests from outside the window: from scripts of the page (`handle`) and from the browser
 //! itself.
 
-use crate::export::mesh_export::{Order, Taker};
-use crate::film::recording::VideoFormat;
-use crate::intake::Incoming;
-use crate::picture::Image;
 use crate::wish::Wish;
+use browser::recording::VideoFormat;
+use document::intake::Incoming;
+use document::mesh_export::{Order, Taker};
+use document::picture::Image;
 use egui::Context;
 use rats::Project;
 use scene::Camera;
@@ -74,5 +74,11 @@ impl Requests {
     #[must_use]
     pub fn take(&self) -> Vec<Request> {
         std::mem::take(&mut *self.waiting.borrow_mut())
+    }
+
+    /// Returns a function that asks for files to be taken in.
+    pub fn taker(&self) -> impl FnOnce(Vec<Incoming>) + 'static {
+        let requests = self.clone();
+        move |files| requests.ask(Request::Files(files))
     }
 }

@@ -4,8 +4,8 @@
 //! A traced picture that comes soon needs the processor more, so the card is asked for only after
 //! the draft was wanted for [`PATIENCE`].
 
-use crate::platform;
-use crate::session::Session;
+use browser;
+use document::session::Session;
 use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use egui_wgpu::wgpu;
 use preview::Sampling;
@@ -50,7 +50,7 @@ impl Apart {
         session: &Session,
         size: [f32; 2],
     ) -> Option<TextureId> {
-        let now = platform::now(ctx);
+        let now = browser::now(ctx);
         let known = self.wanted.filter(|[_, last]| now - last < PATIENCE);
         let begun = known.map_or(now, |[begun, _]| begun);
         self.wanted = Some([begun, now]);
@@ -66,7 +66,7 @@ impl Apart {
             Card::Unknown => {
                 *card = Card::Away;
                 let (place, ctx) = (Rc::downgrade(&self.card), ctx.clone());
-                platform::ask_emulated_card(move |device, queue| {
+                browser::ask_emulated_card(move |device, queue| {
                     if let Some(place) = place.upgrade() {
                         *place.borrow_mut() = Card::Here(Box::new(Drawer::new(device, queue)));
                         ctx.request_repaint();

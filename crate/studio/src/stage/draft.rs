@@ -1,8 +1,8 @@
 //! The draft on its way to the screen: a texture of egui's that is drawn anew when the scene, the
 //! camera or the size changes.
 
-use crate::session::Session;
 use crate::stage::live::Made;
+use document::session::Session;
 use egui::TextureId;
 use egui_wgpu::{RenderState, wgpu};
 use scene::Camera;

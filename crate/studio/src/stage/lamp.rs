@@ -1,8 +1,8 @@
 //! A light for texts without any: their pictures are nearly black, and the page offers to add one.
 
-use crate::session::Session;
 use crate::wish::{TextWish, Wish, Wishes};
 use crate::{places, theme};
+use document::session::Session;
 use egui::{CornerRadius, FontId, Rect, Sense, Ui, vec2};
 use glam::DVec3;
 use rats::{Project, TextEdit};

@@ -6,7 +6,7 @@
 //! come too late to follow a drag, the draft shows the elements before they melt together. No mesh
 //! is made, and no worker fetched, before the user turns or drags for the first time.
 
-use crate::session::Session;
+use document::session::Session;
 use pool::{Ticket, Tools};
 use preview::Mesh;
 use scene::{Element, Scene, Shape};

@@ -13,18 +13,22 @@ use crate::page::{self, Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
 use crate::wish::{TextWish, Wishes, WorkWish};
-use crate::{picture, places, platform, screen, work};
+use crate::{places, screen};
 use apart::Apart;
+use document::examples;
+use document::picture;
+use document::work;
 use draft::Draft;
 use egui::{Color32, Context, Painter, Rect, TextureId, Ui, Vec2};
 use egui_wgpu::RenderState;
 use glam::DVec3;
-use hands::{Hands, Sight};
+use hands::Hands;
 use live::LiveMesh;
 use pencil::{Pencil, tool::Tool};
 use pool::Tools;
 use rats::TextEdit;
 use scene::Camera;
+use sketch::Sight;
 use view::{Grasp, Scenery};
 
 /// Wishes about the picture and the camera.
@@ -143,9 +147,9 @@ impl Stage {
             return;
         }
         let is_one = session.project().files.len() == 1 && session.assets().is_empty();
-        if is_one && pencil::page::is_empty(session.text(0)) {
+        if is_one && is_blank(session.text(0)) {
             session.set_camera(None);
-            let text = pencil::page::fresh(page::ratio(ctx));
+            let text = sketch::page::fresh(page::ratio(ctx));
             page.wish(TextWish::step(TextEdit::whole(0, text)));
         } else if matches!(page.work.origin, work::Origin::Example | work::Origin::Link)
             && !Pencil::has_skeleton(session)
@@ -198,7 +202,7 @@ impl Panel for Stage {
             (rect.height() * scale).round(),
         ];
         places::note(ui.ctx(), "picture", rect);
-        let now = platform::now(ui.ctx());
+        let now = browser::now(ui.ctx());
         let draft = self.stand_in(page, ui.ctx(), now);
         let draws = self.pencil.tool().is_some();
         let scenery = Scenery {
@@ -279,6 +283,11 @@ impl Panel for Stage {
     }
 }
 
+/// Whether a text is empty, or that of a new work.
+fn is_blank(text: &str) -> bool {
+    text.trim().is_empty() || text.trim() == examples::BLANK.trim()
+}
+
 /// Whether neither a picture nor a file keeps workers busy.
 fn rests(page: &Page) -> bool {
     let is_tracing = matches!(page.renderer.phase(), Phase::Waiting | Phase::Tracing);
@@ -305,7 +314,7 @@ fn save(page: &mut Page, now: f64) {
     let png = picture::png(image).map_err(|error| error.to_string());
     if let Some(bytes) = page.accept(png) {
         let name = format!("{}.png", work::file_stem(&page.work.name));
-        platform::download(&name, "image/png", &bytes);
+        browser::download(&name, "image/png", &bytes);
         page.tell(format!("Saved {name}, {width} × {height} pixels."), now);
     }
 }

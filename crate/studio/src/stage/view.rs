@@ -4,10 +4,10 @@
 //! picture fades in over it once the coarse picture is complete.
 
 use crate::render::Renderer;
-use crate::session::Session;
 use crate::settings::Show;
 use crate::theme;
 use crate::wish::{ViewWish, Wishes};
+use document::session::Session;
 use egui::emath::GuiRounding;
 use egui::epaint::RectShape;
 use egui::{
@@ -55,7 +55,7 @@ pub struct Grasp {
 }
 
 /// Returns the largest rectangle of the frame's proportions in the middle of a place. It lies on
-/// whole pixels of the screen, and a picture made to fit it ([`crate::size::pixels`]) has as many,
+/// whole pixels of the screen, and a picture made to fit it ([`document::size::pixels`]) has as many,
 /// so that it is shown as sharp as it was traced.
 #[must_use]
 pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
@@ -265,9 +265,9 @@ mod tests {
                     if shown[0].min(shown[1]) < SHORT {
                         continue;
                     }
-                    let traced = crate::size::pixels(Default::default(), frame, shown, 8192);
+                    let traced = document::size::pixels(Default::default(), frame, shown, 8192);
                     // A larger one is traced with fewer pixels.
-                    let small = f64::from(shown[0] * shown[1]) <= crate::size::FIT_PIXELS;
+                    let small = f64::from(shown[0] * shown[1]) <= document::size::FIT_PIXELS;
                     assert!(
                         !small || traced.map(|side| side as f32) == shown,
                         "{frame:?} {side}"

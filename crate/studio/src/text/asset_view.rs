@@ -1,10 +1,10 @@
 //! An image or a mesh of the work, shown in the place of the text.
 
-use crate::asset::{self, Asset, Kind};
 use crate::tray::item;
 use crate::wish::{TextWish, Wishes};
 use crate::{places, theme};
 use ::picture::{Format, Picture, file};
+use document::asset::{self, Asset, Kind};
 use egui::{RichText, ScrollArea, TextureHandle, Ui};
 use std::path::Path;
 use std::sync::Arc;

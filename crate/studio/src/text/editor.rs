@@ -11,13 +11,13 @@ mod signature;
 mod tint;
 
 use crate::problems;
-use crate::session::Session;
 use crate::text::code::Colouring;
-use crate::text::indent::{self, Edited};
 use crate::text::keyboard::is_brace;
 use crate::text::marks::{self, Marks};
 use crate::theme::{self, Palette};
 use crate::wish::{TextWish, Wishes};
+use assist::indent::{self, Edited};
+use document::session::Session;
 use egui::text::{CCursor, CCursorRange};
 use egui::{
     Align, FontId, Galley, Key, Margin, Modifiers, Pos2, Rect, ScrollArea, TextBuffer, TextEdit,

@@ -1,12 +1,12 @@
 //! The strip above the text: one tab for each file of the work, and quieter ones for its images and
 //! meshes.
 
-use crate::asset::{self, Asset};
 use crate::icon::{self, Icon};
-use crate::session::Session;
 use crate::text::editor::Editor;
 use crate::wish::{TextWish, Wishes, WorkWish};
 use crate::{places, problems, theme};
+use document::asset::{self, Asset};
+use document::session::Session;
 use egui::{
     Align, Button, Color32, Key, Layout, Popup, PopupCloseBehavior, RichText, TextEdit, Ui,
 };

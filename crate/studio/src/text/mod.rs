@@ -5,17 +5,16 @@ pub mod asset_view;
 pub mod code;
 pub mod editor;
 pub mod files;
-pub mod indent;
 pub mod keyboard;
 pub mod marks;
 
-use crate::asset::Asset;
 use crate::notice::Notice;
 use crate::page::{Moment, Page, Tab};
 use crate::panel::Panel;
 use crate::places;
 use crate::wish::{ViewWish, Wishes};
 use asset_view::AssetView;
+use document::asset::Asset;
 use editor::Editor;
 use egui::{Context, Ui};
 use rats::TextEdit;

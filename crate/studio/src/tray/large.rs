@@ -1,11 +1,11 @@
 //! A result, shown large and played if it moves, with buttons that save or keep it.
 
 use super::item::{Content, Film, Item, texture};
-use crate::asset::{self, Asset, Kind};
 use crate::wish::{TrayWish, Wish, Wishes};
 use crate::works::gallery::contain;
 use crate::{places, theme};
 use ::picture::animation::Frames;
+use document::asset::{self, Asset, Kind};
 use egui::{
     Align, Button, ColorImage, Key, Label, Layout, Modifiers, RichText, ScrollArea, Sense,
     TextureHandle, TextureOptions, Ui, Vec2, vec2,

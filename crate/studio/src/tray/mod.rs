@@ -4,21 +4,20 @@
 //! picture have changed. They run in small steps, a few milliseconds in each frame, and wait for
 //! the traced picture only if they read it. The tray's contents stay until a new run is complete.
 
-pub mod desk;
 pub mod item;
 pub mod large;
 pub mod strip;
 
-use crate::asset::Asset;
-use crate::intake::Incoming;
 use crate::page::{Dialog, Moment, Page};
 use crate::panel::Panel;
-use crate::picture::Image;
-use crate::session::Session;
+use crate::screen;
 use crate::wish::{TextWish, Wishes, WorkWish};
-use crate::{platform, screen};
 use darkroom::{Bench, Done, Step};
-use desk::Desk;
+use document::asset::Asset;
+use document::desk::Desk;
+use document::intake::Incoming;
+use document::picture::Image;
+use document::session::Session;
 use egui::{Context, Ui};
 use item::{Content, Film, Item};
 use large::Large;
@@ -118,7 +117,7 @@ impl Tray {
                 if let Some(film) = self.items().get(index).and_then(Item::film) {
                     // The browser makes a file of the last part of the name.
                     let name = film.name.rsplit(['/', '\\']).next().unwrap_or_default();
-                    platform::download(name, film.mime(), &film.bytes);
+                    browser::download(name, film.mime(), &film.bytes);
                     page.tell(format!("Saved {name}, {}.", film.facts()), at.now);
                 }
             }
@@ -167,7 +166,7 @@ impl Tray {
             Some(run) if self.items.is_empty() => &run.items,
             _ => &self.items,
         };
-        let (size, now) = (ui.available_size(), platform::now(ui.ctx()));
+        let (size, now) = (ui.available_size(), browser::now(ui.ctx()));
         self.large.show(ui, size, items, kept, now, wishes);
     }
 
@@ -306,7 +305,7 @@ impl Panel for Tray {
 impl Run {
     /// Works for [`SLICE`] seconds. Returns whether there is more to do.
     fn go_on(&mut self, ctx: &Context) -> bool {
-        let start = crate::clock::stopwatch();
+        let start = pool::clock::stopwatch();
         self.waits = false;
         loop {
             let has_decoded = self.items.iter_mut().any(|item| match &mut item.content {
@@ -326,7 +325,7 @@ impl Run {
                     self.take(job, command, finished);
                 }
             }
-            if crate::clock::stopwatch() - start > SLICE {
+            if pool::clock::stopwatch() - start > SLICE {
                 return true;
             }
         }

@@ -1,16 +1,16 @@
 //! Taking in files that were dropped on the page or opened: as new tabs if a work of the user's is
 //! open, else as a new work.
 
-use crate::asset::Asset;
-use crate::examples;
-use crate::intake::{self, Incoming, Sorted};
 use crate::notice::Notice;
 use crate::page::{Moment, Page};
-use crate::platform;
-use crate::project_file::{self, Project};
 use crate::scripts::request::Request;
 use crate::wish::{FitWish, LabWish, TextWish, Wish, WorkWish};
-use crate::work::Origin;
+use browser;
+use document::asset::Asset;
+use document::examples;
+use document::intake::{self, Incoming, Sorted};
+use document::project_file::{self, Project};
+use document::work::Origin;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -26,7 +26,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
     let inbox = Rc::new(RefCell::new((paths.clone().count(), own, Vec::new())));
     for path in paths {
         let (inbox, requests) = (inbox.clone(), page.parts.requests.clone());
-        platform::fetch(path, move |bytes| {
+        browser::fetch(path, move |bytes| {
             let (missing, text, assets) = &mut *inbox.borrow_mut();
             *missing -= 1;
             if *path == example.path {
@@ -95,7 +95,7 @@ pub(super) fn take_in(page: &mut Page, taken: Vec<Incoming>, show: bool, at: &Mo
             ..Project::default()
         };
         page.work.open_files(project).map(|()| {
-            platform::set_hash("");
+            browser::set_hash("");
             format!("Opened {all} as a new work.")
         })
     };
@@ -127,7 +127,7 @@ fn take_project(page: &mut Page, file: Incoming, now: f64) {
             project.name = name.strip_suffix(".zip").unwrap_or(name).to_owned();
         }
         page.work.open_files(project).map(|()| {
-            platform::set_hash("");
+            browser::set_hash("");
             format!("Opened {} as a new work.", page.work.name)
         })
     };

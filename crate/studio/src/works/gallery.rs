@@ -2,11 +2,12 @@
 
 use crate::page::Page;
 use crate::panel::Panel;
-use crate::storage::Entry;
+use crate::places;
 use crate::theme;
 use crate::thumbnail::Thumbnail;
 use crate::wish::{Wish, Wishes, WorkWish};
-use crate::{examples, places, platform};
+use document::examples;
+use document::storage::Entry;
 use egui::{
     Align2, Button, Color32, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
     Vec2, pos2, vec2,
@@ -204,7 +205,7 @@ impl Gallery {
 
 impl Panel for Gallery {
     fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
-        let (shelf, now) = (page.work.shelf().borrow(), platform::unix_time());
+        let (shelf, now) = (page.work.shelf().borrow(), browser::unix_time());
         let palette = theme::palette(ui.visuals());
         ui.horizontal(|ui| {
             ui.label(RichText::new("Examples").heading().color(palette.strong));

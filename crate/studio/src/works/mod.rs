@@ -4,14 +4,15 @@
 mod arrivals;
 pub mod gallery;
 
-use crate::asset::{self, Asset};
-use crate::intake::Incoming;
 use crate::page::{self, Moment, Page};
-use crate::project_file::{self, Project};
-use crate::stage::pencil;
 use crate::stage::pencil::tool::Tool;
 use crate::wish::ViewWish;
-use crate::{examples, platform, share, work};
+use document::asset::{self, Asset};
+use document::examples;
+use document::intake::Incoming;
+use document::project_file::{self, Project};
+use document::share;
+use document::work;
 use gallery::Gallery;
 
 /// Wishes about whole works.
@@ -106,14 +107,14 @@ impl Gallery {
                 show_opened(page, result);
             }
             WorkWish::DrawNew => {
-                let text = pencil::page::fresh(page::ratio(at.ctx));
+                let text = sketch::page::fresh(page::ratio(at.ctx));
                 let result = page.work.open_page(text);
                 show_opened(page, result);
                 page.wish(ViewWish::SetTool(Some(Tool::Draw)));
             }
             WorkWish::GoBack => {
                 if let Some(id) = page.work.before().map(str::to_owned) {
-                    platform::set_hash("");
+                    browser::set_hash("");
                     let result = page.work.open_saved(&id);
                     show_opened(page, result);
                 }
@@ -130,7 +131,7 @@ impl Gallery {
             }
             WorkWish::Save => save(page, at.now),
             WorkWish::Share => share(page, at),
-            WorkWish::PickFiles => platform::pick_files(&page.parts.requests),
+            WorkWish::PickFiles => browser::pick_files(page.parts.requests.taker()),
             WorkWish::Take { files, show } => arrivals::take_in(page, files, show, at),
         }
     }
@@ -147,7 +148,7 @@ impl Gallery {
 fn show_opened(page: &mut Page, result: Result<(), String>) {
     if result.is_ok() {
         page.leave_lesson();
-        platform::set_hash("");
+        browser::set_hash("");
     } else {
         page.dialog = None;
     }
@@ -165,7 +166,7 @@ fn save(page: &mut Page, now: f64) {
     });
     if let Some(bytes) = page.accept(packed) {
         let name = format!("{}.zip", work::file_stem(&page.work.name));
-        platform::download(&name, "application/zip", &bytes);
+        browser::download(&name, "application/zip", &bytes);
         let size = asset::size(bytes.len());
         page.tell(format!("Saved {name}, {size}. Open it here to go on."), now);
     }
@@ -174,7 +175,7 @@ fn save(page: &mut Page, now: f64) {
 /// Copies a link to the work, and puts it into the address bar.
 fn share(page: &mut Page, at: &Moment<'_>) {
     let session = &page.work.session;
-    let link = share::link(&platform::page(), session.project(), session.user_camera());
+    let link = share::link(&browser::page(), session.project(), session.user_camera());
     let carries = if session.assets().is_empty() {
         "It carries the text and the view."
     } else {
@@ -182,7 +183,7 @@ fn share(page: &mut Page, at: &Moment<'_>) {
     };
     if let Some(link) = page.accept(link) {
         if let Some((_, fragment)) = link.split_once('#') {
-            platform::set_hash(&format!("#{fragment}"));
+            browser::set_hash(&format!("#{fragment}"));
         }
         let size = share::size(&link);
         at.ctx.copy_text(link);

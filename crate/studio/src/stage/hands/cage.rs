@@ -1,15 +1,15 @@
 //! The control points of a `deform` as knobs on the picture, with the cage between them.
 
 use super::knob;
-use super::sight::Sight;
 use super::{Around, stroke};
-use crate::session::Session;
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Handle};
+use document::session::Session;
 use egui::{Painter, Rect, Ui, Vec2};
 use glam::DVec3;
 use rats::Deform;
 use scene::Origin;
+use sketch::Sight;
 use std::collections::BTreeSet;
 
 /// Most knobs that are shown: those nearest to the eye.

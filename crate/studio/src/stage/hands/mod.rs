@@ -6,17 +6,15 @@
 
 mod cage;
 mod knob;
-mod sight;
 mod skeleton;
 
-pub use sight::Sight;
-
-use crate::session::Session;
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Handle};
+use document::session::Session;
 use egui::{Color32, Key, Modifiers, Painter, Rect, Response, Stroke, Ui};
 use glam::DVec3;
 use scene::{Camera, Origin, Scene, Shape};
+use sketch::Sight;
 use std::ops::Range;
 
 /// Most bones of one command that are shown: a loop may make thousands.

@@ -1,6 +1,6 @@
 //! The strip of drawing tools under the picture, and buttons on the picture.
 
-use super::{Pencil, THICKNESS, page, tool::Tool};
+use super::{Pencil, THICKNESS, tool::Tool};
 use crate::icon::{self, Icon};
 use crate::wish::{ViewWish, Wishes, WorkWish};
 use crate::{places, slider, theme};
@@ -8,6 +8,7 @@ use egui::{
     Align, Color32, CornerRadius, FontId, Layout, Popup, Rect, Response, Sense, Slider, Stroke, Ui,
     Vec2, pos2, vec2,
 };
+use sketch::page;
 
 /// Height of the strip.
 pub const HEIGHT: f32 = 60.0;

@@ -1,13 +1,13 @@
 //! A node that is held: it follows the pointer, and so does its mirrored one.
 
-use super::drawn::Drawn;
-use crate::session::Session;
-use crate::stage::hands::Sight;
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Editable, Handle, Kind};
+use document::session::Session;
 use egui::Pos2;
 use glam::DVec3;
 use rats::TextEdit;
+use sketch::Drawn;
+use sketch::Sight;
 
 /// The handles of an element, kept for a revision of the text and a frame of the film.
 #[derive(Default)]

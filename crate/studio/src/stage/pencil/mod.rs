@@ -1,32 +1,26 @@
 //! Drawing creatures on the picture: strokes become curves of a skeleton, with flesh around them.
 //!
 //! Nothing is kept here that the text does not say: each gesture changes the text, in one undo
-//! step. [`drawn`] finds the text's skeletons in the picture, [`edits`] makes texts of gestures,
-//! [`page`] is the page that drawing begins with, [`paint`] shows strokes and skeletons, [`bar`] is
-//! the strip with the tools.
+//! step. Crate `sketch` finds the text's skeletons in the picture and makes texts of gestures;
+//! [`paint`] shows strokes and skeletons, [`bar`] is the strip with the tools.
 
 pub mod bar;
-mod drawn;
-mod edits;
 mod grip;
-pub mod page;
 mod paint;
 pub mod tool;
 
-pub use drawn::Drawn;
-
-use crate::session::Session;
-use crate::stage::hands::Sight;
+use crate::places;
 use crate::wish::{TextWish, ViewWish, Wish, Wishes};
-use crate::{places, platform};
-use drawn::{Spot, crossing, node_at, spot_at};
-use edits::{Beginning, Brush, Intent, Root};
+use document::session::Session;
 use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
 use glam::DVec3;
 use grip::Grip;
 use rats::TextEdit;
 use scene::Shape;
-use sketch::{Mark, Stroke};
+use sketch::Sight;
+use sketch::drawn::{Spot, crossing, node_at, spot_at};
+use sketch::edits::{self, Base, Beginning, Brush, Intent, Root};
+use sketch::{Drawn, Mark, Stroke, page};
 use tool::Tool;
 
 /// Least and most radius of strokes, points of a picture 640 points wide.
@@ -523,7 +517,7 @@ impl Pencil {
         };
         let change = TextEdit::whole(drawn.file, text);
         let number = drawn.knobs.len();
-        match edits::check(session, change) {
+        match edits::check(&base(session), change) {
             Ok((change, project, compiled)) => {
                 wishes.push(TextWish::Hold);
                 wishes.push(TextWish::edit(change));
@@ -600,7 +594,7 @@ impl Pencil {
         // Sunk into the flesh, so that a quarter of its radius is hidden.
         let center = hit.position - hit.normal * (0.15 * begin.radius);
         let change = edits::bead(session.project(), &begin, center, colour, point)?;
-        Some(edits::check(session, change).map(|(change, ..)| change))
+        Some(edits::check(&base(session), change).map(|(change, ..)| change))
     }
 
     /// Makes a limb along a stroke, and keeps the alternative to it.
@@ -612,14 +606,14 @@ impl Pencil {
         stroke: &Stroke,
     ) -> Option<Result<TextEdit, String>> {
         let (change, is_pair) = self.grow(session, sight, touch, stroke, None)?;
-        let change = match edits::check(session, change) {
+        let change = match edits::check(&base(session), change) {
             Ok((change, ..)) => change,
             Err(why) => return Some(Err(why)),
         };
         if self.mirror
             && let Some((other, pair)) = self.grow(session, sight, touch, stroke, Some(!is_pair))
             && pair != is_pair
-            && let Ok((other, ..)) = edits::check(session, other)
+            && let Ok((other, ..)) = edits::check(&base(session), other)
             && other.file == change.file
         {
             self.alternative = Some(Alternative {
@@ -684,7 +678,7 @@ impl Pencil {
                 let text = sketch::without_commands(session.text(file), &[span]);
                 let change = text.map(|text| TextEdit::whole(file, text));
                 step(
-                    change.map(|change| edits::check(session, change).map(|(c, ..)| c)),
+                    change.map(|change| edits::check(&base(session), change).map(|(c, ..)| c)),
                     wishes,
                 );
                 return;
@@ -710,7 +704,7 @@ impl Pencil {
         let change = TextEdit::whole(drawn.file, text);
         let other = self.mirror_place(spot.drawn, spot.place);
         let radius = spot.radius;
-        let result = edits::twice(session, change, |project, all| {
+        let result = edits::twice(&base(session), change, |project, all| {
             let (index, spot) = near(all, other?, 0.6 * radius)?;
             let drawn = &all[index];
             let text = &project.files[drawn.file].text;
@@ -738,7 +732,7 @@ impl Pencil {
         );
         let radius = drawn.skeleton.nodes[node].radius;
         self.chosen = None;
-        let result = edits::twice(session, change, |project, all| {
+        let result = edits::twice(&base(session), change, |project, all| {
             let other = other?;
             let found = all.iter().find_map(|drawn| {
                 drawn.block.as_ref()?;
@@ -785,7 +779,7 @@ impl Pencil {
         };
         let change = TextEdit::whole(drawn.file, text);
         let other = self.mirror_place(spot.drawn, spot.place);
-        let result = edits::twice(session, change, |project, all| {
+        let result = edits::twice(&base(session), change, |project, all| {
             let (index, spot) = near(all, other?, 0.6 * spot.radius)?;
             let drawn = &all[index];
             Some(TextEdit::whole(
@@ -980,6 +974,16 @@ impl Pencil {
     }
 }
 
+/// Returns the texts of a session as gestures change them.
+fn base(session: &Session) -> Base<'_> {
+    Base {
+        project: session.project(),
+        assets: session.assets(),
+        frame: f64::from(session.film_frame()),
+        compiled: session.compilation(),
+    }
+}
+
 /// Returns a place near one in the world, on the first skeleton within `reach` that drawing can
 /// change.
 fn near(all: &[Drawn], place: DVec3, reach: f64) -> Option<(usize, Spot)> {
@@ -1001,7 +1005,7 @@ fn step(result: Option<Result<TextEdit, String>>, wishes: &mut Wishes) {
 fn mark(at: Pos2) -> Mark {
     Mark {
         at: [at.x, at.y],
-        pressure: platform::pen_pressure(),
+        pressure: browser::pen_pressure(),
     }
 }
 

@@ -1,14 +1,14 @@
 //! Painting over the picture while drawing: the flesh of a stroke, bones and knobs, the hint.
 
-use super::drawn::Drawn;
 use super::tool::Tool;
 use crate::places;
-use crate::stage::hands::Sight;
 use egui::epaint::{Mesh, PathShape};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2};
 use glam::DVec3;
 use scene::Rgb;
+use sketch::Drawn;
 use sketch::Sample;
+use sketch::Sight;
 
 /// The colour of bones and knobs.
 const LIT: Color32 = Color32::from_rgb(255, 222, 122);

@@ -4,8 +4,8 @@
 use super::completion::Choice;
 use super::place::{self, Place, id, to_bytes, to_chars};
 use super::{Editor, rename};
-use crate::session::Session;
 use crate::wish::{TextWish, Wish, Wishes};
+use document::session::Session;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Galley, Key, Modifiers, Pos2, Rect, TextEdit, Ui};
 
@@ -39,7 +39,7 @@ impl Editor {
     /// Opens the completions after a typed letter, and closes them when the caret is elsewhere.
     pub(super) fn offer(&mut self, ui: &Ui, session: &Session) {
         let focused = ui.memory(|memory| memory.has_focus(id()));
-        let now = crate::platform::now(ui.ctx());
+        let now = browser::now(ui.ctx());
         let typed = std::mem::take(&mut self.typed);
         match self.place() {
             Some(place) if focused => {

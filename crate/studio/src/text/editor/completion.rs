@@ -5,10 +5,10 @@
 //! never waits for it.
 
 use super::place::{self, Place};
-use crate::session::Session;
 use crate::theme::{self, Palette};
 use crate::thumbnail::Thumbnails;
 use assist::{Completion, CompletionKind, Completions};
+use document::session::Session;
 use egui::{
     Align2, Area, Color32, FontId, Frame, Key, Modifiers, Order, Rect, Role, Sense, Ui, WidgetInfo,
     pos2, vec2,
@@ -112,9 +112,9 @@ impl Popup {
             return;
         }
         self.wanted = None;
-        let start = crate::clock::stopwatch();
+        let start = pool::clock::stopwatch();
         let completions = assist::complete(session.project(), here.file, here.byte);
-        self.cost = crate::clock::stopwatch() - start;
+        self.cost = pool::clock::stopwatch() - start;
         let typed = session
             .text(here.file)
             .get(completions.replace.clone())

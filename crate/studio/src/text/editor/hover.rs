@@ -1,11 +1,11 @@
 //! The card about the word under the pointer, and the messages about its place.
 
 use super::place::Place;
-use crate::session::Session;
 use crate::text::marks::Marks;
 use crate::thumbnail::Thumbnails;
 use crate::{problems, theme};
 use assist::Card;
+use document::session::Session;
 use egui::{Color32, Id, Response, RichText, Ui, vec2};
 
 /// Seconds the pointer rests before the card comes.

@@ -1,9 +1,9 @@
 //! A small field that renames the name at the caret everywhere.
 
 use super::place::{self, Place};
-use crate::session::Session;
 use crate::theme;
 use crate::wish::{TextWish, Wishes};
+use document::session::Session;
 use egui::{Area, Frame, Id, Key, Order, Rect, RichText, TextEdit, Ui, pos2};
 
 /// The field.

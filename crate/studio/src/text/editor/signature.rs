@@ -1,10 +1,10 @@
 //! A quiet line at the caret that says how its command is written and which operand is next.
 
 use super::place::{self, Place};
-use crate::platform;
-use crate::session::Session;
 use crate::theme;
 use assist::Signature;
+use browser;
+use document::session::Session;
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Area, FontId, Frame, Order, Rect, Ui, pos2, vec2};
 
@@ -92,7 +92,7 @@ impl Line {
     }
 
     fn update(&mut self, ui: &Ui, session: &Session, place: Place) {
-        let now = platform::now(ui.ctx());
+        let now = browser::now(ui.ctx());
         let key = (place, session.revision());
         let since = match self.here {
             Some((at, revision, since)) if (at, revision) == key => since,
@@ -115,9 +115,9 @@ impl Line {
             self.known = None;
             return;
         }
-        let start = crate::clock::stopwatch();
+        let start = pool::clock::stopwatch();
         let signature = assist::signature(session.project(), place.file, place.byte);
-        self.cost = crate::clock::stopwatch() - start;
+        self.cost = pool::clock::stopwatch() - start;
         self.known = Some((place, session.revision(), signature));
     }
 }

@@ -3,9 +3,9 @@
 
 use super::place::Place;
 use crate::places;
-use crate::session::Session;
 use crate::wish::{TextWish, Wishes};
 use assist::Tint;
+use document::session::Session;
 use egui::{Popup, Rect, Ui, UiBuilder, vec2};
 use rats::{HotValue, TextEdit, hot};
 

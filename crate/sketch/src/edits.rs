@@ -1,16 +1,15 @@
 //! Gestures made into texts: the beginning of a stroke, its way through space, and the edits that
 //! it makes.
 
-use super::drawn::{Drawn, Spot, node_at, spot_at};
-use super::page;
-use crate::session::Session;
-use crate::stage::hands::Sight;
-use egui::{Pos2, Vec2, pos2};
+use crate::Sight;
+use crate::drawn::{Drawn, Spot, node_at, spot_at};
+use crate::page;
+use crate::{Limb, Sample, Start, Stroke};
+use emath::{Pos2, Vec2, pos2};
 use glam::{DAffine3, DVec3};
-use rats::{Project, TextEdit};
+use rats::{Asset, Compiled, Project, TextEdit};
 use scene::Rgb;
 use skeleton::Node;
-use sketch::{Limb, Sample, Start, Stroke};
 
 /// Thickness of a long stroke at its free end, as a share of that at its root. A short one is a
 /// head or a paw, and equally thick all along.
@@ -439,7 +438,7 @@ pub fn draw(
         .collect();
     let unit = point / growth;
     let shake = if brush.touch { 5.0 } else { 3.0 };
-    let nodes = sketch::fit(&own, shake * unit)?;
+    let nodes = crate::fit(&own, shake * unit)?;
     let flipped: Vec<Node> = nodes
         .iter()
         .map(|node| Node {
@@ -486,14 +485,14 @@ pub fn draw(
     if let Some(index) = into {
         let drawn = &all[index];
         let text = &project.files.get(drawn.file)?.text;
-        let text = sketch::extend(text, drawn.span.clone(), &limbs, grain)?;
+        let text = crate::extend(text, drawn.span.clone(), &limbs, grain)?;
         return Some(TextEdit::whole(drawn.file, text));
     }
     let texts = || project.files.iter().map(|file| file.text.as_str());
     let colour = brush.colour.unwrap_or(page::COLOURS[0].1);
     let (text, material) = page::with_surface(&project.files.first()?.text, texts, colour, true);
-    let name = sketch::free_name(texts(), "DRAWING");
-    let text = sketch::create(&text, &material, &name, &limbs, grain)?;
+    let name = crate::free_name(texts(), "DRAWING");
+    let text = crate::create(&text, &material, &name, &limbs, grain)?;
     Some(TextEdit::whole(0, text))
 }
 
@@ -604,21 +603,33 @@ pub fn put_on_ground(text: &str, all: &[Drawn]) -> String {
     format!("{}{height}{}", &text[..range.start], &text[range.end..])
 }
 
+/// The texts that a gesture changes, and what they make.
+pub struct Base<'a> {
+    /// The texts.
+    pub project: &'a Project,
+    /// The images and meshes beside them.
+    pub assets: &'a [Asset],
+    /// Frame of the film.
+    pub frame: f64,
+    /// The result of compiling them.
+    pub compiled: &'a Compiled,
+}
+
 /// Checks that a change makes no new mistakes. Returns the change with the ground moved, the texts
 /// and the result of compiling them.
 ///
 /// # Errors
 /// If it makes a mistake, with the compiler's message.
 pub fn check(
-    session: &Session,
+    base: &Base<'_>,
     change: TextEdit,
 ) -> Result<(TextEdit, Project, rats::Compiled), String> {
     let file = change.file;
-    let project = session.project().apply(&[change]);
-    let compiled = rats::compile_at(&project, session.assets(), f64::from(session.film_frame()));
+    let project = base.project.apply(&[change]);
+    let compiled = rats::compile_at(&project, base.assets, base.frame);
     let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
     let mut errors = compiled.diagnostics.iter().filter(is_error);
-    let before = session.diagnostics();
+    let before = &base.compiled.diagnostics;
     if errors.clone().count() > before.iter().filter(is_error).count() {
         let new = errors.find(|d| before.iter().all(|old| old.message != d.message));
         let why = new.map_or("the text would have a mistake", |d| &d.message);
@@ -635,14 +646,14 @@ pub fn check(
 /// # Errors
 /// If the first change makes a mistake, as [`check`] does.
 pub fn twice(
-    session: &Session,
+    base: &Base<'_>,
     change: TextEdit,
     again: impl FnOnce(&Project, &[Drawn]) -> Option<TextEdit>,
 ) -> Result<TextEdit, String> {
-    let (first, project, compiled) = check(session, change)?;
+    let (first, project, compiled) = check(base, change)?;
     let all = Drawn::all(&project, &compiled);
     match again(&project, &all).filter(|second| second.file == first.file) {
-        Some(second) => check(session, second.clone())
+        Some(second) => check(base, second.clone())
             .map(|(change, ..)| change)
             .or(Ok(first)),
         None => Ok(first),

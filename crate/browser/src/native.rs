@@ -1,10 +1,9 @@
 //! Stand-ins for tests: an address and a storage in memory, one for each thread.
 
-use crate::film::recording::{EncodedVideo, Kind, VideoFormat};
-use crate::intake::Incoming;
-use crate::scripts::request::{Request, Requests};
-use crate::storage::Store;
+use crate::recording::{EncodedVideo, Kind, VideoFormat};
 use ::picture::{Format, Picture, file};
+use document::intake::Incoming;
+use document::storage::Store;
 use egui_wgpu::wgpu;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -78,17 +77,20 @@ pub fn download(name: &str, _mime: &str, bytes: &[u8]) {
     DOWNLOAD.set(Some((name.to_owned(), bytes.to_vec())));
 }
 
-/// Reads files that were dropped on the window and asks for them to be taken in.
-pub fn read_dropped(files: Vec<egui::DroppedFileHandle>, requests: &Requests) {
+/// Reads files that were dropped on the window, and gives them to a function.
+pub fn read_dropped(
+    files: Vec<egui::DroppedFileHandle>,
+    take: impl FnOnce(Vec<Incoming>) + 'static,
+) {
     let files = files.iter().map(|file| Incoming {
         name: file.path().display().to_string(),
         bytes: file.bytes(),
     });
-    requests.ask(Request::Files(files.collect()));
+    take(files.collect());
 }
 
-/// Lets the user choose files. Tests ask for them to be taken in themselves.
-pub fn pick_files(_requests: &Requests) {
+/// Lets the user choose files. Tests take them in themselves.
+pub fn pick_files(_take: impl FnOnce(Vec<Incoming>) + 'static) {
     PICKED.set(true);
 }
 

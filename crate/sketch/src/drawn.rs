@@ -1,12 +1,12 @@
 //! The skeletons of the compiled text, as places in the picture where the user draws.
 
-use crate::stage::hands::Sight;
-use egui::{Pos2, Vec2};
+use crate::Block;
+use crate::Sight;
+use emath::{Pos2, Vec2};
 use glam::{DAffine3, DVec3};
 use rats::{Compiled, Project};
 use scene::{Form, Shape};
 use skeleton::{Node, Scheme, Skeleton};
-use sketch::Block;
 use std::ops::Range;
 
 /// Most skeletons that are drawn on: a loop may make thousands.

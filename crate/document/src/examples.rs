@@ -202,7 +202,7 @@ cylinder clay r, 0 -1.5 0, 0 1.5 0
 
 /// Returns the size and the RGBA pixels of a PNG file; `None` if it is damaged or has a palette.
 #[must_use]
-pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
+pub fn decode(png: &[u8]) -> Option<pool::Image> {
     let mut decoder = png::Decoder::new(std::io::Cursor::new(png));
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().ok()?;
@@ -225,7 +225,7 @@ pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
             .collect(),
         png::ColorType::Indexed => return None,
     };
-    Some(crate::picture::Image {
+    Some(pool::Image {
         size: [info.width, info.height],
         rgba,
     })
@@ -235,6 +235,12 @@ pub fn decode(png: &[u8]) -> Option<crate::picture::Image> {
 mod tests {
     use super::*;
 
+    /// Reads a file of the page.
+    fn read(path: &str) -> Option<Vec<u8>> {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www");
+        std::fs::read(folder.join(path)).ok()
+    }
+
     #[test]
     fn every_example_compiles_cleanly_and_has_a_thumbnail() {
         for example in &ALL {
@@ -243,10 +249,10 @@ mod tests {
                 .iter()
                 .map(|path| rats::Asset {
                     name: path.rsplit('/').next().unwrap_or(path).to_owned(),
-                    bytes: crate::platform::read(path).expect(path).into(),
+                    bytes: read(path).expect(path).into(),
                 })
                 .collect();
-            let text = crate::platform::read(example.path).expect(example.path);
+            let text = read(example.path).expect(example.path);
             let text = String::from_utf8(text).expect(example.path);
             assert!(example.text.is_none_or(|own| own == text));
             let compiled = rats::compile_at(&example.project(&text), &assets, 0.0);
@@ -262,7 +268,7 @@ mod tests {
             };
             assert_eq!(messages, expected, "{}", example.title);
             assert!(!compiled.scene.elements.is_empty(), "{}", example.title);
-            let bytes = crate::platform::read(example.thumbnail).expect(example.title);
+            let bytes = read(example.thumbnail).expect(example.title);
             let thumbnail = decode(&bytes).expect(example.title);
             let largest = thumbnail.size[0].max(thumbnail.size[1]);
             assert!(largest >= 200, "{}", example.title);

@@ -6,12 +6,10 @@
 
 use crate::asset::Asset;
 use crate::examples;
-use crate::platform;
 use crate::project_file;
 use crate::session::{Kept, Session, check_assets, check_size};
 use crate::share;
 use crate::storage::{DELAY, Shelf};
-use lab::Lesson;
 use rats::{File, Project};
 use scene::Camera;
 use std::cell::RefCell;
@@ -39,6 +37,8 @@ pub struct Work {
     /// The origin.
     pub origin: Origin,
     shelf: Rc<RefCell<Shelf>>,
+    /// Returns the milliseconds since 1970.
+    clock: fn() -> f64,
     /// The user's own work that was open before the link was.
     before: Option<String>,
     /// Number of works that were opened.
@@ -51,15 +51,21 @@ pub struct Work {
 
 impl Work {
     /// Opens the work that the page begins with: that of a link, else the user's last work, else
-    /// the first example. With `compile` false nothing is compiled before the user asks. Returns
+    /// the first example. `clock` returns the milliseconds since 1970. With `compile` false nothing is compiled before the user asks. Returns
     /// the work and a message if the link cannot be opened.
     #[must_use]
-    pub fn start(shelf: Rc<RefCell<Shelf>>, hash: &str, compile: bool) -> (Self, Option<String>) {
+    pub fn start(
+        shelf: Rc<RefCell<Shelf>>,
+        clock: fn() -> f64,
+        hash: &str,
+        compile: bool,
+    ) -> (Self, Option<String>) {
         let mut work = Self {
             session: Session::new(Kept::default(), false),
             name: String::new(),
             origin: Origin::Own,
             shelf,
+            clock,
             before: None,
             opened: 0,
             changed: None,
@@ -237,10 +243,9 @@ impl Work {
         self.opened
     }
 
-    /// Notes changes, and writes them [`DELAY`] seconds after the first. Returns a message if they
-    /// cannot be written.
+    /// Writes changes [`DELAY`] seconds after the first. Returns a message if they cannot be
+    /// written.
     pub fn tick(&mut self, now: f64) -> Option<String> {
-        self.settle(now);
         if self.changed.is_some_and(|changed| now - changed >= DELAY)
             && let Err(trouble) = self.flush()
         {
@@ -250,22 +255,20 @@ impl Work {
     }
 
     /// Puts a changed work on the shelf, from where it is written even if the program stops, and
-    /// then compiles it.
-    pub fn settle(&mut self, now: f64) {
+    /// then compiles it. Returns whether it was changed, so that a link to it is not true any more.
+    pub fn settle(&mut self, now: f64) -> bool {
         let state = (self.session.revision(), self.session.user_camera());
-        if state != self.noted {
+        let has_changed = state != self.noted;
+        if has_changed {
             let edited = state.0 != self.noted.0;
             self.noted = state;
-            // The work in a link is not the one on the screen any more.
-            if Lesson::of_hash(&platform::hash()).is_none() {
-                platform::set_hash("");
-            }
             // Looking around in an example does not make it a work.
             if edited || self.origin == Origin::Own {
                 self.keep(now);
             }
         }
         self.session.compile();
+        has_changed
     }
 
     /// Returns the seconds until [`Work::tick`] writes; `None` if there is no change.
@@ -287,7 +290,7 @@ impl Work {
     /// # Errors
     /// If the browser refuses.
     pub fn flush(&mut self) -> Result<(), String> {
-        let result = self.shelf.borrow_mut().flush(platform::unix_time());
+        let result = self.shelf.borrow_mut().flush((self.clock)());
         // A refused write is tried again with the next edit.
         self.changed = None;
         result

@@ -21,7 +21,8 @@ use wasm_bindgen_futures::{JsFuture, future_to_promise, spawn_local};
 use web_sys::{Document, HtmlCanvasElement, WebGl2RenderingContext, Window};
 
 use crate::backend::{self, Backend};
-use crate::{frames, software};
+use crate::frames;
+use crate::software;
 
 /// Backends in the order in which they are tried.
 const ORDER: [Backend; 3] = [Backend::WebGpu, Backend::WebGl2, Backend::None];

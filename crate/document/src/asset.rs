@@ -247,7 +247,7 @@ mod tests {
         }
         let png = |size: [u32; 2]| {
             let rgba = vec![9; 4 * size[0] as usize * size[1] as usize];
-            crate::picture::png(&crate::picture::Image { size, rgba }).unwrap()
+            crate::picture::png(&pool::Image { size, rgba }).unwrap()
         };
         assert_eq!(describe("a.png", &png([2, 3])).unwrap(), "2 × 3 pixels");
         let wide = describe("a.png", &png([MAX_SIDE + 1, 1]));

@@ -4,13 +4,13 @@
 //! runs, all as one undo step. Measured files are kept here, not in the work, until the page is
 //! closed.
 
-use crate::scripts::report;
 use crate::session::Session;
 use fit::{Kind, Observations, Options};
 use glam::DVec3;
 use pool::{Ticket, Tools};
 use rats::{Deform, TextEdit};
 use scene::{Form, Origin, Shape};
+use serde::Serialize;
 use std::ops::Range;
 use tools::{Controls, FitMesh, FitStep, ReadMeasured};
 
@@ -145,6 +145,21 @@ pub struct Fitting {
     run: Option<Run>,
 }
 
+/// The state for scripts.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// Whether it runs.
+    pub running: bool,
+    /// Iterations that were written into the text.
+    pub iteration: u32,
+    /// Residual after the last iteration.
+    pub residual: f64,
+    /// Measured points that are read.
+    pub points: usize,
+    /// The message in the panel.
+    pub said: Option<String>,
+}
+
 impl Fitting {
     /// Makes a panel that is hidden and fits nothing.
     #[must_use]
@@ -165,12 +180,18 @@ impl Fitting {
     }
 
     /// Ends the fit, when another work was opened; the measured files stay.
-    pub fn end(&mut self) {
+    pub fn forget(&mut self) {
         self.run = None;
         self.target = None;
         self.targets_of = None;
         self.residuals.clear();
         (self.last, self.message) = (None, None);
+    }
+
+    /// Whether there is something to fit, so that the panel is offered.
+    #[must_use]
+    pub fn is_offered(&self) -> bool {
+        self.open || !self.targets.is_empty()
     }
 
     /// Whether a fit runs.
@@ -412,7 +433,7 @@ impl Fitting {
     }
 
     /// Takes in steps from the worker and measured files. Returns whether the text has changed.
-    pub fn take_in(&mut self, session: &mut Session, now: f64) -> bool {
+    pub fn tick(&mut self, session: &mut Session, now: f64) -> bool {
         // A scene may have a million elements, so they are not looked through at every frame.
         let text = (session.revision(), session.is_compiled());
         if self.targets_of != Some(text) && session.is_compiled() {
@@ -503,9 +524,9 @@ impl Fitting {
 
     /// Returns the state for scripts while the panel is open.
     #[must_use]
-    pub fn report(&self) -> Option<report::Fit> {
+    pub fn report(&self) -> Option<Report> {
         let found = self.files.iter().filter_map(|file| file.found.as_ref());
-        self.open.then(|| report::Fit {
+        self.open.then(|| Report {
             running: self.is_running(),
             iteration: self.last.as_ref().map_or(0, |last| last.iteration),
             residual: self.last.as_ref().map_or(0.0, |last| last.residual),
@@ -516,7 +537,7 @@ impl Fitting {
 
     /// Returns the seconds until the last step may be written; `None` if no step waits.
     #[must_use]
-    pub fn seconds_left(&self, now: f64) -> Option<f64> {
+    pub fn wait(&self, now: f64) -> Option<f64> {
         let run = self.run.as_ref()?;
         run.waiting.as_ref()?;
         Some((run.written + run.interval - now).max(0.0))
@@ -685,7 +706,7 @@ mod tests {
         let start = Instant::now();
         while !done(fitting) {
             assert!(start.elapsed() < Duration::from_secs(60));
-            fitting.take_in(session, start.elapsed().as_secs_f64());
+            fitting.tick(session, start.elapsed().as_secs_f64());
             std::thread::sleep(Duration::from_millis(2));
         }
     }

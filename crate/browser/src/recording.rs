@@ -3,11 +3,11 @@
 //! Frames are encoded as they come from the tracer. Those that a film shows a second time, on its
 //! way back, are kept as PNG files until then.
 
-use crate::film::player::{MAX_FRAMES, Playback, Player};
-use crate::picture::Image;
-use crate::platform::VideoEncoder;
+use crate::VideoEncoder;
 use ::picture::animation::{Timing, Writer};
 use ::picture::{Format, Picture, file};
+use document::picture::Image;
+use document::player::{MAX_FRAMES, Playback, Player};
 use std::cell::RefCell;
 use std::io::Write;
 use std::rc::Rc;
@@ -211,7 +211,7 @@ impl Recording {
         let mut words = format!("Frame {} of {}", frame + 1, self.count);
         if frame > 0 {
             let left = (now - self.start) / f64::from(frame) * f64::from(self.count - frame);
-            words.push_str(&format!(" · {} left", crate::numerals::duration(left)));
+            words.push_str(&format!(" · {} left", document::numerals::duration(left)));
         }
         words
     }
@@ -344,7 +344,7 @@ mod tests {
     }
 
     fn record(kind: Kind, count: u32, playback: Playback) -> Vec<u8> {
-        let formats = crate::platform::native_formats();
+        let formats = crate::native_formats();
         let player = player(count, playback);
         let mut film = Recording::begin(kind, &player, [6, 4], &formats, 0.0).unwrap();
         while let Some(frame) = film.next_frame() {

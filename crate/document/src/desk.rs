@@ -2,9 +2,9 @@
 //! results of the jobs before. Results are kept in memory, only as long as they are on the tray.
 
 use crate::asset::{self, Asset};
-use crate::picture::Image;
 use ::picture::{Format, Picture, Problem, file};
 use darkroom::{Shelf, Target, name};
+use pool::Image;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::{self, Write};

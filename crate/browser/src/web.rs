@@ -1,8 +1,7 @@
 //! Services of the browser.
 
-use crate::intake::{self, Incoming};
-use crate::scripts::request::{Request, Requests};
-use crate::storage::Store;
+use document::intake::{self, Incoming};
+use document::storage::Store;
 use egui_wgpu::wgpu;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,7 +16,7 @@ fn window() -> web_sys::Window {
 /// hidden.
 #[must_use]
 pub fn now(_ctx: &egui::Context) -> f64 {
-    crate::clock::stopwatch()
+    pool::clock::stopwatch()
 }
 
 thread_local! {
@@ -162,19 +161,21 @@ pub fn download(name: &str, mime: &str, bytes: &[u8]) {
     }
 }
 
-/// Reads files that were dropped on the window and asks for them to be taken in.
-pub fn read_dropped(files: Vec<egui::DroppedFileHandle>, requests: &Requests) {
+/// Reads files that were dropped on the window, and gives them to a function.
+pub fn read_dropped(
+    files: Vec<egui::DroppedFileHandle>,
+    take: impl FnOnce(Vec<Incoming>) + 'static,
+) {
     let files = files
         .iter()
         .filter_map(|file| file.web_file().cloned())
         .collect();
-    read_files(files, requests.clone());
+    read_files(files, take);
 }
 
-/// Lets the user choose files and asks for them to be taken in.
-pub fn pick_files(requests: &Requests) {
-    let requests = requests.clone();
-    let pick = || -> Result<(), JsValue> {
+/// Lets the user choose files, and gives them to a function.
+pub fn pick_files(take: impl FnOnce(Vec<Incoming>) + 'static) {
+    let pick = move || -> Result<(), JsValue> {
         let document = window().document().ok_or(JsValue::NULL)?;
         let input: web_sys::HtmlInputElement = document.create_element("input")?.dyn_into()?;
         // Without a list of kinds: phones would hide files whose kind they do not know.
@@ -187,7 +188,7 @@ pub fn pick_files(requests: &Requests) {
                 let all = 0..list.length();
                 all.filter_map(|index| list.get(index))
             });
-            read_files(files.collect(), requests);
+            read_files(files.collect(), take);
         });
         input.set_onchange(Some(on_choice.unchecked_ref()));
         input.click();
@@ -199,7 +200,7 @@ pub fn pick_files(requests: &Requests) {
 }
 
 /// Reads files one after another; those that are too large are not read at all.
-fn read_files(files: Vec<web_sys::File>, requests: Requests) {
+fn read_files(files: Vec<web_sys::File>, take: impl FnOnce(Vec<Incoming>) + 'static) {
     wasm_bindgen_futures::spawn_local(async move {
         let mut taken = Vec::new();
         for file in files {
@@ -217,7 +218,7 @@ fn read_files(files: Vec<web_sys::File>, requests: Requests) {
             taken.push(Incoming { name, bytes });
         }
         if !taken.is_empty() {
-            requests.ask(Request::Files(taken));
+            take(taken);
         }
     });
 }

@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn a_work_comes_back() {
-        let image = crate::picture::Image {
+        let image = pool::Image {
             size: [1, 2],
             rgba: vec![9; 8],
         };

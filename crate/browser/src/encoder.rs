@@ -1,6 +1,6 @@
 //! The browser's encoders of videos (WebCodecs), where it has them.
 
-use crate::film::recording::{EncodedVideo, Kind, VideoFormat};
+use crate::recording::{EncodedVideo, Kind, VideoFormat};
 use ::picture::Picture;
 use js_sys::{Object, Promise, Reflect, Uint8Array};
 use std::cell::RefCell;

@@ -102,7 +102,7 @@ pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
     let known = COLOURS.iter().find(|(_, rgb)| *rgb == colour);
     let stem = known.map_or("Colour", |(name, _)| name);
     let stem = format!("{stem}{}", if soft { "Skin" } else { "Bead" });
-    let name = sketch::free_name(texts(), &stem);
+    let name = crate::free_name(texts(), &stem);
     let line = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let mut text = text.to_owned();
     if !text.is_empty() && !text.ends_with('\n') {
@@ -110,10 +110,4 @@ pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
     }
     text += &format!("surface {name}, {fields}{line}");
     (text, name)
-}
-
-/// Whether a text is an empty page: no text, or that of a new work.
-#[must_use]
-pub fn is_empty(text: &str) -> bool {
-    text.trim().is_empty() || text.trim() == crate::examples::BLANK.trim()
 }

@@ -1,19 +1,19 @@
 //! The model as a mesh, for printers and other programs: the jobs of the tools worker, and scripts
-//! that ask for a file. The dialog is in [`super`].
+//! that ask for a file. The page's dialog shows it.
 //!
 //! The mesh is made apart from the page's thread; until it is there the dialog shows a coat of the
 //! skeletons. Another format or size only writes the mesh again. The motion of a skeleton is
 //! compiled frame by frame, some at each tick, so that the page stays responsive.
 
-use crate::film::player::MAX_FRAMES;
-use crate::scripts::report;
+use crate::asset::Asset;
+use crate::player::MAX_FRAMES;
 use crate::session::Session;
-use crate::{asset::Asset, clock};
 use mesh::{Format, TriangleMesh};
 use mesher::{Tolerance, Wishes};
-use pool::{Ticket, Tools};
+use pool::{Ticket, Tools, clock};
 use rats::Project;
 use scene::Scene;
+use serde::Serialize;
 use std::sync::Arc;
 use tools::{CoatScene, Coated, MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
 use viewport::Surface;
@@ -23,7 +23,7 @@ const COAT: f64 = 0.05;
 /// Most elements of a scene that gets such a coat.
 const MOST_COATED: usize = 20_000;
 /// Most triangles whose edges are shown: beyond there are more edges than pixels.
-pub(crate) const MOST_EDGES: usize = 300_000;
+pub const MOST_EDGES: usize = 300_000;
 /// Seconds of a tick that frames of a motion may take.
 const SLICE: f64 = 0.008;
 
@@ -151,18 +151,19 @@ enum Next {
 }
 
 /// A mesh that is there.
-pub(crate) struct Made {
+pub struct Made {
     /// A number that tells it from other meshes.
-    pub(crate) number: u64,
+    pub number: u64,
     shape: Shape,
     parts: Vec<(String, TriangleMesh)>,
     facts: MeshFacts,
-    pub(crate) surface: Surface,
+    /// The mesh as one surface to be drawn.
+    pub surface: Surface,
 }
 
 impl Made {
     /// Returns [`Session::generation`] of its scene.
-    pub(crate) fn generation(&self) -> u64 {
+    pub fn generation(&self) -> u64 {
         self.shape.generation
     }
 }
@@ -170,7 +171,8 @@ impl Made {
 /// The model as a mesh.
 pub struct MeshExport {
     tools: Tools,
-    pub(crate) order: Order,
+    /// The file that the dialog asks for.
+    pub order: Order,
     /// A coat of the skeletons, which the dialog shows until the mesh is there.
     coating: Option<Running<Shape, Coated>>,
     /// The dialog's triangles.
@@ -180,7 +182,8 @@ pub struct MeshExport {
     /// Meshes whose files scripts wait for.
     scripts: Vec<Running<Taker, Meshed>>,
     filming: Vec<Filming>,
-    pub(crate) made: Option<Made>,
+    /// The mesh that is there.
+    pub made: Option<Made>,
     written: Option<(Wanted, Written)>,
     /// Settings that give no file, and the reason.
     trouble: Option<(Wanted, String)>,
@@ -191,7 +194,7 @@ pub struct MeshExport {
 }
 
 /// The progress of the dialog's mesh.
-pub(crate) enum State<'a> {
+pub enum State<'a> {
     /// The mesh is being made; the fraction done.
     Making(f32),
     /// The mesh cannot be made, for this reason.
@@ -200,6 +203,22 @@ pub(crate) enum State<'a> {
     Done(&'a MeshFacts, &'a Written),
     /// Nothing was asked for yet.
     Idle,
+}
+
+/// The state for scripts.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Report {
+    /// Whether the mesh that was asked for is being made.
+    pub running: bool,
+    /// Triangles on show.
+    pub shown: usize,
+    /// Triangles of the mesh that was asked for.
+    pub triangles: Option<usize>,
+    /// Length of the files together.
+    pub bytes: Option<usize>,
+    /// The reason why there is none.
+    pub said: Option<String>,
 }
 
 impl MeshExport {
@@ -404,25 +423,25 @@ impl MeshExport {
     }
 
     /// Ends the jobs of the dialog at the user's wish, until the settings change.
-    pub(crate) fn give_up(&mut self, session: &Session, film: Film) {
+    pub fn give_up(&mut self, session: &Session, film: Film) {
         self.stop();
         let text = String::from("Stopped. Choose less detail, or go on.");
         self.trouble = Some((self.target(session, film), text));
     }
 
     /// Whether the mesh on show is only a coat of the skeletons.
-    pub(crate) fn shows_coat(&self) -> bool {
+    pub fn shows_coat(&self) -> bool {
         let made = self.made.as_ref();
         made.is_some_and(|made| made.shape.tolerance.is_infinite())
     }
 
     /// Whether the last try gave nothing.
-    pub(crate) fn has_failed(&self) -> bool {
+    pub fn has_failed(&self) -> bool {
         self.trouble.is_some()
     }
 
     /// Forgets what went wrong, so that it is tried again.
-    pub(crate) fn again(&mut self) {
+    pub fn again(&mut self) {
         self.trouble = None;
     }
 
@@ -446,7 +465,7 @@ impl MeshExport {
     }
 
     /// Begins the next job for the dialog's settings, unless their file is there or on its way.
-    pub(crate) fn follow(&mut self, session: &Session, film: Film, name: &str) {
+    pub fn follow(&mut self, session: &Session, film: Film, name: &str) {
         let wanted = self.target(session, film);
         let Wanted { shape, order, .. } = wanted;
         if let Some((of, _)) = &self.trouble
@@ -515,7 +534,7 @@ impl MeshExport {
     }
 
     /// Returns the progress of the mesh of the dialog's settings.
-    pub(crate) fn state(&self, session: &Session, film: Film) -> State<'_> {
+    pub fn state(&self, session: &Session, film: Film) -> State<'_> {
         let wanted = self.target(session, film);
         let Wanted { shape, order, .. } = wanted;
         if let Some((of, reason)) = &self.trouble
@@ -542,7 +561,7 @@ impl MeshExport {
     }
 
     /// Returns the factor from lengths in the facts of a mesh to those in the present settings.
-    pub(crate) fn growth(&self, facts: &MeshFacts) -> f64 {
+    pub fn growth(&self, facts: &MeshFacts) -> f64 {
         let longest = facts.sides.into_iter().fold(0.0, f64::max);
         self.order.size / longest
     }
@@ -557,13 +576,13 @@ impl MeshExport {
 
     /// Returns the state for scripts; `None` before a mesh was asked for.
     #[must_use]
-    pub fn report(&self, session: &Session, film: Film) -> Option<report::Mesh> {
+    pub fn report(&self, session: &Session, film: Film) -> Option<Report> {
         let shown = self.made.as_ref();
         let state = self.state(session, film);
         if shown.is_none() && matches!(state, State::Idle) {
             return None;
         }
-        Some(report::Mesh {
+        Some(Report {
             running: matches!(state, State::Making(_)),
             shown: shown.map_or(0, |made| made.surface.triangles.len()),
             triangles: match state {

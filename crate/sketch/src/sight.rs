@@ -1,6 +1,6 @@
 //! Projection of places in the world to points on the screen, and back.
 
-use egui::{Pos2, Rect, Vec2, pos2};
+use emath::{Pos2, Rect, Vec2, pos2};
 use glam::DVec3;
 use scene::{Camera, Projection};
 
@@ -114,7 +114,7 @@ impl Sight {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui::vec2;
+    use emath::vec2;
 
     fn sight() -> Sight {
         let camera = Camera {

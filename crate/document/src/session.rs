@@ -168,6 +168,18 @@ impl Session {
         session
     }
 
+    /// Makes a session of one text, and compiles it.
+    #[must_use]
+    pub fn of_text(text: &str) -> Self {
+        let kept = Kept {
+            project: Project::single(text),
+            ..Kept::default()
+        };
+        let mut session = Self::new(kept, true);
+        session.compile();
+        session
+    }
+
     /// Replaces everything by another work.
     pub fn open(&mut self, kept: Kept) {
         self.project = kept.project;
@@ -494,16 +506,6 @@ impl Session {
         }))
     }
 
-    /// Returns the dataset as the lab sees it. Its scene has the text's camera.
-    #[must_use]
-    pub fn dataset(&self) -> lab::Dataset<'_> {
-        lab::Dataset {
-            generation: self.generation,
-            scene: self.good.as_deref(),
-            camera: self.camera(),
-        }
-    }
-
     /// Returns the frame of the scene to draw, pixels.
     #[must_use]
     pub fn frame(&self) -> [u32; 2] {
@@ -637,9 +639,9 @@ impl Session {
             return;
         }
         self.stale = false;
-        let start = crate::clock::stopwatch();
+        let start = pool::clock::stopwatch();
         self.compiled = rats::compile_at(&self.project, &self.assets, f64::from(self.film_frame));
-        self.compile_seconds = crate::clock::stopwatch() - start;
+        self.compile_seconds = pool::clock::stopwatch() - start;
         if self.errors() == 0 || self.good.is_none() {
             let scene = &self.compiled.scene;
             let good = self.good.replace(scene.clone());
@@ -681,20 +683,6 @@ fn first_difference(old: &Project, new: &Project) -> (usize, usize) {
         }
     }
     (0, 0)
-}
-
-#[cfg(test)]
-impl Session {
-    /// Makes a session of one text, and compiles it.
-    pub fn of_text(text: &str) -> Self {
-        let kept = Kept {
-            project: Project::single(text),
-            ..Kept::default()
-        };
-        let mut session = Self::new(kept, true);
-        session.compile();
-        session
-    }
 }
 
 #[cfg(test)]
