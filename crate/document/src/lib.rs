@@ -2,8 +2,9 @@
 //! they make, its way to storage, links and files, and the jobs that are done on it.
 //!
 //! - [`session`]: texts, undo steps ([`history`]), compiling, the present scene and camera
-//! - [`work`]: the open work and its origin; [`storage`] keeps works, [`share`] makes links of them,
-//!   [`project_file`] files, [`intake`] sorts files from outside, [`examples`] lists ours
+//! - [`work`]: the open work and its origin; [`storage`] keeps works,
+//!   [`share`] makes links of them, [`project_file`] files,
+//!   [`intake`] sorts files from outside, [`examples`] lists ours
 //! - [`player`]: the frames of a film; [`desk`]: the files that jobs on pictures find
 //! - [`reading`], [`fitting`], [`mesh_export`]: jobs of the tools workers
 

@@ -42,7 +42,7 @@ pub struct Work {
     /// The user's own work that was open before the link was.
     before: Option<String>,
     /// Number of works that were opened.
-    opened: u64,
+    number: u64,
     /// Time of the first change that is not written yet, seconds.
     changed: Option<f64>,
     /// The session's revision and camera that were last put on the shelf.
@@ -51,8 +51,9 @@ pub struct Work {
 
 impl Work {
     /// Opens the work that the page begins with: that of a link, else the user's last work, else
-    /// the first example. `clock` returns the milliseconds since 1970. With `compile` false nothing is compiled before the user asks. Returns
-    /// the work and a message if the link cannot be opened.
+    /// the first example. `clock` returns the milliseconds since 1970. With `compile` false nothing
+    /// is compiled before the user asks. Returns the work and a message if the link cannot be
+    /// opened.
     #[must_use]
     pub fn start(
         shelf: Rc<RefCell<Shelf>>,
@@ -67,7 +68,7 @@ impl Work {
             shelf,
             clock,
             before: None,
-            opened: 0,
+            number: 0,
             changed: None,
             noted: (0, None),
         };
@@ -187,7 +188,7 @@ impl Work {
         self.name = name;
         self.origin = Origin::Own;
         self.before = None;
-        self.opened += 1;
+        self.number += 1;
         self.session.open(kept);
         self.note();
         Ok(())
@@ -239,8 +240,8 @@ impl Work {
 
     /// Returns a number that rises when another work is opened.
     #[must_use]
-    pub fn opened(&self) -> u64 {
-        self.opened
+    pub fn number(&self) -> u64 {
+        self.number
     }
 
     /// Writes changes [`DELAY`] seconds after the first. Returns a message if they cannot be
@@ -345,7 +346,7 @@ impl Work {
         self.name = name;
         self.origin = origin;
         self.before = None;
-        self.opened += 1;
+        self.number += 1;
         self.changed = None;
         self.session.open(kept);
         self.note();

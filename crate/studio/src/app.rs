@@ -29,8 +29,7 @@ use browser::Backend;
 use document::examples;
 use document::fitting::Fitting;
 use document::reading::MeshReading;
-use document::work;
-use document::work::{Origin, Work};
+use document::work::{self, Origin, Work};
 use egui::{Context, Ui};
 use lab::{Lab, Lesson};
 use pool::{Pool, Tools};
@@ -52,8 +51,8 @@ pub struct App {
     started: Option<f64>,
     /// Whether the start counts as a good one.
     is_healthy: bool,
-    /// [`Work::opened`] of the work that the panels are about.
-    opened: u64,
+    /// [`Work::number`] of the work that the panels are about.
+    work: u64,
     saved_settings: Settings,
     /// The name in the title of the browser's tab.
     tab_title: String,
@@ -121,7 +120,7 @@ impl App {
             scripts: Scripts::default(),
             started: None,
             is_healthy: false,
-            opened: work.opened(),
+            work: work.number(),
             saved_settings: settings.clone(),
             tab_title: String::new(),
             page: Page {
@@ -385,8 +384,8 @@ impl App {
     /// Brings the panels up to date with the open work and the lab.
     fn follow(&mut self, ctx: &Context) {
         let page = &mut self.page;
-        if self.opened != page.work.opened() {
-            self.opened = page.work.opened();
+        if self.work != page.work.number() {
+            self.work = page.work.number();
             for panel in self.panels.all() {
                 panel.forget(page, ctx);
             }

@@ -10,8 +10,7 @@ use crate::text::files;
 use crate::theme::{self, STRIP};
 use crate::wish::{Setting, ViewWish, Wish, Wishes};
 use crate::{bar, download, fit, notice, places, problems, screen, sculpt, sliders, status, tray};
-use document::intake;
-use document::size;
+use document::{intake, size};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
     RichText, ScrollArea, Stroke, Ui, pos2, vec2,

@@ -3,8 +3,8 @@
 //!
 //! The user's work is in crate `document`, which knows no window, the browser in crate `browser`.
 //! Here are the panels: each has its state, its widgets, its wishes and what they do in a file or a
-//! folder ([`panel`]). [`page::Page`] is what they share; [`app::App`] ticks and shows them, and has
-//! their [`wish`]es carried out.
+//! folder ([`panel`]). [`page::Page`] is what they share;
+//! [`app::App`] ticks and shows them, and has their [`wish`]es carried out.
 
 pub mod app;
 mod bar;

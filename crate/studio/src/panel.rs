@@ -33,7 +33,7 @@ pub trait Panel {
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {}
 }
 
-/// All panels that have a state.
+/// The panels that have a state.
 pub struct Panels {
     /// The texts, images and meshes of the work.
     pub text: TextPanel,
@@ -60,7 +60,7 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Returns all of them.
+    /// Returns each of them.
     pub fn all(&mut self) -> [&mut dyn Panel; 11] {
         [
             &mut self.mesh,

@@ -4,10 +4,9 @@ use crate::page::{Dialog, Moment, Page};
 use crate::panel::Panel;
 use crate::wish::{Wish, Wishes};
 use crate::{places, theme};
-use document::asset;
 use document::mesh_export::{self, Film, MOST_EDGES, Made, MeshExport, State};
 use document::session::Session;
-use document::work;
+use document::{asset, work};
 use egui::{
     Align, Button, Color32, ColorImage, DragValue, Layout, ProgressBar, Response, RichText,
     ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,

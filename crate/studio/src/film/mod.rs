@@ -9,10 +9,8 @@ use crate::scripts::request::Request;
 use crate::settings::Show;
 use crate::wish::Wishes;
 use browser::recording::{Kind, Recording, VideoFormat};
-use document::asset;
-use document::mesh_export;
 use document::player::{Playback, Player};
-use document::work;
+use document::{asset, mesh_export, work};
 use egui::{Context, Ui};
 
 /// Wishes about the film.

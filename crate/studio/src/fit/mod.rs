@@ -22,7 +22,7 @@ pub enum FitWish {
     Take {
         /// The name of the file.
         name: String,
-        /// Its content.
+        /// The content of the file.
         bytes: Vec<u8>,
     },
     /// Choose the mesh of a file, if the text shows it.

@@ -15,9 +15,7 @@ use crate::render::Phase;
 use crate::wish::{TextWish, Wishes, WorkWish};
 use crate::{places, screen};
 use apart::Apart;
-use document::examples;
-use document::picture;
-use document::work;
+use document::{examples, picture, work};
 use draft::Draft;
 use egui::{Color32, Context, Painter, Rect, TextureId, Ui, Vec2};
 use egui_wgpu::RenderState;
@@ -38,7 +36,7 @@ pub enum ViewWish {
     SetCamera(Option<Camera>),
     /// Bring the whole model into view.
     ShowAll,
-    /// Have a mesh of the surface follow the hand, which begins to drag.
+    /// Let a mesh of the surface follow the hand, which begins to drag.
     Follow,
     /// Choose no shape.
     LetGo,

@@ -55,8 +55,8 @@ pub struct Grasp {
 }
 
 /// Returns the largest rectangle of the frame's proportions in the middle of a place. It lies on
-/// whole pixels of the screen, and a picture made to fit it ([`document::size::pixels`]) has as many,
-/// so that it is shown as sharp as it was traced.
+/// whole pixels of the screen, and a picture made to fit it ([`document::size::pixels`]) has as
+/// many, so that it is shown as sharp as it was traced.
 #[must_use]
 pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
     let frame = vec2(frame[0].max(1) as f32, frame[1].max(1) as f32);

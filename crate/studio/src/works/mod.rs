@@ -8,11 +8,9 @@ use crate::page::{self, Moment, Page};
 use crate::stage::pencil::tool::Tool;
 use crate::wish::ViewWish;
 use document::asset::{self, Asset};
-use document::examples;
 use document::intake::Incoming;
 use document::project_file::{self, Project};
-use document::share;
-use document::work;
+use document::{examples, share, work};
 use gallery::Gallery;
 
 /// Wishes about whole works.
@@ -22,11 +20,11 @@ pub enum WorkWish {
     OpenExample(usize),
     /// Open an example whose files were fetched; its text is `None` if that did not come.
     OpenFetched {
-        /// Its number.
+        /// The number of the example.
         index: usize,
-        /// Its text.
+        /// The text.
         text: Option<String>,
-        /// Its images and meshes.
+        /// The images and meshes.
         assets: Vec<Asset>,
     },
     /// Open a saved work.
