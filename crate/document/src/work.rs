@@ -131,49 +131,17 @@ impl Work {
         Ok(())
     }
 
-    /// Opens a text of the lab or the reference, like an example.
+    /// Opens a text that is no work of the user's yet.
     ///
     /// # Errors
     /// If the open work cannot be written; then it stays open.
-    pub fn open_text(&mut self, name: &str, text: String) -> Result<(), String> {
+    pub fn open_text(&mut self, name: &str, text: String, origin: Origin) -> Result<(), String> {
         self.leave()?;
         let file = File {
             name: format!("{}.rat", name.to_lowercase().replace(' ', "-")),
             text,
         };
-        let kept = Kept {
-            project: Project { files: vec![file] },
-            ..Kept::default()
-        };
-        self.begin(name.to_owned(), Origin::Example, kept);
-        Ok(())
-    }
-
-    /// Begins an empty work.
-    ///
-    /// # Errors
-    /// If the open work cannot be written; then it stays open.
-    pub fn open_new(&mut self) -> Result<(), String> {
-        self.leave()?;
-        let file = File {
-            name: String::from("untitled.rat"),
-            text: String::from(examples::BLANK),
-        };
-        self.begin_project(String::from("Untitled"), Project { files: vec![file] });
-        Ok(())
-    }
-
-    /// Opens an empty page to draw on.
-    ///
-    /// # Errors
-    /// If the open work cannot be written; then it stays open.
-    pub fn open_page(&mut self, text: String) -> Result<(), String> {
-        self.leave()?;
-        let file = File {
-            name: String::from("drawing.rat"),
-            text,
-        };
-        self.begin_project(String::from("Drawing"), Project { files: vec![file] });
+        self.begin_project(name.to_owned(), Project { files: vec![file] }, origin);
         Ok(())
     }
 
@@ -201,7 +169,7 @@ impl Work {
     pub fn load(&mut self, project: Project) -> Result<(), String> {
         check_size(&project).map_err(|refused| refused.to_string())?;
         self.leave()?;
-        self.begin_project(title(&project), project);
+        self.begin_project(title(&project), project, Origin::Fresh);
         Ok(())
     }
 
@@ -333,12 +301,12 @@ impl Work {
         }
     }
 
-    fn begin_project(&mut self, name: String, project: Project) {
+    fn begin_project(&mut self, name: String, project: Project, origin: Origin) {
         let kept = Kept {
             project,
             ..Kept::default()
         };
-        self.begin(name, Origin::Fresh, kept);
+        self.begin(name, origin, kept);
     }
 
     fn begin(&mut self, name: String, origin: Origin, kept: Kept) {

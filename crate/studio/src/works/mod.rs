@@ -10,6 +10,7 @@ use crate::wish::ViewWish;
 use document::asset::{self, Asset};
 use document::intake::Incoming;
 use document::project_file::{self, Project};
+use document::work::Origin;
 use document::{examples, share, work};
 use gallery::Gallery;
 
@@ -97,16 +98,17 @@ impl Gallery {
                 show_opened(page, result);
             }
             WorkWish::OpenText { name, text } => {
-                let result = page.work.open_text(&name, text);
+                let result = page.work.open_text(&name, text, Origin::Example);
                 show_opened(page, result);
             }
             WorkWish::New => {
-                let result = page.work.open_new();
+                let text = String::from(examples::BLANK);
+                let result = page.work.open_text("Untitled", text, Origin::Fresh);
                 show_opened(page, result);
             }
             WorkWish::DrawNew => {
                 let text = sketch::page::fresh(page::ratio(at.ctx));
-                let result = page.work.open_page(text);
+                let result = page.work.open_text("Drawing", text, Origin::Fresh);
                 show_opened(page, result);
                 page.wish(ViewWish::SetTool(Some(Tool::Draw)));
             }

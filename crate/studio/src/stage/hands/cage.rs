@@ -5,7 +5,7 @@ use super::{Around, stroke};
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Handle};
 use document::session::Session;
-use egui::{Painter, Rect, Ui, Vec2};
+use egui::{Painter, Rect, Ui};
 use glam::DVec3;
 use rats::Deform;
 use scene::Origin;
@@ -26,7 +26,7 @@ pub struct Cage {
     places: Vec<DVec3>,
     edges: Vec<[u32; 2]>,
     /// The knob that is held, and the place to which the pointer has dragged it.
-    drag: Option<(usize, DVec3)>,
+    pub(super) drag: Option<(usize, DVec3)>,
 }
 
 fn contains(origin: Origin, file: usize, byte: usize) -> bool {
@@ -65,14 +65,6 @@ impl Cage {
             .iter()
             .rposition(|deform| deform.of.contains(&origin));
         Some(deforms[self.chosen?].origin)
-    }
-
-    /// Ends a drag whose pointer is up.
-    pub fn release(&mut self, ui: &Ui, wishes: &mut Wishes) {
-        if self.drag.is_some() && !ui.input(|input| input.pointer.any_down()) {
-            self.drag = None;
-            wishes.push(TextWish::Release);
-        }
     }
 
     /// Draws cage and knobs, and carries out what the user does to them.
@@ -123,22 +115,10 @@ impl Cage {
                 continue;
             };
             let answer = knob::show(ui, painter, rect, i, at, handle, around.touch);
-            let mut target = None;
-            if answer.begins {
-                wishes.push(TextWish::Hold);
-                self.drag = Some((i, handle.place));
-            }
-            if let Some((held, place)) = &mut self.drag
-                && *held == i
-                && answer.pulled != Vec2::ZERO
-            {
-                *place = sight.drag(*place, answer.pulled, answer.deep);
-                target = Some(*place);
-            }
-            if answer.nudged != Vec2::ZERO {
-                target = Some(sight.drag(handle.place, answer.nudged, answer.deep));
-            }
-            let Some(target) = target else { continue };
+            let at = (i, handle.place);
+            let Some(target) = knob::follow(&answer, at, &mut self.drag, sight, wishes) else {
+                continue;
+            };
             let grain = sight.point(handle.place);
             if let Some(edit) = handles::pull(session.project(), deform, i, target, grain) {
                 wishes.push(TextWish::edit(edit));

@@ -2,11 +2,14 @@
 //! or moved by the arrow keys.
 
 use crate::places;
+use crate::wish::{TextWish, Wishes};
 use assist::handles::{Editable, Handle};
 use egui::{
     Align2, Color32, CursorIcon, EventFilter, FontId, Key, Painter, Pos2, Rect, Role, Sense,
     Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
+use glam::DVec3;
+use sketch::Sight;
 
 /// The colour of bones and knobs.
 pub const LIT: Color32 = Color32::from_rgb(255, 222, 122);
@@ -21,6 +24,42 @@ pub struct Answer {
     pub nudged: Vec2,
     /// Whether moving up means away from the eye.
     pub deep: bool,
+}
+
+/// Moves what a knob stands for as its answer says, and begins its drag. `drag` is the knob that is
+/// held, with the place to which the pointer has dragged it, before its numbers' limits. Returns the
+/// place to which the knob goes, if it moves.
+pub fn follow(
+    answer: &Answer,
+    (index, place): (usize, DVec3),
+    drag: &mut Option<(usize, DVec3)>,
+    sight: &Sight,
+    wishes: &mut Wishes,
+) -> Option<DVec3> {
+    if answer.begins {
+        wishes.push(TextWish::Hold);
+        *drag = Some((index, place));
+    }
+    let mut target = None;
+    if let Some((held, to)) = drag
+        && *held == index
+        && answer.pulled != Vec2::ZERO
+    {
+        *to = sight.drag(*to, answer.pulled, answer.deep);
+        target = Some(*to);
+    }
+    if answer.nudged != Vec2::ZERO {
+        target = Some(sight.drag(place, answer.nudged, answer.deep));
+    }
+    target
+}
+
+/// Ends a drag whose pointer is up.
+pub fn release(drag: &mut Option<(usize, DVec3)>, ui: &Ui, wishes: &mut Wishes) {
+    if drag.is_some() && !ui.input(|input| input.pointer.any_down()) {
+        *drag = None;
+        wishes.push(TextWish::Release);
+    }
 }
 
 /// Shows a knob at `at`. `rect` is the picture's place.

@@ -34,16 +34,10 @@ pub struct Hands {
     handles: Vec<Handle>,
     /// Key of the handles: revision, frame of the film, element; and the camera.
     made: Option<((u64, u32, usize), Camera)>,
-    drag: Option<Drag>,
+    /// The knob that is held, and the place to which it is dragged.
+    drag: Option<(usize, DVec3)>,
     /// The deformation whose control points are shown.
     cage: cage::Cage,
-}
-
-/// A knob that is held.
-struct Drag {
-    handle: usize,
-    /// Position to which the pointer has dragged it, before its numbers' limits.
-    target: DVec3,
 }
 
 /// Surroundings of the handles.
@@ -96,11 +90,8 @@ impl Hands {
         wishes: &mut Wishes,
     ) {
         let session = around.session;
-        if self.drag.is_some() && !ui.input(|input| input.pointer.any_down()) {
-            self.drag = None;
-            wishes.push(TextWish::Release);
-        }
-        self.cage.release(ui, wishes);
+        knob::release(&mut self.drag, ui, wishes);
+        knob::release(&mut self.cage.drag, ui, wishes);
         // Before the text has compiled without errors, the picture is not of this text.
         if !session.is_compiled() || session.errors() > 0 || rect.width() < 1.0 {
             return;
@@ -245,25 +236,8 @@ impl Hands {
                 continue;
             };
             let answer = knob::show(ui, painter, rect, index, at, handle, touch);
-            let mut target = None;
-            if answer.begins {
-                wishes.push(TextWish::Hold);
-                self.drag = Some(Drag {
-                    handle: index,
-                    target: handle.place,
-                });
-            }
-            if let Some(drag) = &mut self.drag
-                && drag.handle == index
-                && answer.pulled != egui::Vec2::ZERO
-            {
-                drag.target = sight.drag(drag.target, answer.pulled, answer.deep);
-                target = Some(drag.target);
-            }
-            if answer.nudged != egui::Vec2::ZERO {
-                target = Some(sight.drag(handle.place, answer.nudged, answer.deep));
-            }
-            if let Some(target) = target {
+            let at = (index, handle.place);
+            if let Some(target) = knob::follow(&answer, at, &mut self.drag, sight, wishes) {
                 let grain = sight.point(handle.place);
                 let edits = handles::drag(handle, target, grain);
                 wishes.push(TextWish::Edit { edits, step: false });
