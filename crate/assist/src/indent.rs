@@ -71,9 +71,9 @@ pub fn back_tab(text: &str, selection: std::ops::Range<usize>) -> Edited {
     if single {
         let removed = length - edited.len();
         let start = line_start(text, selection.start);
-        let move_left = |position: usize| position.saturating_sub(removed).max(start);
-        let kept = move_left(selection.start)..move_left(selection.end);
-        return (edited, kept);
+        let [from, to] = [selection.start, selection.end]
+            .map(|position| position.saturating_sub(removed).max(start));
+        return (edited, from..to);
     }
     (edited, selected)
 }

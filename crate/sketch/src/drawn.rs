@@ -470,9 +470,12 @@ fn nearest(p: Pos2, q: Pos2, at: Pos2) -> (f32, f32) {
     (t, at.distance(p + along * t))
 }
 
+fn cross(u: Vec2, v: Vec2) -> f32 {
+    u.x * v.y - u.y * v.x
+}
+
 /// Returns the place on the line from p to q, 0 … 1, at which the one from a to b crosses it.
 fn intersect(p: Pos2, q: Pos2, a: Pos2, b: Pos2) -> Option<f32> {
-    let cross = |u: Vec2, v: Vec2| u.x * v.y - u.y * v.x;
     let (along, other) = (q - p, b - a);
     let slope = cross(along, other);
     if slope == 0.0 {

@@ -7,7 +7,7 @@ use crate::page;
 use crate::{Limb, Sample, Start, Stroke};
 use emath::{Pos2, Vec2, pos2};
 use glam::{DAffine3, DVec3};
-use rats::{Asset, Compiled, Project, TextEdit};
+use rats::{Asset, Compiled, Diagnostic, Project, Severity, TextEdit};
 use scene::Rgb;
 use skeleton::Node;
 
@@ -488,10 +488,9 @@ pub fn draw(
         let text = crate::extend(text, drawn.span.clone(), &limbs, grain)?;
         return Some(TextEdit::whole(drawn.file, text));
     }
-    let texts = || project.files.iter().map(|file| file.text.as_str());
     let colour = brush.colour.unwrap_or(page::COLOURS[0].1);
-    let (text, material) = page::with_surface(&project.files.first()?.text, texts, colour, true);
-    let name = crate::free_name(texts(), "DRAWING");
+    let (text, material) = page::with_surface(project, colour, true)?;
+    let name = crate::free_name(page::texts(project), "DRAWING");
     let text = crate::create(&text, &material, &name, &limbs, grain)?;
     Some(TextEdit::whole(0, text))
 }
@@ -554,9 +553,7 @@ pub fn bead(
     point: f64,
 ) -> Option<TextEdit> {
     let radius = 0.6 * begin.radius;
-    let texts = || project.files.iter().map(|file| file.text.as_str());
-    let (mut text, material) =
-        page::with_surface(&project.files.first()?.text, texts, colour, false);
+    let (mut text, material) = page::with_surface(project, colour, false)?;
     if !text.ends_with('\n') {
         text.push('\n');
     }
@@ -615,6 +612,10 @@ pub struct Base<'a> {
     pub compiled: &'a Compiled,
 }
 
+fn is_error(diagnostic: &&Diagnostic) -> bool {
+    diagnostic.severity == Severity::Error
+}
+
 /// Checks that a change makes no new mistakes. Returns the change with the ground moved, the texts
 /// and the result of compiling them.
 ///
@@ -627,7 +628,6 @@ pub fn check(
     let file = change.file;
     let project = base.project.apply(&[change]);
     let compiled = rats::compile_at(&project, base.assets, base.frame);
-    let is_error = |d: &&rats::Diagnostic| d.severity == rats::Severity::Error;
     let mut errors = compiled.diagnostics.iter().filter(is_error);
     let before = &base.compiled.diagnostics;
     if errors.clone().count() > before.iter().filter(is_error).count() {

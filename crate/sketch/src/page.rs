@@ -1,5 +1,6 @@
 //! The page that drawing begins with, and the materials of strokes.
 
+use rats::Project;
 use scene::Rgb;
 
 /// The colours to draw with, and their names.
@@ -83,31 +84,33 @@ fn surface(colour: Rgb, soft: bool) -> String {
     }
 }
 
-/// Returns a text that has a material of a colour, and the material's name: one with the same
-/// fields, or a new one at the end. `texts` are those in which the name must be free.
-pub fn with_surface<'a, T: Iterator<Item = &'a str>>(
-    text: &str,
-    texts: impl Fn() -> T,
-    colour: Rgb,
-    soft: bool,
-) -> (String, String) {
+/// Returns the texts of a project.
+pub fn texts(project: &Project) -> impl Iterator<Item = &str> {
+    project.files.iter().map(|file| file.text.as_str())
+}
+
+/// Returns the first text of a project with a material of a colour, and the material's name: one
+/// with the same fields, or a new one at the end. `None` if the project is empty.
+#[must_use]
+pub fn with_surface(project: &Project, colour: Rgb, soft: bool) -> Option<(String, String)> {
+    let text = &project.files.first()?.text;
     let fields = surface(colour, soft);
     let known = text.lines().find_map(|line| {
         let name = line.strip_prefix("surface ")?.strip_suffix(&fields)?;
         name.strip_suffix(", ")
     });
     if let Some(name) = known {
-        return (text.to_owned(), name.to_owned());
+        return Some((text.clone(), name.to_owned()));
     }
     let known = COLOURS.iter().find(|(_, rgb)| *rgb == colour);
     let stem = known.map_or("Colour", |(name, _)| name);
     let stem = format!("{stem}{}", if soft { "Skin" } else { "Bead" });
-    let name = crate::free_name(texts(), &stem);
+    let name = crate::free_name(texts(project), &stem);
     let line = if text.contains("\r\n") { "\r\n" } else { "\n" };
-    let mut text = text.to_owned();
+    let mut text = text.clone();
     if !text.is_empty() && !text.ends_with('\n') {
         text += line;
     }
     text += &format!("surface {name}, {fields}{line}");
-    (text, name)
+    Some((text, name))
 }

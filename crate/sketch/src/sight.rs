@@ -17,9 +17,10 @@ impl Sight {
     #[must_use]
     pub fn new(camera: &Camera, rect: Rect) -> Self {
         // Only the proportions count; thousandths of points are exact enough for them.
-        let side = |points: f32| (points.max(1.0) * 1000.0) as u32;
+        let [width, height] =
+            [rect.width(), rect.height()].map(|points| (points.max(1.0) * 1000.0) as u32);
         Self {
-            projection: camera.projection(side(rect.width()), side(rect.height())),
+            projection: camera.projection(width, height),
             rect,
         }
     }

@@ -27,8 +27,8 @@ pub struct Answer {
 }
 
 /// Moves what a knob stands for as its answer says, and begins its drag. `drag` is the knob that is
-/// held, with the place to which the pointer has dragged it, before its numbers' limits. Returns the
-/// place to which the knob goes, if it moves.
+/// held, with the place to which the pointer has dragged it, before its numbers' limits. Returns
+/// the place to which the knob goes, if it moves.
 pub fn follow(
     answer: &Answer,
     (index, place): (usize, DVec3),
