@@ -86,8 +86,7 @@ impl<'a> Archive<'a> {
         if !heading.starts_with(b"PK\x03\x04") {
             return Err(Error::Broken);
         }
-        let length = |at| short(heading, at).map(usize::from).ok_or(Error::Broken);
-        let start = 30 + length(26)? + length(28)?;
+        let start = 30 + usize::from(short(heading, 26)?) + usize::from(short(heading, 28)?);
         let packed = heading
             .get(start..)
             .and_then(|rest| rest.get(..entry.packed))
@@ -110,14 +109,22 @@ impl<'a> Archive<'a> {
     }
 }
 
-fn short(bytes: &[u8], at: usize) -> Option<u16> {
-    let word = bytes.get(at..at + 2)?;
-    Some(u16::from_le_bytes([word[0], word[1]]))
+fn short(bytes: &[u8], at: usize) -> Result<u16, Error> {
+    let word = bytes.get(at..at + 2).ok_or(Error::Broken)?;
+    Ok(u16::from_le_bytes([word[0], word[1]]))
 }
 
-fn long(bytes: &[u8], at: usize) -> Option<u32> {
+fn long(bytes: &[u8], at: usize) -> Result<u32, Error> {
     let [low, high] = [short(bytes, at)?, short(bytes, at + 2)?];
-    Some(u32::from(low) | u32::from(high) << 16)
+    Ok(u32::from(low) | u32::from(high) << 16)
+}
+
+/// Reads a number of bytes or a place. [`u32::MAX`] marks one that does not fit into 32 bits.
+fn size(bytes: &[u8], at: usize) -> Result<usize, Error> {
+    match long(bytes, at)? {
+        u32::MAX => Err(Error::Huge),
+        size => Ok(size as usize),
+    }
 }
 
 /// Returns the place at which the directory starts, from the record at the end, before a comment
@@ -130,12 +137,7 @@ fn directory(bytes: &[u8]) -> Result<usize, Error> {
         .map(|at| &bytes[at..])
         .find(|rest| rest.starts_with(b"PK\x05\x06"))
         .ok_or(Error::Broken)?;
-    match long(record, 16) {
-        // The mark of an archive whose sizes do not fit into 32 bits.
-        Some(u32::MAX) => Err(Error::Huge),
-        Some(start) => Ok(start as usize),
-        None => Err(Error::Broken),
-    }
+    size(record, 16)
 }
 
 /// The entry at a place of the directory, and where the next one begins; `None` at the directory's
@@ -147,23 +149,17 @@ fn entry(bytes: &[u8], at: usize) -> Result<Option<(Entry, usize)>, Error> {
     else {
         return Ok(None);
     };
-    let short = |at| short(head, at).ok_or(Error::Broken);
-    let long = |at| match long(head, at) {
-        Some(u32::MAX) => Err(Error::Huge),
-        Some(number) => Ok(number as usize),
-        None => Err(Error::Broken),
-    };
-    let length = usize::from(short(28)?);
+    let length = usize::from(short(head, 28)?);
     let name = head.get(46..46 + length).ok_or(Error::Broken)?;
-    let end = at + 46 + length + usize::from(short(30)?) + usize::from(short(32)?);
+    let end = at + 46 + length + usize::from(short(head, 30)?) + usize::from(short(head, 32)?);
     let entry = Entry {
         name: String::from_utf8_lossy(name).into_owned(),
-        size: long(24)?,
-        encrypted: short(8)? & 1 != 0,
-        method: short(10)?,
-        checksum: self::long(head, 16).ok_or(Error::Broken)?,
-        packed: long(20)?,
-        start: long(42)?,
+        size: size(head, 24)?,
+        encrypted: short(head, 8)? & 1 != 0,
+        method: short(head, 10)?,
+        checksum: long(head, 16)?,
+        packed: size(head, 20)?,
+        start: size(head, 42)?,
     };
     Ok(Some((entry, end)))
 }

@@ -237,25 +237,23 @@ impl Offers {
 
     /// Adds the option words, those first that are not given yet.
     fn options(&mut self, here: &Here<'_>, list: &'static [OptionSpec], before: usize) {
-        let is_given = |option: &OptionSpec| {
+        let (given, missing): (Vec<_>, Vec<_>) = list.iter().partition(|option| {
             here.operands.iter().any(|(span, slot)| {
                 span.end <= before
                     && matches!(slot.what, What::Option)
                     && slot.option.is_some_and(|given| given.name == option.name)
             })
-        };
-        for given in [false, true] {
-            for option in list.iter().filter(|option| is_given(option) == given) {
-                let synopsis = option.synopsis();
-                let after = synopsis.strip_prefix(option.name).unwrap_or("").trim();
-                let detail = if after.is_empty() {
-                    option.meaning.to_owned()
-                } else {
-                    format!("{after}: {}", option.meaning)
-                };
-                self.add(option.name, CompletionKind::Option, detail);
-                self.picture(here, option);
-            }
+        });
+        for option in missing.into_iter().chain(given) {
+            let synopsis = option.synopsis();
+            let after = synopsis.strip_prefix(option.name).unwrap_or("").trim();
+            let detail = if after.is_empty() {
+                option.meaning.to_owned()
+            } else {
+                format!("{after}: {}", option.meaning)
+            };
+            self.add(option.name, CompletionKind::Option, detail);
+            self.picture(here, option);
         }
     }
 

@@ -330,7 +330,6 @@ impl Page {
         let last = self.last.unwrap_or(index);
         let before = tokens[last];
         let there = &text[before.range()];
-        let is_operand = |token: Token| matches!(token.kind, TokenKind::Word | TokenKind::Number);
         if token.kind == TokenKind::Comment {
             return self.gap.max(2);
         }
@@ -341,7 +340,7 @@ impl Page {
             ("{", "}") => false,
             ("{" | "}" | ",", _) | (_, "{" | "}") => true,
             (")" | ">", ",") => false,
-            (_, ",") if is_operand(before) => false,
+            (_, ",") if matches!(before.kind, TokenKind::Word | TokenKind::Number) => false,
             _ => self.gap > 0 || marks.0[last].after || marks.0[index].before,
         };
         if wanted { self.gap.max(1) } else { 0 }

@@ -31,12 +31,13 @@ pub use cage::{cage, pull};
 pub use drag::drag;
 pub use handle::{Editable, Handle, Kind};
 
+use field::Skeleton;
 use fixed::{plain, why_repeated};
 use glam::DMat3;
 use maker::Maker;
 use rats::provenance::Provenance;
 use rats::{Asset, Compiled, Project, provenance};
-use scene::{Element, Shape};
+use scene::Element;
 
 /// Returns the handles of an element of `compiled.scene`, which came from `project` with these
 /// assets, at this frame. `view` is [`scene::Projection::world_from_view`]: knobs for radii lie
@@ -98,7 +99,7 @@ pub fn handles(
 /// Counts the elements that the command of an element makes: a curve has one for each three points
 /// after the first.
 fn parts(seen: &Provenance, element: &Element) -> usize {
-    if !matches!(element.shape, Shape::Curve { .. }) {
+    if !matches!(element.shape.skeleton(), Some(Skeleton::Curve { .. })) {
         return 1;
     }
     let operands = seen.operands.iter();

@@ -125,17 +125,13 @@ impl State {
             self.word_seen = first.is_none_or(|first| !matches!(first.kind, Kind::Block));
             return TokenKind::Command;
         }
-        let in_list = |list: &'static [OptionSpec]| {
-            list.iter().filter(|option| option.begins(word)).count() == 1
-                || list.iter().any(|o| o.name.eq_ignore_ascii_case(word))
-        };
         // One or two letters are more often a name.
-        if word.len() > 2 && in_list(self.options) {
+        if word.len() > 2 && is_in(self.options, word) {
             return TokenKind::Option;
         }
         let is_texture = std::ptr::eq(self.options, options::TEXTURE_OPTIONS);
         let methods = [options::TARGETS, options::SOLIDS, options::MAPPINGS];
-        if is_texture && methods.into_iter().any(in_list) {
+        if is_texture && methods.into_iter().any(|list| is_in(list, word)) {
             return TokenKind::Option;
         }
         let plain = ["hot", "on", "off", "to", "step", "and", "or", "not", "one"];
@@ -147,6 +143,12 @@ impl State {
         }
         TokenKind::Name
     }
+}
+
+/// Returns whether a word stands for an option of a list, whole or shortened.
+fn is_in(list: &[OptionSpec], word: &str) -> bool {
+    list.iter().filter(|option| option.begins(word)).count() == 1
+        || list.iter().any(|o| o.name.eq_ignore_ascii_case(word))
 }
 
 #[cfg(test)]

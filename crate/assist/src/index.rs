@@ -80,6 +80,14 @@ pub struct Occurrence {
     pub(crate) entity: usize,
 }
 
+impl Occurrence {
+    /// Returns what occurrences are sorted by: file, place and turn.
+    pub(crate) fn sort_key(&self) -> [usize; 4] {
+        let span = &self.place.span;
+        [self.place.file, span.start, span.end, self.order]
+    }
+}
+
 /// A thing that has a name.
 #[derive(Clone, Debug)]
 pub(crate) struct Entity<'p> {
@@ -200,14 +208,16 @@ impl<'p> Index<'p> {
     /// Finds the definition that is in force at an occurrence: itself, else the last one before it,
     /// else the first.
     pub(crate) fn definition(&self, occurrence: &Occurrence) -> Option<&Occurrence> {
-        let definitions = || self.all_of(occurrence).filter(|o| o.is_definition);
+        let mut definitions = self.all_of(occurrence).filter(|o| o.is_definition);
         if occurrence.is_definition {
-            return definitions().find(|o| o.place == occurrence.place);
+            return definitions.find(|o| o.place == occurrence.place);
         }
-        definitions()
-            .filter(|o| o.order < occurrence.order)
+        let definitions: Vec<_> = definitions.collect();
+        let before = definitions.iter().filter(|o| o.order < occurrence.order);
+        before
             .max_by_key(|o| o.order)
-            .or_else(|| definitions().min_by_key(|o| o.order))
+            .or_else(|| definitions.iter().min_by_key(|o| o.order))
+            .copied()
     }
 
     /// Returns every name of the project, once, in the order in which they are first made.
@@ -248,14 +258,10 @@ impl<'p> Index<'p> {
     /// Returns the names of a kind, each once, for completions; without those that the command at
     /// the place that is asked for makes itself.
     pub(crate) fn names(&self, kind: SymbolKind) -> Vec<&'p str> {
-        let is_here = |o: &Occurrence| {
-            let here = self.here.as_ref();
-            here.is_some_and(|h| h.file == o.place.file && h.word_span.start == o.command.start)
-        };
         let mut names: Vec<&'p str> = self
             .entities
             .iter()
-            .filter(|e| e.kind == kind && e.first.as_ref().is_some_and(|o| !is_here(o)))
+            .filter(|e| e.kind == kind && e.first.as_ref().is_some_and(|o| !self.is_here(o)))
             .map(|e| e.name)
             .collect();
         field::heap_sort(&mut names, |a, b| a < b);
@@ -263,22 +269,29 @@ impl<'p> Index<'p> {
         names
     }
 
+    /// Returns whether an occurrence is in the command at the place that is asked for.
+    fn is_here(&self, o: &Occurrence) -> bool {
+        let here = self.here.as_ref();
+        here.is_some_and(|h| h.file == o.place.file && h.word_span.start == o.command.start)
+    }
+
     /// Finds another thing of the same kind that already has a name and could be taken for the one
     /// at an occurrence.
     pub(crate) fn clash(&self, occurrence: &Occurrence, name: &str) -> Option<Place> {
         let root = self.root(occurrence.entity);
         let mine = &self.entities[occurrence.entity];
-        let overlaps = |other: &Entity<'_>| {
-            if mine.kind.is_variable() {
-                other.kind.is_variable() && other.owner == mine.owner
-            } else {
-                other.kind == mine.kind
-            }
-        };
         self.entities
             .iter()
             .enumerate()
-            .filter(|(i, e)| e.name == name && e.is_defined && overlaps(e) && self.root(*i) != root)
+            .filter(|(_, e)| e.name == name && e.is_defined)
+            .filter(|(_, e)| {
+                if mine.kind.is_variable() {
+                    e.kind.is_variable() && e.owner == mine.owner
+                } else {
+                    e.kind == mine.kind
+                }
+            })
+            .filter(|(i, _)| self.root(*i) != root)
             .find_map(|(_, e)| e.first.as_ref().map(|o| o.place.clone()))
     }
 

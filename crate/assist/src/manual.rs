@@ -101,7 +101,8 @@ pub fn reference() -> String {
     page
 }
 
-const HEAD: &str = r#"<!doctype html>
+const HEAD: &str = concat!(
+    r#"<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -111,25 +112,32 @@ const HEAD: &str = r#"<!doctype html>
 <header>
 <a href="./">Sinew</a>
 <a class="aside" href="figures.html">Figures</a>
-<input type="search" id="search" placeholder="Search" aria-label="Search commands, options and colours" autocomplete="off">
+<input type="search" id="search" placeholder="Search" "#,
+    r#"aria-label="Search commands, options and colours" autocomplete="off">
 </header>
 <main>
 <h1>The language</h1>
 <p id="none" hidden>Nothing is called that and nothing tells of it.</p>
-"#;
+"#
+);
 
-const RULES: &str = r#"<h2>How a text is written</h2>
-<p>A text is a list of commands, one in a line, run from top to bottom. <code>#</code> begins a comment.
-Commas, <code>&lt;</code> and <code>&gt;</code> separate like space does. Operands may go on over several
+const RULES: &str = "<h2>How a text is written</h2>
+<p>A text is a list of commands, one in a line, run from top to bottom. <code>#</code> begins a \
+comment.
+Commas, <code>&lt;</code> and <code>&gt;</code> separate like space does. Operands may go on over \
+several
 lines inside <code>{ … }</code>.</p>
 <p>Commands and options are written in any case, and options may be shortened as long as they stay
-unmistakable: <code>diff</code>, <code>rad</code>, <code>blob</code>. Names of your own keep their case.</p>
+unmistakable: <code>diff</code>, <code>rad</code>, <code>blob</code>. Names of your own keep their \
+case.</p>
 <p>In what follows, an operand in CAPITALS is three numbers, a vector or a colour; what stands in
-<code>[ ]</code> may be left out; <code>…</code> means that more of the kind may follow. Wherever a number
-stands there can be arithmetic: <code>2*r + sin(a)</code>. In a list, <code>1 -2</code> is two operands
+<code>[ ]</code> may be left out; <code>…</code> means that more of the kind may follow. Wherever \
+a number
+stands there can be arithmetic: <code>2*r + sin(a)</code>. In a list, <code>1 -2</code> is two \
+operands
 and <code>1 - 2</code> is one.</p>
-<p><span class="ours">ours</span> marks what RATS did not have.</p>
-"#;
+<p><span class=\"ours\">ours</span> marks what RATS did not have.</p>
+";
 
 /// Describes a group.
 fn about(group: Group) -> &'static str {
@@ -139,7 +147,8 @@ fn about(group: Group) -> &'static str {
         Group::Materials => "What shapes are made of.",
         Group::Primitives => {
             "Shapes. The name of their material comes first, but not in a chain. Shapes of a \
-             material that has a blobbiness are soft: they are skeletons, and their flesh melts together."
+             material that has a blobbiness are soft: they are skeletons, and their flesh melts \
+             together."
         }
         Group::Objects => "Groups of shapes, and moving them.",
         Group::Options => "Settings of the whole picture.",

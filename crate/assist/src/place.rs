@@ -17,9 +17,13 @@ pub fn in_comment(text: &str, byte: usize) -> bool {
     text[line..byte].contains('#')
 }
 
+/// Returns whether a character can be part of a word or number.
+fn is_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_' || c == '.'
+}
+
 /// Finds the word that a byte is in or at the end of; empty if there is none.
 pub fn word(text: &str, byte: usize) -> Range<usize> {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
     let before = text[..byte].trim_end_matches(is_word).len();
     let after = &text[byte..];
     let length = after.len() - after.trim_start_matches(is_word).len();

@@ -44,19 +44,17 @@ pub fn rename(
         return Ok(Vec::new());
     }
     check_name(kind, name, new_name)?;
-    let line = |file: usize, byte: usize| {
-        let file = &project.files[file];
-        let line = file.text[..byte].matches('\n').count() + 1;
-        format!("line {line} of {}", file.name)
-    };
     if let Some((file, byte, message)) = &index.mistake {
         // A block that the parser leaves out could hold the name.
-        return Err(format!("first mend {}: {message}", line(*file, *byte)));
+        return Err(format!(
+            "first mend {}: {message}",
+            line(project, *file, *byte)
+        ));
     }
     if let Some(place) = index.clash(occurrence, new_name) {
         return Err(format!(
             "`{new_name}` is taken: {} makes a {} of that name",
-            line(place.file, place.span.start),
+            line(project, place.file, place.span.start),
             kind.word()
         ));
     }
@@ -172,6 +170,13 @@ fn check_name(kind: SymbolKind, name: &str, new_name: &str) -> Result<(), String
         return Err(format!("`{new_name}` is already a command of the language"));
     }
     Ok(())
+}
+
+/// Returns a place in words, as in "line 3 of main.rat".
+fn line(project: &Project, file: usize, byte: usize) -> String {
+    let file = &project.files[file];
+    let line = file.text[..byte].matches('\n').count() + 1;
+    format!("line {line} of {}", file.name)
 }
 
 /// Returns the changes of all places of a name.

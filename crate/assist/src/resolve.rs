@@ -11,7 +11,7 @@ mod here;
 mod state;
 mod variables;
 
-use crate::index::{Index, Occurrence, SymbolKind};
+use crate::index::{Index, SymbolKind};
 use crate::walk::{self, Event};
 use rats::Project;
 use rats::parser::parse;
@@ -189,11 +189,7 @@ impl<'p, 's> Resolver<'p, 's> {
         index
             .occurrences
             .retain(|o| defined[entities[o.entity].parent]);
-        let place = |o: &Occurrence| {
-            let span = &o.place.span;
-            (o.place.file, span.start, span.end, o.order)
-        };
-        field::heap_sort(&mut index.occurrences, |a, b| place(a) < place(b));
+        field::heap_sort(&mut index.occurrences, |a, b| a.sort_key() < b.sort_key());
         index
     }
 }

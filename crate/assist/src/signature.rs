@@ -57,10 +57,6 @@ pub fn signature(project: &Project, file: usize, byte: usize) -> Option<Signatur
     if here.spec.is_none() && here.own.is_none() {
         return None;
     }
-    let part = |parameter: &Param<'_>| Part {
-        text: parameter.synopsis(),
-        meaning: describe(parameter),
-    };
     let word = here.spec.map_or(here.word, |spec| spec.name);
     let active = (byte > here.word_span.end)
         .then(|| here.active(byte))
@@ -91,4 +87,11 @@ pub fn signature(project: &Project, file: usize, byte: usize) -> Option<Signatur
             .or(at_options.then(|| parameters.len() - 1)),
         parameters,
     })
+}
+
+fn part(parameter: &Param<'_>) -> Part {
+    Part {
+        text: parameter.synopsis(),
+        meaning: describe(parameter),
+    }
 }

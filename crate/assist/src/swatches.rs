@@ -77,7 +77,8 @@ const SOLIDS: [(&str, &str); 10] = [
 ];
 
 const STUDIO: &str = "eyep 0 1.2 5\nfov 34\ntone filmic\n\
-    light White, position -4 6 7, intensity 0.9\nlight SlateBlue, position 6 0 4, intensity 0.4, noshadow\n\
+    light White, position -4 6 7, intensity 0.9\n\
+    light SlateBlue, position 6 0 4, intensity 0.4, noshadow\n\
     background 0.30 0.33 0.38 to 0.12 0.13 0.16\n";
 
 /// Returns all swatches: solids as colours and as bumps, waves, lights.

@@ -77,6 +77,11 @@ fn two_at_a_time(sinew: &Sinew) -> Result<f64> {
     Ok(2.0 * alone.over(&both).0)
 }
 
+/// Returns milliseconds as cells of a table.
+fn cells(passes: [f64; 3]) -> String {
+    passes.map(|time| format!("{time:.0}")).join(" | ")
+}
+
 fn tables(
     figures: &Value,
     natively: &dyn Fn(&str) -> Result<[f64; 3]>,
@@ -92,7 +97,6 @@ fn tables(
     for model in list(&figures["models"])? {
         let name = model["name"].as_str().context("a model without a name")?;
         let native = natively(name)?;
-        let cells = |passes: [f64; 3]| passes.map(|time| format!("{time:.0}")).join(" | ");
         report.row(
             "models",
             format!("{name} | natively | {} | – | 1 | 1 | 1", cells(native)),
@@ -139,15 +143,15 @@ mod tests {
 
     #[test]
     fn figures_become_rows_and_goals() {
-        let run = |workers: u32, coarse: f64| {
+        let runs = [(1, 100.0), (2, 50.0)].map(|(workers, coarse)| {
             serde_json::json!({
                 "workers": workers, "coarse": coarse, "full": 8.0 * coarse, "smooth": 16.0 * coarse,
                 "compile": 0.25, "tracing": 15.0 * coarse,
             })
-        };
+        });
         let figures = serde_json::json!({
             "rounds": 3, "browser": "a browser",
-            "models": [{"name": "crab", "runs": [run(1, 100.0), run(2, 50.0)]}],
+            "models": [{"name": "crab", "runs": runs}],
         });
         let report = tables(&figures, &|_| Ok([40.0, 200.0, 500.0]), 1.9).unwrap();
         let text = report.fill("{models}").unwrap();

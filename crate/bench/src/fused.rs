@@ -28,14 +28,14 @@ pub fn measure() -> Result<Report> {
     for (scene, ..) in SCENES {
         let dataset = sinew.dataset(scene);
         let [ours, theirs] = in_turn(ROUNDS, |i| Ok(time(programs[i], &[&dataset])?.seconds))?;
-        let picture = |i: usize| {
+        let [ours_drawn, theirs_drawn] = [0, 1].map(|i| {
             let picture = sinew.path(&format!("{scene}-{i}.png"));
             let render = ["render", &dataset, "-o", &picture, "-r", "512", "512"];
             run(&mut command(programs[i], &render))?;
             let read = pictures::read_picture(Path::new(&picture));
             Ok::<_, anyhow::Error>(read.context(picture)?.1)
-        };
-        let (pixels, most) = difference(&picture(0)?, &picture(1)?)?;
+        });
+        let (pixels, most) = difference(&ours_drawn?, &theirs_drawn?)?;
         let ratio = ours.over(&theirs);
         let differ = format!("{pixels} | {most}");
         report.row(

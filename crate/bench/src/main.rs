@@ -133,8 +133,9 @@ fn keep(name: &str, text: &str, report: Report) -> Result<()> {
 
 /// Description of the machine and the tools.
 fn versions() -> String {
-    let version = |program: &str| read(Command::new(program).arg("--version")).unwrap_or_default();
-    let mut versions = vec![version("rustc"), format!("node {}", version("node"))];
+    let [rustc, node] = ["rustc", "node"]
+        .map(|program| read(Command::new(program).arg("--version")).unwrap_or_default());
+    let mut versions = vec![rustc, format!("node {node}")];
     versions.extend(povray::version());
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let known = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -64,12 +64,10 @@ pub fn measure() -> Result<Report> {
 
 /// Adds a row to the table, and returns how many times as fast as the other ours is.
 fn row(report: &mut Report, found: &Figures, kernel: &str, other: &str) -> Result<Short> {
-    let side = |prefix: &str| {
-        let number = |name: &str| found.number(&format!("{prefix}{name}"));
-        let (seconds, triangles) = (number("seconds")?, number("triangles")?);
-        Ok::<_, anyhow::Error>((seconds, triangles, number("error")?))
-    };
-    let ((s, triangles, error), (peer_s, peer_triangles, peer_error)) = (side("")?, side("peer_")?);
+    let (s, peer_s) = (found.number("seconds")?, found.number("peer_seconds")?);
+    let (triangles, error) = (found.number("triangles")?, found.number("error")?);
+    let (peer_triangles, peer_error) =
+        (found.number("peer_triangles")?, found.number("peer_error")?);
     let (scene, proved) = (found.text("scene"), found.number("proved")?);
     let own = format!("{} | {triangles} | {proved:.1e} | {error:.1e}", Short(s));
     let peer = format!(

@@ -81,15 +81,17 @@ pub fn measure() -> Result<Report> {
         )?;
     }
     // The same scene with and without: one complete picture of one ray a pixel.
-    let lit = |lens: &str, name: &str| {
+    let [plain, soft] = [
+        ("penumbra off", "seahorse-plain"),
+        ("penumbra on\naperture 0.2", "seahorse-lens"),
+    ]
+    .map(|(lens, name)| {
         // A light with a size and a shadow; without penumbra the size does nothing.
         sinew.variant("seahorse", name, |text| {
             format!("{lens}\n{}", text.replace("noshadow", "size 1"))
         })
-    };
-    let plain = lit("penumbra off", "seahorse-plain")?;
-    let soft = lit("penumbra on\naperture 0.2", "seahorse-lens")?;
-    let [without, with] = sinew.compare(3, [&[&plain], &[&soft]])?;
+    });
+    let [without, with] = sinew.compare(3, [&[&plain?], &[&soft?]])?;
     let ratio = with.over(&without);
     report.set("without", without);
     report.set("with", with);

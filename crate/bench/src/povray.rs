@@ -51,7 +51,9 @@ pub fn time(file: &str, smooth: bool) -> Result<Cost> {
 
 /// The figures of its statistics.
 fn cost(said: &str) -> Option<Cost> {
-    let number = |text: &str| text.split_whitespace().next()?.parse().ok();
+    fn number(text: &str) -> Option<f64> {
+        text.split_whitespace().next()?.parse().ok()
+    }
     let rays = number(said.split_once("\nRays:")?.1)?;
     let (_, after) = said.split_once("Trace Time:")?;
     let seconds = number(after.split_once("thread(s) with ")?.1)?;
@@ -71,14 +73,14 @@ pub fn blob(scene: &Value, pieces: u32) -> Result<String> {
             components += &format!("{kind} {{ {ends}{depth}, {strength} }}\n");
         };
         match soft.kind {
-            "Sphere" => add("sphere", &[soft.read("center")?], strength),
-            "Cylinder" => add(
+            "Point" => add("sphere", &[soft.read("center")?], strength),
+            "Segment" => add(
                 "cylinder",
                 &[soft.read("base")?, soft.read("apex")?],
                 strength,
             ),
             "Arc" => {
-                let (sweep, angle): (f64, f64) = (soft.read("sweep")?, soft.read("angle")?);
+                let (sweep, angle): (f64, f64) = (soft.read("radius")?, soft.read("angle")?);
                 // The pieces' round ends overlap: an endless row of them has the radius R beside
                 // the middle of a piece.
                 let length = sweep * angle / f64::from(pieces);
@@ -135,19 +137,19 @@ pub fn cauchy_lines(scene: &Value) -> Result<String> {
     whole(scene, &format!("{LINE}isosurface {{ {surface}\n"))
 }
 
-/// A soft element: its shape, its radius, and the a of its Gaussian exp(−a·d²) or the s² of its
+/// A soft element: its bone, its radius, and the a of its Gaussian exp(−a·d²) or the s² of its
 /// Cauchy kernel.
 struct Soft<'a> {
     kind: &'a str,
-    shape: &'a Value,
+    skeleton: &'a Value,
     radius: f64,
     a: f64,
 }
 
 impl Soft<'_> {
-    /// A number or a point of the shape.
+    /// A number or a point of the bone.
     fn read<T: DeserializeOwned>(&self, name: &str) -> Result<T> {
-        read(&self.shape[name])
+        read(&self.skeleton[name])
     }
 }
 
@@ -158,19 +160,23 @@ fn softs(scene: &Value) -> Result<Vec<Soft<'_>>> {
     let softs = elements.iter().map(|element| {
         let flesh = element["flesh"].as_u64().context("not soft")?;
         let flesh = &scene["flesh"][flesh as usize];
-        let shape = element["shape"]
-            .as_object()
-            .and_then(|shape| shape.iter().next());
-        let (kind, shape) = shape.context("no shape")?;
-        let fragile = settings["fragile"][kind.to_lowercase()] == true;
-        let radius: f64 = read(&if fragile { flesh } else { shape }["radius"])?;
-        let mut a = read::<f64>(&flesh["blobbiness"])?.abs();
+        let bone = &element["shape"]["Bone"];
+        let skeleton = bone["skeleton"].as_object();
+        let (kind, skeleton) = skeleton.and_then(|s| s.iter().next()).context("no bone")?;
+        let fragile = match kind.as_str() {
+            "Point" => "sphere",
+            "Segment" => "cylinder",
+            _ => "arc",
+        };
+        let is_fragile = settings["fragile"][fragile] == true;
+        let radius: f64 = read(&if is_fragile { flesh } else { bone }["radius"])?;
+        let mut a = read::<f64>(&flesh["blobbiness"])?;
         if settings["blob_scale"] != "Absolute" {
             a /= radius * radius;
         }
         Ok(Soft {
             kind,
-            shape,
+            skeleton,
             radius,
             a,
         })
@@ -181,11 +187,16 @@ fn softs(scene: &Value) -> Result<Vec<Soft<'_>>> {
 /// A scene with background, camera and light, and a surface, but for its look and the end.
 fn whole(scene: &Value, surface: &str) -> Result<String> {
     let camera = &scene["camera"];
-    let place = |value: &Value| Ok::<_, anyhow::Error>(point(read(value)?));
-    let [eye, up, target] = ["eye", "up", "target"].map(|name| place(&camera[name]));
+    let [eye, up, target, background, light] = [
+        &camera["eye"],
+        &camera["up"],
+        &camera["target"],
+        &scene["background"]["Colour"],
+        &scene["lights"][0]["kind"]["Point"]["position"],
+    ]
+    .map(|value| Ok::<_, anyhow::Error>(point(read(value)?)));
     let (eye, up, target, fov) = (eye?, up?, target?, &camera["fov"]);
-    let background = place(&scene["background"]["Colour"])?;
-    let light = place(&scene["lights"][0]["kind"]["Point"]["position"])?;
+    let (background, light) = (background?, light?);
     let finish = &scene["finishes"][0];
     let (ambient, diffuse): (DVec3, DVec3) = (read(&finish["ambient"])?, read(&finish["diffuse"])?);
     // Its ambient light is this share of the colour.
@@ -221,7 +232,7 @@ mod tests {
         let text = |shape: Value| {
             let scene = json!({
                 "elements": [{ "shape": shape, "flesh": 0 }],
-                "flesh": [{ "blobbiness": -4.0, "radius": 9.0 }],
+                "flesh": [{ "blobbiness": 4.0, "radius": 9.0 }],
                 "finishes": [{ "ambient": [0.1, 0.1, 0.1], "diffuse": [0.5, 0.5, 0.5] }],
                 "lights": [{ "kind": { "Point": { "position": [1.0, 2.0, 3.0] } } }],
                 "camera": { "eye": [0, 0, 5], "up": [0, 1, 0], "target": [0, 0, 0], "fov": 45.0 },
@@ -231,7 +242,8 @@ mod tests {
             blob(&scene, 1)
         };
         // a = 16: ρ² = 1/4 + 1/8, 1 − R²/ρ² = 1/3.
-        let ball = json!({ "Sphere": { "center": [0.0, 0.0, 0.0], "radius": 0.5 } });
+        let point = json!({ "Point": { "center": [0.0, 0.0, 0.0] } });
+        let ball = json!({ "Bone": { "skeleton": point, "radius": 0.5 } });
         let text_of_ball = text(ball).unwrap();
         let (_, numbers) = text_of_ball.split_once("sphere { <0e0,0e0,0e0>, ").unwrap();
         let (depth, numbers) = numbers.split_once(", ").unwrap();
@@ -239,6 +251,6 @@ mod tests {
         let [depth, strength] = [depth, strength].map(|number| number.parse::<f64>().unwrap());
         assert!((depth * depth - 0.375).abs() < 1e-12, "{text_of_ball}");
         assert!((strength - 9.0).abs() < 1e-9, "{text_of_ball}");
-        assert!(text(json!({ "Plane": { "radius": 1.0 } })).is_err());
+        assert!(text(json!({ "Bone": { "skeleton": { "Plane": {} }, "radius": 1.0 } })).is_err());
     }
 }

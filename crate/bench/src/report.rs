@@ -57,10 +57,16 @@ impl Report {
         let unit = number.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
         let wanted: f64 = number.trim_end_matches(unit).parse()?;
         let least = bound.starts_with('≥');
-        let met = |it: f64| if least { it >= wanted } else { it <= wanted };
         let outcome = match measured {
-            Ok(it) if met(it.0) => format!("{it}{unit} | met"),
-            Ok(it) => format!("{it}{unit} | **not met**"),
+            Ok(it) => {
+                let is_met = if least {
+                    it.0 >= wanted
+                } else {
+                    it.0 <= wanted
+                };
+                let word = if is_met { "met" } else { "**not met**" };
+                format!("{it}{unit} | {word}")
+            }
             Err(reason) => format!("– | {reason:#}"),
         };
         self.goals.push(format!("| {goal} | {outcome} |"));

@@ -45,7 +45,6 @@ impl Animate {
     /// Traces frame by frame and writes the animation. With errors in the dataset the frames are
     /// made of what could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
-        let say = |problem: picture::Problem| problem.to_string();
         let format = Format::of(&self.output);
         let format = format
             .ok()
@@ -65,7 +64,7 @@ impl Animate {
         };
         let mut loaded = files::load(&self.file)?;
         let fps = self.fps.or(loaded.compiled.rate).unwrap_or(25.0);
-        let timing = Timing::new(fps, !self.once).map_err(say)?;
+        let timing = Timing::new(fps, !self.once).map_err(|problem| problem.to_string())?;
         if !loaded.compiled.animated {
             report::to_stderr(&loaded);
             return Err(format!(
@@ -100,9 +99,11 @@ impl Animate {
                     (None, Some(file)) => {
                         let begun =
                             Writer::begin(file, format, picture, self.frames, timing, self.dither);
-                        writer = Some(begun.map_err(say)?);
+                        writer = Some(begun.map_err(|problem| problem.to_string())?);
                     }
-                    (Some(writer), _) => writer.add(picture).map_err(say)?,
+                    (Some(writer), _) => {
+                        writer.add(picture).map_err(|problem| problem.to_string())?
+                    }
                     (None, None) => {}
                 }
                 eprintln!(
@@ -112,7 +113,9 @@ impl Animate {
                     traced.seconds
                 );
             }
-            writer.map_or(Ok(()), |writer| writer.finish().map_err(say))
+            writer.map_or(Ok(()), |writer| {
+                writer.finish().map_err(|problem| problem.to_string())
+            })
         })?;
         let [width, height] = size;
         eprintln!(

@@ -42,12 +42,11 @@ impl Check {
 /// The diagnostics of a dataset with the paths of their files, which tell the datasets apart.
 fn with_paths(loaded: &Loaded, path: &Path) -> Vec<Diagnostic> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let in_folder = |name: &str| folder.join(name).display().to_string();
     let mut diagnostics = loaded.compiled.diagnostics.clone();
     for diagnostic in &mut diagnostics {
-        diagnostic.file = in_folder(&diagnostic.file);
-        for related in &mut diagnostic.related {
-            related.file = in_folder(&related.file);
+        let related = diagnostic.related.iter_mut().map(|place| &mut place.file);
+        for file in related.chain([&mut diagnostic.file]) {
+            *file = folder.join(&*file).display().to_string();
         }
     }
     diagnostics

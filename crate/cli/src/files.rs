@@ -83,10 +83,9 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
         next += 1;
     }
     let mut assets: Vec<Asset> = Vec::new();
-    let places = |file: &File, name: &str| rats::places(&file.name, name);
     for places in project.files.iter().flat_map(|file| {
         let names = rats::asset_names(&file.text).into_iter();
-        names.map(move |name| places(file, &name))
+        names.map(move |name| rats::places(&file.name, &name))
     }) {
         for name in places {
             if assets.iter().any(|asset| asset.name == name) {

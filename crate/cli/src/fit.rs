@@ -293,21 +293,16 @@ fn view(positions: &[DVec3], views: &[fit::Outline]) -> String {
         (eye, target) = (middle + forward.normalize() * distance, middle);
         (fov, frame) = (32.0, [480.0, 480.0]);
     }
-    let triple = |v: DVec3| format!("{:.4} {:.4} {:.4}", v.x, v.y, v.z);
     let right = (target - eye).cross(up).normalize_or(DVec3::X);
     let lamp = eye + (up - 0.7 * right) * eye.distance(target);
     let other = right + 0.3 * up;
+    let [eye, target, up, lamp, direction] =
+        [eye, target, up, lamp, -other].map(|v| format!("{:.4} {:.4} {:.4}", v.x, v.y, v.z));
     format!(
-        "framesize {} {}\neyep {}\nvrp {}\nvup {}\nfov {fov}\nbackground 0.06 0.07 0.09\n\
-         light White, position {}, intensity 0.9\n\
-         light LightSteelBlue, distant, direction {}, intensity 0.35, noshadow\n\n",
-        frame[0],
-        frame[1],
-        triple(eye),
-        triple(target),
-        triple(up),
-        triple(lamp),
-        triple(-other),
+        "framesize {} {}\neyep {eye}\nvrp {target}\nvup {up}\nfov {fov}\n\
+         background 0.06 0.07 0.09\nlight White, position {lamp}, intensity 0.9\n\
+         light LightSteelBlue, distant, direction {direction}, intensity 0.35, noshadow\n\n",
+        frame[0], frame[1],
     )
 }
 

@@ -124,14 +124,13 @@ impl Mesh {
         let start = Instant::now();
         let mut progress = Bar::new();
         let mut clock = Clock::new();
-        let mut show = |step: Step| {
-            clock.enter(step.phase);
-            progress.show(step.fraction)
-        };
         let model = mesh_scene(
             &loaded.compiled.scene,
             &wishes,
-            &mut Progress::new(&mut show),
+            &mut Progress::new(&mut |step: Step| {
+                clock.enter(step.phase);
+                progress.show(step.fraction)
+            }),
         );
         progress.clear();
         let model = model.map_err(|error| format!("{}: {error}", self.file.display()))?;
@@ -317,22 +316,18 @@ impl Mesh {
 
     /// The meshes of the file, and of those of coarser levels with their distances from the first.
     fn levels(&self, model: &Model) -> Result<Vec<(Vec<Part>, f64)>, String> {
-        let part = |name: &str, mesh: &TriangleMesh| Part {
-            name: name.into(),
-            mesh: mesh.clone(),
-        };
-        let first = model.parts.iter().map(|p| part(&p.name, &p.mesh)).collect();
-        let mut levels = vec![(first, 0.0)];
+        let first = model.parts.iter().map(|p| part(p, p.mesh.clone()));
+        let mut levels = vec![(first.collect(), 0.0)];
         if self.lod == 0 {
             return Ok(levels);
         }
-        let coarser = |p: &ModelPart| -> Result<Vec<Level>, String> {
+        let coarser = model.parts.iter().map(|p| {
             if !p.is_closed {
                 return Ok(Vec::new());
             }
             mesh::levels_of_detail(&p.mesh, LEAST).map_err(|error| error.to_string())
-        };
-        let coarser: Vec<Vec<Level>> = model.parts.iter().map(coarser).collect::<Result<_, _>>()?;
+        });
+        let coarser: Vec<Vec<Level>> = coarser.collect::<Result<_, _>>()?;
         for i in 0..self.lod {
             if coarser.iter().all(|levels| i >= levels.len()) {
                 eprintln!("there are {i} coarser levels: fewer triangles would not show the shape");
@@ -346,9 +341,9 @@ impl Mesh {
                         error = error.max(level.error);
                         let mut mesh = level.mesh.clone();
                         mesh.groups = whole_group(&p.mesh, &mesh);
-                        part(&p.name, &mesh)
+                        part(p, mesh)
                     }
-                    None => part(&p.name, &p.mesh),
+                    None => part(p, p.mesh.clone()),
                 }
             });
             let parts = parts.collect();
@@ -500,4 +495,10 @@ impl Bar {
             eprint!("\r     \r");
         }
     }
+}
+
+/// Returns a mesh under the name of the part of the model that it stands for.
+fn part(model: &ModelPart, mesh: TriangleMesh) -> Part {
+    let name = model.name.clone();
+    Part { name, mesh }
 }

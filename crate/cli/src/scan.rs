@@ -178,17 +178,14 @@ fn ends_with(path: &Path, ending: &str) -> bool {
 /// The centre and radius of a ball around all that has an end.
 fn place(scene: &Scene) -> Option<(DVec3, f64)> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let mut add = |center: DVec3, radius: f64| {
+    let shapes = scene::extent(scene.elements.iter().map(|e| &e.shape));
+    let surfaces = scene.surfaces().into_iter().filter_map(|surface| {
+        let ball = surface.function().support()?;
+        Some((ball.center, ball.radius))
+    });
+    for (center, radius) in shapes.into_iter().chain(surfaces) {
         low = low.min(center - radius);
         high = high.max(center + radius);
-    };
-    if let Some((center, radius)) = scene::extent(scene.elements.iter().map(|e| &e.shape)) {
-        add(center, radius);
-    }
-    for surface in scene.surfaces() {
-        if let Some(ball) = surface.function().support() {
-            add(ball.center, ball.radius);
-        }
     }
     let size = high - low;
     (size.is_finite() && size.max_element() > 0.0)

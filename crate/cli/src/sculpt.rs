@@ -135,15 +135,13 @@ fn tell(name: &str, clay: &Clay) {
         count => format!("{count} holes"),
     };
     let bounds = mesh::Aabb::of_points(mesh.vertices().map(|v| mesh.position(v)));
-    let extent = |axis: usize| format!("{:.3} … {:.3}", bounds.min[axis], bounds.max[axis]);
+    let [x, y, z] =
+        [0, 1, 2].map(|axis| format!("{:.3} … {:.3}", bounds.min[axis], bounds.max[axis]));
     eprintln!(
-        "{name}: {} vertices, {} faces, {} edges, {holes}; x {}, y {}, z {}",
+        "{name}: {} vertices, {} faces, {} edges, {holes}; x {x}, y {y}, z {z}",
         mesh.vertex_count(),
         mesh.face_count(),
         mesh.edge_count(),
-        extent(0),
-        extent(1),
-        extent(2),
     );
 }
 

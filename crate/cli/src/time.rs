@@ -106,11 +106,11 @@ impl Time {
             }
             (None, count) => {
                 let count = count.unwrap_or(1);
-                let triples = |apart| balls::triples(count, self.kernel, self.apart, apart);
+                let (kernel, apart) = (self.kernel, self.apart);
                 let scene = match self.bodies {
-                    Bodies::One => balls::scene(count, self.kernel, self.apart),
-                    Bodies::Triples => triples(false),
-                    Bodies::Many => triples(true),
+                    Bodies::One => balls::scene(count, kernel, apart),
+                    Bodies::Triples => balls::triples(count, kernel, apart, false),
+                    Bodies::Many => balls::triples(count, kernel, apart, true),
                 };
                 (scene, true)
             }
@@ -191,8 +191,10 @@ mod tests {
 
     #[test]
     fn the_contrast_with_the_wanted_number_of_rays_is_found() {
+        fn rays_of(scene: &Scene) -> u64 {
+            (1000.0 / scene.settings.contrast[0]) as u64
+        }
         let mut scene = Scene::default();
-        let rays_of = |scene: &Scene| (1000.0 / scene.settings.contrast[0]) as u64;
         choose_contrast(&mut scene, 8000, rays_of);
         let rays = rays_of(&scene);
         assert!(rays.abs_diff(8000) < 200, "{rays}");

@@ -227,7 +227,7 @@ fn begin(tool: &Tool, shelf: &dyn Shelf, names: &mut Names) -> Result<Turn, Stri
             dither,
         } => {
             let order: Vec<usize> = match playback {
-                Playback::Mirror => animation::mirrored(files.len()).collect(),
+                Playback::Mirror => animation::mirror(files.len()).collect(),
                 Playback::Once | Playback::Loop => (0..files.len()).collect(),
             };
             // Dots are of use only where colours are few.

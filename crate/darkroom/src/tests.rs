@@ -155,35 +155,39 @@ fn each_step_is_one_picture_and_what_was_written_can_be_read() {
 
 #[test]
 fn a_result_that_is_not_saved_is_written_where_it_is_seen() {
-    let diff = || Tool::Diff {
+    let diff = Tool::Diff {
         a: String::from("a.png"),
         b: String::from("b.png"),
         save: None,
     };
-    let unseen = one(Memory::new(&TWO), diff()).unwrap();
+    let unseen = one(Memory::new(&TWO), diff.clone()).unwrap();
     assert_eq!(unseen.files, [""; 0]);
     let mut shelf = Memory::new(&TWO);
     shelf.seen = true;
-    let seen = one(shelf, diff()).unwrap();
+    let seen = one(shelf, diff).unwrap();
     assert_eq!((seen.files, seen.said), (names(&["diff.png"]), unseen.said));
 }
 
 #[test]
 fn there_is_room_for_so_many_pixels_only() {
-    let room = |most: u64| {
+    fn room(most: u64) -> Memory {
         let mut shelf = Memory::new(&TWO);
         shelf.most = most;
         shelf
-    };
-    let resize = |width, height| Tool::Resize {
-        file: String::from("a.png"),
-        width,
-        height,
-    };
-    let collage = |count| Tool::Collage {
-        columns: Some(1),
-        files: vec![String::from("a.png"); count],
-    };
+    }
+    fn resize(width: u32, height: u32) -> Tool {
+        Tool::Resize {
+            file: String::from("a.png"),
+            width,
+            height,
+        }
+    }
+    fn collage(count: usize) -> Tool {
+        Tool::Collage {
+            columns: Some(1),
+            files: vec![String::from("a.png"); count],
+        }
+    }
     let animate = Tool::Animate {
         files: names(&["a.png"]),
         playback: Playback::Once,
@@ -226,23 +230,22 @@ fn a_shelf_sees_no_name_that_leads_out_and_no_dataset_is_written() {
             panic!("{name} must not be written")
         }
     }
-    let convert = |from: &str, to: &str| Tool::Convert {
+    let jobs = [
+        ("../a.png", "b.png", "leads out"),
+        ("/a.png", "b.png", "leads out"),
+        ("a.xyz", "b.png", ".png"),
+        ("a.mtv", "../b.png", "leads out"),
+        ("a.mtv", "b.RAT", "is a dataset"),
+        ("a.mtv", "b", ".png"),
+    ];
+    let tools = jobs.map(|(from, to, _)| Tool::Convert {
         from: from.to_owned(),
         to: to.to_owned(),
-    };
-    let jobs = [
-        (convert("../a.png", "b.png"), "leads out"),
-        (convert("/a.png", "b.png"), "leads out"),
-        (convert("a.xyz", "b.png"), ".png"),
-        (convert("a.mtv", "../b.png"), "leads out"),
-        (convert("a.mtv", "b.RAT"), "is a dataset"),
-        (convert("a.mtv", "b"), ".png"),
-    ];
-    let tools: Vec<Tool> = jobs.iter().map(|(tool, _)| tool.clone()).collect();
-    let mut bench = Bench::new(Closed, tools);
-    for (tool, why) in jobs {
+    });
+    let mut bench = Bench::new(Closed, tools.to_vec());
+    for (from, to, why) in jobs {
         let Some(Step::Finished(Err(sentence))) = bench.step() else {
-            panic!("{tool:?} was not refused");
+            panic!("{from} to {to} was not refused");
         };
         assert!(sentence.contains(why), "{sentence}");
     }
@@ -250,13 +253,14 @@ fn a_shelf_sees_no_name_that_leads_out_and_no_dataset_is_written() {
 
 #[test]
 fn a_job_tells_what_it_reads() {
-    let shown = |what| Tool::Show { what };
     let xor = Tool::Xor {
         a: String::from("a.png"),
         b: String::from("b.png"),
         save: Some(String::from("c.png")),
     };
     assert_eq!(xor.reads(), ["a.png", "b.png"]);
-    assert_eq!(shown(Shown::File(String::from("a.png"))).reads(), ["a.png"]);
-    assert_eq!(shown(Shown::Palette(Vec::new())).reads(), [""; 0]);
+    let file = Shown::File(String::from("a.png"));
+    assert_eq!(Tool::Show { what: file }.reads(), ["a.png"]);
+    let palette = Shown::Palette(Vec::new());
+    assert_eq!(Tool::Show { what: palette }.reads(), [""; 0]);
 }

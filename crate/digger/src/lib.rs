@@ -5,8 +5,8 @@
 //! use scene::{Digger, Element, Flesh, Scene, Shape};
 //!
 //! let mut scene = Scene::default();
-//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
-//! let ball = Shape::Sphere { center: DVec3::ZERO, radius: 0.5 };
+//! scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
+//! let ball = Shape::sphere(DVec3::ZERO, 0.5);
 //! scene.elements.push(Element { flesh: Some(0), ..Element::new(ball) });
 //! scene.settings.digger = Digger::Brent;
 //! let picture = digger::picture(&scene, [64, 64]);

@@ -5,6 +5,7 @@
 //! closed.
 
 use crate::session::Session;
+use field::Skeleton;
 use fit::{Kind, Observations, Options};
 use glam::DVec3;
 use pool::{Ticket, Tools};
@@ -280,7 +281,7 @@ impl Fitting {
             // The triangles of a mesh are always repeated, as their command makes many. The
             // compiler says when the fit begins whether the command itself is.
             let is_mesh = match &element.shape {
-                Shape::Triangle { .. } | Shape::Patch { .. } => true,
+                Shape::Bone(bone) => matches!(bone.skeleton, Skeleton::Triangle { .. }),
                 Shape::Function(function) => {
                     matches!(function.form, Form::Mesh(_)) && !placement.repeated
                 }

@@ -14,11 +14,11 @@
 //! the field is `g·r`, so that −(gr)″ is at most `−g″·r + 2|g′||r′|` between the ramp's kinks; in a
 //! kink the slope falls by no more than `g·|r′|`.
 use crate::bone::{Bone, Segment};
-use crate::inverse::POLE2;
+use crate::kernel::gauss;
 use crate::ramp::Ramp;
 use crate::real::Scalar;
 use crate::term::{Evaluate, Frame, Prepared};
-use crate::{Jet, Kernel, Primitive, Real, THRESHOLD, gauss, point};
+use crate::{Jet, Kernel, Primitive, Real, THRESHOLD};
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI};
 use glam::DVec3;
 
@@ -273,7 +273,7 @@ impl<S: Scalar> Blob<S> {
         }
         // Kernels fall and are convex in q, so that Newton's steps from 0 never leave the inside.
         (0..NEWTON).fold(0.0, |q, _| {
-            let [value, slope, ..] = self.kernel.derivatives(q).0;
+            let [value, slope, ..] = self.kernel.derivatives(q);
             (q + (wanted - value) / slope).min(1.0)
         })
     }
@@ -283,13 +283,7 @@ impl<S: Scalar> Blob<S> {
     #[must_use]
     pub fn square_of(&self, field: f64) -> f64 {
         let ratio = self.amplitude.lane(0) / field;
-        match self.kernel {
-            Kernel::Cauchy => ratio.sqrt() - 1.0,
-            Kernel::Inverse => ratio * ratio - POLE2,
-            Kernel::Squared => ratio - POLE2,
-            Kernel::Cubed => libm::cbrt(ratio * ratio) - POLE2,
-            _ => self.core(1.0, THRESHOLD),
-        }
+        self.kernel.square_of(ratio)
     }
 
     /// The kernel's width parameter, and the field where q is 0 over the kernel's value there.
@@ -310,7 +304,7 @@ impl<S: Scalar> Blob<S> {
             let ramp = ramp.map_or(0.0, |ramp| scale * ramp.cast(|x| x.lane(0)).steepness());
             return (twice * core.max(0.5).sqrt() + ramp) * THRESHOLD;
         }
-        twice * self.amplitude.lane(0) * self.kernel.derivatives(core.max(0.0)).0[1].abs()
+        twice * self.amplitude.lane(0) * self.kernel.derivatives(core.max(0.0))[1].abs()
     }
 
     /// Whether it is a segment.
@@ -326,7 +320,7 @@ impl<S: Scalar> Blob<S> {
         let amplitude = R::lift(self.amplitude);
         let Some(segment) = &self.segment else {
             let scale = R::lift(self.scale);
-            let jet = point::jet(self.kernel, position.map(|x| x * scale));
+            let jet = self.kernel.jet(&Bone::Point, position.map(|x| x * scale));
             let steep = amplitude * scale;
             return Jet {
                 value: amplitude * jet.value,

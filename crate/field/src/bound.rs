@@ -8,8 +8,9 @@ mod place;
 
 use crate::envelope::{self, PEANO, Roughness};
 use crate::influence::Crowding;
+use crate::kernel::Tail;
 use crate::ripple::Ripple;
-use crate::{Cut, Kernel, Primitive, Real, endless, plane};
+use crate::{Cut, Kernel, Primitive};
 use glam::DVec3;
 use place::Place;
 
@@ -223,14 +224,15 @@ impl Bound {
             width * width * (width * width),
         ];
         let magnitude;
-        let rough = if kernel == Kernel::Cauchy && self.size <= 1.0 + u * u {
+        let rough = if let Some((point, rough)) = kernel.value_and_roughness(u)
+            && self.size <= 1.0 + u * u
+        {
             // Further away than its size: the bound for an infinite line or plane would hardly be
             // smaller.
-            let (point, rough) = envelope::cauchy_point(u);
             magnitude = self.whole * point;
             self.whole * rough
         } else if self.dimension == 0 {
-            magnitude = self.whole * size(kernel, u);
+            magnitude = self.whole * kernel.at_most(u);
             self.whole * envelope::rough_point(kernel, u)
         } else {
             magnitude = self.magnitude(near);
@@ -269,7 +271,7 @@ impl Bound {
             f64::INFINITY
         };
         if near.within {
-            let inside = self.whole * envelope::inside(kernel)[1] * by_width[2];
+            let inside = self.whole * kernel.inside()[1] * by_width[2];
             error = error.at_most(inside * length.0[2]);
             fourth = fourth.at_most(inside);
         }
@@ -301,7 +303,7 @@ impl Bound {
         field[order] = rough;
         if near.within {
             let mut scale = self.whole * (self.finest * self.finest);
-            for (own, inside) in field[3..].iter_mut().zip(envelope::inside(self.kernel)) {
+            for (own, inside) in field[3..].iter_mut().zip(self.kernel.inside()) {
                 scale *= self.finest;
                 *own = own.at_most(scale * inside);
             }
@@ -341,23 +343,20 @@ impl Bound {
     #[must_use]
     pub fn cancels(&self) -> f64 {
         if self.dimension == 2 && self.whole.is_finite() && !self.kernel.has_pole() {
-            let plane = self.endless * plane::jet(self.kernel, [0.0; 3]).value;
+            let plane = self.endless * self.kernel.plane(0.0).0;
             plane.at_most(self.whole)
         } else {
             0.0
         }
     }
 
-    /// Exponent of the field's decay with distance; infinite if it falls faster than any power.
+    /// Largest exponent of the field's decay with distance; infinite if it falls faster than any
+    /// power.
     #[inline]
     #[must_use]
     pub fn power(&self) -> f64 {
-        match self.kernel {
-            Kernel::Cauchy | Kernel::Inverse | Kernel::Squared | Kernel::Cubed
-                if self.ripple.is_none() =>
-            {
-                4.0
-            }
+        match self.kernel.tail() {
+            Tail::Power { .. } if self.ripple.is_none() => 4.0,
             _ => f64::INFINITY,
         }
     }
@@ -382,7 +381,7 @@ impl Bound {
             self.derivative(near, 3)
         } else if near.within {
             let scale = self.finest * self.finest * self.finest;
-            self.whole * envelope::inside(self.kernel)[0] * scale
+            self.whole * self.kernel.inside()[0] * scale
         } else {
             f64::INFINITY
         };
@@ -437,7 +436,7 @@ impl Bound {
             },
             // Planes of the inverse kernel: the slope's own formula, `2πz(G(z²) − G(z²+100))`, from
             // above; it jumps in the plane, and has a slope of less than 1 elsewhere.
-            (_, Place::Plane { .. }) if kernel == Kernel::Inverse => match order {
+            (_, Place::Plane { .. }) if !kernel.is_finite_over(1) => match order {
                 1 => core::f64::consts::TAU,
                 2 if u > 0.0 => core::f64::consts::TAU,
                 _ => f64::INFINITY,
@@ -454,13 +453,8 @@ impl Bound {
     pub fn magnitude(&self, near: Nearness) -> f64 {
         let u = near.distance * self.width;
         let kernel = self.kernel;
-        let point = size(kernel, u);
-        let line = || match kernel {
-            // The inverse kernel's integral over an infinite line diverges.
-            Kernel::Inverse => f64::INFINITY,
-            Kernel::Gauss => core::f64::consts::PI.sqrt() * point,
-            _ => endless::line(kernel, u),
-        };
+        let point = kernel.at_most(u);
+        let line = || kernel.line_at_most(u, point);
         let endless = match self.dimension {
             0 => point,
             1 if let Some(crowding) = &self.crowding
@@ -478,12 +472,12 @@ impl Bound {
             1 => line(),
             // The integral over an infinite plane diverges; that over a face is largest for a disc
             // of its area around the foot of the perpendicular.
-            _ if self.whole.is_finite() && !kernel.falls_fast() => {
+            _ if self.whole.is_finite() && !kernel.is_finite_over(2) => {
                 let near = u * u;
                 let far = near + self.size / core::f64::consts::PI;
                 core::f64::consts::PI * kernel.over_ring(near, far) * (1.0 + 1e-12)
             }
-            _ => plane::jet(kernel, [0.0, 0.0, u]).value,
+            _ => kernel.plane(u).0,
         };
         smaller(self.whole * point, self.endless * endless)
     }
@@ -572,17 +566,4 @@ impl Bound {
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b || b.is_nan() { a } else { b }
-}
-
-/// Upper bound on the kernel's value, cheap to compute.
-#[inline]
-fn size(kernel: Kernel, u: f64) -> f64 {
-    match kernel {
-        // Single precision's exponential is right to 10⁻⁶, and not yet 0.
-        Kernel::Gauss if u < 9.0 => f64::from(Real::decay((u * u) as f32)) * (1.0 + 1e-5),
-        // e⁻⁸¹.
-        Kernel::Gauss => 7e-36,
-        Kernel::Cauchy => envelope::cauchy_point(u).0,
-        _ => kernel.value(u),
-    }
 }

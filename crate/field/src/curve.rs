@@ -28,30 +28,26 @@
 //! squared kernel is 10¹⁰ high and the cubed one 10¹⁵.
 use crate::bone::Curve;
 use crate::bone::curve::{SINGLE_TERMS, Span, TERMS};
-use crate::inverse::POLE2;
-use crate::metaballs::INNER2;
-use crate::{Jet, Kernel, Real, cubed};
+use crate::kernel::POLE2;
+use crate::kernel::falloff::{Falloff, Tail};
+use crate::{Jet, Real};
 
 /// Factor in `x = STEEP·sinh y` (see the module).
 const STEEP: f64 = core::f64::consts::FRAC_PI_2;
 
 /// Value and gradient at a local position.
-#[inline]
-pub fn jet<R: Real>(kernel: Kernel, bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R> {
-    // Each kernel gets a loop of its own.
-    match kernel {
-        Kernel::Cauchy => smooth(bone, p, |q| Kernel::Cauchy.pair(q)),
-        Kernel::Gauss => smooth(bone, p, |q| Kernel::Gauss.pair(q)),
-        Kernel::Inverse => with_pole(bone, p, false, |q| Kernel::Inverse.pair(q)),
-        Kernel::Squared => with_pole(bone, p, true, |q| Kernel::Squared.pair(q)),
-        Kernel::Cubed => match &bone.cone {
-            Some(cone) => cubed::cone::jet(cone, p),
-            None => with_pole(bone, p, true, |q| Kernel::Cubed.pair(q)),
-        },
-        Kernel::Metaballs => compact(bone, p, true, |q| Kernel::Metaballs.pair(q)),
-        Kernel::Soft => compact(bone, p, false, |q| Kernel::Soft.pair(q)),
-        Kernel::Quartic => compact(bone, p, false, |q| Kernel::Quartic.pair(q)),
-        Kernel::Compact6 => compact(bone, p, false, |q| Kernel::Compact6.pair(q)),
+#[inline(always)]
+pub fn jet<K: Falloff + ?Sized, R: Real>(bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R> {
+    let pair = |q: R| {
+        let (value, fall) = K::falling(q);
+        (value, -fall)
+    };
+    match K::TAIL {
+        Tail::Compact => compact(bone, p, K::KINKS, pair),
+        Tail::Power { exponent, .. } if K::TAIL.has_pole() => {
+            with_pole(bone, p, exponent > 1, pair)
+        }
+        Tail::Power { .. } | Tail::Fast => smooth(bone, p, pair),
     }
 }
 
@@ -144,7 +140,7 @@ fn with_pole<R: Real>(
 fn compact<R: Real>(
     bone: &Curve<R::Scalar>,
     p: [R; 3],
-    metaballs: bool,
+    kinks: &[f64],
     pair: impl Fn(R) -> (R, R),
 ) -> Jet<R> {
     let one = R::splat(1.0);
@@ -180,8 +176,8 @@ fn compact<R: Real>(
             };
             let side = Side::new(&around, end);
             let outer = side.inside(&around, one);
-            if metaballs {
-                let inner = side.inside(&around, R::splat(INNER2));
+            if let [kink, _] = kinks {
+                let inner = side.inside(&around, R::splat(kink * kink));
                 integrate(inner);
                 // The outer piece continues on the far side of the inner one.
                 let rising = side.start.lt(side.stop);

@@ -8,7 +8,7 @@
 //!
 //! The Cauchy kernel's envelopes are formulas; the other kernels' are tables, made once, from upper
 //! sums over steps of 1/64 octave.
-use crate::{Cut, Derivatives, Kernel};
+use crate::Kernel;
 use core::f64::consts::TAU;
 use std::sync::OnceLock;
 
@@ -44,27 +44,12 @@ pub fn order(kernel: Kernel) -> usize {
     kernel.smoothness().saturating_add(1).min(4)
 }
 
-/// Bounds on the third and the fourth derivative along any line inside a compact kernel's support,
-/// if all of the line is inside (for metaballs: the outer piece's, at its inner end, or none within
-/// reach of the kink at ⅓, so infinite).
-#[must_use]
-pub fn inside(kernel: Kernel) -> [f64; 2] {
-    match kernel {
-        // √y(12G″ + 8yG‴) and 12G″ + 48yG‴ at y ≤ q ≤ 1, G″ = 2c₂ + 6c₃v, G‴ = −6c₃.
-        Kernel::Soft | Kernel::Quartic | Kernel::Compact6 => {
-            let [c2, c3] = kernel.polynomial().unwrap_or_default();
-            [24.0 * c2 + 72.0 * c3, 24.0 * c2 + 288.0 * c3]
-        }
-        _ => [f64::INFINITY; 2],
-    }
-}
-
 /// Returns the bounds at a distance of `u ≥ 0` kernel widths or more.
 #[inline]
 #[must_use]
 pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
-    if kernel == Kernel::Cauchy {
-        return cauchy(u);
+    if let Some(roughness) = kernel.roughness(u) {
+        return roughness;
     }
     if kernel.is_compact() && u >= 1.0 {
         return Roughness::NONE;
@@ -76,10 +61,10 @@ pub fn roughness(kernel: Kernel, u: f64) -> Roughness {
 #[inline]
 #[must_use]
 pub fn rough_point(kernel: Kernel, u: f64) -> f64 {
-    if kernel == Kernel::Cauchy {
-        return cauchy_point(u).1;
+    match kernel.value_and_roughness(u) {
+        Some((_, point)) => point,
+        None => roughness(kernel, u).point,
     }
-    roughness(kernel, u).point
 }
 
 /// Bounds on the derivative of an order (1 to 3) along any line, at a distance of `u ≥ 0` or more,
@@ -92,40 +77,6 @@ pub fn derivative(kernel: Kernel, order: usize, u: f64) -> Roughness {
         return Roughness::NONE;
     }
     TABLES[order - 1][kernel as usize].get_or_init(|| tabulate(kernel, order))[index(u)]
-}
-
-/// Returns the Cauchy kernel's bounds. With x = 1+u², along any ray `k(t) = (P²+t²)⁻²` it has
-/// `|k⁗| = 24·|35w⁴−42w²+3|/(1+w²)²·X⁻⁴`, w = t/P, where X = P²(1+w²) is the value of x at t. The
-/// constants are upper envelopes of its integrals, checked numerically in this file's tests.
-#[inline]
-fn cauchy(u: f64) -> Roughness {
-    let x = 1.0 + u * u;
-    let y = 1.0 / x;
-    let root = y.sqrt();
-    let c = 1.0 - y;
-    Roughness {
-        point: cauchy_rough(x, y),
-        line: ((103.0 + 729.0 * c * c * c) * (y * y * y * root)).at_most(90.6),
-        plane: ((121.0 + 775.0 * c * c * c) * (y * y * y)).at_most(112.0),
-        // |k⁗| ≤ 840/(1+u²)⁴, and half the line's through the centre.
-        outward: (120.0 * (y * y * y) / u).at_most(45.3),
-    }
-}
-
-/// Returns the Cauchy kernel's value at a distance of u, and the bound on its fourth derivative.
-#[inline(always)]
-#[must_use]
-pub fn cauchy_point(u: f64) -> (f64, f64) {
-    let x = 1.0 + u * u;
-    let y = 1.0 / x;
-    (y * y, cauchy_rough(x, y))
-}
-
-#[inline(always)]
-fn cauchy_rough(x: f64, y: f64) -> f64 {
-    let w = x - 1.0;
-    let share = (35.0 * w * w - 42.0 * w + 3.0) * y * y;
-    (24.0 * (1.005 * share).at_least(4.3) * (y * y) * (y * y)).at_most(72.0)
 }
 
 /// Tables start at 2⁻¹⁸ (below which there is one entry) and end at 2¹⁴, with 32 entries an octave.
@@ -185,7 +136,7 @@ fn tabulate(kernel: Kernel, order: usize) -> Vec<Roughness> {
     // The step from 0 on may hold a peak of its own near a pole.
     rough[0] = largest.max(SLACK * along_any_line(kernel, order, 0.0));
     let last = places.len() - 1;
-    let plane_diverges = order == 1 && kernel == Kernel::Inverse;
+    let plane_diverges = order == 1 && !kernel.is_finite_over(1);
     // Entry 0 stands for all below the first place.
     let mut table = vec![integrate(&places, &rough, 0, plane_diverges)];
     let mut octave = 0;
@@ -242,9 +193,9 @@ fn integrate(places: &[f64], rough: &[f64], start: usize, plane_diverges: bool) 
 /// The largest derivative of this order over all directions at a distance u. With y the square of
 /// the direction's share of the distance: `2√y·G′`, `2G′+4yG″`, `√y(12G″+8yG‴)`,
 /// `12G″+48yG‴+16y²G⁗`.
-fn along_any_line(kernel: Kernel, order: usize, u: f64) -> f64 {
+pub(crate) fn along_any_line(kernel: Kernel, order: usize, u: f64) -> f64 {
     let q = u * u;
-    let Derivatives([_, g1, g2, g3, g4]) = kernel.derivatives(q);
+    let [_, g1, g2, g3, g4] = kernel.derivatives(q);
     let at = |y: f64| match order {
         1 => (2.0 * y.sqrt() * g1).abs(),
         2 => (2.0 * g1 + 4.0 * y * g2).abs(),
@@ -271,7 +222,7 @@ mod tests {
 
     /// The kernel along a line that passes at distance √p2, at t.
     fn on_line(kernel: Kernel, p2: f64, t: f64) -> f64 {
-        kernel.derivatives(p2 + t * t).0[0]
+        kernel.derivatives(p2 + t * t)[0]
     }
 
     #[test]
@@ -350,34 +301,6 @@ mod tests {
                     );
                 }
             }
-        }
-    }
-
-    #[test]
-    fn cauchys_formulas_are_envelopes() {
-        for i in 0..400 {
-            let x = 1.0 + 0.01 * f64::from(i * i) / 4.0;
-            let bound = cauchy((x - 1.0).sqrt());
-            for j in 0..200 {
-                let at = x + 0.008 * f64::from(j * j);
-                let here = along_any_line(Kernel::Cauchy, 4, (at - 1.0).sqrt());
-                assert!(
-                    here <= bound.point * (1.0 + 1e-9),
-                    "{x} {at}: {here} {bound:?}"
-                );
-            }
-            let (mut line, mut plane) = (0.0, 0.0);
-            let reach = 40.0 * x.sqrt();
-            let n = 4000;
-            for j in 0..n {
-                let v = (f64::from(j) + 0.5) / f64::from(n) * reach;
-                let dv = reach / f64::from(n);
-                let here = cauchy_rough(x + v * v, 1.0 / (x + v * v));
-                line += 2.0 * dv * here;
-                plane += TAU * v * dv * here;
-            }
-            assert!(line <= bound.line * 1.001, "{x} {line} {bound:?}");
-            assert!(plane <= bound.plane * 1.001, "{x} {plane} {bound:?}");
         }
     }
 }

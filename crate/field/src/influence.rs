@@ -3,7 +3,8 @@
 //! All lengths are in kernel widths, all fields for a factor of 1.
 use crate::bone::Bone;
 use crate::form::Form;
-use crate::{Cut, Kernel, Skeleton, plane, skeleton};
+use crate::kernel::Tail;
+use crate::{Cut, Kernel, Skeleton, skeleton};
 use core::f64::consts::PI;
 use glam::DVec3;
 
@@ -14,7 +15,11 @@ pub(crate) fn most_beyond(form: &Form<f64>, d: f64) -> f64 {
     match &form.bone {
         Bone::Point => kernel.value(d),
         Bone::Segment(segment) => abreast(kernel, 2.0 * segment.half, d),
-        Bone::Arc(arc) => arc_bound(kernel, 2.0 * arc.half_angle * arc.radius, arc.radius, d),
+        Bone::Arc(arc) => {
+            let length = 2.0 * arc.half_angle * arc.radius;
+            let bound = kernel.arc_at_most(length, arc.radius, d);
+            (length * kernel.value(d)).at_most(bound)
+        }
         Bone::Triangle(triangle) => {
             let area = triangle.double_area.abs() / 2.0;
             let longest = triangle.edges.iter().fold(0.0, |l, e| e.length.max(l));
@@ -28,7 +33,7 @@ pub(crate) fn most_beyond(form: &Form<f64>, d: f64) -> f64 {
             disc(kernel, area, d).at_most(altitude * abreast(kernel, longest, d))
         }
         Bone::Polygon(polygon) => disc(kernel, polygon.area.abs(), d),
-        Bone::Plane => plane::jet(kernel, [0.0, 0.0, d]).value,
+        Bone::Plane => kernel.plane(d).0,
         Bone::Curve(curve) => curve.most_beyond(kernel, d),
     }
 }
@@ -62,17 +67,6 @@ fn disc(kernel: Kernel, area: f64, d: f64) -> f64 {
     }
 }
 
-/// Returns a bound on the field of an arc. The Cauchy kernel has a sharp one; for others see
-/// [`Crowding`].
-fn arc_bound(kernel: Kernel, length: f64, radius: f64, d: f64) -> f64 {
-    let most = length * kernel.value(d);
-    if kernel == Kernel::Cauchy {
-        return most.at_most(circle(radius, d));
-    }
-    let crowding = Crowding::arc(length, radius);
-    most.at_most(crowding.integral_bound(d, |u| kernel.value(u), |a, b| kernel.between(a, b)))
-}
-
 /// Bound on the length of a bone within a ball: `gathers·δ` for a radius δ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crowding {
@@ -91,7 +85,7 @@ impl Crowding {
         let length = measure * width;
         let [radius, gathers] = match skeleton {
             Skeleton::Arc { radius, .. } => [radius * width, PI],
-            Skeleton::Curve { control } => [length, gathers(*control)],
+            line if line.is_numeric() => [length, line.cubics(0.0).into_iter().map(gathers).sum()],
             _ => return None,
         };
         (length > 0.0).then_some(Self {
@@ -102,7 +96,7 @@ impl Crowding {
     }
 
     /// The bound for an arc.
-    fn arc(length: f64, radius: f64) -> Self {
+    pub fn arc(length: f64, radius: f64) -> Self {
         Self {
             length,
             radius,
@@ -172,27 +166,6 @@ fn gathers(control: [DVec3; 4]) -> f64 {
     best
 }
 
-/// Returns a bound on the Cauchy field of any arc of a circle at distance d or more from the arc.
-///
-/// Let the point's distance from the arc be δ ≥ d and ρ its distance from the axis. Along the arc,
-/// on either side of the antipode of the point, the squared distance to the point at angle v from
-/// the nearer end of that side (or from the nearest point) is at least `δ² + 4rρ sin²(v/2)`. So
-/// the field is at most that of the full circle at the same δ and ρ, which falls with both, and
-/// ρ ≥ r−δ. In the plane of the circle inside it, with a = δ, b = 2r−δ and P = ab, that is
-/// `πr(2+4r²−2P)/(1+4r²−2P+P²)^{3/2}`: it rises with P up to the P* below (the field of a circle
-/// is largest slightly inside), then falls to the centre. Further out than r it is at most
-/// `2πr·h(d)`, its value on the axis.
-fn circle(r: f64, d: f64) -> f64 {
-    if d >= r {
-        return 2.0 * PI * r * Kernel::Cauchy.value(d);
-    }
-    let k = 4.0 * r * r;
-    let peak = 2.0 * (4.0 + k) / ((8.0 + 3.0 * k) + (9.0 * k * k + 32.0 * k).sqrt());
-    let p = (d * (2.0 * r - d)).at_least(peak).at_most(r * r);
-    let product = 1.0 + k - 2.0 * p + p * p;
-    PI * r * (2.0 + k - 2.0 * p) / (product * product.sqrt())
-}
-
 /// The distance beyond which `factor·most_beyond` is below `level`, or 0 if it is everywhere; a
 /// compact kernel's support at most.
 pub(crate) fn depth(form: &Form<f64>, factor: f64, level: f64) -> f64 {
@@ -207,8 +180,8 @@ pub(crate) fn depth(form: &Form<f64>, factor: f64, level: f64) -> f64 {
             _ => 1.0,
         };
     }
-    if let (Kernel::Gauss, Bone::Point) = (form.kernel, &form.bone) {
-        return libm::log(factor / level).max(0.0).sqrt() * (1.0 + 1e-9);
+    if let (Tail::Fast, Bone::Point) = (form.kernel.tail(), &form.bone) {
+        return form.kernel.square_of(factor / level).max(0.0).sqrt() * (1.0 + 1e-9);
     }
     let mut outside = 1.0;
     while !below(outside) {

@@ -1,6 +1,7 @@
 //! Kinks of profiles: where a wave has a kink or a jump and where a parameter is clamped to [0, 1].
 //! They lie on planes, across a segment or a triangle, or through the axis of an arc: a ray meets
 //! each plane at one parameter, and between those the field is smooth.
+use crate::skeleton::orthonormal;
 use crate::{Primitive, Skeleton, Wave};
 use glam::DVec3;
 
@@ -83,10 +84,7 @@ pub fn of(primitive: &Primitive) -> Vec<Kink> {
             angle,
             ..
         } if profile.waves[0] != Wave::One => {
-            let x = u.try_normalize().unwrap_or(DVec3::X);
-            let y = (*v - x * x.dot(*v))
-                .try_normalize()
-                .unwrap_or_else(|| x.any_orthonormal_vector());
+            let (x, y) = orthonormal(*u, *v);
             let mut at = |azimuth: f64, jumps: bool| {
                 let (sine, cosine) = libm::sincos(azimuth);
                 kinks.push(Kink {
@@ -101,11 +99,7 @@ pub fn of(primitive: &Primitive) -> Vec<Kink> {
             }
         }
         // No parameters, or none that matters.
-        Skeleton::Point { .. }
-        | Skeleton::Arc { .. }
-        | Skeleton::Polygon { .. }
-        | Skeleton::Curve { .. }
-        | Skeleton::Plane { .. } => (),
+        _ => (),
     }
     kinks
 }
@@ -171,7 +165,7 @@ mod tests {
         let shaping = Shaping {
             kernel: Kernel::Cauchy,
             radius: 0.5,
-            blobbiness: -0.5,
+            blobbiness: 0.5,
             blob_scale: BlobScale::Relative,
             strength: 1.0,
             influence: 1e-3,

@@ -8,7 +8,7 @@
 //! let shaping = Shaping {
 //!     kernel: Kernel::Cauchy,
 //!     radius: 0.3,
-//!     blobbiness: -1.0,
+//!     blobbiness: 1.0,
 //!     blob_scale: BlobScale::Relative,
 //!     strength: 1.0,
 //!     influence: 1e-3,
@@ -27,9 +27,9 @@
 //! F is larger. This room knows only mathematics: values, gradients, bounds and ray intervals.
 //!
 //! Where to find what:
-//! - the formula of a Cauchy arc is in `cauchy/arc.rs`, and so on; `form.rs` is the chart that
-//!   says which formula serves which kernel on which bone; the crate `oracle` holds them to
-//!   quadrature;
+//! - a [`Kernel`] is a file, `kernel/cauchy.rs` and so on, which says all of it: names, tail,
+//!   widths, and which formula serves which bone; the formula of a Cauchy arc is in
+//!   `kernel/cauchy/arc.rs`; the crate `oracle` holds them to quadrature;
 //! - [`Shaping`] turns a radius, a blobbiness and a strength into a kernel's width and height;
 //! - [`Implicit`] is any function with a surface, with value, gradient and proven bounds; [`Sum`]
 //!   is the convolution surface's, [`Exponentials`] that of metaballs that fall with distance;
@@ -59,34 +59,25 @@ pub mod blob_chain;
 mod bone;
 pub mod bound;
 mod carlson;
-mod cauchy;
 mod clausen;
 mod compiled;
-mod cubed;
 mod curve;
 mod cut;
-pub mod endless;
 mod envelope;
 mod error_function;
 mod exponentials;
 mod far;
 pub mod far_field;
 mod form;
-mod gauss;
 mod implicit;
 mod influence;
 pub mod integral;
-mod inverse;
 pub mod kernel;
 pub mod kinks;
 mod legendre;
 pub mod local;
 mod logarithm;
-mod metaballs;
 mod placed;
-mod plane;
-mod point;
-mod polynomial;
 pub mod primitive;
 pub mod profile;
 mod ramp;
@@ -97,7 +88,6 @@ mod ripple;
 pub mod shaping;
 pub mod skeleton;
 mod sort;
-mod squared;
 mod sum;
 mod term;
 mod waves;
@@ -110,7 +100,7 @@ pub use cut::Cut;
 pub use exponentials::Exponentials;
 pub use far_field::FarField;
 pub use implicit::{Ball, Clearance, Enclosure, Implicit, Part, Slack, Variation};
-pub use kernel::{Derivatives, Kernel};
+pub use kernel::Kernel;
 pub use kinks::Kink;
 pub use local::Local;
 pub use logarithm::Logarithm;

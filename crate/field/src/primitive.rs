@@ -101,16 +101,8 @@ impl Primitive {
         };
         let peak = profile.map_or(1.0, |p| p.largest());
         let usable = skeleton.is_finite() && peak.is_finite() && height != 0.0;
-        let size = match &skeleton {
-            Skeleton::Point { .. } | Skeleton::Plane { .. } => 0.0,
-            Skeleton::Segment { base, apex } => (*apex - *base).length(),
-            Skeleton::Arc { radius, .. } => *radius,
-            Skeleton::Triangle { corners: [a, b, c] } => (*b - *a).length().max((*c - *a).length()),
-            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => skeleton
-                .bounding_sphere()
-                .map_or(0.0, |(_, radius)| 2.0 * radius),
-        };
-        let numeric = tapered.is_some() || matches!(skeleton, Skeleton::Curve { .. });
+        let size = skeleton.size();
+        let numeric = tapered.is_some() || skeleton.is_numeric();
         if numeric && shaping.widths_along(skeleton.measure()) > LONGEST {
             return None;
         }

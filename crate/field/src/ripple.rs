@@ -91,10 +91,7 @@ impl Ripple {
                 (by, Some([radius.max(f64::MIN_POSITIVE), rise]))
             }
             // These have no parameters.
-            Skeleton::Point { .. }
-            | Skeleton::Polygon { .. }
-            | Skeleton::Curve { .. }
-            | Skeleton::Plane { .. } => return None,
+            _ => return None,
         };
         let changes = arc.map_or(by != [0.0; 4], |[_, rise]| rise > 0.0);
         changes.then_some(Self { by, arc })
@@ -218,7 +215,7 @@ mod tests {
             let shaping = Shaping {
                 kernel: Kernel::Cauchy,
                 radius: 0.2,
-                blobbiness: -1.0,
+                blobbiness: 1.0,
                 blob_scale: BlobScale::Relative,
                 strength: 1.0,
                 influence: 1e-3,

@@ -1,5 +1,5 @@
 //! Kernels' widths and heights from the user's radius, blobbiness and strength.
-use crate::{Kernel, Skeleton, THRESHOLD, endless, metaballs, plane};
+use crate::{Kernel, Skeleton, THRESHOLD};
 use serde::{Deserialize, Serialize};
 
 /// Ways to read a blobbiness B (`blobscale`).
@@ -28,7 +28,7 @@ pub struct Taper {
     /// Radius in isolation there. One that is smaller than [`SLIMMEST`] of the larger end's, 0 for
     /// example, is taken to be that, so that the field at a tip is finite.
     pub radius: f64,
-    /// Blobbiness there.
+    /// Blobbiness there, > 0.
     pub blobbiness: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct Shaping {
     pub kernel: Kernel,
     /// Radius in isolation R.
     pub radius: f64,
-    /// Blobbiness B; only its magnitude counts.
+    /// Blobbiness B, > 0.
     pub blobbiness: f64,
     /// Way to read `blobbiness`.
     pub blob_scale: BlobScale,
@@ -58,9 +58,9 @@ impl Shaping {
     /// Whether a skeleton with this shaping has a different kernel at every place.
     #[must_use]
     pub fn varies_along(&self, skeleton: &Skeleton) -> bool {
-        let differs = self.taper.is_some_and(|end| {
-            end.radius != self.radius || end.blobbiness.abs() != self.blobbiness.abs()
-        });
+        let differs = self
+            .taper
+            .is_some_and(|end| end.radius != self.radius || end.blobbiness != self.blobbiness);
         differs && skeleton.dimension() == 1
     }
 
@@ -81,7 +81,7 @@ impl Shaping {
         };
         Self {
             radius: mix(slim(self.radius), slim(end.radius)),
-            blobbiness: mix(self.blobbiness.abs(), end.blobbiness.abs()),
+            blobbiness: mix(self.blobbiness, end.blobbiness),
             taper: None,
             ..*self
         }
@@ -98,7 +98,7 @@ impl Shaping {
     /// Returns the blobbiness |B| in Blinn's dimensionless sense, `|B|·R²` if it was given
     /// absolutely.
     fn relative(&self) -> f64 {
-        let b = self.blobbiness.abs();
+        let b = self.blobbiness;
         match self.blob_scale {
             BlobScale::Relative => b,
             BlobScale::Absolute => b * self.radius * self.radius,
@@ -106,45 +106,18 @@ impl Shaping {
     }
 
     /// The kernel's width parameter, an inverse length: distances times it are the kernel's u
-    /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative (the radius), or
+    /// (fields.md, section 4). `None` if radius or blobbiness are zero, negative, or
     /// not finite.
     ///
-    /// Cauchy and Gauss `√|B|/R`. For compact kernels 1/D, with the depth D at which their
-    /// logarithmic slope at R is Blinn's, `−2|B|`: quartic `D = R√(1+2/|B|)`, compact6
-    /// `R√(1+3/|B|)`, metaballs `R/u` with `u = |B|/(1+|B|)` if that is over ⅓, else
-    /// `u² = |B|/(3(1+|B|))`; soft: v = 1−u² solves `(12+4|B|)v² + (5|B|−2)v = 10`. The inverse,
-    /// the squared and the cubed kernel have no width: 1/R, whatever B is.
+    /// Cauchy and Gauss `√|B|/R`. Compact kernels have the depth 1/s at which their logarithmic
+    /// slope at R is Blinn's, `−2|B|`. Kernels with a pole have no width: 1/R, whatever B is. The
+    /// formulas stand in the kernels' files.
     #[must_use]
     pub fn width(&self) -> Option<f64> {
         let b = self.relative();
-        let at_radius = match self.kernel {
-            Kernel::Cauchy | Kernel::Gauss => b.sqrt(),
-            Kernel::Inverse | Kernel::Squared | Kernel::Cubed => 1.0,
-            Kernel::Quartic => 1.0 / (1.0 + 2.0 / b).sqrt(),
-            Kernel::Compact6 => 1.0 / (1.0 + 3.0 / b).sqrt(),
-            Kernel::Metaballs => {
-                let outer = b / (1.0 + b);
-                if outer > metaballs::INNER {
-                    outer
-                } else {
-                    (outer / 3.0).sqrt()
-                }
-            }
-            Kernel::Soft => {
-                let (two_a, half_b) = (12.0 + 4.0 * b, (5.0 * b - 2.0) / 2.0);
-                // The stable one of the two forms of the positive root.
-                let root = (half_b * half_b + 10.0 * two_a).sqrt();
-                let v = if half_b > 0.0 {
-                    10.0 / (half_b + root)
-                } else {
-                    (root - half_b) / two_a
-                };
-                (1.0 - v).max(0.0).sqrt()
-            }
-        };
-        let width = at_radius / self.radius;
+        let width = self.kernel.width(b) / self.radius;
         let usable = |x: f64| x.is_finite() && x > 0.0;
-        (usable(self.radius) && b.is_finite() && usable(width)).then_some(width)
+        (usable(self.radius) && b.is_finite() && b >= 0.0 && usable(width)).then_some(width)
     }
 
     /// The factor on the integral of the kernel over a skeleton of this kind (thesis, section
@@ -163,8 +136,8 @@ impl Shaping {
         let x = s * self.radius;
         let field_at_radius = match skeleton.dimension() {
             0 => self.kernel.value(x),
-            1 => endless::line(self.kernel, x) / s,
-            _ => plane::jet(self.kernel, [0.0, 0.0, x]).value / (s * s),
+            1 => self.kernel.line(x) / s,
+            _ => self.kernel.plane(x).0 / (s * s),
         };
         let height = self.strength * THRESHOLD / field_at_radius;
         height.is_finite().then_some(height)
@@ -178,8 +151,8 @@ impl Shaping {
         let kernel = self.kernel;
         let reference = |u: f64| match dimension {
             0 => kernel.value(u),
-            1 => endless::line(kernel, u),
-            _ => plane::jet(kernel, [0.0, 0.0, u]).value,
+            1 => kernel.line(u),
+            _ => kernel.plane(u).0,
         };
         let field_at = |radius: f64| {
             let shaping = Self { radius, ..*self };

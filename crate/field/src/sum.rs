@@ -16,7 +16,7 @@ use wide::f32x8;
 /// let shaping = Shaping {
 ///     kernel: Kernel::Gauss,
 ///     radius: 0.5,
-///     blobbiness: -2.0,
+///     blobbiness: 2.0,
 ///     blob_scale: BlobScale::Relative,
 ///     strength: 1.0,
 ///     influence: 1e-3,

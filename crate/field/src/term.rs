@@ -1,11 +1,11 @@
 //! Primitives made ready for evaluation: a closed form, and the frame in which it is written.
 use crate::bone::curve::Law;
-use crate::bone::{Arc, Bone, Curve, Polygon, Segment, Triangle};
-use crate::cubed::cone::Cone;
+use crate::bone::{Bone, Curve};
 use crate::form::Form;
-use crate::skeleton::{area_vector, cubic, orthonormal};
+use crate::kernel::cubed::cone::Cone;
+use crate::skeleton::cubic;
 use crate::waves::Waves;
-use crate::{Jet, Kernel, Real, Skeleton, point};
+use crate::{Jet, Kernel, Real, Skeleton};
 use glam::{DMat3, DVec3};
 
 /// Local coordinates: `axes·(p − origin)`; the axes are orthogonal and as long as the kernel's
@@ -123,7 +123,7 @@ impl<S: Copy> Term<S> {
             let x = (p[i] - origin[i]) * scale;
             x.min(horizon).max(-horizon)
         });
-        let jet = point::jet(self.form.kernel, local);
+        let jet = self.form.kernel.jet(&Bone::Point, local);
         let amplitude = R::lift(self.amplitude);
         let steep = amplitude * scale;
         Jet {
@@ -171,102 +171,8 @@ impl Prepared {
 
 /// The local frame and closed form of a skeleton, for the kernel's width parameter s.
 pub(crate) fn place(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Form<f64>) {
-    let (frame, bone) = place_bone(skeleton, kernel, s);
+    let (frame, bone) = skeleton.place(kernel, s);
     (frame, Form { kernel, bone })
-}
-
-fn place_bone(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>) {
-    match *skeleton {
-        Skeleton::Point { center } => (frame(center, DMat3::IDENTITY, s), Bone::Point),
-        Skeleton::Segment { base, apex } => {
-            let x = (apex - base).try_normalize().unwrap_or(DVec3::X);
-            let y = x.any_orthonormal_vector();
-            let half = s * (apex - base).length() / 2.0;
-            (
-                frame((base + apex) / 2.0, DMat3::from_cols(x, y, x.cross(y)), s),
-                Bone::Segment(Segment { half }),
-            )
-        }
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let (u, v) = orthonormal(u, v);
-            let angle = angle.clamp(0.0, core::f64::consts::TAU);
-            let arc = Arc::new(s * radius, angle);
-            let (sine, cosine) = libm::sincos(angle / 2.0);
-            let x = (u * cosine + v * sine) * arc.side;
-            let z = u.cross(v);
-            (
-                frame(center + x * radius, DMat3::from_cols(x, z.cross(x), z), s),
-                Bone::Arc(arc),
-            )
-        }
-        Skeleton::Triangle { corners: [a, b, c] } => {
-            // The normal is best conditioned at the corner opposite the longest side; which one
-            // matters only for slivers.
-            let x = [b - a, c - b, a - c]
-                .into_iter()
-                .max_by(|p, q| p.length_squared().total_cmp(&q.length_squared()))
-                .and_then(DVec3::try_normalize)
-                .unwrap_or(DVec3::X);
-            let normal = (b - a).cross(c - a);
-            let z = (normal - x * normal.dot(x))
-                .try_normalize()
-                .unwrap_or_else(|| x.any_orthonormal_vector());
-            let axes = DMat3::from_cols(x, z.cross(x), z);
-            let origin = a + ((b - a) + (c - a)) / 3.0;
-            let corners = [a, b, c].map(|p| {
-                let local = axes.transpose() * (p - origin) * s;
-                [local.x, local.y]
-            });
-            (
-                frame(origin, axes, s),
-                Bone::Triangle(Box::new(Triangle::new(corners))),
-            )
-        }
-        Skeleton::Polygon { ref rings } => {
-            let z = area_vector(rings).try_normalize().unwrap_or(DVec3::Z);
-            let x = z.any_orthonormal_vector();
-            let axes = DMat3::from_cols(x, z.cross(x), z);
-            let corners: Vec<DVec3> = rings.iter().flatten().copied().collect();
-            let origin = corners.iter().sum::<DVec3>() / corners.len().max(1) as f64;
-            let flat: Vec<Vec<[f64; 2]>> = rings
-                .iter()
-                .map(|ring| {
-                    ring.iter()
-                        .map(|p| {
-                            let local = axes.transpose() * (*p - origin) * s;
-                            [local.x, local.y]
-                        })
-                        .collect()
-                })
-                .collect();
-            (
-                frame(origin, axes, s),
-                Bone::Polygon(Box::new(Polygon::new(flat))),
-            )
-        }
-        Skeleton::Curve { control } => {
-            let origin = control.iter().sum::<DVec3>() / 4.0;
-            let cubics = [cubic(control.map(|p| (p - origin) * s))];
-            (
-                frame(origin, DMat3::IDENTITY, s),
-                Bone::Curve(Box::new(Curve::new(kernel, &cubics, &cubics, None))),
-            )
-        }
-        Skeleton::Plane { point, normal } => {
-            let z = normal.try_normalize().unwrap_or(DVec3::Z);
-            let x = z.any_orthonormal_vector();
-            (
-                frame(point, DMat3::from_cols(x, z.cross(x), z), s),
-                Bone::Plane,
-            )
-        }
-    }
 }
 
 /// Prepares a segment, an arc or a curve in its local frame, with a width and a height that vary
@@ -277,64 +183,26 @@ pub(crate) fn curve_with_taper(
     kernel: Kernel,
     law: Law<'_>,
 ) -> Curve<f64> {
-    let local = |control: [DVec3; 4]| cubic(control.map(|p| frame.local_point(p)));
-    match *skeleton {
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let (u, v) = orthonormal(u, v);
-            let angle = angle.clamp(0.0, core::f64::consts::TAU);
-            // A cubic over the angle φ is off by 1.8·10⁻⁵·φ⁶ of the radius, outward: 2.5·10⁻¹³ for
-            // π/64, and 6.6·10⁻⁸ for π/8, less if the circle is many widths large.
-            let cubics = |widest: f64| -> Vec<_> {
-                let pieces = (angle / widest).ceil().max(1.0);
-                let turn = angle / pieces;
-                let reach = 4.0 / 3.0 * libm::tan(turn / 4.0);
-                let corner = |i: u32| {
-                    let (sine, cosine) = libm::sincos(turn * f64::from(i));
-                    let p = center + radius * (u * cosine + v * sine);
-                    (p, radius * reach * (v * cosine - u * sine))
-                };
-                (0..pieces as u32)
-                    .map(|i| {
-                        let ((a, along_a), (b, along_b)) = (corner(i), corner(i + 1));
-                        local([a, a + along_a, b - along_b, b])
-                    })
-                    .collect()
-            };
-            let scale = DVec3::from_array(frame.axes[0]).length();
-            let coarse =
-                core::f64::consts::FRAC_PI_8 / libm::cbrt((radius * scale).max(1.0)).sqrt();
-            let fine = core::f64::consts::PI / 64.0;
-            Curve::new(kernel, &cubics(fine), &cubics(coarse.max(fine)), Some(law))
-        }
-        _ => {
-            let control = match *skeleton {
-                Skeleton::Curve { control } => control,
-                Skeleton::Segment { base, apex } => {
-                    [0.0, 1.0, 2.0, 3.0].map(|i| base + (apex - base) * (i / 3.0))
-                }
-                _ => [DVec3::ZERO; 4],
-            };
-            let cubics = [local(control)];
-            if let (Kernel::Cubed, Skeleton::Segment { base, apex }) = (kernel, skeleton) {
-                let half = 0.5 * frame.local_vector(*apex - *base).length();
-                // A kernel's width parameter is 1/R.
-                let radii = [0.0, 1.0].map(|end| 1.0 / law(end)[1].sqrt());
-                if let Some(cone) = Cone::new(half, radii) {
-                    return Curve::straight(cone, cubics[0], law);
-                }
-            }
-            Curve::new(kernel, &cubics, &cubics, Some(law))
+    let cubics = |s: f64| -> Vec<_> {
+        let cubics = skeleton.cubics(s).into_iter();
+        let local = cubics.map(|control| cubic(control.map(|p| frame.local_point(p))));
+        local.collect()
+    };
+    let fine = cubics(0.0);
+    if let (true, Skeleton::Segment { base, apex }) = (kernel.has_cones(), skeleton) {
+        let half = 0.5 * frame.local_vector(*apex - *base).length();
+        // A kernel's width parameter is 1/R.
+        let radii = [0.0, 1.0].map(|end| 1.0 / law(end)[1].sqrt());
+        if let Some(cone) = Cone::new(half, radii) {
+            return Curve::straight(kernel, cone, fine[0], law);
         }
     }
+    let scale = DVec3::from_array(frame.axes[0]).length();
+    Curve::new(kernel, &fine, &cubics(scale), Some(law))
 }
 
-fn frame(origin: DVec3, axes: DMat3, s: f64) -> Frame<f64> {
+/// Makes a frame of unit axes.
+pub(crate) fn frame(origin: DVec3, axes: DMat3, s: f64) -> Frame<f64> {
     Frame {
         origin: origin.to_array(),
         axes: [

@@ -31,18 +31,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let row = deformation.weights(vertex).iter();
         weights.extend(row.map(|(control, weight)| json!([vertex, control, weight])));
     }
-    let triples = |points: &[glam::DVec3]| -> Vec<[f64; 3]> {
-        points.iter().map(glam::DVec3::to_array).collect()
-    };
+    let [vertices, points, moves] = [&head.positions[..], truth.points(), &fitted.moves]
+        .map(|points| points.iter().map(glam::DVec3::to_array).collect::<Vec<_>>());
     let problem = json!({
-        "vertices": triples(&head.positions),
+        "vertices": vertices,
         "triangles": head.triangles,
         "controls": cage.positions.len(),
         "weights": weights,
-        "points": triples(truth.points()),
+        "points": points,
         "stiffness": problem.stiffness(),
         "smooth": fitted.smooth,
-        "moves": triples(&fitted.moves),
+        "moves": moves,
     });
     std::fs::write(path, problem.to_string())?;
     println!(

@@ -164,15 +164,16 @@ impl Target {
 
     /// The nearest point, and the unit normal of its facet; 0 for one without area.
     fn nearest(&self, point: DVec3) -> (DVec3, DVec3) {
-        let at = |i: u32| nearest(&self.facets[i as usize], point).point;
-        let found = self
-            .bvh
-            .nearest(point, f64::INFINITY, |i| at(i).distance_squared(point));
+        let found = self.bvh.nearest(point, f64::INFINITY, |i| {
+            let nearest = nearest(&self.facets[i as usize], point).point;
+            nearest.distance_squared(point)
+        });
         let Some((facet, _)) = found else {
             return (point, DVec3::ZERO);
         };
-        let [a, b, c] = self.facets[facet as usize];
-        (at(facet), (b - a).cross(c - a).normalize_or_zero())
+        let facet @ [a, b, c] = self.facets[facet as usize];
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        (nearest(&facet, point).point, normal)
     }
 
     /// Iterated closest points. Returns the mean distance of the trusted points, and how they are

@@ -28,13 +28,12 @@ pub fn cage(positions: &[DVec3], triangles: &[[u32; 3]], count: usize) -> Triang
     let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
     used.sort_unstable();
     used.dedup();
-    let place = |i: u32| positions[i as usize];
-    let bounds = Aabb::of_points(used.iter().map(|i| place(*i)));
+    let bounds = Aabb::of_points(used.iter().map(|i| positions[*i as usize]));
     let count = count.min(used.len().div_ceil(3)).max(4).min(used.len());
     // The next one is the furthest from those before.
     let mut gaps: Vec<f64> = used
         .iter()
-        .map(|i| -place(*i).distance_squared(bounds.center()))
+        .map(|i| -positions[*i as usize].distance_squared(bounds.center()))
         .collect();
     let mut owner = vec![0_u32; positions.len()];
     let mut chosen: Vec<u32> = Vec::new();
@@ -50,9 +49,9 @@ pub fn cage(positions: &[DVec3], triangles: &[[u32; 3]], count: usize) -> Triang
         if !chosen.is_empty() && gaps[furthest] <= 0.0 {
             break;
         }
-        let center = place(used[furthest]);
+        let center = positions[used[furthest] as usize];
         for (gap, i) in gaps.iter_mut().zip(&used) {
-            let square = place(*i).distance_squared(center);
+            let square = positions[*i as usize].distance_squared(center);
             if chosen.is_empty() || square < *gap {
                 *gap = square;
                 owner[*i as usize] = chosen.len() as u32;
@@ -63,7 +62,7 @@ pub fn cage(positions: &[DVec3], triangles: &[[u32; 3]], count: usize) -> Triang
     let shift = OUTSIDE * bounds.size().length();
     let controls: Vec<DVec3> = chosen
         .iter()
-        .map(|i| place(*i) + normals[*i as usize] * shift)
+        .map(|i| positions[*i as usize] + normals[*i as usize] * shift)
         .collect();
     let mut seen = BTreeSet::new();
     let between = triangles.iter().filter_map(|triangle| {
@@ -97,6 +96,21 @@ fn normals(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     normals
 }
 
+/// Returns the [`NEAR`] points nearest to that of a number, with the squares of their distances.
+fn nearest(points: &[DVec3], i: usize) -> Vec<(f64, u32)> {
+    let mut near: Vec<(f64, u32)> = (0..)
+        .zip(points)
+        .filter(|(j, _)| *j as usize != i)
+        .map(|(j, p)| (p.distance_squared(points[i]), j))
+        .collect();
+    if near.len() > NEAR {
+        near.select_nth_unstable_by(NEAR, by_distance);
+        near.truncate(NEAR);
+    }
+    near.sort_by(by_distance);
+    near
+}
+
 /// Returns triangles between control points that stand anywhere: those of near neighbours whose
 /// circumcircle's ball holds no other (Gabriel's), and, for a point without any, one with its two
 /// nearest. None for fewer than three points.
@@ -114,21 +128,8 @@ pub fn web(controls: &[DVec3]) -> Vec<[u32; 3]> {
         return Vec::new();
     }
     let mut has_any = vec![false; controls.len()];
-    let nearest = |i: usize| {
-        let mut near: Vec<(f64, u32)> = (0..)
-            .zip(controls)
-            .filter(|(j, _)| *j as usize != i)
-            .map(|(j, p)| (p.distance_squared(controls[i]), j))
-            .collect();
-        if near.len() > NEAR {
-            near.select_nth_unstable_by(NEAR, by_distance);
-            near.truncate(NEAR);
-        }
-        near.sort_by(by_distance);
-        near
-    };
     for i in 0..controls.len() {
-        let near = nearest(i);
+        let near = nearest(controls, i);
         for (at, (_, j)) in near.iter().enumerate() {
             for (_, k) in &near[..at] {
                 let corners = [i as u32, *j, *k].map(|n| controls[n as usize]);
@@ -153,7 +154,7 @@ pub fn web(controls: &[DVec3]) -> Vec<[u32; 3]> {
         }
     }
     for (i, has) in has_any.iter().enumerate() {
-        if !has && let [(_, j), (_, k), ..] = nearest(i)[..] {
+        if !has && let [(_, j), (_, k), ..] = nearest(controls, i)[..] {
             let mut key = [i as u32, j, k];
             key.sort_unstable();
             found.insert(key);

@@ -47,19 +47,17 @@ impl Grid {
         if leading.len() < self.width * self.height || self.values.len() < leading.len() {
             return pieces;
         }
-        // On either side of a sheet a field is above its level by half of what it leads by.
-        let touches = |index: usize| {
-            let (_, apart) = leading[index];
-            apart.is_finite()
-                && (self.values[index] - level - 0.5 * apart).abs() < 0.03 * (1.0 + apart)
-        };
         for y in 0..self.height.saturating_sub(1) {
             for x in 0..self.width.saturating_sub(1) {
                 let corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
                 let at = corners.map(|[x, y]| y * self.width + x);
-                if at.iter().all(|i| leading[*i].0 == leading[at[0]].0)
-                    || !at.iter().all(|i| touches(*i))
-                {
+                // Beside a sheet a field is above its level by half of what it leads by.
+                let is_sheet = at.iter().all(|i| {
+                    let (_, apart) = leading[*i];
+                    let off = self.values[*i] - level - 0.5 * apart;
+                    apart.is_finite() && off.abs() < 0.03 * (1.0 + apart)
+                });
+                if !is_sheet || at.iter().all(|i| leading[*i].0 == leading[at[0]].0) {
                     continue;
                 }
                 let mut crossings = Vec::new();
@@ -96,10 +94,6 @@ impl Grid {
         }
         for y in 0..self.height.saturating_sub(1) {
             let mut run: Option<usize> = None;
-            let top = |from: usize, to: usize| {
-                let [l, r, t] = [from as f32, to as f32, y as f32];
-                vec![[l, t], [r, t], [r, t + 1.0], [l, t + 1.0]]
-            };
             for x in 0..self.width - 1 {
                 let corners = [
                     ([x, y], self.get(x, y)),
@@ -113,18 +107,24 @@ impl Grid {
                     continue;
                 }
                 if let Some(from) = run.take() {
-                    polygons.push(top(from, x));
+                    polygons.push(strip(from, x, y));
                 }
                 if above > 0 {
                     polygons.push(cut(corners, level));
                 }
             }
             if let Some(from) = run {
-                polygons.push(top(from, self.width - 1));
+                polygons.push(strip(from, self.width - 1, y));
             }
         }
         polygons
     }
+}
+
+/// Returns the cells of a row from one column to another, as one rectangle.
+fn strip(from: usize, to: usize, row: usize) -> Vec<[f32; 2]> {
+    let [l, r, t] = [from as f32, to as f32, row as f32];
+    vec![[l, t], [r, t], [r, t + 1.0], [l, t + 1.0]]
 }
 
 /// Returns the part of a cell that is above the level.
@@ -229,25 +229,28 @@ mod tests {
 
     #[test]
     fn saddles_do_not_cross() {
-        let grid = |values: [f32; 4]| Grid {
-            width: 2,
-            height: 2,
-            values: values.to_vec(),
-        };
+        fn line(values: [f32; 4]) -> Vec<[[f32; 2]; 2]> {
+            let grid = Grid {
+                width: 2,
+                height: 2,
+                values: values.to_vec(),
+            };
+            grid.line(0.3)
+        }
         // Row by row: corners 0, 1, then 3, 2.
         for values in [
             [1.0, 0.0, 0.0, 1.0],
             [0.9, 0.0, 0.0, 0.2],
             [0.0, 1.0, 0.4, 0.0],
         ] {
-            let line = grid(values).line(0.3);
+            let line = line(values);
             assert_eq!(
                 line.len(),
                 if values[3] == 0.2 { 1 } else { 2 },
                 "{values:?}"
             );
         }
-        let line = grid([f32::NAN, 0.0, 0.0, 1.0]).line(0.3);
+        let line = line([f32::NAN, 0.0, 0.0, 1.0]);
         assert!(line.is_empty());
     }
 }

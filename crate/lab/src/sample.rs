@@ -12,7 +12,7 @@ pub fn shaping(kernel: Kernel, radius: f64, blobbiness: f64) -> Shaping {
     Shaping {
         kernel,
         radius,
-        blobbiness: -blobbiness,
+        blobbiness,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,

@@ -1,6 +1,7 @@
 //! Cages: coarse closed meshes around the pieces of a skeleton, whose vertices are rays.
 
 use core::f64::consts::TAU;
+use field::Skeleton;
 use glam::DVec3;
 use mesh::TriangleMesh;
 use scene::{Form, Scene, Shape, Surface};
@@ -288,29 +289,23 @@ impl Cage {
             }
             let radius = scene.radius(element);
             match &element.shape {
-                Shape::Sphere { center, .. } => others.push(Self::around_point(*center, radius)),
-                Shape::Cylinder { base, apex, .. } | Shape::Pipe { base, apex, .. } => {
-                    lines.push([(*base, radius), (*apex, radius)]);
-                }
-                Shape::Cone {
-                    base,
-                    base_radius,
-                    apex,
-                    apex_radius,
-                } => lines.push([(*base, *base_radius), (*apex, *apex_radius)]),
-                Shape::Arc {
-                    center,
-                    u,
-                    v,
-                    sweep,
-                    angle,
-                    ..
-                } => lines.extend(arc(*center, [*u, *v], *sweep, *angle, radius)),
-                Shape::Curve { control, .. } => lines.extend(bezier(control, radius)),
-                Shape::Triangle { corners, .. } => {
-                    others.extend(Self::around_face(&[corners.to_vec()], radius));
-                }
-                Shape::Polygon { rings, .. } => others.extend(Self::around_face(rings, radius)),
+                // Faces that are lit as if they were curved are drawn by themselves.
+                Shape::Bone(bone) if bone.normals.is_some() => {}
+                Shape::Bone(bone) => match &bone.skeleton {
+                    Skeleton::Point { center } => others.push(Self::around_point(*center, radius)),
+                    Skeleton::Segment { base, apex } => {
+                        let [start, end] = bone.radii(radius);
+                        lines.push([(*base, start), (*apex, end)]);
+                    }
+                    line @ (Skeleton::Arc { .. } | Skeleton::Curve { .. }) => {
+                        lines.extend(chords(line, radius));
+                    }
+                    Skeleton::Triangle { corners } => {
+                        others.extend(Self::around_face(&[corners.to_vec()], radius));
+                    }
+                    Skeleton::Polygon { rings } => others.extend(Self::around_face(rings, radius)),
+                    Skeleton::Plane { .. } => {}
+                },
                 Shape::Function(function) => {
                     let place = |p: DVec3| function.to_world.transform_point3(p);
                     let growth = function.growth();
@@ -328,19 +323,18 @@ impl Cage {
                         // Whatever else is drawn as balls in drafts.
                         _ => {
                             let balls = function.draft();
-                            others.extend(balls.iter().filter_map(|shape| match shape {
-                                Shape::Sphere { center, radius } => {
-                                    Some(Self::around_point(*center, *radius))
-                                }
-                                _ => None,
-                            }));
+                            others.extend(balls.iter().filter_map(
+                                |shape| match shape.skeleton()? {
+                                    Skeleton::Point { center } => {
+                                        Some(Self::around_point(*center, shape.radius()))
+                                    }
+                                    _ => None,
+                                },
+                            ));
                         }
                     }
                 }
-                Shape::Plane { .. }
-                | Shape::Box { .. }
-                | Shape::Patch { .. }
-                | Shape::Quadric(_) => {}
+                Shape::Box(_) | Shape::Quadric(_) => {}
             }
         }
         let mut cages = Self::around_lines(&lines);
@@ -353,34 +347,22 @@ impl Cage {
     }
 }
 
-fn arc(center: DVec3, [u, v]: [DVec3; 2], sweep: f64, angle: f64, radius: f64) -> Vec<[Place; 2]> {
-    let count = ((angle / TURN).ceil() as usize).clamp(2, MOST_PARTS);
-    let is_closed = angle >= TAU * (1.0 - 1e-9);
+/// Straight parts of an arc or a curve.
+fn chords(line: &Skeleton, radius: f64) -> Vec<[Place; 2]> {
+    let (turn, least) = match line {
+        Skeleton::Arc { angle, .. } => (*angle, 2),
+        _ => {
+            let control: Vec<DVec3> = line.landmarks().iter().map(|(p, _)| *p).collect();
+            let sides: Vec<DVec3> = control.windows(2).map(|w| w[1] - w[0]).collect();
+            let turns = sides.windows(2).map(|w| w[0].angle_between(w[1]));
+            (turns.filter(|a| a.is_finite()).sum(), 3)
+        }
+    };
+    let count = ((turn / TURN).ceil() as usize).clamp(least, MOST_PARTS);
+    let is_closed = matches!(line, Skeleton::Arc { angle, .. } if *angle >= TAU * (1.0 - 1e-9));
     let point = |i: usize| {
         let i = if is_closed { i % count } else { i };
-        let (sine, cosine) = libm::sincos(angle * i as f64 / count as f64);
-        (center + (u * cosine + v * sine) * sweep, radius)
-    };
-    (0..count).map(|i| [point(i), point(i + 1)]).collect()
-}
-
-fn bezier(control: &[DVec3; 4], radius: f64) -> Vec<[Place; 2]> {
-    let sides = [0, 1, 2].map(|i| control[i + 1] - control[i]);
-    let turn: f64 = (0..2)
-        .map(|i| sides[i].angle_between(sides[i + 1]))
-        .filter(|a| a.is_finite())
-        .sum();
-    let count = ((turn / TURN).ceil() as usize).clamp(3, MOST_PARTS);
-    let point = |i: usize| {
-        let t = i as f64 / count as f64;
-        let mut points = *control;
-        for n in (1..4).rev() {
-            for k in 0..n {
-                points[k] = points[k].lerp(points[k + 1], t);
-            }
-        }
-        // Exact at the end.
-        (if i == count { control[3] } else { points[0] }, radius)
+        (line.at(i as f64 / count as f64), radius)
     };
     (0..count).map(|i| [point(i), point(i + 1)]).collect()
 }

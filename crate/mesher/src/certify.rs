@@ -381,7 +381,7 @@ mod tests {
         let shaping = Shaping {
             kernel,
             radius: n.range(0.2, 0.5),
-            blobbiness: -2.0,
+            blobbiness: 2.0,
             blob_scale: BlobScale::Relative,
             strength: 1.0,
             influence: 1e-3,

@@ -48,7 +48,7 @@ const BETWEEN: u64 = 100_000;
 /// let shaping = Shaping {
 ///     kernel: Kernel::Gauss,
 ///     radius: 0.3,
-///     blobbiness: -2.0,
+///     blobbiness: 2.0,
 ///     blob_scale: BlobScale::Relative,
 ///     strength: 1.0,
 ///     influence: 1e-3,

@@ -125,10 +125,10 @@ impl Model {
 /// use scene::{Element, Flesh, Scene, Shape};
 ///
 /// let mut scene = Scene::default();
-/// scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+/// scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
 /// scene.elements.push(Element {
 ///     flesh: Some(0),
-///     ..Element::new(Shape::Sphere { center: glam::DVec3::ZERO, radius: 1.0 })
+///     ..Element::new(Shape::sphere(glam::DVec3::ZERO, 1.0))
 /// });
 /// let mut report = |_| core::ops::ControlFlow::Continue(());
 /// let model = mesher::mesh_scene(&scene, &Wishes::default(), &mut Progress::new(&mut report))?;
@@ -303,9 +303,8 @@ impl<'a> Plan<'a> {
         for element in &hard {
             finite = finite.union(&extent_of(&element.shape, scene.radius(element)));
         }
-        let is_infinite = |e: &&Element| matches!(e.shape, Shape::Plane { .. });
-        let any_infinite =
-            hard.iter().any(is_infinite) || domains.iter().flatten().any(Aabb::is_empty);
+        let any_infinite = hard.iter().any(|e| e.shape.bounds(0.0).is_none())
+            || domains.iter().flatten().any(Aabb::is_empty);
         if finite.is_empty() {
             let reason = if any_infinite {
                 MeshError::Unbounded
@@ -405,36 +404,10 @@ fn extent_of(shape: &Shape, radius: f64) -> Aabb {
 
 /// A box around a shape; empty for planes.
 fn bounds_of(shape: &Shape, radius: f64) -> Aabb {
-    let around = |points: &[DVec3], radius: f64| {
-        let radius = DVec3::splat(radius);
-        Aabb::of_points(points.iter().flat_map(|p| [*p - radius, *p + radius]))
-    };
-    match *shape {
-        Shape::Sphere { center, .. } => around(&[center], radius),
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => around(&[base, apex], radius),
-        Shape::Arc { center, sweep, .. } => around(&[center], sweep + radius),
-        Shape::Triangle { corners, .. } => around(&corners, radius),
-        Shape::Patch { corners, .. } => around(&corners, 0.0),
-        Shape::Polygon { ref rings, .. } => {
-            let corners: Vec<DVec3> = rings.iter().flatten().copied().collect();
-            around(&corners, radius)
-        }
-        Shape::Curve { control, .. } => around(&control, radius),
-        Shape::Plane { .. } => Aabb::EMPTY,
-        Shape::Box { center, axes } => cuboid(center, axes),
-        Shape::Quadric(ref quadric) => cuboid(quadric.center, quadric.axes),
-        Shape::Function(ref function) => {
-            let (low, high) = function.corners();
-            Aabb::of_points([low, high])
-        }
-    }
-}
-
-fn cuboid(center: DVec3, [x, y, z]: [DVec3; 3]) -> Aabb {
-    let half = x.abs() + y.abs() + z.abs();
-    Aabb::of_points([center - half, center + half])
+    // Patches stay flat.
+    let is_patch = shape.bone().is_some_and(|bone| bone.normals.is_some());
+    let bounds = shape.bounds(if is_patch { 0.0 } else { radius });
+    bounds.map_or(Aabb::EMPTY, |(low, high)| Aabb::of_points([low, high]))
 }
 
 fn name_of(scene: &Scene, body: u32, what: &str) -> String {

@@ -2,9 +2,10 @@
 
 use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
+use field::Skeleton;
 use glam::DVec3;
 use mesh::{Group, Material, TriangleMesh, roughness_from_phong};
-use scene::{Element, Finish, Scene, Shape, Surface};
+use scene::{Element, Finish, Scene, Surface};
 use std::collections::BTreeMap;
 
 /// The material of a finish.
@@ -123,7 +124,7 @@ impl<'a> Parts<'a> {
 
     /// The paint of a triangle or patch, with its corners.
     fn paint<'e>(&self, element: &'e Element) -> Option<(&'e scene::Paint, [DVec3; 3])> {
-        let (Shape::Triangle { corners, .. } | Shape::Patch { corners, .. }) = element.shape else {
+        let Some(&Skeleton::Triangle { corners }) = element.shape.skeleton() else {
             return None;
         };
         let paint = element.paint.as_deref()?;

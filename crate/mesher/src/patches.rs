@@ -397,7 +397,7 @@ mod tests {
             let shaping = Shaping {
                 kernel: kernels[trial % 3],
                 radius: random.range(0.2, 0.4),
-                blobbiness: -2.0,
+                blobbiness: 2.0,
                 blob_scale: BlobScale::Relative,
                 strength: 1.0,
                 influence: 1e-3,

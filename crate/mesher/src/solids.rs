@@ -1,12 +1,13 @@
 //! Hard shapes as triangles: vertices on the surface, triangles within a tolerance of it.
 
 use core::f64::consts::{PI, TAU};
+use field::Skeleton;
 use glam::DVec3;
 use manifold_rust::linalg::Vec2;
 use manifold_rust::polygon::triangulate;
 use manifold_rust::types::Polygons;
 use mesh::{Aabb, TriangleMesh};
-use scene::Shape;
+use scene::{Ends, Shape};
 
 /// Most segments of a circle.
 const MOST_SEGMENTS: usize = 2048;
@@ -42,55 +43,71 @@ impl Solid {
 /// Tessellates a shape with a radius that may overrule its own, and cuts a plane off by a box.
 /// Quadrics are left out: they are level sets.
 pub fn tessellate(shape: &Shape, radius: f64, tolerance: f64, limits: &Aabb) -> Solid {
-    match *shape {
-        Shape::Sphere { center, .. } => Solid::closed(ball(center, radius, tolerance)),
-        Shape::Cylinder { base, apex, .. } => {
-            Solid::closed(cone([base, apex], [radius; 2], tolerance, true))
+    let bone = match shape {
+        Shape::Bone(bone) => bone,
+        Shape::Box(cuboid) => return Solid::closed(parallelepiped(cuboid.center, cuboid.axes)),
+        Shape::Function(function) => {
+            let parts = function.draft();
+            return union(
+                parts.iter().map(|part| (part, part.radius())),
+                tolerance,
+                limits,
+            );
         }
-        Shape::Cone {
-            base,
-            base_radius,
-            apex,
-            apex_radius,
-        } => Solid::closed(cone(
-            [base, apex],
-            [base_radius, apex_radius],
-            tolerance,
-            true,
-        )),
-        Shape::Pipe { base, apex, .. } => {
-            Solid::open(cone([base, apex], [radius; 2], tolerance, false))
+        Shape::Quadric(_) => return Solid::default(),
+    };
+    match bone.skeleton {
+        Skeleton::Point { center } => Solid::closed(ball(center, radius, tolerance)),
+        Skeleton::Segment { base, apex } => {
+            let has_lids = bone.ends != Ends::Open;
+            let mesh = cone([base, apex], bone.radii(radius), tolerance, has_lids);
+            if has_lids {
+                Solid::closed(mesh)
+            } else {
+                Solid::open(mesh)
+            }
         }
-        Shape::Arc {
+        Skeleton::Arc {
             center,
             u,
             v,
-            sweep,
+            radius: sweep,
             angle,
-            ..
         } => arc(center, [u, v], sweep, angle, radius, tolerance),
-        Shape::Triangle { corners, .. } => prism(&[corners.to_vec()], radius),
-        Shape::Polygon { ref rings, .. } => prism(rings, radius),
-        Shape::Curve { ref control, .. } => curve(control, radius, tolerance),
-        Shape::Plane { point, normal, .. } => plane(point, normal, radius, limits),
-        Shape::Box { center, axes } => Solid::closed(parallelepiped(center, axes)),
-        Shape::Patch { corners, normals } => {
-            let mut mesh = TriangleMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
-            mesh.normals = Some(normals.to_vec());
-            Solid::open(mesh)
-        }
-        Shape::Function(ref function) => {
-            let parts = function.draft();
-            let mut all = Solid::default();
-            for part in &parts {
-                let own = tessellate(part, part.radius(), tolerance, limits);
-                all.shells.extend(own.shells);
-                all.sheets.extend(own.sheets);
+        Skeleton::Triangle { corners } => match &bone.normals {
+            Some(normals) => {
+                let mut mesh = TriangleMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
+                mesh.normals = Some(normals.to_vec());
+                Solid::open(mesh)
             }
-            all
+            None => prism(&[corners.to_vec()], radius),
+        },
+        Skeleton::Polygon { ref rings } => prism(rings, radius),
+        Skeleton::Plane { point, normal } => plane(point, normal, radius, limits),
+        // The balls and cylinders that pictures show.
+        _ => {
+            let parts = shape.parts(radius);
+            let mut solid = union(parts.iter().map(|part| (part, radius)), tolerance, limits);
+            // Pieces of no length have none.
+            solid.shells.retain(|mesh| mesh.signed_volume() > 0.0);
+            solid
         }
-        Shape::Quadric(_) => Solid::default(),
     }
+}
+
+/// Tessellates shapes with their radii.
+fn union<'a>(
+    parts: impl Iterator<Item = (&'a Shape, f64)>,
+    tolerance: f64,
+    limits: &Aabb,
+) -> Solid {
+    let mut all = Solid::default();
+    for (part, radius) in parts {
+        let own = tessellate(part, radius, tolerance, limits);
+        all.shells.extend(own.shells);
+        all.sheets.extend(own.sheets);
+    }
+    all
 }
 
 /// Segments of a circle such that chords are within a tolerance.
@@ -284,25 +301,6 @@ fn outward(mut mesh: TriangleMesh) -> TriangleMesh {
         mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
     mesh
-}
-
-/// A tube around a Bézier curve with round ends, as the balls and cylinders that pictures show.
-fn curve(control: &[DVec3; 4], radius: f64, tolerance: f64) -> Solid {
-    let shape = Shape::Curve {
-        control: *control,
-        radius,
-    };
-    let everywhere = Aabb::EMPTY;
-    let mut shells = Vec::new();
-    for part in shape.parts(radius) {
-        shells.extend(tessellate(&part, radius, tolerance, &everywhere).shells);
-    }
-    // Pieces of no length have none.
-    shells.retain(|mesh| mesh.signed_volume() > 0.0);
-    Solid {
-        shells,
-        sheets: Vec::new(),
-    }
 }
 
 /// A flat polygon with holes, as triangles.

@@ -269,7 +269,7 @@ mod tests {
             let shaping = Shaping {
                 kernel: Kernel::Gauss,
                 radius,
-                blobbiness: -2.0,
+                blobbiness: 2.0,
                 blob_scale: BlobScale::Relative,
                 strength: 1.0,
                 influence: 1e-3,

@@ -187,10 +187,7 @@ mod tests {
     use scene::Shape;
 
     fn ball(center: DVec3, tolerance: f64) -> TriangleMesh {
-        let shape = Shape::Sphere {
-            center,
-            radius: 1.0,
-        };
+        let shape = Shape::sphere(center, 1.0);
         let mut solid = crate::solids::tessellate(&shape, 1.0, tolerance, &mesh::Aabb::EMPTY);
         solid.shells.swap_remove(0)
     }

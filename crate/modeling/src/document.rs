@@ -29,25 +29,16 @@ impl Document {
             .parse()
             .map_err(|error: sculpt::Diagnostic| error.to_string())?;
         let sculpture = Sculpture::open(&script, load).map_err(|error| error.to_string())?;
-        let mut rest: Vec<&str> = text.split_inclusive('\n').collect();
-        let mut take = |upto: usize, done: usize| -> String {
-            let count = upto.saturating_sub(done).min(rest.len());
-            let mut lines: String = rest.drain(..count).collect();
-            if !lines.is_empty() && !lines.ends_with('\n') {
-                lines.push('\n');
-            }
-            lines
-        };
-        let start = script.start_line();
-        let head = take(start, 0);
-        let mut done = start;
+        let mut rest = text.split_inclusive('\n');
+        let mut done = script.start_line();
+        let head = take(&mut rest, done);
         let mut lines = Vec::with_capacity(script.strokes.len());
         for stroke in 0..script.strokes.len() {
             let line = script.line(stroke);
-            lines.push(take(line, done));
+            lines.push(take(&mut rest, line.saturating_sub(done)));
             done = line;
         }
-        let tail = take(usize::MAX, done);
+        let tail = take(&mut rest, usize::MAX);
         Ok(Self {
             head,
             lines,
@@ -213,6 +204,15 @@ impl Document {
     }
 }
 
+/// Takes the next `count` lines of a text, the last of them ended.
+fn take<'t>(rest: &mut impl Iterator<Item = &'t str>, count: usize) -> String {
+    let mut lines: String = rest.take(count).collect();
+    if !lines.is_empty() && !lines.ends_with('\n') {
+        lines.push('\n');
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,14 +274,18 @@ mod tests {
 
     #[test]
     fn mistakes_are_told_with_their_line() {
-        let open = |text| Document::open(text, &mut |name| Err(format!("no {name}"))).err();
-        assert_eq!(
-            open("strokes 1\nstart sphere 4\npull\n").unwrap(),
-            "line 3, column 5: a tool is expected: box, cylinder or sphere"
-        );
-        assert_eq!(
-            open("strokes 1\nstart file a.obj\n").unwrap(),
-            "line 2, column 1: no a.obj"
-        );
+        for (text, mistake) in [
+            (
+                "strokes 1\nstart sphere 4\npull\n",
+                "line 3, column 5: a tool is expected: box, cylinder or sphere",
+            ),
+            (
+                "strokes 1\nstart file a.obj\n",
+                "line 2, column 1: no a.obj",
+            ),
+        ] {
+            let opened = Document::open(text, &mut |name| Err(format!("no {name}")));
+            assert_eq!(opened.err().unwrap(), mistake);
+        }
     }
 }

@@ -14,14 +14,18 @@ const DEPTH: f64 = 0.4;
 /// Points of movement that double the tool in S and F.
 const DOUBLE: f32 = 140.0;
 
+/// Names the axis that a movement keeps to.
+fn in_words(axis: Option<usize>) -> &'static str {
+    axis.map_or("", |i| [" along x", " along y", " along z"][i])
+}
+
 /// Returns a line on what a hand can do now.
 pub fn hint(place: &Sculpting, narrow: bool) -> String {
-    let axis = |axis: Option<usize>| axis.map_or("", |i| [" along x", " along y", " along z"][i]);
     match &place.hand.doing {
         State::Stroke(on) if on.is_free => {
             format!(
                 "Grab{} · X, Y, Z: one axis · click: let go · Esc: give up",
-                axis(on.axis)
+                in_words(on.axis)
             )
         }
         State::Modal(modal) => {
@@ -33,7 +37,7 @@ pub fn hint(place: &Sculpting, narrow: bool) -> String {
             };
             format!(
                 "{what}{} · click: take it · Esc: as it was",
-                axis(modal.axis)
+                in_words(modal.axis)
             )
         }
         _ if narrow => format!(
@@ -501,11 +505,10 @@ fn axes(place: &mut Sculpting, pressed: Pressed<'_>) {
         if !pressed(Modifiers::NONE, key) {
             continue;
         }
-        let toggled = |old: Option<usize>| (old != Some(axis)).then_some(axis);
         match &mut place.hand.doing {
-            State::Stroke(on) => on.axis = toggled(on.axis),
+            State::Stroke(on) => on.axis = (on.axis != Some(axis)).then_some(axis),
             State::Modal(modal) => {
-                modal.axis = toggled(modal.axis);
+                modal.axis = (modal.axis != Some(axis)).then_some(axis);
                 place.brush = modal.before.clone();
             }
             _ => {}

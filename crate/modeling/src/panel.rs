@@ -82,6 +82,10 @@ pub fn controls(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>)
     ui.add_space(10.0);
 }
 
+fn label(text: &str, colour: Color32) -> RichText {
+    RichText::new(text).size(12.5).color(colour)
+}
+
 fn tool(place: &mut Sculpting, ui: &mut Ui) {
     heading(ui, "Tool");
     ui.horizontal_wrapped(|ui| {
@@ -105,25 +109,24 @@ fn tool(place: &mut Sculpting, ui: &mut Ui) {
     ui.scope(|ui| {
         slider::colours(ui);
         ui.spacing_mut().slider_width = 118.0;
-        let label = |text| RichText::new(text).size(12.5).color(palette.text);
         let own = Slider::new(&mut place.brush.size, 0.005 * size..=0.5 * size)
             .logarithmic(true)
             .max_decimals(4)
-            .text(label("size"));
+            .text(label("size", palette.text));
         let own = ui.add(own).on_hover_text("F, or [ and ]");
         note(ui, "size", own.rect);
         for (axis, name) in ["× x", "× y", "× z"].into_iter().enumerate() {
             let stretch = Slider::new(&mut place.brush.stretch[axis], 0.1..=5.0)
                 .logarithmic(true)
                 .max_decimals(2)
-                .text(label(name));
+                .text(label(name, palette.text));
             ui.add(stretch)
                 .on_hover_text("Scale along an axis of the tool (S, then X, Y or Z)");
         }
         for (i, name) in ["round, up", "round, about"].into_iter().enumerate() {
             let exponent = Slider::new(&mut place.brush.exponents[i], 0.05..=2.0)
                 .max_decimals(2)
-                .text(label(name));
+                .text(label(name, palette.text));
             ui.add(exponent).on_hover_text(
                 "Exponent of the superquadric: small is square, 1 round, 2 an octahedron",
             );

@@ -221,17 +221,15 @@ fn keys(place: &mut Sculpting, ctx: &Context) {
                     .spacing([16.0, 5.0])
                     .show(ui, |ui| {
                         for (key, meaning) in KEYS {
-                            let label = |text, color| {
-                                egui::Label::new(RichText::new(text).size(13.0).color(color)).wrap()
-                            };
-                            ui.scope(|ui| {
-                                ui.set_width(0.36 * width);
-                                ui.add(label(key, palette.text));
-                            });
-                            ui.scope(|ui| {
-                                ui.set_width(0.56 * width);
-                                ui.add(label(meaning, palette.weak));
-                            });
+                            for (text, color, share) in
+                                [(key, palette.text, 0.36), (meaning, palette.weak, 0.56)]
+                            {
+                                let text = RichText::new(text).size(13.0).color(color);
+                                ui.scope(|ui| {
+                                    ui.set_width(share * width);
+                                    ui.add(egui::Label::new(text).wrap());
+                                });
+                            }
                             ui.end_row();
                         }
                     });

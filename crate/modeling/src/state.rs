@@ -314,13 +314,15 @@ impl Sculpting {
         let pixels = f64::from(size.x * size.y).max(1.0);
         let longest = f64::from(size.max_elem()).max(1.0);
         let most = ctx.input(|input| input.max_texture_side).min(4096) as f64 / longest;
-        let sized = |scale: f64| {
+        // At rest twice as many on each side, which the screen averages.
+        let [fine, coarse] = [
+            (MOST_PIXELS[1] / pixels).min(4.0),
+            self.quality * (MOST_PIXELS[0] / pixels).min(1.0),
+        ]
+        .map(|scale| {
             let scale = scale.min(most * most);
             [size.x, size.y].map(|side| (f64::from(side) * scale.sqrt()).round().max(1.0) as usize)
-        };
-        // At rest twice as many on each side, which the screen averages.
-        let fine = sized((MOST_PIXELS[1] / pixels).min(4.0));
-        let coarse = sized(self.quality * (MOST_PIXELS[0] / pixels).min(1.0));
+        });
         let mut rests = now - self.moved > REST;
         let symmetry = self.document.clay().symmetry();
         let mut wanted = Drawn {

@@ -469,7 +469,7 @@ pub fn radius_in_isolation(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>)
             ..shaping(1.0, random.decades(-1.0, 1.0))
         };
         // Of the inverse kernel, a line of ten radii either way stands for an infinite one.
-        let reach = if kernel == Kernel::Inverse { 10.0 } else { 1e5 };
+        let reach = if kernel.is_finite_over(1) { 1e5 } else { 10.0 };
         let skeleton = match kind {
             Kind::Point => Skeleton::Point {
                 center: DVec3::ZERO,

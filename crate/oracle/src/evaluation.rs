@@ -79,15 +79,11 @@ pub fn sensitivity(primitive: &Primitive, point: DVec3) -> f64 {
 /// Returns the largest coordinate of a skeleton.
 pub fn extent(skeleton: &Skeleton) -> f64 {
     match *skeleton {
-        Skeleton::Point { center } => center.length(),
-        Skeleton::Segment { base, apex } => base.length().max(apex.length()),
         Skeleton::Arc { center, radius, .. } => center.length() + radius,
-        Skeleton::Triangle { corners } => corners.iter().fold(0.0, |l, p| p.length().max(l)),
-        Skeleton::Plane { point, .. } => point.length(),
-        Skeleton::Polygon { ref rings } => {
-            rings.iter().flatten().fold(0.0, |l, p| p.length().max(l))
+        ref other => {
+            let places = other.landmarks();
+            places.iter().fold(0.0, |l, (p, _)| p.length().max(l))
         }
-        Skeleton::Curve { control } => control.iter().fold(0.0, |l, p| p.length().max(l)),
     }
 }
 

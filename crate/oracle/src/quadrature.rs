@@ -31,10 +31,7 @@ fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
 /// Returns the length scale, in kernel widths, on which an integrand varies: the kernel's width, or
 /// its pole's.
 fn finest(kernel: Kernel) -> f64 {
-    match kernel {
-        Kernel::Inverse | Kernel::Squared | Kernel::Cubed => 1e-5,
-        _ => 1.0,
-    }
+    if kernel.has_pole() { 1e-5 } else { 1.0 }
 }
 
 /// Computes a primitive's field at a point, by integration over its skeleton.
@@ -191,7 +188,7 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
         Skeleton::Plane { point: p, normal } => {
             let d = (point - p).dot(normal.normalize());
             // Rings; where the integral diverges, up to ten radii, else of radius t/(1−t)/s.
-            let windowed = matches!(k, Kernel::Inverse | Kernel::Squared);
+            let windowed = !k.is_finite_over(2);
             let kinks = k.kinks().iter().map(|kink| {
                 let r = (kink * kink - d * d * s * s).max(0.0).sqrt();
                 r / (1.0 + r)

@@ -3,8 +3,9 @@
 use crate::reference::{Fault, Near, Reference};
 use core::fmt::Write;
 use field::Kernel;
+use field::Skeleton;
 use glam::DVec3;
-use scene::{Scene, Shape};
+use scene::Scene;
 use tracer::{Hit, Picture};
 use trials::Random;
 use trials::scenes::{Kind, World, scene};
@@ -156,27 +157,14 @@ fn bone_point(scene: &Scene, n: &mut Random) -> DVec3 {
         let shares = [0.0, 1.0, n.unit(), n.unit()];
         n.pick(&shares)
     };
-    match shape {
-        Shape::Cylinder { base, apex, .. } => base.lerp(*apex, share),
-        Shape::Arc {
-            center,
-            u,
-            v,
-            sweep,
-            angle,
-            ..
-        } => {
-            let (sine, cosine) = libm::sincos(share * angle);
-            *center + (*u * cosine + *v * sine) * *sweep
-        }
-        Shape::Triangle { corners, .. } => {
+    match shape.skeleton() {
+        Some(Skeleton::Triangle { corners }) => {
             corners[0].lerp(corners[1].lerp(corners[2], share), n.unit())
         }
-        Shape::Polygon { rings, .. } => rings[0][0].lerp(rings[0][1], share),
-        Shape::Curve { control, .. } => control[0].lerp(control[3], share),
-        Shape::Sphere { center, .. } => *center,
-        Shape::Plane { point, .. } => *point,
-        _ => DVec3::ZERO,
+        Some(Skeleton::Polygon { rings }) => rings[0][0].lerp(rings[0][1], share),
+        Some(Skeleton::Curve { control }) => control[0].lerp(control[3], share),
+        Some(other) => other.at(share),
+        None => DVec3::ZERO,
     }
 }
 

@@ -300,13 +300,9 @@ fn shapes(
 /// The pixels that a clip rectangle lets through: edges are rounded, as egui's GPU painters do.
 fn clip_area(clip: Rect, pixels_per_point: f32) -> Area {
     // The casts saturate.
-    let pixel = |points: f32| (points * pixels_per_point).round() as i32;
-    Area {
-        x0: pixel(clip.min.x),
-        y0: pixel(clip.min.y),
-        x1: pixel(clip.max.x),
-        y1: pixel(clip.max.y),
-    }
+    let [x0, y0, x1, y1] = [clip.min.x, clip.min.y, clip.max.x, clip.max.y]
+        .map(|points| (points * pixels_per_point).round() as i32);
+    Area { x0, y0, x1, y1 }
 }
 
 /// The tiles in a range of columns or rows of pixels, which must not be empty.
@@ -468,12 +464,11 @@ mod tests {
                 "{area:?}"
             );
         }
-        let pixel = |x: usize, y: usize| {
-            let start = 4 * (y * SIZE[0] + x);
-            window.painter.pixels()[start..start + 4].to_vec()
-        };
-        assert_eq!(pixel(205, 75), Color32::BLUE.to_array());
-        assert_eq!(pixel(199, 75), Color32::RED.to_array());
+        for (x, color) in [(205, Color32::BLUE), (199, Color32::RED)] {
+            let start = 4 * (75 * SIZE[0] + x);
+            let pixel = &window.painter.pixels()[start..start + 4];
+            assert_eq!(pixel, color.to_array());
+        }
     }
 
     #[test]
@@ -542,16 +537,14 @@ mod tests {
             let mut areas = 0;
             for step in 0..40 {
                 let pointer = pos2(20.0 + 5.0 * step as f32, 10.0 + 2.0 * step as f32);
-                let press = |pressed| Event::PointerButton {
-                    pos: pointer,
-                    button: egui::PointerButton::Primary,
-                    pressed,
-                    modifiers: Modifiers::NONE,
-                };
                 let mut events = vec![Event::PointerMoved(pointer)];
                 match step % 5 {
-                    0 => events.push(press(true)),
-                    1 => events.push(press(false)),
+                    button @ (0 | 1) => events.push(Event::PointerButton {
+                        pos: pointer,
+                        button: egui::PointerButton::Primary,
+                        pressed: button == 0,
+                        modifiers: Modifiers::NONE,
+                    }),
                     2 => events.push(Event::Text("ä€x".to_owned())),
                     3 => events.push(Event::MouseWheel {
                         source: egui::MouseWheelSource::Wheel,

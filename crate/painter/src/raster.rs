@@ -221,13 +221,12 @@ impl Sheet {
 impl Columns {
     /// The range from the first to the last texel that some columns show.
     fn texels(&self, taps: &[Tap]) -> Range<usize> {
-        let least = |tap: &Tap| tap.near.min(tap.far);
-        let most = |tap: &Tap| tap.near.max(tap.far);
         if let ([first, ..], [.., last], true) = (taps, taps, self.ordered) {
-            return least(first)..most(last) + 1;
+            return first.ends()[0]..last.ends()[1] + 1;
         }
-        let first = taps.iter().map(least).min().unwrap_or(0);
-        first..taps.iter().map(most).max().unwrap_or(0) + 1
+        let ends = taps.iter().map(Tap::ends);
+        let first = ends.clone().map(|ends| ends[0]).min().unwrap_or(0);
+        first..ends.map(|ends| ends[1]).max().unwrap_or(0) + 1
     }
 
     /// Draws a row of pixels, the first of which is in the column of this number.
@@ -379,8 +378,8 @@ mod tests {
         with_white(|white| {
             let mut sheet = sheet(6, 5);
             // The legs of the triangle run through pixel centres, the hypotenuse too.
-            let at = |x, y| corner(x, y, Color32::WHITE);
-            let triangle = [at(1.5, 1.5), at(5.5, 1.5), at(1.5, 4.5)];
+            let triangle =
+                [(1.5, 1.5), (5.5, 1.5), (1.5, 4.5)].map(|(x, y)| corner(x, y, Color32::WHITE));
             sheet.triangle(&triangle, white, sheet.area());
             let drawn = sheet.pixels.chunks(6).map(|row| {
                 row.iter()
@@ -467,13 +466,13 @@ mod tests {
             with_texture(image, TextureOptions::LINEAR, |texture| {
                 let shaded = Color32::from_rgba_premultiplied(200, 100, 50, 220);
                 for tint in [Color32::WHITE, shaded] {
-                    let at = |x, y, u, v| Corner::new([x, y], [u, v], tint).unwrap();
                     let corners = [
-                        at(2.0, 3.0, 0.0, 0.0),
-                        at(34.0, 3.0, 12.0, 0.0),
-                        at(2.0, 30.0, 0.0, 9.0),
-                        at(34.0, 30.0, 12.0, 9.0),
-                    ];
+                        ([2.0, 3.0], [0.0, 0.0]),
+                        ([34.0, 3.0], [12.0, 0.0]),
+                        ([2.0, 30.0], [0.0, 9.0]),
+                        ([34.0, 30.0], [12.0, 9.0]),
+                    ]
+                    .map(|(place, texel)| Corner::new(place, texel, tint).unwrap());
                     let quad = Quad::new(corners).unwrap();
                     let mut drawn = sheet(40, 40);
                     drawn.clear(drawn.area(), ground);
@@ -501,11 +500,10 @@ mod tests {
         let image = ColorImage::new([12, 9], texels.collect());
         with_texture(image, TextureOptions::LINEAR, |texture| {
             for (width, height) in [(40.3, 21.7), (12.0, 9.5), (3.2, 4.9), (12.0, 9.0)] {
-                let at = |x: f32, y: f32| {
+                let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(x, y)| {
                     let place = [2.25 + x * width, 1.5 + y * height];
                     Corner::new(place, [x * 12.0, y * 9.0], Color32::WHITE).unwrap()
-                };
-                let corners = [at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)];
+                });
                 let quad = Quad::new(corners).unwrap();
                 let mut sheet = sheet(50, 30);
                 sheet.quad(&quad, texture, sheet.area());
@@ -594,13 +592,12 @@ mod tests {
                     from[1] + number() * 40.0 + 0.1,
                 ];
                 let tint = Color32::from_rgba_premultiplied(200, 255, 100, 255);
-                let at = |x: usize, y: usize| {
+                let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| {
                     let position = [[from[0], to[0]][x], [from[1], to[1]][y]];
                     // A texture that is turned left to right.
                     let texel = [[15.2, 1.3][x], [0.4, 6.9][y]];
                     Corner::new(position, texel, tint).unwrap()
-                };
-                let corners = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
+                });
                 let mut boxed = sheet(50, 50);
                 boxed.quad(&Quad::new(corners).unwrap(), texture, boxed.area());
                 let mut split = sheet(50, 50);
@@ -632,13 +629,12 @@ mod tests {
         );
         with_texture(image, TextureOptions::LINEAR, |texture| {
             let mut sheet = sheet(20, 20);
-            let at = |x: f32, y: f32| {
+            let corners = [(0.0, 0.0), (9.0, 0.0), (0.0, 12.0), (9.0, 12.0)].map(|(x, y)| {
                 // As egui gives it: relative to the texture's size, in single precision.
                 let texel = [(250.0 + x) / 300.0 * 300.0, (170.0 + y) / 200.0 * 200.0];
                 Corner::new([3.0 + x, 5.0 + y], texel, Color32::WHITE).unwrap()
-            };
-            let quad = Quad::new([at(0.0, 0.0), at(9.0, 0.0), at(0.0, 12.0), at(9.0, 12.0)]);
-            sheet.quad(&quad.unwrap(), texture, sheet.area());
+            });
+            sheet.quad(&Quad::new(corners).unwrap(), texture, sheet.area());
             for (y, row) in sheet.pixels.chunks(20).enumerate() {
                 for (x, pixel) in row.iter().enumerate() {
                     let inside = (3..12).contains(&x) && (5..17).contains(&y);

@@ -307,16 +307,19 @@ pub fn bounds(corners: &[Corner; 3]) -> Area {
 
 /// The least and the greatest texture coordinates at some corners.
 pub fn texels(corners: &[Corner]) -> [[f32; 2]; 2] {
-    // No corner is NaN. As wasm, `f32::min` is a call, comparisons are not.
-    let lower = |a: f32, b: f32| if b < a { b } else { a };
-    let higher = |a: f32, b: f32| if b > a { b } else { a };
-    let ends = [[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]];
-    corners.iter().fold(ends, |[least, most], corner| {
-        [
-            [0, 1].map(|axis| lower(least[axis], corner.texel[axis])),
-            [0, 1].map(|axis| higher(most[axis], corner.texel[axis])),
-        ]
-    })
+    let [mut least, mut most] = [[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]];
+    for corner in corners {
+        for (axis, at) in corner.texel.into_iter().enumerate() {
+            // No corner is NaN. As wasm, `f32::min` is a call, comparisons are not.
+            if at < least[axis] {
+                least[axis] = at;
+            }
+            if at > most[axis] {
+                most[axis] = at;
+            }
+        }
+    }
+    [least, most]
 }
 
 /// The texels that a shape shows.

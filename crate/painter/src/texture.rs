@@ -33,6 +33,13 @@ pub struct Tap {
     pub weight: u32,
 }
 
+impl Tap {
+    /// Returns the first and the last texel.
+    pub fn ends(&self) -> [usize; 2] {
+        [self.near.min(self.far), self.near.max(self.far)]
+    }
+}
+
 impl Texture {
     fn new(delta: ImageDelta, now: u64) -> Self {
         let ImageData::Color(image) = delta.image;
@@ -96,7 +103,7 @@ impl Texture {
     /// Returns the time at which a rectangle of texels (from, to, both within) last changed.
     /// Coordinates outside the texture count as its edge; with wrapping, all of the texture counts.
     pub fn last_change(&self, from: [f32; 2], to: [f32; 2]) -> u64 {
-        let blocks = |axis: usize| {
+        let [across, down] = [0, 1].map(|axis| {
             let last = self.size[axis].saturating_sub(1);
             // A sample reaches half a texel to each side, but for the rounding of its weight. The
             // casts saturate.
@@ -108,10 +115,9 @@ impl Texture {
                 0..=last
             };
             range.start() / BLOCK..=range.end() / BLOCK
-        };
+        });
         let columns = self.size[0].div_ceil(BLOCK);
-        blocks(1)
-            .flat_map(|y| blocks(0).map(move |x| y * columns + x))
+        down.flat_map(|y| across.clone().map(move |x| y * columns + x))
             .filter_map(|block| self.changed.get(block).copied())
             .max()
             .unwrap_or(0)
@@ -129,19 +135,8 @@ impl Texture {
 
     /// The texels around the coordinate `at` (in texels) along an axis (0 = x, 1 = y).
     pub fn tap(&self, axis: usize, at: f32, smooth: bool) -> Tap {
-        let wrap = |index: i64| {
-            let size = self.size[axis] as i64;
-            (match self.options.wrap_mode {
-                TextureWrapMode::ClampToEdge => index.clamp(0, size - 1),
-                TextureWrapMode::Repeat => index.rem_euclid(size),
-                TextureWrapMode::MirroredRepeat => {
-                    let phase = index.rem_euclid(2 * size);
-                    phase.min(2 * size - 1 - phase)
-                }
-            }) as usize
-        };
         if !smooth {
-            let near = wrap(at.floor() as i64);
+            let near = self.wrap(axis, at.floor() as i64);
             return Tap {
                 near,
                 far: near,
@@ -150,17 +145,31 @@ impl Texture {
         }
         // Weights in 1/256, as GPUs have them. Rounding makes samples at texel centres exact.
         let fixed = ((at - 0.5) * 256.0).round_ties_even() as i64;
-        let near = wrap(fixed >> 8);
+        let near = self.wrap(axis, fixed >> 8);
         let weight = (fixed & 255) as u32;
         Tap {
             near,
             far: if weight == 0 {
                 near
             } else {
-                wrap((fixed >> 8).saturating_add(1))
+                self.wrap(axis, (fixed >> 8).saturating_add(1))
             },
             weight,
         }
+    }
+
+    /// Returns the texel that stands for one of any index, outside the texture too.
+    #[inline]
+    fn wrap(&self, axis: usize, index: i64) -> usize {
+        let size = self.size[axis] as i64;
+        (match self.options.wrap_mode {
+            TextureWrapMode::ClampToEdge => index.clamp(0, size - 1),
+            TextureWrapMode::Repeat => index.rem_euclid(size),
+            TextureWrapMode::MirroredRepeat => {
+                let phase = index.rem_euclid(2 * size);
+                phase.min(2 * size - 1 - phase)
+            }
+        }) as usize
     }
 
     /// The colour at a place: of one texel, or blended of up to four.
@@ -333,20 +342,22 @@ mod tests {
 
     #[test]
     fn samples_outside_follow_the_wrap_mode() {
-        let with = |wrap_mode| {
+        let [clamped, repeated, mirrored] = [
+            TextureWrapMode::ClampToEdge,
+            TextureWrapMode::Repeat,
+            TextureWrapMode::MirroredRepeat,
+        ]
+        .map(|wrap_mode| {
             ramp(TextureOptions {
                 wrap_mode,
                 ..TextureOptions::NEAREST
             })
-        };
-        let clamped = with(TextureWrapMode::ClampToEdge);
+        });
         assert_eq!([at(&clamped, -7.5, 0.5), at(&clamped, 9.5, 0.5)], [0, 120]);
-        let repeated = with(TextureWrapMode::Repeat);
         assert_eq!(
             [at(&repeated, -0.5, 0.5), at(&repeated, 5.5, 0.5)],
             [120, 40]
         );
-        let mirrored = with(TextureWrapMode::MirroredRepeat);
         assert_eq!([at(&mirrored, -0.5, 0.5), at(&mirrored, 5.5, 0.5)], [0, 80]);
         assert_eq!(at(&clamped, f32::NAN, f32::INFINITY), 100);
     }
@@ -378,6 +389,12 @@ mod tests {
 
     #[test]
     fn a_picture_or_patch_changes_only_the_blocks_in_which_it_differs() {
+        fn dot(x: usize, y: usize) -> ColorImage {
+            grey([140, 100], |u, v| if (u, v) == (x, y) { 9 } else { 0 })
+        }
+        fn flat(height: usize) -> ColorImage {
+            grey([140, height], |_, _| 0)
+        }
         let id = TextureId::Managed(7);
         let mut textures = Textures::default();
         let mut set = |image: ColorImage, pos, options| {
@@ -392,7 +409,6 @@ mod tests {
             [[10.0; 2], [80.0, 10.0], [130.0, 80.0]].map(|at| texture.last_change(at, at))
         };
         let linear = TextureOptions::LINEAR;
-        let dot = |x, y| grey([140, 100], move |u, v| if (u, v) == (x, y) { 9 } else { 0 });
         assert_eq!(set(dot(80, 63), None, linear), [1; 3]);
         assert_eq!(set(dot(80, 63), None, linear), [1; 3]);
         assert_eq!(set(dot(80, 62), None, linear), [1, 3, 1]);
@@ -403,7 +419,6 @@ mod tests {
         assert_eq!(set(patch, Some([120, 60]), linear), [1, 3, 4]);
         let same = grey([1, 1], |_, _| 0);
         assert_eq!(set(same, Some([0, 0]), TextureOptions::NEAREST), [6; 3]);
-        let flat = |height| grey([140, height], |_, _| 0);
         assert_eq!(set(flat(100), None, TextureOptions::NEAREST)[0], 6);
         assert_eq!(set(flat(100), None, linear), [8; 3]);
         assert_eq!(set(flat(101), None, linear), [9; 3]);

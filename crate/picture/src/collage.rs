@@ -37,10 +37,9 @@ pub fn collage_at_most(
         None => (1..).find(|n| n * n >= count).unwrap_or(count),
     };
     let rows = count.div_ceil(columns);
-    let cell = |side: fn(&Picture) -> u32| pictures.iter().map(side).max().unwrap_or(1);
-    let (width, height) = (cell(Picture::width), cell(Picture::height));
-    let side = |cell: u32, count: usize| u64::from(cell) * count as u64;
-    let whole = [side(width, columns), side(height, rows)];
+    let [width, height] =
+        [Picture::width, Picture::height].map(|side| pictures.iter().map(side).max().unwrap_or(1));
+    let whole = [(width, columns), (height, rows)].map(|(cell, n)| u64::from(cell) * n as u64);
     let [sheet_width, sheet_height] = whole.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     if sheet_width > MAX_SIDE || sheet_height > MAX_SIDE {
         return Err(Problem::Size(whole[0], whole[1]));

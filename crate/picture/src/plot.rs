@@ -49,9 +49,9 @@ pub fn plot(values: &[f64]) -> Result<Picture, Problem> {
         paper.ink(AXIS);
     }
     let step = (right - MARGIN) / (values.len() - 1) as f64;
-    let point = |index: usize| [MARGIN + step * index as f64, y(values[index])];
-    for index in 1..values.len() {
-        paper.line(point(index - 1), point(index), HALF_WIDTH);
+    for (index, ends) in values.windows(2).enumerate() {
+        let [a, b] = [0, 1].map(|end| [MARGIN + step * (index + end) as f64, y(ends[end])]);
+        paper.line(a, b, HALF_WIDTH);
     }
     paper.ink(INK);
     Ok(paper.picture)
@@ -69,13 +69,13 @@ impl Paper {
     fn line(&mut self, a: [f64; 2], b: [f64; 2], half_width: f64) {
         let [width, height] = self.picture.size();
         let reach = half_width + 1.0;
-        let range = |a: f64, b: f64, end: u32| {
-            let first = (a.min(b) - reach).floor().max(0.0) as u32;
-            let last = (a.max(b) + reach).ceil().clamp(0.0, f64::from(end)) as u32;
-            first..last
-        };
-        for row in range(a[1], b[1], height) {
-            for column in range(a[0], b[0], width) {
+        let [columns, rows] = [(0, width), (1, height)].map(|(axis, end)| {
+            let first = (a[axis].min(b[axis]) - reach).floor().max(0.0) as u32;
+            let last = (a[axis].max(b[axis]) + reach).ceil();
+            first..last.clamp(0.0, f64::from(end)) as u32
+        });
+        for row in rows {
+            for column in columns.clone() {
                 let centre = [f64::from(column) + 0.5, f64::from(row) + 0.5];
                 // A pixel is covered as far as the line's edge has passed its centre.
                 let share = (half_width + 0.5 - distance(centre, a, b)).clamp(0.0, 1.0);

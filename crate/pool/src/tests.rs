@@ -89,17 +89,14 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
     let mut pool = Pool::new(|| {});
     let mut scene = Scene::clone(&scene());
     scene.flesh.push(scene::Flesh {
-        blobbiness: -1.0,
+        blobbiness: Some(1.0),
         ..Default::default()
     });
     for x in [-0.6, 0.6] {
         let center = [x, 0.0, 0.0].into();
         scene.elements.push(scene::Element {
             flesh: Some(0),
-            ..scene::Element::new(scene::Shape::Sphere {
-                center,
-                radius: 0.5,
-            })
+            ..scene::Element::new(scene::Shape::sphere(center, 0.5))
         });
     }
     let mut means = Vec::new();
@@ -280,10 +277,7 @@ fn picture_shows_nothing_of_an_older_one() {
     for i in 0..24 {
         let mut ball = scenes[1].elements[0].clone();
         let place = [f64::from(i % 6) - 2.5, f64::from(i / 6) - 1.5];
-        ball.shape = scene::Shape::Sphere {
-            center: [0.7 * place[0], 0.7 * place[1], 0.0].into(),
-            radius: 0.2,
-        };
+        ball.shape = scene::Shape::sphere([0.7 * place[0], 0.7 * place[1], 0.0].into(), 0.2);
         Arc::make_mut(&mut scenes[1]).elements.push(ball);
     }
     let truth = scenes.each_ref().map(|scene| {

@@ -42,10 +42,7 @@ pub(crate) fn cuboid(center: DVec3, axes: [DVec3; 3]) -> Vec<Shape> {
                 middle - x + y,
             ];
             for corners in [[a, b, c], [a, c, d]] {
-                patches.push(Shape::Patch {
-                    corners,
-                    normals: [x.cross(y); 3],
-                });
+                patches.push(Shape::patch(corners, [x.cross(y); 3]));
             }
         }
     }
@@ -70,6 +67,12 @@ const ORDERS: [[IVec3; 4]; 6] = {
     ]
 };
 
+/// Returns the cells of a cubic lattice, x first, then y and z.
+fn grid(side: i32) -> impl Iterator<Item = IVec3> {
+    (0..side)
+        .flat_map(move |z| (0..side).flat_map(move |y| (0..side).map(move |x| IVec3::new(x, y, z))))
+}
+
 /// The surface of a quadric with this many cells across its box.
 pub(crate) fn quadric(quadric: &Quadric, cells: usize) -> Vec<Shape> {
     let Some(to_normal) = quadric.local_from_world().map(|m| m.transpose()) else {
@@ -77,26 +80,20 @@ pub(crate) fn quadric(quadric: &Quadric, cells: usize) -> Vec<Shape> {
     };
     let side = cells as i32 + 1;
     let place = |at: IVec3| at.as_dvec3() * (2.0 / cells as f64) - 1.0;
-    let index = |at: IVec3| ((at.z * side + at.y) * side + at.x) as usize;
-    let grid = |side: i32| {
-        (0..side).flat_map(move |z| {
-            (0..side).flat_map(move |y| (0..side).map(move |x| IVec3::new(x, y, z)))
-        })
-    };
     let values: Vec<f64> = grid(side).map(|at| quadric.value(place(at)).0).collect();
     let mut patches = Vec::new();
     let mut add = |corners: [DVec3; 3]| {
-        patches.push(Shape::Patch {
-            corners: corners.map(|q| quadric.place(q)),
-            normals: corners.map(|q| to_normal * quadric.value(q).1),
-        });
+        patches.push(Shape::patch(
+            corners.map(|q| quadric.place(q)),
+            corners.map(|q| to_normal * quadric.value(q).1),
+        ));
     };
     for cell in grid(side - 1) {
         for order in &ORDERS {
             let corners = order.map(|step| cell + step);
             let (inside, outside): (Vec<IVec3>, Vec<IVec3>) = corners
                 .into_iter()
-                .partition(|corner| values[index(*corner)] < 0.0);
+                .partition(|at| values[((at.z * side + at.y) * side + at.x) as usize] < 0.0);
             let cut = |a: IVec3, b: IVec3| crossing(quadric, place(a), place(b));
             match (&inside[..], &outside[..]) {
                 (&[a], &[b, c, d]) | (&[b, c, d], &[a]) => {

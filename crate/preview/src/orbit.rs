@@ -100,10 +100,13 @@ pub fn frame(scene: &Scene, camera: Camera, size: [u32; 2]) -> Camera {
     }
 }
 
+fn near(v: DVec3) -> bool {
+    v.is_finite() && v.abs().max_element() < 1e100
+}
+
 /// A camera that has a finite place and looks somewhere.
 fn usable(camera: Camera) -> Camera {
     let fallback = Camera::default();
-    let near = |v: DVec3| v.is_finite() && v.abs().max_element() < 1e100;
     if !near(camera.eye)
         || !near(camera.target)
         || !camera.fov.is_finite()

@@ -2,8 +2,9 @@
 //! the shape inside it. Everything is computed in `f64`; [`crate::instance`] packs it for the GPU.
 
 use crate::facets;
+use field::Skeleton;
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use scene::{Element, Rgb, Scene, Shape};
+use scene::{Element, Ends, Rgb, Scene, Shape};
 
 /// The kind of a solid, which decides the shader that draws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +64,7 @@ impl Solid {
         }
         let radius = scene.radius(element);
         let parts = match element.shape {
-            Shape::Box { center, axes } => facets::cuboid(center, axes),
+            Shape::Box(cuboid) => facets::cuboid(cuboid.center, cuboid.axes),
             Shape::Quadric(ref quadric) => facets::quadric(quadric, detail),
             ref other => other.parts(radius),
         };
@@ -81,38 +82,34 @@ impl Solid {
         if !radius.is_finite() {
             return None;
         }
-        let solid = match *shape {
-            Shape::Sphere { center, .. } => Self::sphere(center, radius),
-            Shape::Cylinder { base, apex, .. } => Self::cone([base, apex], [radius; 2]),
-            Shape::Cone {
-                base,
-                base_radius,
-                apex,
-                apex_radius,
-            } => Self::cone([base, apex], [base_radius, apex_radius]),
-            Shape::Pipe { base, apex, .. } => Self::pipe(base, apex, radius),
-            Shape::Arc {
+        let Shape::Bone(bone) = shape else {
+            return None;
+        };
+        let solid = match bone.skeleton {
+            Skeleton::Point { center } => Self::sphere(center, radius),
+            Skeleton::Segment { base, apex } => match bone.ends {
+                Ends::Open => Self::pipe(base, apex, radius),
+                Ends::Lids | Ends::Round => Self::cone([base, apex], bone.radii(radius)),
+            },
+            Skeleton::Arc {
                 center,
                 u,
                 v,
-                sweep,
+                radius: sweep,
                 angle,
-                ..
             } => Self::arc(center, u, v, sweep, angle, radius),
-            Shape::Triangle { corners, .. } => match paint {
-                Some(colors) if radius == 0.0 => Self::patch(corners, [DVec3::ZERO; 3], colors),
-                _ => Self::triangle(corners, radius),
+            Skeleton::Triangle { corners } => match (&bone.normals, paint) {
+                (Some(normals), _) => {
+                    Self::patch(corners, **normals, paint.unwrap_or([[1.0; 3]; 3]))
+                }
+                (None, Some(colors)) if radius == 0.0 => {
+                    Self::patch(corners, [DVec3::ZERO; 3], colors)
+                }
+                (None, _) => Self::triangle(corners, radius),
             },
-            Shape::Patch { corners, normals } => {
-                Self::patch(corners, normals, paint.unwrap_or([[1.0; 3]; 3]))
-            }
-            Shape::Plane { point, normal, .. } => Self::plane(point, normal, radius),
+            Skeleton::Plane { point, normal } => Self::plane(point, normal, radius),
             // Made of several solids.
-            Shape::Polygon { .. }
-            | Shape::Curve { .. }
-            | Shape::Box { .. }
-            | Shape::Quadric(_)
-            | Shape::Function(_) => None,
+            _ => None,
         }?;
         let numbers = solid.a.iter().chain(&solid.b);
         (solid.origin.is_finite()

@@ -75,15 +75,17 @@ impl View {
     ) -> Self {
         let projection = camera.projection(frame[0], frame[1]);
         let axes = projection.world_from_view;
-        let pack = |v: DVec3, w: f32| {
-            let v = v.as_vec3();
-            [v.x, v.y, v.z, w]
-        };
+        let [right, up, forward] = [
+            (axes.x_axis, projection.half_width as f32),
+            (axes.y_axis, projection.half_height as f32),
+            (-axes.z_axis, NEAREST),
+        ]
+        .map(|(axis, w)| axis.as_vec3().extend(w).to_array());
         let (high, low) = units.place(projection.eye);
         Self {
-            right: pack(axes.x_axis, projection.half_width as f32),
-            up: pack(axes.y_axis, projection.half_height as f32),
-            forward: pack(-axes.z_axis, NEAREST),
+            right,
+            up,
+            forward,
             eye_high: [high[0], high[1], high[2], projection.shift[0] as f32],
             eye_low: [low[0], low[1], low[2], projection.shift[1] as f32],
             picture: [

@@ -132,14 +132,8 @@ pub fn shapes(mesh: &TriangleMesh) -> impl Iterator<Item = Shape> {
     mesh.triangles.iter().map(|triangle| {
         let corners = triangle.map(|i| mesh.positions[i as usize]);
         match &mesh.normals {
-            Some(normals) => Shape::Patch {
-                corners,
-                normals: triangle.map(|i| normals[i as usize]),
-            },
-            None => Shape::Triangle {
-                corners,
-                radius: 0.0,
-            },
+            Some(normals) => Shape::patch(corners, triangle.map(|i| normals[i as usize])),
+            None => Shape::triangle(corners, 0.0),
         }
     })
 }

@@ -39,7 +39,7 @@ pub fn compile(project: &Project) -> Compiled {
 /// let text = "var x = 0 += 2\nsurface Clay, diffuse SandyBrown\nsphere Clay 1, x 0 0\n";
 /// let compiled = rats::compile_at(&rats::Project::single(text), &[], 3.0);
 /// assert!(compiled.animated);
-/// let ball = scene::Shape::Sphere { center: [6.0, 0.0, 0.0].into(), radius: 1.0 };
+/// let ball = scene::Shape::sphere([6.0, 0.0, 0.0].into(), 1.0);
 /// assert_eq!(compiled.scene.elements[0].shape, ball);
 /// ```
 #[must_use]

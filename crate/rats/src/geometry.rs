@@ -1,7 +1,8 @@
 //! The geometry behind the primitives: an arc's axes, the circle through three points, transforms.
 
+use field::skeleton::{Map, ring_vector};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
-use scene::{Quadric, Shape};
+use scene::Shape;
 
 /// Returns the local axes u, v of an arc with unit normal `n`: u is the world's x axis made
 /// perpendicular to n (the y axis if n is parallel to x), v = n × u. Angles run from u towards v.
@@ -22,14 +23,13 @@ pub fn arc(center: DVec3, normal: DVec3, sweep: f64, radius: f64, start: f64, wi
     let (sin, cos) = sin_cos_degrees(start);
     let u = x * cos + y * sin;
     let v = (y * cos - x * sin) * width.signum();
-    Shape::Arc {
+    Shape::arc(
         center,
-        u,
-        v,
+        [u, v],
         sweep,
-        angle: width.abs().min(360.0).to_radians(),
+        width.abs().min(360.0).to_radians(),
         radius,
-    }
+    )
 }
 
 /// Computes sine and cosine of an angle in degrees, exact at multiples of 90°.
@@ -88,14 +88,7 @@ pub fn through(a: DVec3, b: DVec3, c: DVec3, radius: f64) -> ThreePoints {
     if angle <= 0.0 {
         angle += std::f64::consts::TAU;
     }
-    ThreePoints::Arc(Shape::Arc {
-        center,
-        u,
-        v,
-        sweep,
-        angle,
-        radius,
-    })
+    ThreePoints::Arc(Shape::arc(center, [u, v], sweep, angle, radius))
 }
 
 /// Returns the longest segment between three points on a line.
@@ -143,11 +136,7 @@ pub fn crosses_itself(rings: &[Vec<DVec3>]) -> bool {
     let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
         return false;
     };
-    let normal: DVec3 = outer
-        .windows(2)
-        .map(|w| (w[0] - outer[0]).cross(w[1] - outer[0]))
-        .sum();
-    let Some(z) = normal.try_normalize() else {
+    let Some(z) = ring_vector(outer).try_normalize() else {
         return false;
     };
     let x = z.any_orthonormal_vector();
@@ -244,134 +233,47 @@ impl Transform {
             uniform,
         }
     }
+}
 
-    /// Returns the map of points.
-    #[must_use]
-    pub fn affine(&self) -> DAffine3 {
-        DAffine3::from_mat3_translation(self.linear, self.shift)
-    }
-
+/// Round shapes stay round, with radii that grow by the mean factor.
+impl Map for Transform {
     fn point(&self, point: DVec3) -> DVec3 {
         self.linear * point + self.shift
     }
 
-    /// Maps the normal of a surface to that of its image.
+    fn vector(&self, vector: DVec3) -> DVec3 {
+        self.linear * vector
+    }
+
     fn normal(&self, normal: DVec3) -> DVec3 {
         (self.linear.inverse().transpose() * normal).normalize_or(normal)
     }
 
-    /// Maps a shape. If the map is not uniform, round shapes stay round, with radii that grow by
-    /// the mean factor.
-    #[must_use]
-    pub fn apply(&self, shape: &Shape) -> Shape {
-        match *shape {
-            Shape::Sphere { center, radius } => Shape::Sphere {
-                center: self.point(center),
-                radius: radius * self.growth,
-            },
-            Shape::Cylinder { base, apex, radius } => Shape::Cylinder {
-                base: self.point(base),
-                apex: self.point(apex),
-                radius: radius * self.growth,
-            },
-            Shape::Arc {
-                center,
-                u,
-                v,
-                sweep,
-                angle,
-                radius,
-            } => {
-                let u = (self.linear * u).normalize_or(u);
-                let turned = self.linear * v;
-                Shape::Arc {
-                    center: self.point(center),
-                    u,
-                    // Perpendicular to u again, which rounding or uneven scaling may have spoiled.
-                    v: (turned - u * u.dot(turned)).normalize_or(v),
-                    sweep: sweep * self.growth,
-                    angle,
-                    radius: radius * self.growth,
-                }
-            }
-            Shape::Triangle { corners, radius } => Shape::Triangle {
-                corners: corners.map(|corner| self.point(corner)),
-                radius: radius * self.growth,
-            },
-            Shape::Polygon { ref rings, radius } => Shape::Polygon {
-                rings: rings
-                    .iter()
-                    .map(|ring| ring.iter().map(|corner| self.point(*corner)).collect())
-                    .collect(),
-                radius: radius * self.growth,
-            },
-            Shape::Curve { control, radius } => Shape::Curve {
-                control: control.map(|point| self.point(point)),
-                radius: radius * self.growth,
-            },
-            Shape::Plane {
-                point,
-                normal,
-                radius,
-            } => Shape::Plane {
-                point: self.point(point),
-                normal: self.normal(normal),
-                radius: radius * self.growth,
-            },
-            Shape::Cone {
-                base,
-                base_radius,
-                apex,
-                apex_radius,
-            } => Shape::Cone {
-                base: self.point(base),
-                base_radius: base_radius * self.growth,
-                apex: self.point(apex),
-                apex_radius: apex_radius * self.growth,
-            },
-            Shape::Pipe { base, apex, radius } => Shape::Pipe {
-                base: self.point(base),
-                apex: self.point(apex),
-                radius: radius * self.growth,
-            },
-            Shape::Box { center, axes } => Shape::Box {
-                center: self.point(center),
-                axes: axes.map(|axis| self.linear * axis),
-            },
-            Shape::Patch { corners, normals } => Shape::Patch {
-                corners: corners.map(|corner| self.point(corner)),
-                normals: normals.map(|normal| self.normal(normal)),
-            },
-            Shape::Quadric(ref quadric) => Shape::Quadric(Box::new(Quadric {
-                center: self.point(quadric.center),
-                axes: quadric.axes.map(|axis| self.linear * axis),
-                ..**quadric
-            })),
-            Shape::Function(ref function) => {
-                Shape::Function(Box::new(function.moved(&self.affine())))
-            }
-        }
+    fn axes(&self, [u, v]: [DVec3; 2]) -> [DVec3; 2] {
+        let along = (self.linear * u).normalize_or(u);
+        let turned = self.linear * v;
+        // Perpendicular again, which rounding or uneven scaling may have spoiled.
+        let across = turned - along * along.dot(turned);
+        [along, across.normalize_or(v)]
+    }
+
+    fn length(&self, length: f64) -> f64 {
+        length * self.growth
+    }
+
+    fn affine(&self) -> DAffine3 {
+        DAffine3::from_mat3_translation(self.linear, self.shift)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use field::Skeleton;
+    use scene::{Cuboid, Quadric};
 
     fn point_at(shape: &Shape, share: f64) -> DVec3 {
-        let Shape::Arc {
-            center,
-            u,
-            v,
-            sweep,
-            angle,
-            ..
-        } = *shape
-        else {
-            panic!("{shape:?} is no arc");
-        };
-        let t = angle * share;
-        center + (u * libm::cos(t) + v * libm::sin(t)) * sweep
+        shape.skeleton().expect("a bone").at(share)
     }
 
     fn near(a: DVec3, b: DVec3) -> bool {
@@ -451,7 +353,7 @@ mod tests {
     fn transforms() {
         let shape = arc(DVec3::X, DVec3::Z, 2.0, 0.5, 10.0, 80.0);
         let turn = Transform::rotation(DVec3::Z, 90.0);
-        let turned = turn.apply(&shape);
+        let turned = shape.transform(&turn);
         for i in 0..=4 {
             let share = f64::from(i) / 4.0;
             assert!(near(
@@ -461,21 +363,19 @@ mod tests {
         }
         let mirror = Transform::scaling(DVec3::new(-2.0, 2.0, 2.0));
         assert!(mirror.uniform);
-        let mirrored = mirror.apply(&shape);
+        let mirrored = shape.transform(&mirror);
         assert!(near(
             point_at(&mirrored, 0.7),
             mirror.linear * point_at(&shape, 0.7)
         ));
         assert_eq!(mirrored.radius(), 1.0);
-        let plane = Shape::Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::new(1.0, 1.0, 0.0).normalize(),
-            radius: 0.0,
-        };
+        let plane = Shape::plane(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0).normalize(), 0.0);
         let uneven = Transform::scaling(DVec3::new(2.0, 1.0, 1.0));
-        let Shape::Plane { normal, .. } = uneven.apply(&plane) else {
-            panic!("no plane");
-        };
+        let plane = plane.transform(&uneven);
+        let normal = plane
+            .skeleton()
+            .and_then(Skeleton::normal)
+            .expect("a plane");
         // (1, −1, 0) in the plane becomes (2, −1, 0).
         assert!(normal.dot(DVec3::new(2.0, -1.0, 0.0)).abs() < 1e-12);
     }
@@ -489,7 +389,7 @@ mod tests {
         let axes = [DVec3::X, DVec3::new(0.2, 1.0, 0.0), DVec3::Z];
         let center = DVec3::ONE;
         let corner = |shape: &Shape| match shape {
-            Shape::Box { center, axes } => *center + axes[0] - axes[1] + axes[2],
+            Shape::Box(Cuboid { center, axes }) => *center + axes[0] - axes[1] + axes[2],
             Shape::Quadric(q) => q.place(DVec3::new(1.0, -1.0, 1.0)),
             other => panic!("{other:?}"),
         };
@@ -501,34 +401,29 @@ mod tests {
             axes,
         };
         for shape in [
-            Shape::Box { center, axes },
+            Shape::cuboid(center, axes),
             Shape::Quadric(Box::new(quadric)),
         ] {
-            assert!(near(corner(&map.apply(&shape)), map.point(corner(&shape))));
+            assert!(near(
+                corner(&shape.transform(&map)),
+                map.point(corner(&shape))
+            ));
         }
         // Normals stay across.
         let corners = [DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0), DVec3::Y];
         let normals = [(corners[1]).cross(corners[2]); 3];
-        let Shape::Patch { corners, normals } = map.apply(&Shape::Patch { corners, normals })
-        else {
+        let patch = Shape::patch(corners, normals).transform(&map);
+        let bone = patch.bone().expect("a patch");
+        let Skeleton::Triangle { corners } = bone.skeleton else {
             panic!("no patch");
         };
+        let normals = bone.normals.as_ref().expect("a patch");
         for edge in [corners[1] - corners[0], corners[2] - corners[0]] {
             assert!(normals.iter().all(|n| n.dot(edge).abs() < 1e-12));
         }
-        let cone = Shape::Cone {
-            base: DVec3::ZERO,
-            base_radius: 1.0,
-            apex: DVec3::X,
-            apex_radius: 0.5,
-        };
+        let cone = Shape::cone(DVec3::ZERO, 1.0, DVec3::X, 0.5);
         let twice = Transform::scaling(DVec3::splat(-2.0));
-        let grown = Shape::Cone {
-            base: DVec3::ZERO,
-            base_radius: 2.0,
-            apex: DVec3::X * -2.0,
-            apex_radius: 1.0,
-        };
-        assert_eq!(twice.apply(&cone), grown);
+        let grown = Shape::cone(DVec3::ZERO, 2.0, DVec3::X * -2.0, 1.0);
+        assert_eq!(cone.transform(&twice), grown);
     }
 }

@@ -7,7 +7,7 @@ use skeleton::{Polyline, Scheme, Skeleton};
 use std::sync::OnceLock;
 
 /// The blobbiness of curves whose material has none.
-pub const BLOBBINESS: f64 = -2.0;
+pub const BLOBBINESS: f64 = 2.0;
 
 /// Curves on a graph of nodes, refined to a level. Their polyline's segments are convolved, each
 /// with radii that vary evenly along it.
@@ -110,23 +110,14 @@ impl Curves {
 
     /// The shapes that stand for the curves in drafts: cones, and balls between them.
     pub(crate) fn draft(&self, to_world: &DAffine3, growth: f64) -> Vec<Shape> {
-        let balls = self
-            .points()
-            .filter(|(_, radius)| *radius > 0.0)
-            .map(|(center, radius)| Shape::Sphere {
-                center: to_world.transform_point3(center),
-                radius: radius * growth,
-            });
-        balls
-            .chain(
-                self.pieces()
-                    .map(|[(base, start), (apex, end)]| Shape::Cone {
-                        base: to_world.transform_point3(base),
-                        base_radius: start * growth,
-                        apex: to_world.transform_point3(apex),
-                        apex_radius: end * growth,
-                    }),
-            )
-            .collect()
+        let balls = self.points().filter(|(_, radius)| *radius > 0.0);
+        let balls = balls.map(|(center, radius)| {
+            Shape::sphere(to_world.transform_point3(center), radius * growth)
+        });
+        let cones = self.pieces().map(|[(base, start), (apex, end)]| {
+            let [base, apex] = [base, apex].map(|p| to_world.transform_point3(p));
+            Shape::cone(base, start * growth, apex, end * growth)
+        });
+        balls.chain(cones).collect()
     }
 }

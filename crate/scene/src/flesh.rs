@@ -13,9 +13,9 @@ pub struct Flesh {
     pub end_radius: Option<f64>,
     /// Depth of influence from which the radius follows, in the place of a radius. 0: none.
     pub depth: f64,
-    /// Blobbiness B (its magnitude counts; the datasets write it negative). 0 is hard.
-    pub blobbiness: f64,
-    /// Blobbiness at the other end of lines, arcs and curves.
+    /// Blobbiness B, > 0; none is hard.
+    pub blobbiness: Option<f64>,
+    /// Blobbiness at the other end of lines, arcs and curves, > 0.
     pub end_blobbiness: Option<f64>,
     /// Factor on the field; negative values carve.
     pub strength: f64,
@@ -39,9 +39,8 @@ impl Flesh {
             *radius *= factor;
         }
         if blob_scale == BlobScale::Absolute {
-            flesh.blobbiness /= factor * factor;
-            if let Some(blobbiness) = &mut flesh.end_blobbiness {
-                *blobbiness /= factor * factor;
+            for blobbiness in [&mut flesh.blobbiness, &mut flesh.end_blobbiness] {
+                *blobbiness = blobbiness.map(|b| b / (factor * factor));
             }
         }
         flesh
@@ -62,7 +61,7 @@ impl Flesh {
     /// Whether elements with these parameters are part of a convolution surface.
     #[must_use]
     pub fn is_soft(&self) -> bool {
-        self.blobbiness != 0.0
+        self.blobbiness.is_some()
     }
 }
 
@@ -73,7 +72,7 @@ impl Default for Flesh {
             radius: 0.0,
             end_radius: None,
             depth: 0.0,
-            blobbiness: 0.0,
+            blobbiness: None,
             end_blobbiness: None,
             strength: 1.0,
             kernel: None,

@@ -117,9 +117,8 @@ impl Function {
         match &self.form {
             Form::Metaballs { balls, .. } => balls
                 .iter()
-                .map(|&(center, radius)| Shape::Sphere {
-                    center: self.to_world.transform_point3(center),
-                    radius: radius * growth,
+                .map(|&(center, radius)| {
+                    Shape::sphere(self.to_world.transform_point3(center), radius * growth)
                 })
                 .collect(),
             Form::Skeleton(curves) => curves.draft(&self.to_world, growth),
@@ -128,10 +127,8 @@ impl Function {
                 for triangle in &mesh.triangles {
                     let corners = triangle.map(|i| mesh.positions.get(i as usize));
                     if let [Some(a), Some(b), Some(c)] = corners {
-                        parts.push(Shape::Triangle {
-                            corners: [a, b, c].map(|p| self.to_world.transform_point3(*p)),
-                            radius: 0.0,
-                        });
+                        let corners = [a, b, c].map(|p| self.to_world.transform_point3(*p));
+                        parts.push(Shape::triangle(corners, 0.0));
                     }
                 }
                 parts

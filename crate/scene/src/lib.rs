@@ -12,11 +12,11 @@
 //! use scene::{Element, Flesh, Scene, Shape};
 //!
 //! let mut scene = Scene::default();
-//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+//! scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
 //! let center = DVec3::ZERO;
 //! scene.elements.push(Element {
 //!     flesh: Some(0),
-//!     ..Element::new(Shape::Sphere { center, radius: 1.0 })
+//!     ..Element::new(Shape::sphere(center, 1.0))
 //! });
 //! let surfaces = scene.surfaces();
 //! assert!(surfaces[0].function().jet(center).value > field::THRESHOLD);
@@ -27,7 +27,6 @@ pub mod camera;
 pub mod contact;
 pub mod curves;
 pub mod element;
-mod extent;
 pub mod finish;
 pub mod flesh;
 pub mod function;
@@ -39,6 +38,7 @@ pub mod parts;
 pub mod quadric;
 mod same;
 pub mod settings;
+pub mod shape;
 mod shared;
 pub mod soft;
 pub mod surface;
@@ -48,8 +48,7 @@ pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
 pub use contact::Contact;
 pub use curves::Curves;
-pub use element::{Element, Origin, Paint, Shape};
-pub use extent::extent;
+pub use element::{Element, Origin, Paint};
 pub use finish::{Finish, Skip};
 pub use flesh::Flesh;
 pub use function::{Form, Function};
@@ -58,6 +57,7 @@ pub use light::{Light, LightKind};
 pub use local::Limbs;
 pub use quadric::Quadric;
 pub use settings::{Digger, Fragile, Settings, Tone};
+pub use shape::{Bone, Cuboid, Ends, Shape, extent};
 pub use soft::SoftSurface;
 pub use surface::{ComposedSurface, Surface};
 pub use surroundings::{Background, Cloud, Fog, Ground, Lens, Sky};

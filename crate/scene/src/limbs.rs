@@ -4,7 +4,6 @@
 //! known of a piece without evaluating it is sharper: a short one is nowhere near most rays, and
 //! along it the width of a taper hardly varies.
 
-use field::skeleton::halves;
 use field::{Shaping, Skeleton, Taper};
 
 /// The most pieces of one bone.
@@ -18,12 +17,7 @@ const CHANGE: f64 = 1.25;
 /// bone as it is.
 #[must_use]
 pub fn cut(skeleton: Skeleton, shaping: Shaping) -> Vec<(Skeleton, Shaping)> {
-    let is_limb = match skeleton {
-        Skeleton::Curve { .. } => true,
-        Skeleton::Segment { .. } | Skeleton::Arc { .. } => shaping.varies_along(&skeleton),
-        _ => false,
-    };
-    if !is_limb {
+    if !skeleton.is_numeric() && !shaping.varies_along(&skeleton) {
         return vec![(skeleton, shaping)];
     }
     let count = pieces(&skeleton, &shaping);
@@ -49,7 +43,7 @@ pub(crate) fn cut_short(
 
 fn cut_into(skeleton: &Skeleton, shaping: Shaping, count: usize) -> Vec<(Skeleton, Shaping)> {
     let bones: Vec<Skeleton> = (0..count)
-        .map(|i| part(skeleton, share(i, count), share(i + 1, count)))
+        .filter_map(|i| skeleton.part(share(i, count), share(i + 1, count)))
         .collect();
     // Tapers vary evenly with length, which the parameter of a curve does not.
     let lengths: Vec<f64> = bones.iter().map(Skeleton::measure).collect();
@@ -86,47 +80,12 @@ fn pieces(skeleton: &Skeleton, shaping: &Shaping) -> usize {
         shaping.radius / end.radius,
         shaping.blobbiness / end.blobbiness,
     ]
-    .map(|ratio| {
-        let ratio = ratio.abs();
-        libm::log(ratio.max(1.0 / ratio)) / libm::log(CHANGE)
-    });
+    .map(|ratio| libm::log(ratio.max(1.0 / ratio)) / libm::log(CHANGE));
     let wanted = by_length.max(by_radius.max(by_blobbiness));
     // A number that is no number, or infinite at a tip of radius 0, is taken for very many.
     if wanted < MOST as f64 {
         (wanted.ceil() as usize).max(1)
     } else {
         MOST
-    }
-}
-
-/// The piece of a bone between two shares of its parameter.
-fn part(skeleton: &Skeleton, from: f64, to: f64) -> Skeleton {
-    match *skeleton {
-        Skeleton::Segment { base, apex } => Skeleton::Segment {
-            base: base.lerp(apex, from),
-            apex: base.lerp(apex, to),
-        },
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let (sine, cosine) = libm::sincos(angle * from);
-            Skeleton::Arc {
-                center,
-                u: u * cosine + v * sine,
-                v: v * cosine - u * sine,
-                radius,
-                angle: angle * (to - from),
-            }
-        }
-        Skeleton::Curve { control } => {
-            let (_, rest) = halves(control, from);
-            let (piece, _) = halves(rest, (to - from) / (1.0 - from));
-            Skeleton::Curve { control: piece }
-        }
-        ref other => other.clone(),
     }
 }

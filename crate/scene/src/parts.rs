@@ -3,6 +3,8 @@
 //! a function into balls with radii of their own.
 
 use crate::Shape;
+use field::Skeleton;
+use field::skeleton::ring_vector;
 use glam::DVec3;
 
 /// Straight pieces that stand for a curve.
@@ -13,43 +15,34 @@ impl Shape {
     /// itself if it is simple.
     #[must_use]
     pub fn parts(&self, radius: f64) -> Vec<Self> {
-        match self {
-            Self::Polygon { rings, .. } => triangles(rings)
+        let bone = match self {
+            Self::Bone(bone) => bone,
+            Self::Function(function) => return function.draft(),
+            simple => return vec![simple.clone()],
+        };
+        match &bone.skeleton {
+            Skeleton::Polygon { rings } => triangles(rings)
                 .into_iter()
-                .map(|corners| Self::Triangle { corners, radius })
+                .map(|corners| Self::triangle(corners, radius))
                 .collect(),
-            Self::Curve { control, .. } => {
-                let mut base = along(control, 0.0);
-                let mut parts = vec![Self::Sphere {
-                    center: base,
-                    radius,
-                }];
+            line if line.is_numeric() => {
+                let mut base = line.at(0.0);
+                let mut parts = vec![Self::sphere(base, radius)];
                 for i in 1..=PIECES {
-                    let apex = along(control, i as f64 / PIECES as f64);
-                    parts.push(Self::Cylinder { base, apex, radius });
-                    parts.push(Self::Sphere {
-                        center: apex,
-                        radius,
-                    });
+                    let apex = line.at(i as f64 / PIECES as f64);
+                    parts.push(Self::cylinder(base, apex, radius));
+                    parts.push(Self::sphere(apex, radius));
                     base = apex;
                 }
                 parts
             }
             // With flesh around it, a patch is a triangle like others.
-            Self::Patch { corners, .. } if radius > 0.0 => vec![Self::Triangle {
-                corners: *corners,
-                radius,
-            }],
-            Self::Function(function) => function.draft(),
-            simple => vec![simple.clone()],
+            Skeleton::Triangle { corners } if radius > 0.0 => {
+                vec![Self::triangle(*corners, radius)]
+            }
+            _ => vec![self.clone()],
         }
     }
-}
-
-/// The point of a Bézier curve at t.
-fn along([a, b, c, d]: &[DVec3; 4], t: f64) -> DVec3 {
-    let s = 1.0 - t;
-    *a * (s * s * s) + *b * (3.0 * s * s * t) + *c * (3.0 * s * t * t) + *d * (t * t * t)
 }
 
 /// Cuts a polygon into triangles, ear by ear.
@@ -57,11 +50,7 @@ fn triangles(rings: &[Vec<DVec3>]) -> Vec<[DVec3; 3]> {
     let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
         return Vec::new();
     };
-    let normal: DVec3 = outer
-        .windows(2)
-        .map(|w| (w[0] - outer[0]).cross(w[1] - outer[0]))
-        .sum();
-    let Some(z) = normal.try_normalize() else {
+    let Some(z) = ring_vector(outer).try_normalize() else {
         return Vec::new();
     };
     let x = z.any_orthonormal_vector();
@@ -95,12 +84,7 @@ mod tests {
     fn area(parts: &[Shape]) -> f64 {
         parts
             .iter()
-            .map(|part| match part {
-                Shape::Triangle {
-                    corners: [a, b, c], ..
-                } => (*b - *a).cross(*c - *a).length() / 2.0,
-                other => panic!("{other:?} is no triangle"),
-            })
+            .map(|part| part.skeleton().expect("a triangle").measure())
             .sum()
     }
 
@@ -112,10 +96,7 @@ mod tests {
                 .to_vec()
         };
         let slant = 1.25f64.sqrt();
-        let whole = Shape::Polygon {
-            rings: vec![square(2.0)],
-            radius: 0.1,
-        };
+        let whole = Shape::polygon(vec![square(2.0)], 0.1);
         assert!((area(&whole.parts(0.1)) - 16.0 * slant).abs() < 1e-12);
         // Holes may run either way round.
         for turned in [false, true] {
@@ -123,10 +104,7 @@ mod tests {
             if turned {
                 hole.reverse();
             }
-            let holed = Shape::Polygon {
-                rings: vec![square(2.0), hole],
-                radius: 0.1,
-            };
+            let holed = Shape::polygon(vec![square(2.0), hole], 0.1);
             assert!((area(&holed.parts(0.1)) - 12.0 * slant).abs() < 1e-12);
         }
     }
@@ -135,7 +113,7 @@ mod tests {
     fn a_degenerate_polygon_has_no_parts() {
         let line = vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0];
         for rings in [vec![], vec![vec![]], vec![line]] {
-            let shape = Shape::Polygon { rings, radius: 0.0 };
+            let shape = Shape::polygon(rings, 0.0);
             assert!(shape.parts(0.0).is_empty(), "{shape:?}");
         }
     }
@@ -143,15 +121,10 @@ mod tests {
     #[test]
     fn a_curve_is_a_chain() {
         let control = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y];
-        let shape = Shape::Curve {
-            control,
-            radius: 0.1,
-        };
+        let shape = Shape::curve(control, 0.1);
         let parts = shape.parts(0.2);
         assert!(parts.iter().all(|part| part.radius() == 0.2));
-        let Shape::Sphere { center, .. } = parts[parts.len() - 1] else {
-            panic!("no ball at the end");
-        };
-        assert_eq!(center, control[3]);
+        let ball = Shape::sphere(control[3], 0.2);
+        assert_eq!(parts[parts.len() - 1], ball, "a ball at the end");
     }
 }

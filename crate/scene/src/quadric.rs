@@ -5,6 +5,7 @@
 //! and an affine map takes them to `center + q₀·axes[0] + q₁·axes[1] + q₂·axes[2]`. Moving,
 //! turning, scaling and shearing the surface changes the map and leaves the equation as it is.
 
+use crate::Cuboid;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -49,6 +50,15 @@ impl Quadric {
             axes: [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * half),
         };
         (half.cmpgt(DVec3::ZERO).all() && quadric.is_surface()).then_some(quadric)
+    }
+
+    /// Returns the box that cuts the surface off.
+    #[must_use]
+    pub fn cuboid(&self) -> Cuboid {
+        Cuboid {
+            center: self.center,
+            axes: self.axes,
+        }
     }
 
     /// Whether all numbers are finite, the box has a volume, and the equation is not one that

@@ -77,7 +77,7 @@ mod tests {
 
     fn ball(radius: f64) -> Element {
         let center = DVec3::ZERO;
-        Element::new(Shape::Sphere { center, radius })
+        Element::new(Shape::sphere(center, radius))
     }
 
     #[test]

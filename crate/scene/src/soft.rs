@@ -1,7 +1,7 @@
 //! The convolution surfaces of a scene: which elements are soft, and the field that those of each
 //! body make together.
 
-use crate::{Curves, Element, Flesh, Fragile, Frame, Function, Scene, Shape};
+use crate::{Curves, Element, Ends, Flesh, Frame, Function, Scene, Shape};
 use crate::{curves, limbs};
 use field::shaping::SLIMMEST;
 use field::{Primitive, Skeleton, Sum};
@@ -39,7 +39,7 @@ impl Scene {
         let flesh = self.flesh.get(element.flesh? as usize)?;
         let is_soft = match element.shape.curves() {
             Some(_) => true,
-            None => element.shape.has_skeleton() && flesh.is_soft(),
+            None => element.shape.skeleton().is_some() && flesh.is_soft(),
         };
         let drawn = (element.finish as usize) < self.finishes.len();
         (drawn && is_soft).then_some(flesh)
@@ -71,34 +71,23 @@ impl Scene {
     /// The radius of a soft element's flesh; `None` if the shape's own radius counts.
     #[must_use]
     pub fn radius_of_flesh(&self, element: &Element) -> Option<f64> {
+        let bone = element.shape.bone()?;
         let flesh = self.flesh_in_world(element)?;
-        let own = element.shape.radius();
-        let Fragile {
-            arc,
-            pipe,
-            cylinder,
-            sphere,
-        } = self.settings.fragile;
-        let overruled = match element.shape {
-            Shape::Arc { .. } | Shape::Curve { .. } => arc,
-            Shape::Cylinder { .. } => cylinder,
-            Shape::Pipe { .. } => pipe,
-            Shape::Sphere { .. } => sphere,
-            // These have no radius of their own in the language.
-            Shape::Triangle { .. }
-            | Shape::Patch { .. }
-            | Shape::Polygon { .. }
-            | Shape::Plane { .. } => true,
-            Shape::Cone { .. } | Shape::Box { .. } | Shape::Quadric(_) | Shape::Function(_) => {
-                return None;
-            }
+        let fragile = self.settings.fragile;
+        let overruled = match (&bone.skeleton, bone.ends) {
+            _ if bone.end_radius.is_some() => return None,
+            (Skeleton::Point { .. }, _) => fragile.sphere,
+            (Skeleton::Segment { .. }, Ends::Open) => fragile.pipe,
+            (Skeleton::Segment { .. }, _) => fragile.cylinder,
+            // Faces have no radius of their own in the language.
+            (line_or_face, _) => fragile.arc || line_or_face.dimension() == 2,
         };
         // Some commands write shapes without a radius (`dot`, `line`).
-        if !overruled && own != 0.0 {
+        if !overruled && bone.radius != 0.0 {
             return None;
         }
         let given = if flesh.depth > 0.0 {
-            let dimension = skeleton(&element.shape)?.dimension();
+            let dimension = bone.skeleton.dimension();
             self.shaping(element, &flesh, 1.0)
                 .radius_of_depth(flesh.depth, dimension)
                 .unwrap_or(0.0)
@@ -124,21 +113,11 @@ impl Scene {
             });
         }
         let shaping = self.shaping(element, &flesh, self.radius(element));
-        let tapers = shaping.taper.is_some();
-        // From above: an arc's circle, a curve's control polygon.
-        let length = match &element.shape {
-            Shape::Curve { control, .. } => control.windows(2).map(|w| w[0].distance(w[1])).sum(),
-            Shape::Cylinder { base, apex, .. }
-            | Shape::Pipe { base, apex, .. }
-            | Shape::Cone { base, apex, .. }
-                if tapers =>
-            {
-                base.distance(*apex)
-            }
-            Shape::Arc { sweep, angle, .. } if tapers => sweep * angle,
-            _ => return false,
-        };
-        shaping.widths_along(length) > field::primitive::LONGEST
+        element.shape.skeleton().is_some_and(|skeleton| {
+            let is_line = skeleton.dimension() == 1;
+            let is_numeric = skeleton.is_numeric() || is_line && shaping.taper.is_some();
+            is_numeric && shaping.widths_along(skeleton.most_length()) > field::primitive::LONGEST
+        })
     }
 
     /// The segments of a skeleton of curves, with their shapings in lengths of the world.
@@ -148,11 +127,7 @@ impl Scene {
         function: &'a Function,
         flesh: &'a Flesh,
     ) -> impl Iterator<Item = (Skeleton, field::Shaping)> + 'a {
-        let blobbiness = if flesh.is_soft() {
-            flesh.blobbiness
-        } else {
-            curves::BLOBBINESS
-        };
+        let blobbiness = flesh.blobbiness.unwrap_or(curves::BLOBBINESS);
         let growth = function.growth();
         let pieces = function.curves().into_iter().flat_map(Curves::pieces);
         pieces.map(move |[(base, start), (apex, end)]| {
@@ -177,30 +152,28 @@ impl Scene {
     /// The kernel's parameters for an element with this radius and this flesh, in lengths of the
     /// world.
     fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
-        // A cone has radii of its own, in place of its flesh's.
-        let (radius, end_radius) = match element.shape {
-            Shape::Cone {
-                base_radius,
-                apex_radius,
-                ..
-            } => {
-                // A tip may be at the start.
-                let start = base_radius.max(SLIMMEST * apex_radius);
-                (start, (apex_radius != start).then_some(apex_radius))
+        let bone = element.shape.bone();
+        let (radius, end_radius) = match bone.and_then(|bone| Some((bone.radius, bone.end_radius?)))
+        {
+            // A tip may be at the start.
+            Some((start, end)) => {
+                let start = start.max(SLIMMEST * end);
+                (start, (end != start).then_some(end))
             }
-            _ => (radius, flesh.end_radius),
+            None => (radius, flesh.end_radius),
         };
+        let blobbiness = flesh.blobbiness.unwrap_or(curves::BLOBBINESS);
         let tapers = end_radius.is_some() || flesh.end_blobbiness.is_some();
         field::Shaping {
             kernel: flesh.kernel.unwrap_or(element.kernel),
             radius,
-            blobbiness: flesh.blobbiness,
+            blobbiness,
             blob_scale: self.settings.blob_scale,
             strength: flesh.strength,
             influence: self.settings.influence,
             taper: tapers.then(|| field::Taper {
                 radius: end_radius.unwrap_or(radius),
-                blobbiness: flesh.end_blobbiness.unwrap_or(flesh.blobbiness),
+                blobbiness: flesh.end_blobbiness.unwrap_or(blobbiness),
             }),
         }
     }
@@ -256,14 +229,15 @@ impl Scene {
                 .for_each(f);
             return;
         }
-        let Some(skeleton) = skeleton(&element.shape) else {
+        let Some(skeleton) = element.shape.skeleton().cloned() else {
             return;
         };
         let shaping = self.shaping(element, &flesh, self.radius(element));
         let profile = match skeleton {
             Skeleton::Triangle { .. } => flesh.whole_profile(),
             // They have no parameters that a profile could follow.
-            Skeleton::Polygon { .. } | Skeleton::Curve { .. } => None,
+            Skeleton::Polygon { .. } => None,
+            ref line if line.is_numeric() => None,
             _ => flesh.profile,
         };
         // A profile runs along the whole skeleton.
@@ -278,35 +252,4 @@ impl Scene {
                 .for_each(&mut f);
         }
     }
-}
-
-/// The skeleton of a shape; `None` if it has none.
-fn skeleton(shape: &Shape) -> Option<Skeleton> {
-    Some(match shape.clone() {
-        Shape::Sphere { center, .. } => Skeleton::Point { center },
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => Skeleton::Segment { base, apex },
-        Shape::Arc {
-            center,
-            u,
-            v,
-            sweep,
-            angle,
-            ..
-        } => Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius: sweep,
-            angle,
-        },
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-            Skeleton::Triangle { corners }
-        }
-        Shape::Polygon { rings, .. } => Skeleton::Polygon { rings },
-        Shape::Curve { control, .. } => Skeleton::Curve { control },
-        Shape::Plane { point, normal, .. } => Skeleton::Plane { point, normal },
-        Shape::Box { .. } | Shape::Quadric(_) | Shape::Function(_) => return None,
-    })
 }

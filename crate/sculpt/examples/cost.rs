@@ -31,18 +31,18 @@ fn step(clay: &mut Clay, sweep: &Sweep) -> (f64, f64, usize) {
     let mut seen = Vec::new();
     for k in 0..31 {
         let angle = 0.2 * f64::from(k);
-        let place = |t: f64| DVec3::new(libm::cos(angle) * t, libm::sin(angle) * t, 0.0);
         // Pushed and smoothed from just above, pulled from within.
         let [from, to] = match sweep.action {
             Action::Pull => [1.0, 1.0 + 0.1 * radius],
             _ => [1.0 + 0.2 * radius, 1.0 + 0.1 * radius],
-        };
+        }
+        .map(|t| PathPoint::new(DVec3::new(libm::cos(angle) * t, libm::sin(angle) * t, 0.0)));
         let before: Vec<DVec3> = positions(clay);
         let mut drag = Drag::new(clay, sweep);
         // As on a stroke, the step before has brought what is touched into the processor's cache.
-        drag.step(clay, PathPoint::new(place(from)));
+        drag.step(clay, from);
         let start = Instant::now();
-        drag.step(clay, PathPoint::new(place(to)));
+        drag.step(clay, to);
         let seconds = start.elapsed().as_secs_f64();
         let moved = positions(clay)
             .iter()

@@ -184,8 +184,8 @@ impl Lattice {
     fn square(&mut self, n: i32, [u, v]: [IVec3; 2], center: IVec3) {
         for i in 0..n {
             for j in 0..n {
-                let at = |a: i32, b: i32| center + u * (2 * (i + a) - n) + v * (2 * (j + b) - n);
-                let [a, b, c, d] = [at(0, 0), at(1, 0), at(1, 1), at(0, 1)];
+                let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+                    .map(|(i, j)| center + u * (2 * i - n) + v * (2 * j - n));
                 if (2 * i + 1 < n) == (2 * j + 1 < n) {
                     self.triangle([a, b, c]);
                     self.triangle([a, c, d]);

@@ -268,11 +268,10 @@ impl Texture {
         };
         let scale = sane(self.scale);
         let flat = !matches!(self.method, Method::Solid(_));
-        let to = |p: DVec3| sane(scale * (sane(p) - sane(self.translate)));
         if !self.mask.is_empty() {
             // The far edge of the last tile belongs to it.
             let [x, y] = [raw.x, raw.y].map(|x| if flat && x == 1.0 { 1.0 - 1e-9 } else { x });
-            let at = to(DVec3::new(x, y, raw.z));
+            let at = self.argument(DVec3::new(x, y, raw.z));
             let [columns, rows] = self.tiles();
             let [row, column] = [(at.y, rows), (at.x, columns)].map(|(x, count)| {
                 (x.floor() as i64).rem_euclid(i64::try_from(count).unwrap_or(1).max(1)) as usize
@@ -283,7 +282,7 @@ impl Texture {
             }
         }
         Some(Place {
-            argument: to(raw),
+            argument: self.argument(raw),
             directions: [0, 1].map(|i| {
                 let sign = if scale[i] == 0.0 {
                     0.0
@@ -293,6 +292,11 @@ impl Texture {
                 sign * sane(directions[i]).normalize_or_zero()
             }),
         })
+    }
+
+    /// Returns the argument of the pattern at a point or at coordinates u, v, 0.
+    fn argument(&self, p: DVec3) -> DVec3 {
+        sane(sane(self.scale) * (sane(p) - sane(self.translate)))
     }
 
     /// The pattern at an argument. `None` if there is no such image.
@@ -347,12 +351,12 @@ impl Texture {
         let place = self.place(site)?;
         let rise = sane(self.times).x * (sane(self.bounds[1]).x - sane(self.bounds[0]).x);
         let q = place.argument;
-        let along = |x: f64, y: f64| x * place.directions[0] + y * place.directions[1];
+        let [right, up] = place.directions;
         let slope = match self.method {
             Method::Colour(_) => DVec3::ZERO,
             Method::Waves([u, v]) => {
                 let (u, v) = (u.jet(q.x), v.jet(q.y));
-                along(u.1 * v.0, u.0 * v.1)
+                u.1 * v.0 * right + u.0 * v.1 * up
             }
             Method::Solid(solid) => self.solid_slope(solid, q, site.normal),
             Method::Image(index, mapping) => {
@@ -360,16 +364,13 @@ impl Texture {
                 let step = DVec2::new(f64::from(size[0]), f64::from(size[1]))
                     .max(DVec2::ONE)
                     .recip();
-                let grey = |by: DVec2| {
+                let (x, y) = (DVec2::new(step.x, 0.0), DVec2::new(0.0, step.y));
+                let [x, before_x, y, before_y] = [x, -x, y, -y].map(|by| {
                     look(images, index, mapping, q.truncate() + by)
                         .map(|c| luminance(DVec3::from_array(c)))
-                };
-                let (x, y) = (DVec2::new(step.x, 0.0), DVec2::new(0.0, step.y));
-                IMAGE_RELIEF
-                    * along(
-                        (grey(x)? - grey(-x)?) / (2.0 * step.x),
-                        (grey(y)? - grey(-y)?) / (2.0 * step.y),
-                    )
+                });
+                let (x, y) = (x? - before_x?, y? - before_y?);
+                IMAGE_RELIEF * (x / (2.0 * step.x) * right + y / (2.0 * step.y) * up)
             }
         };
         let normal = site.normal;

@@ -132,8 +132,8 @@ pub fn noise_jet(p: DVec3) -> (f64, DVec3) {
         let by = [corner & 1, corner >> 1 & 1, corner >> 2 & 1];
         let arrow = arrow(lattice(offset(base, by), 0));
         let at = t - DVec3::new(f64::from(by[0]), f64::from(by[1]), f64::from(by[2]));
-        let part = |i: usize, f: f64, d: f64| if by[i] == 0 { (1.0 - f, -d) } else { (f, d) };
-        let ((wx, sx), (wy, sy), (wz, sz)) = (part(0, fx, dx), part(1, fy, dy), part(2, fz, dz));
+        let [(wx, sx), (wy, sy), (wz, sz)] = [(by[0], fx, dx), (by[1], fy, dy), (by[2], fz, dz)]
+            .map(|(by, f, d)| if by == 0 { (1.0 - f, -d) } else { (f, d) });
         let dot = arrow.dot(at);
         let weight = wx * wy * wz;
         value += weight * dot;
@@ -230,14 +230,15 @@ mod tests {
                             f64::from(corner >> 1 & 1),
                             f64::from(corner >> 2 & 1),
                         );
-                        let weight = |by: f64, t: f64| {
+                        let weights = [0, 1, 2].map(|i| {
+                            let t: f64 = t[i];
                             let f = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
-                            if by == 0.0 { 1.0 - f } else { f }
-                        };
+                            if by[i] == 0.0 { 1.0 - f } else { f }
+                        });
                         let d = (t - by).abs();
                         // The two longest of three offsets.
                         let dot = d.x + d.y + d.z - d.min_element();
-                        most += weight(by.x, t.x) * weight(by.y, t.y) * weight(by.z, t.z) * dot;
+                        most += weights.iter().product::<f64>() * dot;
                     }
                     worst = worst.max(most);
                 }

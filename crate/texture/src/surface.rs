@@ -62,6 +62,15 @@ fn counts(weight: f64) -> f64 {
     }
 }
 
+/// Returns a weight divided by the largest one, and 1 where no weight counts.
+fn share(weight: f64, most: f64) -> f64 {
+    if most > 0.0 {
+        counts(weight) / most
+    } else {
+        1.0
+    }
+}
+
 /// Mixes surfaces by weights: every parameter is the weighted mean, index and shine included, and
 /// the normal is the mean of the normals, of length 1 (thesis, section 4.2.5). Weights need not sum
 /// to 1; those that are negative or not finite count as 0, and if none is left all surfaces count
@@ -81,18 +90,11 @@ pub fn blend(parts: &[(f64, Surface)]) -> Option<Surface> {
     }
     let most = parts.iter().map(|&(w, _)| counts(w)).fold(0.0, f64::max);
     // Divided by the largest first, so that no sum is infinite.
-    let share = |weight: f64| {
-        if most > 0.0 {
-            counts(weight) / most
-        } else {
-            1.0
-        }
-    };
-    let sum: f64 = parts.iter().map(|&(w, _)| share(w)).sum();
+    let sum: f64 = parts.iter().map(|&(w, _)| share(w, most)).sum();
     let mut colours = [[0.0; 3]; 5];
     let (mut index, mut shine, mut normal) = (0.0, 0.0, DVec3::ZERO);
     for (weight, surface) in parts {
-        let share = share(*weight) / sum;
+        let share = share(*weight, most) / sum;
         let own = [
             surface.diffuse,
             surface.ambient,

@@ -56,13 +56,13 @@ impl Job for CoatScene {
 pub(crate) fn ball(radius: f64) -> Arc<Scene> {
     let mut scene = Scene::default();
     scene.flesh.push(scene::Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         ..scene::Flesh::default()
     });
     let center = glam::DVec3::ZERO;
     scene.elements.push(scene::Element {
         flesh: Some(0),
-        ..scene::Element::new(scene::Shape::Sphere { center, radius })
+        ..scene::Element::new(scene::Shape::sphere(center, radius))
     });
     Arc::new(scene)
 }

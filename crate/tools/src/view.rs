@@ -302,16 +302,13 @@ mod tests {
             ..Scene::default()
         };
         scene.flesh.push(Flesh {
-            blobbiness: -2.0,
+            blobbiness: Some(2.0),
             ..Flesh::default()
         });
         let ball = |x: f64, finish, flesh| Element {
             flesh,
             finish,
-            ..Element::new(Shape::Sphere {
-                center: DVec3::new(x, 0.0, 0.0),
-                radius: 1.0,
-            })
+            ..Element::new(Shape::sphere(DVec3::new(x, 0.0, 0.0), 1.0))
         };
         scene.elements = vec![
             ball(0.0, 0, Some(0)),

@@ -695,7 +695,7 @@ mod tests {
                 let shaping = Shaping {
                     kernel,
                     radius: 0.03 + 0.3 * random.unit() * random.unit(),
-                    blobbiness: random.range(-5.0, -1.0),
+                    blobbiness: -random.range(-5.0, -1.0),
                     blob_scale: field::BlobScale::Relative,
                     strength: 1.0,
                     influence: 1e-3,

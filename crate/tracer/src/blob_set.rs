@@ -260,7 +260,7 @@ mod tests {
             let shaping = Shaping {
                 kernel: Kernel::Gauss,
                 radius: random.range(0.05, 0.35),
-                blobbiness: random.range(-3.0, -1.0),
+                blobbiness: -random.range(-3.0, -1.0),
                 blob_scale: BlobScale::Relative,
                 strength: 1.0,
                 influence: 1e-3,
@@ -311,7 +311,7 @@ mod tests {
         let shaping = Shaping {
             kernel: Kernel::Cauchy,
             radius: 0.2,
-            blobbiness: -2.0,
+            blobbiness: 2.0,
             blob_scale: BlobScale::Relative,
             strength: 1.0,
             influence: 1e-3,

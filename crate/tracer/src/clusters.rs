@@ -241,7 +241,7 @@ mod tests {
                 let shaping = Shaping {
                     kernel: [Kernel::Cauchy, Kernel::Gauss, Kernel::Inverse, Kernel::Soft][i % 4],
                     radius: random.range(0.02, 0.12),
-                    blobbiness: -1.0,
+                    blobbiness: 1.0,
                     blob_scale: field::BlobScale::Relative,
                     strength: 1.0,
                     influence: 1e-3,

@@ -93,7 +93,7 @@ mod tests {
             let shaping = Shaping {
                 kernel,
                 radius: 0.05,
-                blobbiness: -2.0,
+                blobbiness: 2.0,
                 blob_scale: BlobScale::Relative,
                 strength: if i % 7 == 1 { carving } else { 1.0 },
                 influence: 1e-3,

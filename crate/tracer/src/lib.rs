@@ -11,10 +11,10 @@
 //!
 //! // Two soft balls that blend.
 //! let mut scene = Scene::default();
-//! scene.flesh.push(Flesh { blobbiness: -2.0, ..Flesh::default() });
+//! scene.flesh.push(Flesh { blobbiness: Some(2.0), ..Flesh::default() });
 //! for x in [-0.6, 0.6] {
 //!     let center = DVec3::X * x;
-//!     let shape = Shape::Sphere { center, radius: 0.5 };
+//!     let shape = Shape::sphere(center, 0.5);
 //!     scene.elements.push(Element { flesh: Some(0), ..Element::new(shape) });
 //! }
 //! let picture = Picture::new(&scene, [64, 64]);

@@ -1,5 +1,7 @@
 //! Materials at points of surfaces: finishes with their textures, each in the coordinates of its
 //! object, mixed by the shares of the elements.
+use field::Skeleton;
+use field::skeleton::ring_vector;
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use scene::{Element, Finish, Scene, Shape, Skip};
 use std::sync::Arc;
@@ -329,20 +331,22 @@ fn object(to_world: DAffine3) -> Object {
 fn chart(shape: &Shape, to: &DAffine3) -> Chart {
     let point = |p: DVec3| to.transform_point3(p);
     let vector = |v: DVec3| to.transform_vector3(v);
-    match *shape {
-        Shape::Sphere { center, .. } => Chart::Sphere(point(center)),
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Cone { base, apex, .. }
-        | Shape::Pipe { base, apex, .. } => Chart::Segment([point(base), point(apex)]),
-        Shape::Arc {
+    let skeleton = match shape {
+        Shape::Bone(bone) => &bone.skeleton,
+        Shape::Box(cuboid) => return Chart::Box(point(cuboid.center), cuboid.axes.map(vector)),
+        Shape::Quadric(own) => return Chart::Box(point(own.center), own.axes.map(vector)),
+        Shape::Function(function) => return Chart::Sphere(point(function.middle())),
+    };
+    match *skeleton {
+        Skeleton::Segment { base, apex } => Chart::Segment([point(base), point(apex)]),
+        Skeleton::Arc {
             center,
             u,
             v,
-            sweep,
+            radius,
             angle,
-            ..
         } => {
-            let along = vector(u * sweep);
+            let along = vector(u * radius);
             let u = along.normalize_or(u);
             let v = vector(v);
             Chart::Arc(uv::Arc {
@@ -353,33 +357,26 @@ fn chart(shape: &Shape, to: &DAffine3) -> Chart {
                 angle,
             })
         }
-        Shape::Curve { control, .. } => Chart::Curve(control.map(point)),
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-            Chart::Triangle(corners.map(point))
-        }
-        Shape::Plane {
+        Skeleton::Curve { control } => Chart::Curve(control.map(point)),
+        Skeleton::Triangle { corners } => Chart::Triangle(corners.map(point)),
+        Skeleton::Plane {
             point: foot,
             normal,
-            ..
         } => {
             let normal = to.matrix3.inverse().transpose() * normal;
             Chart::Plane([point(foot), normal.normalize_or(DVec3::Y)])
         }
-        Shape::Polygon { ref rings, .. } => {
+        Skeleton::Polygon { ref rings } => {
             let corners: Vec<DVec3> = rings.iter().flatten().map(|&p| point(p)).collect();
             let first = corners.first().copied().unwrap_or_default();
             let outer = rings.first().map_or(0, Vec::len);
-            let edges = corners[..outer].windows(2);
-            let normal: DVec3 = edges.map(|w| (w[0] - first).cross(w[1] - first)).sum();
-            let normal = normal.normalize_or(DVec3::Y);
+            let normal = ring_vector(&corners[..outer]).normalize_or(DVec3::Y);
             match Sheet::around(&corners, normal) {
                 Some(sheet) => Chart::Sheet(sheet),
                 None => Chart::Plane([first, normal]),
             }
         }
-        Shape::Function(ref function) => Chart::Sphere(point(function.middle())),
-        Shape::Box { center, axes } => Chart::Box(point(center), axes.map(vector)),
-        Shape::Quadric(ref quadric) => Chart::Box(point(quadric.center), quadric.axes.map(vector)),
+        ref other => Chart::Sphere(point(other.middle())),
     }
 }
 

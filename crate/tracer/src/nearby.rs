@@ -342,7 +342,7 @@ mod tests {
                 let shaping = Shaping {
                     kernel: kernels[i % kernels.len()],
                     radius: 0.005 + 0.1 * random.unit(),
-                    blobbiness: -4.0,
+                    blobbiness: 4.0,
                     blob_scale: field::BlobScale::Relative,
                     strength: strength * (0.2 + random.unit()),
                     influence: 1e-3,

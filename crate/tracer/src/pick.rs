@@ -19,7 +19,7 @@ use scene::{Scene, Surface, surface};
 /// use tracer::Picker;
 ///
 /// let mut scene = Scene::default();
-/// let ball = |x, radius| Shape::Sphere { center: DVec3::X * x, radius };
+/// let ball = |x, radius| Shape::sphere(DVec3::X * x, radius);
 /// scene.elements = vec![Element::new(ball(0.0, 1.0)), Element::new(ball(9.0, 1.0))];
 /// let hit = Picker::new(&scene).pick(DVec3::new(9.0, 0.0, 5.0), DVec3::NEG_Z);
 /// assert_eq!(hit.map(|hit| (hit.element, hit.t)), Some((Some(1), 4.0)));

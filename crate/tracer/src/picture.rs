@@ -53,7 +53,7 @@ impl Hit {
 ///
 /// let mut scene = Scene::default();
 /// let center = scene.camera.target;
-/// scene.elements.push(Element::new(Shape::Sphere { center, radius: 1.0 }));
+/// scene.elements.push(Element::new(Shape::sphere(center, 1.0)));
 /// let picture = Picture::new(&scene, [8, 8]);
 /// let whole = Tile { x: 0, y: 0, width: 8, height: 8 };
 /// let rgba = picture.trace(whole, Pass::Full, &|| false, &mut Stats::default());

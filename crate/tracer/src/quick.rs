@@ -641,12 +641,12 @@ mod tests {
     /// Returns a ball of radius ¼ around (0, 0, 2), in the scene's own places.
     fn ball() -> Soft {
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-2.0, 1.0)]);
+        clothe(&mut scene, vec![soft(2.0, 1.0)]);
         let center = DVec3::Z * 2.0;
         let radius = 0.25;
         scene.elements = vec![Element {
             kernel: Kernel::Gauss,
-            ..element(Shape::Sphere { center, radius }, 0)
+            ..element(Shape::sphere(center, radius), 0)
         }];
         let surfaces = scene.soft_surfaces();
         Soft::new(scene, surfaces)

@@ -5,8 +5,9 @@ use crate::material::{Materials, is_plain, lets_light_through};
 use crate::soft::{MakeUp, Soft};
 use crate::solids::Solids;
 use crate::unit::{Unit, lowest};
+use field::Skeleton;
 use glam::{DVec3, Vec3};
-use scene::{Background, Light, Scene, Settings, Shape, Tone};
+use scene::{Background, Light, Scene, Settings, Tone};
 use std::collections::BTreeMap;
 
 /// Keys of sheets, beyond the numbers of all surfaces.
@@ -110,12 +111,11 @@ fn sheets(scene: &Scene, solids: &Solids) -> Vec<Option<u32>> {
     let (mut keys, mut sheets) = (BTreeMap::new(), Vec::new());
     for solid in 0..solids.len() {
         let element = &scene.elements[solids.element(solid) as usize];
-        let is_sheet = match element.shape {
-            Shape::Triangle { .. } | Shape::Polygon { .. } | Shape::Patch { .. } => {
-                scene.radius(element) == 0.0
-            }
-            _ => false,
-        };
+        let is_face = element
+            .shape
+            .skeleton()
+            .is_some_and(|bone| bone.dimension() == 2 && !matches!(bone, Skeleton::Plane { .. }));
+        let is_sheet = is_face && scene.radius(element) == 0.0;
         let next = SHEETS + keys.len() as u32;
         let paint = element.paint.as_ref();
         let finish = paint.map_or(element.finish, |paint| paint.finish);

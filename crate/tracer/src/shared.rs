@@ -370,7 +370,7 @@ mod tests {
         let shaping = Shaping {
             kernel,
             radius: random.range(0.1, 0.5),
-            blobbiness: -1.0,
+            blobbiness: 1.0,
             blob_scale: field::BlobScale::Relative,
             strength: 1.0,
             influence: 1e-3,

@@ -23,7 +23,7 @@ use crate::shared::{CORNERS, Cell, Shared, Sums};
 use crate::spans::{KnownPart, Node};
 use core::ops::Range;
 use field::bound::{Bound, Nearness, SpanLength};
-use field::{Cut, Kernel, Primitive, THRESHOLD};
+use field::{Cut, Primitive, THRESHOLD};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -921,7 +921,7 @@ impl<'a> Slabs<'a> {
     fn is_at_pole(&self, id: u32, magnitude: f64, touches: bool) -> bool {
         let primitive = self.list[id as usize] as usize;
         let kernel = self.terms.primitives[primitive].kernel;
-        kernel.has_pole() && (magnitude >= POLAR || touches && kernel != Kernel::Inverse)
+        kernel.has_pole() && (magnitude >= POLAR || touches && kernel.is_finite_over(1))
     }
 
     /// Estimates a list entry's largest relative slope at a distance ([`Bound::relative_slope`]).
@@ -1276,11 +1276,11 @@ mod tests {
     fn cloud(radius: f64, strength: f64, carving: f64) -> Soft {
         let mut numbers = Random::new(3);
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-2.0, strength), soft(-0.5, carving)]);
+        clothe(&mut scene, vec![soft(2.0, strength), soft(0.5, carving)]);
         for i in 0..400 {
             let center = numbers.vector(1.0);
             let carves = carving != 0.0 && i % 20 == 0;
-            let shape = Shape::Sphere { center, radius };
+            let shape = Shape::sphere(center, radius);
             scene.elements.push(element(shape, u32::from(carves)));
         }
         let surfaces = scene.soft_surfaces();

@@ -89,16 +89,12 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     scene.camera.eye = DVec3::Z * 4.0;
     scene.camera.target = DVec3::ZERO;
     scene.camera.fov = 1.0;
-    scenes::clothe(&mut scene, vec![scenes::soft(-4.0, 1.0); 2]);
+    scenes::clothe(&mut scene, vec![scenes::soft(4.0, 1.0); 2]);
     // Bodies of points alone take the way of `far_march`.
-    let line = Shape::Cylinder {
-        base: DVec3::Z * -3.0,
-        apex: DVec3::Z * -3.1,
-        radius: 0.003,
-    };
+    let line = Shape::cylinder(DVec3::Z * -3.0, DVec3::Z * -3.1, 0.003);
     scene.elements.push(scenes::element(line, 0));
     let mut ball = |center: DVec3, radius: f64, finish: u32| {
-        let shape = Shape::Sphere { center, radius };
+        let shape = Shape::sphere(center, radius);
         scene.elements.push(scenes::element(shape, finish));
     };
     for _ in 0..1000 {

@@ -4,27 +4,9 @@
 //! large or very small would lose digits. Before tracing it is moved to the origin and scaled by a
 //! power of two (which costs no digits) to about unit size. Nothing else changes: fields, angles
 //! and colours are the same.
+use field::skeleton::Map;
 use glam::{DAffine3, DQuat, DVec3};
-use scene::{Element, LightKind, Origin, Scene, Shape};
-
-/// An element without a surface, in place of one that no ray can meet.
-const NOTHING: Element = Element {
-    shape: Shape::Sphere {
-        center: DVec3::ZERO,
-        radius: 0.0,
-    },
-    flesh: None,
-    finish: 0,
-    body: 0,
-    frame: 0,
-    kernel: field::Kernel::Cauchy,
-    origin: Origin {
-        file: 0,
-        start: 0,
-        end: 0,
-    },
-    paint: None,
-};
+use scene::{Element, LightKind, Scene, Shape};
 
 /// The map from the world to the unit scene: `scale·(p − center)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,15 +28,17 @@ impl Unit {
     #[must_use]
     pub fn fit(scene: &Scene) -> (Self, Scene) {
         let mut mapped = scene.clone();
+        // An element without a surface.
+        let nothing = Element::new(Shape::sphere(DVec3::ZERO, 0.0));
         for element in &mut mapped.elements {
             let (low, high) = corners(&element.shape);
             if !low.is_finite() || !high.is_finite() {
-                *element = NOTHING;
+                *element = nothing.clone();
             }
         }
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;
-        for element in mapped.elements.iter().filter(|e| **e != NOTHING) {
+        for element in mapped.elements.iter().filter(|e| **e != nothing) {
             let (a, b) = corners(&element.shape);
             let radius = DVec3::splat(scene.radius(element).abs().min(f64::MAX));
             low = low.min(a - radius);
@@ -80,70 +64,11 @@ impl Unit {
     fn apply(&self, scene: &mut Scene) {
         let k = self.scale;
         for element in &mut scene.elements {
-            match &mut element.shape {
-                Shape::Sphere { center, radius } => {
-                    *center = self.map(*center);
-                    *radius *= k;
-                }
-                Shape::Cylinder { base, apex, radius } | Shape::Pipe { base, apex, radius } => {
-                    *base = self.map(*base);
-                    *apex = self.map(*apex);
-                    *radius *= k;
-                }
-                Shape::Arc {
-                    center,
-                    sweep,
-                    radius,
-                    ..
-                } => {
-                    *center = self.map(*center);
-                    *sweep *= k;
-                    *radius *= k;
-                }
-                Shape::Triangle { corners, radius } => {
-                    *corners = corners.map(|c| self.map(c));
-                    *radius *= k;
-                }
-                Shape::Polygon { rings, radius } => {
-                    for corner in rings.iter_mut().flatten() {
-                        *corner = self.map(*corner);
-                    }
-                    *radius *= k;
-                }
-                Shape::Curve { control, radius } => {
-                    *control = control.map(|c| self.map(c));
-                    *radius *= k;
-                }
-                Shape::Plane { point, radius, .. } => {
-                    *point = self.map(*point);
-                    *radius *= k;
-                }
-                Shape::Cone {
-                    base,
-                    base_radius,
-                    apex,
-                    apex_radius,
-                } => {
-                    *base = self.map(*base);
-                    *apex = self.map(*apex);
-                    *base_radius *= k;
-                    *apex_radius *= k;
-                }
-                Shape::Box { center, axes } => {
-                    *center = self.map(*center);
-                    *axes = axes.map(|axis| axis * k);
-                }
-                Shape::Patch { corners, .. } => *corners = corners.map(|c| self.map(c)),
-                Shape::Quadric(quadric) => {
-                    quadric.center = self.map(quadric.center);
-                    quadric.axes = quadric.axes.map(|axis| axis * k);
-                }
-                Shape::Function(function) => **function = function.moved(&self.to_unit()),
-            }
+            element.shape = element.shape.transform(self);
         }
         for frame in &mut scene.frames {
             frame.growth *= k;
-            frame.to_world = self.to_unit() * frame.to_world;
+            frame.to_world = self.affine() * frame.to_world;
         }
         for light in &mut scene.lights {
             match &mut light.kind {
@@ -156,15 +81,6 @@ impl Unit {
         }
         scene.camera.eye = self.map(scene.camera.eye);
         scene.camera.target = self.map(scene.camera.target);
-    }
-
-    /// Returns the map from the world to the unit scene.
-    fn to_unit(self) -> DAffine3 {
-        DAffine3::from_scale_rotation_translation(
-            DVec3::splat(self.scale),
-            DQuat::IDENTITY,
-            -self.scale * self.center,
-        )
     }
 
     /// Converts a point from the world to the unit scene.
@@ -193,8 +109,7 @@ pub fn lowest(scene: &Scene) -> f64 {
     let up = scene.up.normalize_or(DVec3::Y);
     let mut lowest = f64::INFINITY;
     for element in &scene.elements {
-        if !matches!(element.shape, Shape::Plane { .. }) {
-            let (low, high) = corners(&element.shape);
+        if let Some((low, high)) = element.shape.bounds(0.0) {
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             let radius = scene.radius(element).abs();
             lowest = lowest.min(middle.dot(up) - half.dot(up.abs()) - radius);
@@ -203,40 +118,40 @@ pub fn lowest(scene: &Scene) -> f64 {
     if lowest.is_finite() { lowest } else { 0.0 }
 }
 
-/// Returns the least and the greatest corner of a box that holds a shape's skeleton.
+/// Directions stay as they are, to the bit.
+impl Map for Unit {
+    fn point(&self, point: DVec3) -> DVec3 {
+        self.map(point)
+    }
+
+    fn vector(&self, vector: DVec3) -> DVec3 {
+        vector * self.scale
+    }
+
+    fn normal(&self, normal: DVec3) -> DVec3 {
+        normal
+    }
+
+    fn axes(&self, axes: [DVec3; 2]) -> [DVec3; 2] {
+        axes
+    }
+
+    fn length(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    fn affine(&self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(
+            DVec3::splat(self.scale),
+            DQuat::IDENTITY,
+            -self.scale * self.center,
+        )
+    }
+}
+
+/// Returns the least and the greatest corner of a box that holds a shape's skeleton; of a plane its
+/// point.
 fn corners(shape: &Shape) -> (DVec3, DVec3) {
-    match *shape {
-        Shape::Polygon { ref rings, .. } => extent(rings.iter().flatten()),
-        Shape::Curve { ref control, .. } => extent(control),
-        Shape::Sphere { center, .. } => (center, center),
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => extent(&[base, apex]),
-        Shape::Arc { center, sweep, .. } => {
-            (center - DVec3::splat(sweep), center + DVec3::splat(sweep))
-        }
-        Shape::Triangle { ref corners, .. } | Shape::Patch { ref corners, .. } => extent(corners),
-        Shape::Plane { point, .. } => (point, point),
-        Shape::Box { center, axes } => extent_of_box(center, axes),
-        Shape::Quadric(ref quadric) => extent_of_box(quadric.center, quadric.axes),
-        Shape::Function(ref function) => function.corners(),
-    }
-}
-
-/// Returns the least and the greatest coordinates of some points; NaN if a coordinate is NaN.
-fn extent<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> (DVec3, DVec3) {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for p in points {
-        if p.is_nan() {
-            return (DVec3::NAN, DVec3::NAN);
-        }
-        (low, high) = (low.min(*p), high.max(*p));
-    }
-    (low, high)
-}
-
-/// Returns the least and the greatest coordinates of a box, given by its middle and half axes.
-fn extent_of_box(center: DVec3, axes: [DVec3; 3]) -> (DVec3, DVec3) {
-    let reach = axes[0].abs() + axes[1].abs() + axes[2].abs();
-    (center - reach, center + reach)
+    let middle = shape.middle();
+    shape.bounds(0.0).unwrap_or((middle, middle))
 }

@@ -11,35 +11,20 @@ impl Random {
     pub fn shape(&mut self, kind: usize) -> Shape {
         let radius = self.range(0.1, 0.4);
         match kind % 5 {
-            0 => Shape::Sphere {
-                center: self.vector(1.0),
-                radius,
-            },
-            1 => Shape::Cylinder {
-                base: self.vector(1.0),
-                apex: self.vector(1.0),
-                radius,
-            },
+            0 => Shape::sphere(self.vector(1.0), radius),
+            1 => Shape::cylinder(self.vector(1.0), self.vector(1.0), radius),
             2 => {
                 let u = self.vector(1.0).normalize();
-                Shape::Arc {
-                    center: self.vector(1.0) * 0.5,
-                    u,
-                    v: u.cross(self.vector(1.0)).normalize(),
-                    sweep: self.range(0.2, 1.2),
-                    angle: self.range(0.3, TAU),
+                Shape::arc(
+                    self.vector(1.0) * 0.5,
+                    [u, u.cross(self.vector(1.0)).normalize()],
+                    self.range(0.2, 1.2),
+                    self.range(0.3, TAU),
                     radius,
-                }
+                )
             }
-            3 => Shape::Triangle {
-                corners: [0, 1, 2].map(|_| self.vector(1.0)),
-                radius,
-            },
-            _ => Shape::Plane {
-                point: self.vector(1.0),
-                normal: self.vector(1.0).normalize(),
-                radius,
-            },
+            3 => Shape::triangle([0, 1, 2].map(|_| self.vector(1.0)), radius),
+            _ => Shape::plane(self.vector(1.0), self.vector(1.0).normalize(), radius),
         }
     }
 
@@ -47,25 +32,18 @@ impl Random {
     pub fn solid(&mut self, kind: usize) -> Shape {
         let radius = self.range(0.1, 0.4);
         match kind % 5 {
-            0 => Shape::Cone {
-                base: self.vector(1.0),
-                base_radius: radius,
-                apex: self.vector(1.0),
-                apex_radius: self.range(0.0, 0.2),
-            },
-            1 => Shape::Pipe {
-                base: self.vector(1.0),
-                apex: self.vector(1.0),
+            0 => Shape::cone(
+                self.vector(1.0),
                 radius,
-            },
-            2 => Shape::Box {
-                center: self.vector(1.0),
-                axes: [0, 1, 2].map(|_| self.vector(0.5)),
-            },
-            3 => Shape::Patch {
-                corners: [0, 1, 2].map(|_| self.vector(1.0)),
-                normals: [0, 1, 2].map(|_| DVec3::Z + self.vector(1.0)),
-            },
+                self.vector(1.0),
+                self.range(0.0, 0.2),
+            ),
+            1 => Shape::pipe(self.vector(1.0), self.vector(1.0), radius),
+            2 => Shape::cuboid(self.vector(1.0), [0, 1, 2].map(|_| self.vector(0.5))),
+            3 => Shape::patch(
+                [0, 1, 2].map(|_| self.vector(1.0)),
+                [0, 1, 2].map(|_| DVec3::Z + self.vector(1.0)),
+            ),
             _ => Shape::Quadric(Box::new(Quadric {
                 square: DMat3::from_diagonal(DVec3::new(1.0, 1.3, -0.5)),
                 linear: self.vector(0.3),
@@ -95,7 +73,7 @@ pub fn element(shape: Shape, index: u32) -> Element {
 /// Returns flesh of radius 0.25.
 pub fn soft(blobbiness: f64, strength: f64) -> Flesh {
     Flesh {
-        blobbiness,
+        blobbiness: Some(blobbiness),
         strength,
         radius: 0.25,
         ..Flesh::default()
@@ -142,7 +120,7 @@ pub fn empty() -> Scene {
 pub fn blend(seed: u64, count: usize) -> Scene {
     let mut n = Random::new(seed);
     let mut scene = empty();
-    let flesh = vec![soft(-0.5, 1.0), soft(-4.0, 1.0), soft(-1.0, -0.7)];
+    let flesh = vec![soft(0.5, 1.0), soft(4.0, 1.0), soft(1.0, -0.7)];
     clothe(&mut scene, flesh);
     scene.finishes[0].diffuse = [0.9, 0.3, 0.1];
     scene.finishes[1].diffuse = [0.1, 0.5, 0.9];
@@ -283,7 +261,7 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
         };
         let mut flesh = Flesh {
             radius: radius * world.scale,
-            blobbiness: -blobbiness,
+            blobbiness: Some(blobbiness),
             kernel: Some(kernel),
             ..Flesh::default()
         };
@@ -302,7 +280,7 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
         if kind == Kind::Taper || (kind == Kind::Mixed && n.chance(0.2)) {
             flesh.end_radius = Some(flesh.radius * n.range(0.02, 1.5));
             if n.chance(0.3) {
-                flesh.end_blobbiness = Some(flesh.blobbiness * n.range(0.3, 3.0));
+                flesh.end_blobbiness = Some(blobbiness * n.range(0.3, 3.0));
             }
         }
         if kind == Kind::Restricted {
@@ -335,24 +313,20 @@ fn shape(kind: Kind, radius: f64, thin: bool, n: &mut Random, world: World) -> S
     let at = |n: &mut Random| world.at(n.vector(1.0));
     let radius = radius * world.scale;
     match kind {
-        Kind::Point => Shape::Sphere {
-            center: at(n),
-            radius,
-        },
+        Kind::Point => Shape::sphere(at(n), radius),
         Kind::Arc => {
             let u = n.vector(1.0).normalize();
-            Shape::Arc {
-                center: world.at(n.vector(1.0) * 0.5),
-                u,
-                v: u.cross(n.vector(1.0)).normalize(),
-                sweep: n.range(0.1, 1.2) * world.scale,
-                angle: if n.chance(0.2) {
+            Shape::arc(
+                world.at(n.vector(1.0) * 0.5),
+                [u, u.cross(n.vector(1.0)).normalize()],
+                n.range(0.1, 1.2) * world.scale,
+                if n.chance(0.2) {
                     TAU
                 } else {
                     n.range(0.2, TAU)
                 },
                 radius,
-            }
+            )
         }
         Kind::Triangle => {
             let (a, b) = (n.vector(1.0), n.vector(1.0));
@@ -362,10 +336,7 @@ fn shape(kind: Kind, radius: f64, thin: bool, n: &mut Random, world: World) -> S
             } else {
                 n.vector(1.0)
             };
-            Shape::Triangle {
-                corners: [a, b, c].map(|p| world.at(p)),
-                radius,
-            }
+            Shape::triangle([a, b, c].map(|p| world.at(p)), radius)
         }
         Kind::Polygon => {
             let x = n.vector(1.0).normalize();
@@ -387,21 +358,10 @@ fn shape(kind: Kind, radius: f64, thin: bool, n: &mut Random, world: World) -> S
                 let corners = corners.map(|&(a, b)| world.at(center + (x * a + y * b) * scale));
                 rings.push(corners.collect());
             }
-            Shape::Polygon { rings, radius }
+            Shape::polygon(rings, radius)
         }
-        Kind::Plane => Shape::Plane {
-            point: at(n),
-            normal: n.vector(1.0).normalize(),
-            radius,
-        },
-        Kind::Curve => Shape::Curve {
-            control: [at(n), at(n), at(n), at(n)],
-            radius,
-        },
-        _ => Shape::Cylinder {
-            base: at(n),
-            apex: at(n),
-            radius,
-        },
+        Kind::Plane => Shape::plane(at(n), n.vector(1.0).normalize(), radius),
+        Kind::Curve => Shape::curve([at(n), at(n), at(n), at(n)], radius),
+        _ => Shape::cylinder(at(n), at(n), radius),
     }
 }

@@ -3,8 +3,9 @@
 use crate::Random;
 use core::f64::consts::{PI, TAU};
 use field::local::Limb;
+use field::skeleton::Map;
 use field::{BlobScale, Kernel, Local, Primitive, Shaping, Skeleton};
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 
 /// A kind of skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,13 +152,7 @@ impl Random {
                 let center = rings[0].iter().sum::<DVec3>() / rings[0].len() as f64;
                 self.pick(&[p, p + (q - p) * around, p + (center - p) * inside, center])
             }
-            Skeleton::Curve {
-                control: [a, b, c, d],
-            } => {
-                let t = self.pick(&[0.0, 1.0, inside, inside]);
-                let s = 1.0 - t;
-                a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
-            }
+            ref line => line.at(self.pick(&[0.0, 1.0, inside, inside])),
         }
     }
 
@@ -183,7 +178,7 @@ impl Random {
     /// Returns a shaping of a radius R, whose width is about 1/R.
     pub fn shaping(&mut self, radius: f64) -> Shaping {
         Shaping {
-            blobbiness: -self.decades(-1.0, 1.0),
+            blobbiness: self.decades(-1.0, 1.0),
             strength: self.pick(&[1.0, 1.0, 1.5, -1.0]),
             ..shaping(radius, 1.0)
         }
@@ -225,7 +220,7 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
     }
     let shaping = Shaping {
         kernel,
-        ..shaping(0.4, -2.0)
+        ..shaping(0.4, 2.0)
     };
     let count = points.len() as u32 - 1;
     let limbs = (0..count).map(|i| {
@@ -329,53 +324,42 @@ fn mix([from, to]: [DVec3; 2], at: f64) -> DVec3 {
     from + (to - from) * at
 }
 
+/// A turn, a scale and a shift.
+struct Motion {
+    turn: DQuat,
+    scale: f64,
+    shift: DVec3,
+}
+
+impl Map for Motion {
+    fn point(&self, point: DVec3) -> DVec3 {
+        self.turn * point * self.scale + self.shift
+    }
+
+    fn vector(&self, vector: DVec3) -> DVec3 {
+        self.turn * vector * self.scale
+    }
+
+    fn normal(&self, normal: DVec3) -> DVec3 {
+        self.turn * normal
+    }
+
+    fn axes(&self, axes: [DVec3; 2]) -> [DVec3; 2] {
+        axes.map(|axis| self.turn * axis)
+    }
+
+    fn length(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    fn affine(&self) -> DAffine3 {
+        let scale = DVec3::splat(self.scale);
+        DAffine3::from_scale_rotation_translation(scale, self.turn, self.shift)
+    }
+}
+
 /// Returns a skeleton turned, scaled and shifted.
 #[must_use]
 pub fn move_by(skeleton: &Skeleton, turn: DQuat, scale: f64, shift: DVec3) -> Skeleton {
-    map_points(skeleton, turn, scale, |p| turn * p * scale + shift)
-}
-
-/// Returns a skeleton with its points mapped, its directions turned and its radius scaled.
-fn map_points(
-    skeleton: &Skeleton,
-    turn: DQuat,
-    scale: f64,
-    to: impl Fn(DVec3) -> DVec3,
-) -> Skeleton {
-    match *skeleton {
-        Skeleton::Point { center } => Skeleton::Point { center: to(center) },
-        Skeleton::Segment { base, apex } => Skeleton::Segment {
-            base: to(base),
-            apex: to(apex),
-        },
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => Skeleton::Arc {
-            center: to(center),
-            u: turn * u,
-            v: turn * v,
-            radius: radius * scale,
-            angle,
-        },
-        Skeleton::Triangle { corners } => Skeleton::Triangle {
-            corners: corners.map(to),
-        },
-        Skeleton::Plane { point, normal } => Skeleton::Plane {
-            point: to(point),
-            normal: turn * normal,
-        },
-        Skeleton::Polygon { ref rings } => Skeleton::Polygon {
-            rings: rings
-                .iter()
-                .map(|ring| ring.iter().map(|p| to(*p)).collect())
-                .collect(),
-        },
-        Skeleton::Curve { control } => Skeleton::Curve {
-            control: control.map(to),
-        },
-    }
+    skeleton.transform(&Motion { turn, scale, shift })
 }

@@ -1,7 +1,6 @@
 //! Handles that cannot be moved, and why.
 
 use super::handle::{Editable, Handle, Kind, Moves};
-use glam::DVec3;
 use rats::Project;
 use rats::parser::parse;
 use rats::symbol::Symbols;
@@ -10,47 +9,16 @@ use scene::{Origin, Shape};
 
 /// Returns the places of a shape as handles, none of which can be moved.
 pub fn plain(shape: &Shape, why: &str) -> Vec<Handle> {
-    let places = match shape {
-        Shape::Sphere { center, .. } | Shape::Box { center, .. } => vec![(*center, "the centre")],
-        Shape::Arc {
-            center,
-            u,
-            v,
-            sweep,
-            angle,
-            ..
-        } => {
-            let labels = [(0.0, "the start"), (0.5, "the middle"), (1.0, "the end")];
-            let places = labels.map(|(share, label)| {
-                let (sin, cos) = libm::sincos(share * angle);
-                (*center + (*u * cos + *v * sin) * *sweep, label)
-            });
-            places.to_vec()
-        }
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Cone { base, apex, .. }
-        | Shape::Pipe { base, apex, .. } => vec![(*base, "the base"), (*apex, "the apex")],
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-            corners.map(|c| (c, "a corner")).to_vec()
-        }
-        Shape::Polygon { rings, .. } => rings.iter().flatten().map(|c| (*c, "a corner")).collect(),
-        Shape::Curve { control, .. } => control.map(|c| (c, "a control point")).to_vec(),
-        Shape::Plane { point, .. } => vec![(*point, "a point of the plane")],
-        Shape::Quadric(quadric) => vec![(quadric.center, "the centre")],
-        Shape::Function(function) => vec![(function.middle(), "the middle")],
-    };
-    let handles = places
-        .into_iter()
-        .map(|(place, label): (DVec3, &str)| Handle {
-            kind: Kind::Point,
-            place,
-            label: label.to_owned(),
-            edit: Editable::Fixed {
-                why: why.to_owned(),
-            },
-            numbers: Vec::new(),
-            moves: Moves::Nowhere,
-        });
+    let handles = shape.landmarks().into_iter().map(|(place, label)| Handle {
+        kind: Kind::Point,
+        place,
+        label: label.to_owned(),
+        edit: Editable::Fixed {
+            why: why.to_owned(),
+        },
+        numbers: Vec::new(),
+        moves: Moves::Nowhere,
+    });
     handles.collect()
 }
 

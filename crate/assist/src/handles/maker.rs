@@ -1,11 +1,12 @@
 //! The handles of one element, from the numbers of its command.
 
 use super::handle::{Editable, Handle, Kind, Moves, handle};
+use field::Skeleton;
 use glam::{DMat3, DVec3};
 use rats::Placement;
 use rats::commands::{Kind as Takes, Role};
 use rats::provenance::{Operand, Provenance};
-use scene::{Element, Flesh, Scene, Shape};
+use scene::{Cuboid, Element, Flesh, Scene, Shape};
 
 /// Maker of the handles of one element, from its scene, its way from its command, the axes of the
 /// view, and the sources of its command's numbers.
@@ -23,15 +24,16 @@ impl Maker<'_> {
     pub fn handles(&self) -> Vec<Handle> {
         let mut handles = Vec::new();
         for (index, operand) in self.seen.operands.iter().enumerate() {
-            let mut label = operand.parameter.meaning.to_owned();
-            let count = |operands: &[Operand]| {
-                let meanings = operands.iter().map(|operand| operand.parameter.meaning);
-                meanings.filter(|meaning| *meaning == label).count()
+            let meaning = operand.parameter.meaning;
+            let [number, count] = [index + 1, self.seen.operands.len()].map(|end| {
+                let operands = self.seen.operands[..end].iter();
+                operands.filter(|o| o.parameter.meaning == meaning).count()
+            });
+            let label = if count > 1 {
+                format!("{meaning} ({number})")
+            } else {
+                meaning.to_owned()
             };
-            let number = count(&self.seen.operands[..=index]);
-            if count(&self.seen.operands) > 1 {
-                label = format!("{label} ({number})");
-            }
             match operand.parameter.kind {
                 // A quadric's triples are factors and bounds.
                 Takes::Vector if matches!(self.element.shape, Shape::Quadric(_)) => {}
@@ -97,10 +99,10 @@ impl Maker<'_> {
 
     fn direction(&self, operand: &Operand, label: String) -> Option<Handle> {
         let linear = self.placement.to_world.matrix3;
-        let (anchor, linear, size) = match self.element.shape {
-            Shape::Arc { center, sweep, .. } => (center, linear, 0.75 * sweep),
+        let (anchor, linear, size) = match *self.element.shape.skeleton()? {
+            Skeleton::Arc { center, radius, .. } => (center, linear, 0.75 * radius),
             // A normal stays perpendicular to what the map makes of its plane.
-            Shape::Plane { point, .. } => {
+            Skeleton::Plane { point, .. } => {
                 (point, linear.inverse().transpose(), self.placement.growth)
             }
             _ => return None,
@@ -120,14 +122,13 @@ impl Maker<'_> {
 
     /// Makes the handle of a radius or an angle of the shape, if it can be seen.
     fn number(&self, operand: &Operand, label: String) -> Option<Handle> {
-        let circle = |start: bool| match self.element.shape {
-            Shape::Arc {
+        let circle = |start: bool| match *self.element.shape.skeleton()? {
+            Skeleton::Arc {
                 center,
                 u,
                 v,
-                sweep,
+                radius: sweep,
                 angle,
-                ..
             } => {
                 let width = self
                     .seen
@@ -177,7 +178,8 @@ impl Maker<'_> {
         let Some(flesh) = self.flesh() else {
             return false;
         };
-        if !self.element.shape.has_skeleton() || self.seen.radius.value == 0.0 && flesh.depth == 0.0
+        if self.element.shape.skeleton().is_none()
+            || self.seen.radius.value == 0.0 && flesh.depth == 0.0
         {
             return false;
         }
@@ -191,7 +193,11 @@ impl Maker<'_> {
         let view = self.view;
         let (right, towards) = (view.x_axis, view.z_axis);
         let tapers = self.flesh().is_some_and(|flesh| flesh.end_radius.is_some())
-            || matches!(self.element.shape, Shape::Cone { .. });
+            || self
+                .element
+                .shape
+                .bone()
+                .is_some_and(|bone| bone.end_radius.is_some());
         let share = if tapers { end } else { 0.5 };
         let across = |axis: DVec3| {
             let across = axis.cross(towards).try_normalize().unwrap_or(right);
@@ -201,56 +207,16 @@ impl Maker<'_> {
                 across
             }
         };
-        let (anchor, along) = match &self.element.shape {
-            Shape::Sphere { center, .. } => (*center, right),
-            Shape::Cylinder { base, apex, .. }
-            | Shape::Cone { base, apex, .. }
-            | Shape::Pipe { base, apex, .. } => {
-                let axis = (*apex - *base).normalize_or(right);
-                (base.lerp(*apex, share), across(axis))
+        let shape = &self.element.shape;
+        let (anchor, along) = match shape.skeleton() {
+            Some(line) if line.dimension() == 1 => {
+                let axis = line.tangent(share).unwrap_or(right);
+                (line.at(share), across(axis))
             }
-            Shape::Arc {
-                center,
-                u,
-                v,
-                sweep,
-                angle,
-                ..
-            } => {
-                let (sin, cos) = libm::sincos(share * angle);
-                let radial = *u * cos + *v * sin;
-                let tangent = *v * cos - *u * sin;
-                (*center + radial * *sweep, across(tangent))
+            Some(face) if face.dimension() == 2 => {
+                (face.middle(), face.normal().unwrap_or(towards))
             }
-            Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-                let [a, b, c] = *corners;
-                let normal = (b - a).cross(c - a).normalize_or(towards);
-                ((a + b + c) / 3.0, normal)
-            }
-            Shape::Polygon { rings, .. } => {
-                let outer = rings.first().map_or(&[][..], Vec::as_slice);
-                let first = outer.first().copied().unwrap_or_default();
-                let normal: DVec3 = outer
-                    .windows(2)
-                    .map(|w| (w[0] - first).cross(w[1] - first))
-                    .sum();
-                let count = outer.len().max(1) as f64;
-                let middle = outer.iter().map(|p| *p / count).sum();
-                (middle, normal.normalize_or(towards))
-            }
-            Shape::Curve { control, .. } => {
-                let [a, b, c, d] = *control;
-                if tapers {
-                    (a, across((b - a).normalize_or((d - a).normalize_or(right))))
-                } else {
-                    let tangent = (c + d - a - b).normalize_or((d - a).normalize_or(right));
-                    ((a + 3.0 * (b + c) + d) / 8.0, across(tangent))
-                }
-            }
-            Shape::Plane { point, normal, .. } => (*point, *normal),
-            Shape::Box { center, .. } => (*center, right),
-            Shape::Quadric(quadric) => (quadric.center, right),
-            Shape::Function(function) => (function.middle(), right),
+            _ => (shape.middle(), right),
         };
         Moves::Along {
             anchor,
@@ -261,7 +227,7 @@ impl Maker<'_> {
 
     /// Places the knob of a box's side along an axis in the middle of a face.
     fn side(&self, k: usize) -> Option<Moves> {
-        let Shape::Box { center, axes } = self.element.shape else {
+        let Shape::Box(Cuboid { center, axes }) = self.element.shape else {
             return None;
         };
         Some(Moves::Along {
@@ -274,20 +240,13 @@ impl Maker<'_> {
 
     /// Places the knob of an arc's sweep radius in the middle of the arc.
     fn sweep(&self) -> Option<Moves> {
-        let Shape::Arc {
-            center,
-            u,
-            v,
-            angle,
-            ..
-        } = self.element.shape
-        else {
+        let arc = self.element.shape.skeleton()?;
+        let Skeleton::Arc { center, .. } = *arc else {
             return None;
         };
-        let (sin, cos) = libm::sincos(0.5 * angle);
         Some(Moves::Along {
             anchor: center,
-            along: u * cos + v * sin,
+            along: (arc.at(0.5) - center).try_normalize()?,
             growth: self.placement.growth,
         })
     }

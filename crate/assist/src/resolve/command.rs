@@ -272,8 +272,7 @@ impl<'p, 's> Resolver<'p, 's> {
         if items.is_empty() {
             return;
         }
-        let types = |name: &str| self.type_of(name);
-        let words = Slots::expression(items, text, &types).words;
+        let words = Slots::expression(items, text, &|name| self.type_of(name)).words;
         for word in words {
             self.use_variable(file, items[word].span(), head.span.clone());
         }

@@ -308,9 +308,6 @@ impl<'p> Slots<'_, 'p> {
     /// A solid, two waves, an image or a colour.
     pub(super) fn method(&mut self) {
         let start = self.at;
-        let exact = |list: &'static [OptionSpec], word: &str| {
-            list.iter().find(|o| o.name.eq_ignore_ascii_case(word))
-        };
         if self.word().is_some() {
             self.name();
             let word = self.span(start);
@@ -364,4 +361,9 @@ impl<'p> Slots<'_, 'p> {
         }
         self.triple(false);
     }
+}
+
+/// Finds the option of a list that a word names in full, in any case.
+fn exact(list: &'static [OptionSpec], word: &str) -> Option<&'static OptionSpec> {
+    list.iter().find(|o| o.name.eq_ignore_ascii_case(word))
 }

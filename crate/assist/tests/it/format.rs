@@ -80,8 +80,9 @@ fn signs_that_run_into_each_other() {
     for start in ["var a", "if a", "surface a", "for a", "define f(a"] {
         // All words of up to four letters.
         for number in 0..8_usize.pow(4) {
-            let letter = |place: u32| char::from(b"=<>!+*),"[number / 8_usize.pow(place) % 8]);
-            let signs: String = (0..4).map(letter).collect();
+            let signs: String = (0..4)
+                .map(|place| char::from(b"=<>!+*),"[number / 8_usize.pow(place) % 8]))
+                .collect();
             let once = format(&format!("{start}{signs}b"));
             assert_eq!(format(&once), once, "{start}{signs}b");
         }
@@ -150,25 +151,14 @@ fn same_meaning(project: &Project) {
         assert_eq!(format(&file.text), file.text, "not settled");
     }
     let (before, after) = (compile(project), compile(&laid_out));
-    let message = || format!("{:?}\n{:?}", project.files, laid_out.files);
-    assert_eq!(
-        without_places(&before),
-        without_places(&after),
-        "{}",
-        message()
-    );
-    assert_eq!(
-        messages_of(project, &before),
-        messages_of(&laid_out, &after),
-        "{}",
-        message()
-    );
-    assert_eq!(
-        hot(project, &before.hot),
-        hot(&laid_out, &after.hot),
-        "{}",
-        message()
-    );
+    let [before, after] = [(project, before), (&laid_out, after)].map(|(project, compiled)| {
+        (
+            without_places(&compiled),
+            messages_of(project, &compiled),
+            hot(project, &compiled.hot),
+        )
+    });
+    assert_eq!(before, after, "{:?}\n{:?}", project.files, laid_out.files);
 }
 
 fn without_places(compiled: &Compiled) -> scene::Scene {

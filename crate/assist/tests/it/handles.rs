@@ -133,43 +133,49 @@ fn variables_are_moved_where_they_are_set() {
 
 #[test]
 fn numbers_that_are_fixed_have_a_reason() {
-    let fixed = |text: &str, label: &str| {
-        let project = project(&format!("{MATERIAL}{text}"));
-        let handles = of(&project, 0);
+    fn reason(text: &str, label: &str) -> String {
+        let handles = of(&project(&format!("{MATERIAL}{text}")), 0);
         why(with_label(&handles, label)).to_owned()
-    };
+    }
     assert_eq!(
-        fixed("sphere s 2*0.5 0 0 0", "the radius"),
+        reason("sphere s 2*0.5 0 0 0", "the radius"),
         "is computed: `2*0.5`"
     );
     assert_eq!(
-        fixed("var r = 2*0.5\nsphere s r 0 0 0", "the radius"),
+        reason("var r = 2*0.5\nsphere s r 0 0 0", "the radius"),
         "comes from `r`, which is computed"
     );
     assert_eq!(
-        fixed("var r = 1 += 0.1\nsphere s r 0 0 0", "the radius"),
+        reason("var r = 1 += 0.1\nsphere s r 0 0 0", "the radius"),
         "comes from `r`, which changes with every frame"
     );
     assert_eq!(
-        fixed("var a = 1\nsphere s 1 <a a 0>", "the centre"),
+        reason("var a = 1\nsphere s 1 <a a 0>", "the centre"),
         "uses one number twice"
     );
     assert_eq!(
-        fixed("for i = 1 to 3 {\n sphere s 1 i 0 0\n}", "the centre"),
+        reason("for i = 1 to 3 {\n sphere s 1 i 0 0\n}", "the centre"),
         "is made in a loop"
     );
     assert_eq!(
-        fixed(
+        reason(
             "define ball(r) {\n sphere s r 0 0 0\n}\nball 1",
             "the centre"
         ),
         "is made by the defined command `ball`"
     );
-    assert!(fixed("shell s", "the centre").starts_with("is made by the library's `shell`"));
+    assert!(reason("shell s", "the centre").starts_with("is made by the library's `shell`"));
 }
 
 #[test]
 fn copies_follow_and_loops_share_a_radius() {
+    fn drag_radius(text: &str, to: f64) -> Option<String> {
+        let project = project(&format!("{MATERIAL}{text}"));
+        let handles = of(&project, 2);
+        let handle = handles.iter().find(|h| h.kind == Kind::Length)?;
+        let edits = handles::drag(handle, handle.place + DVec3::X * to, 0.01);
+        Some(project.apply(&edits).files[0].text[MATERIAL.len()..].to_owned())
+    }
     // The copy is dragged; it lies 2 to the right of the first.
     let mut project = project(&format!(
         "{MATERIAL}object o\nsphere s 1 0 0 0\nclose\ninstance o p\ntranslate 2 0 0 p\n"
@@ -180,28 +186,20 @@ fn copies_follow_and_loops_share_a_radius() {
     let edits = handles::drag(handle, DVec3::new(2.0, 0.5, 0.0), 0.1);
     project = project.apply(&edits);
     assert!(project.files[0].text.contains("sphere s 1 0 0.5 0"));
-    let shared = |text: &str, to: f64| {
-        let mut project = self::project(&format!("{MATERIAL}{text}"));
-        let handles = of(&project, 2);
-        let handle = handles.iter().find(|h| h.kind == Kind::Length)?;
-        let edits = handles::drag(handle, handle.place + DVec3::X * to, 0.01);
-        project = project.apply(&edits);
-        Some(project.files[0].text[MATERIAL.len()..].to_owned())
-    };
     assert_eq!(
-        shared("var r = 0.3\nfor i = 1 to 3 {\n sphere s r i 0 0\n}\n", 0.2).as_deref(),
+        drag_radius("var r = 0.3\nfor i = 1 to 3 {\n sphere s r i 0 0\n}\n", 0.2).as_deref(),
         Some("var r = 0.5\nfor i = 1 to 3 {\n sphere s r i 0 0\n}\n")
     );
     assert_eq!(
-        shared("for i = 1 to 3 {\n sphere s 0.3 i 0 0\n}\n", 0.2).as_deref(),
+        drag_radius("for i = 1 to 3 {\n sphere s 0.3 i 0 0\n}\n", 0.2).as_deref(),
         Some("for i = 1 to 3 {\n sphere s 0.5 i 0 0\n}\n")
     );
     assert_eq!(
-        shared("var i = 3\nfor i = 1 to 3 {\n sphere s i i 0 0\n}\n", 0.2),
+        drag_radius("var i = 3\nfor i = 1 to 3 {\n sphere s i i 0 0\n}\n", 0.2),
         None
     );
     assert_eq!(
-        shared(
+        drag_radius(
             "var r = 3\ndefine b(r) {\n sphere s r 0 0 0\n}\nb 1\nb 2\nb 3\n",
             0.2
         ),
@@ -270,25 +268,29 @@ fn the_radius_that_counts_is_the_one_with_a_knob() {
     assert_eq!((edits.len(), edits[0].text.as_str()), (1, "0.75"));
 }
 
+fn number(u: &mut Unstructured<'_>) -> Result<f64> {
+    Ok(f64::from(u.int_in_range(-400..=400)?) / 100.0)
+}
+
+fn size(u: &mut Unstructured<'_>) -> Result<f64> {
+    Ok(f64::from(u.int_in_range(10..=300)?) / 100.0)
+}
+
+fn point(u: &mut Unstructured<'_>) -> Result<String> {
+    let forms = ["<X Y Z>", "X Y Z", "<X, Y, Z>", "{ X # c\n Y Z }"];
+    let form = *u.choose(&forms)?;
+    Ok(form
+        .replace('X', &number(u)?.to_string())
+        .replace('Y', &number(u)?.to_string())
+        .replace('Z', &number(u)?.to_string()))
+}
+
+fn direction(u: &mut Unstructured<'_>) -> Result<String> {
+    Ok(format!("<{} {} {}>", number(u)?, size(u)?, number(u)?))
+}
+
 /// A text with one shape, somewhere under transforms, and how exactly its numbers are kept.
 fn scene(u: &mut Unstructured<'_>) -> Result<String> {
-    let number = |u: &mut Unstructured<'_>| -> Result<f64> {
-        Ok(f64::from(u.int_in_range(-400..=400)?) / 100.0)
-    };
-    let size = |u: &mut Unstructured<'_>| -> Result<f64> {
-        Ok(f64::from(u.int_in_range(10..=300)?) / 100.0)
-    };
-    let point = |u: &mut Unstructured<'_>| -> Result<String> {
-        let forms = ["<X Y Z>", "X Y Z", "<X, Y, Z>", "{ X # c\n Y Z }"];
-        let form = *u.choose(&forms)?;
-        Ok(form
-            .replace('X', &number(u)?.to_string())
-            .replace('Y', &number(u)?.to_string())
-            .replace('Z', &number(u)?.to_string()))
-    };
-    let direction = |u: &mut Unstructured<'_>| -> Result<String> {
-        Ok(format!("<{} {} {}>", number(u)?, size(u)?, number(u)?))
-    };
     let radius = *u.choose(&["", ", radius 0.3"])?;
     let mut text = format!("surface s, diffuse Red, blobbiness -2{radius}\n");
     let chain = u.ratio(1, 4)?;
@@ -360,8 +362,8 @@ fn a_handle_goes_where_it_is_dragged() {
         let handles = handles_of(&project, &before, 0);
         let index = u.choose_index(handles.len())?;
         let handle = &handles[index];
-        let by = || -> DVec3 { DVec3::new(0.31, -0.27, 0.11) };
-        let to = handle.place + by() * f64::from(u.int_in_range(-4..=4)?);
+        let step = DVec3::new(0.31, -0.27, 0.11);
+        let to = handle.place + step * f64::from(u.int_in_range(-4..=4)?);
         let edits = handles::drag(handle, to, GRAIN);
         let old = project.files[0].text.clone();
         project = project.apply(&edits);
@@ -419,7 +421,7 @@ fn knobs_follow_along_their_own_way() {
         let handles = of(&project, 0);
         let handle = with_label(&handles, label);
         let anchor = compile(&project).scene.elements[0].clone();
-        let scene::Shape::Arc { center, u, v, .. } = anchor.shape else {
+        let Some(&field::Skeleton::Arc { center, u, v, .. }) = anchor.shape.skeleton() else {
             panic!("{anchor:?}")
         };
         let to = match handle.kind {

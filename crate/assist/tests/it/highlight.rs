@@ -6,7 +6,9 @@ use trials::trials;
 
 /// Checks that the pieces are in order and that only white space lies between them.
 fn check(text: &str) {
-    let is_blank = |text: &str| text.chars().all(|c| c.is_whitespace() || c == '\u{feff}');
+    fn is_blank(text: &str) -> bool {
+        text.chars().all(|c| c.is_whitespace() || c == '\u{feff}')
+    }
     let mut end = 0;
     for (range, _) in highlight(text) {
         let between = &text[end..range.start];

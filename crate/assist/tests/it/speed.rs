@@ -7,7 +7,7 @@ use std::time::Duration;
 use trials::WorkClock;
 
 /// Measures the time that something takes.
-fn time_of(run: &mut dyn FnMut()) -> Duration {
+fn time_of(run: impl FnOnce()) -> Duration {
     let clock = WorkClock::start();
     run();
     clock.elapsed()
@@ -30,7 +30,9 @@ fn long(length: usize) -> String {
 
 /// Texts that are awkward in one way or another.
 fn awkward() -> Vec<(&'static str, String)> {
-    let fill = |piece: &str| piece.repeat((MAX_TEXT - 100) / piece.len());
+    fn fill(piece: &str) -> String {
+        piece.repeat((MAX_TEXT - 100) / piece.len())
+    }
     vec![
         ("a long text", long(MAX_TEXT - 1000)),
         ("one name", fill("var a = a\n")),
@@ -69,34 +71,30 @@ fn speed() {
         let byte = text[byte..].find(' ').map_or(byte, |at| byte + at + 1);
         let mut project = one_file(&text);
         project.files.push(file("other.rat", &long(20_000)));
-        let mut time = |name: &str, run: &mut dyn FnMut()| {
+        let runs: [(&str, &dyn Fn()); 9] = [
+            ("format", &|| drop(assist::format(&text))),
+            ("folds", &|| drop(assist::folds(&text))),
+            ("index", &|| drop(assist::Index::of(&project))),
+            ("definition", &|| {
+                drop(assist::definition(&project, 0, byte))
+            }),
+            ("references", &|| {
+                drop(assist::references(&project, 0, byte))
+            }),
+            ("rename", &|| drop(assist::rename(&project, 0, byte, "zqx"))),
+            ("complete", &|| drop(assist::complete(&project, 0, byte))),
+            ("hover", &|| drop(assist::hover(&project, 0, byte))),
+            ("signature", &|| drop(assist::signature(&project, 0, byte))),
+        ];
+        for (name, run) in runs {
             let took = time_of(run);
             println!("{what:12} {name:12} {:7.1} ms", took.as_secs_f64() * 1e3);
             slowest = slowest.max(took);
-        };
-        time("format", &mut || drop(assist::format(&text)));
-        time("folds", &mut || drop(assist::folds(&text)));
-        time("index", &mut || drop(assist::Index::of(&project)));
-        time("definition", &mut || {
-            drop(assist::definition(&project, 0, byte))
-        });
-        time("references", &mut || {
-            drop(assist::references(&project, 0, byte))
-        });
-        time("rename", &mut || {
-            drop(assist::rename(&project, 0, byte, "zqx"))
-        });
-        time("complete", &mut || {
-            drop(assist::complete(&project, 0, byte))
-        });
-        time("hover", &mut || drop(assist::hover(&project, 0, byte)));
-        time("signature", &mut || {
-            drop(assist::signature(&project, 0, byte))
-        });
+        }
     }
     let text = long(10_000);
     let project = one_file(&text);
-    let took = time_of(&mut || {
+    let took = time_of(|| {
         for byte in 0..100 {
             drop(assist::complete(&project, 0, byte * 90));
         }

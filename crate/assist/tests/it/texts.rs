@@ -57,8 +57,10 @@ fn texts_in(folder: &Path, extension: &str) -> Vec<String> {
         .filter(|path| path.extension().is_some_and(|e| e == extension))
         .collect();
     paths.sort();
-    let read = |path| std::fs::read_to_string(path).expect("a text");
-    paths.into_iter().map(read).collect()
+    paths
+        .into_iter()
+        .map(|path| std::fs::read_to_string(path).expect("a text"))
+        .collect()
 }
 
 /// A text of words of the language in any order, laid out anyhow.

@@ -13,17 +13,17 @@ pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
     let radius = 2.0 / libm::cbrt(f64::from(count)) / apart;
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -4.0,
+        blobbiness: Some(4.0),
         ..Flesh::default()
     });
     scene.elements = (0..count)
         .map(|i| Element {
             flesh: Some(0),
             kernel,
-            ..Element::new(Shape::Sphere {
-                center: (step * f64::from(i)).fract() * 2.0 - 1.0,
+            ..Element::new(Shape::sphere(
+                (step * f64::from(i)).fract() * 2.0 - 1.0,
                 radius,
-            })
+            ))
         })
         .collect();
     scene.camera = Camera {
@@ -54,14 +54,9 @@ pub fn triples(count: u32, kernel: Kernel, apart: f64, in_bodies: bool) -> Scene
         scene.bodies.resize(middles.len(), Body::default());
     }
     for (number, middle) in (0..).zip(middles) {
-        let Shape::Sphere { center, radius } = middle.shape else {
-            continue;
-        };
+        let (center, radius) = (middle.shape.middle(), middle.shape.radius());
         for around in [DVec3::X, DVec3::Y, DVec3::Z] {
-            let shape = Shape::Sphere {
-                center: center + 0.5 * radius * around,
-                radius: 0.6 * radius,
-            };
+            let shape = Shape::sphere(center + 0.5 * radius * around, 0.6 * radius);
             scene.elements.push(Element {
                 flesh: Some(0),
                 kernel,

@@ -84,26 +84,22 @@ fn arithmetic_tells_what_is_left_and_saves_on_demand() {
     let a = folder.put("a.png", 0b1100, [5, 5]);
     let b = folder.put("b.png", 0b1010, [5, 5]);
     folder.put("c.png", 1, [5, 4]);
-    let two = || (String::from("a.png"), String::from("b.png"));
-    let (first, second) = two();
     let said = folder.does(Tool::Diff {
-        a: first,
-        b: second,
+        a: String::from("a.png"),
+        b: String::from("b.png"),
         save: None,
     });
     assert!(said.contains("25 of 25 pixels"), "{said}");
     assert!(!folder.0.join("d.png").exists());
-    let (first, second) = two();
     folder.does(Tool::Xor {
-        a: first,
-        b: second,
+        a: String::from("a.png"),
+        b: String::from("b.png"),
         save: Some(String::from("x.png")),
     });
     assert!(Ok(folder.get("x.png")) == combine::xor(&a, &b));
-    let (first, second) = two();
     folder.does(Tool::And {
-        a: first,
-        b: second,
+        a: String::from("a.png"),
+        b: String::from("b.png"),
         save: Some(String::from("n.png")),
     });
     assert!(Ok(folder.get("n.png")) == combine::and(&a, &b));
@@ -142,23 +138,20 @@ fn animations_are_made_told_of_and_taken_apart() {
         ],
         &folder.0,
     );
-    let wrote = |name: &str, frames: &str| Ok(format!("wrote {name}, {frames}"));
     assert_eq!(
         said,
         [
-            wrote("animation.png", "4 frames of 8×6"),
-            wrote("animation-2.png", "3 frames of 8×6"),
-            wrote("animation.gif", "3 frames of 8×6"),
-            wrote("fli.gif", "3 frames of 4×3"),
+            "animation.png, 4 frames of 8×6",
+            "animation-2.png, 3 frames of 8×6",
+            "animation.gif, 3 frames of 8×6",
+            "fli.gif, 3 frames of 4×3",
         ]
+        .map(|file| Ok(format!("wrote {file}")))
     );
-    let play = |file: &str| Tool::Play {
-        file: file.to_owned(),
+    let fli = Tool::Play {
+        file: String::from("fli.gif"),
     };
-    assert_eq!(
-        folder.does(play("fli.gif")),
-        "fli.gif: GIF, 3 frames of 4×3"
-    );
+    assert_eq!(folder.does(fli), "fli.gif: GIF, 3 frames of 4×3");
     let split = folder.does(Tool::Split {
         file: String::from("animation.png"),
         pattern: Some(String::from("out.tga")),
@@ -184,7 +177,10 @@ fn animations_are_made_told_of_and_taken_apart() {
         },
         "same size",
     );
-    folder.refuses(play("out000.tga.zip"), ".png");
+    let archive = Tool::Play {
+        file: String::from("out000.tga.zip"),
+    };
+    folder.refuses(archive, ".png");
 }
 
 #[test]

@@ -120,7 +120,9 @@ fn a_bent_head_is_found_again_and_written_as_text_and_mesh() {
     let mut furthest = 0_f64;
     for (element, i) in elements.iter().zip(0..) {
         let shape = &element["shape"];
-        let corners = shape["Triangle"]["corners"].as_array().expect("corners");
+        let corners = shape["Bone"]["skeleton"]["Triangle"]["corners"]
+            .as_array()
+            .expect("corners");
         for (corner, own) in corners.iter().zip(written.corners(i)) {
             for axis in 0..3 {
                 let value = corner[axis].as_f64().expect("a number");

@@ -151,17 +151,15 @@ fn shape_of(kind: &str, random: &mut Random) -> String {
             // A star with a hole, tilted.
             let center = random.vector(0.3);
             let (x, y) = (DVec3::new(1.0, 0.2, 0.1), DVec3::new(-0.1, 0.9, -0.3));
-            let mut ring = |low: f64, high: f64, corners: usize| -> String {
-                (0..corners)
-                    .map(|i| {
-                        let angle = std::f64::consts::TAU * i as f64 / corners as f64;
-                        let (sine, cosine) = libm::sincos(angle);
-                        let corner = center + (x * cosine + y * sine) * random.range(low, high);
-                        words(corner) + ", "
-                    })
-                    .collect()
-            };
-            let (outer, inner) = (ring(0.7, 1.2, 7), ring(0.2, 0.4, 4));
+            let [outer, inner] = [(0.7, 1.2, 7), (0.2, 0.4, 4)].map(|(low, high, corners)| {
+                let corners = (0..corners).map(|i| {
+                    let angle = std::f64::consts::TAU * f64::from(i) / f64::from(corners);
+                    let (sine, cosine) = libm::sincos(angle);
+                    let corner = center + (x * cosine + y * sine) * random.range(low, high);
+                    words(corner) + ", "
+                });
+                corners.collect::<String>()
+            });
             format!("polygon {{ m {outer} hole {inner} }}")
         }
         "curve" => format!(

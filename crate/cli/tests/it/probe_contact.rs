@@ -42,11 +42,12 @@ fn contact_is_what_the_formulas_say() {
     }
     let file = folder.write("balls.rat", &text);
     let mut random = trials::Random::new(3);
-    let mut point = || {
-        let [x, y, z] = random.vector(2.0).to_array();
-        [x, y + 0.4, 0.5 * z]
-    };
-    let points: Vec<[f64; 3]> = (0..300).map(|_| point()).collect();
+    let points: Vec<[f64; 3]> = (0..300)
+        .map(|_| {
+            let [x, y, z] = random.vector(2.0).to_array();
+            [x, y + 0.4, 0.5 * z]
+        })
+        .collect();
     let input: String = points
         .iter()
         .map(|[x, y, z]| format!("{x} {y} {z}\n"))

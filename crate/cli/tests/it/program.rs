@@ -44,14 +44,15 @@ fn check_takes_several_files_and_exits_with_the_worst() {
     let bad = folder.write("bad.rat", "spere s 1 0 0 0\n");
     let worse = folder.write("worse.rat", "sphere nobody 1 0 0 0\n");
     let missing = folder.path("missing.rat");
-    let status = |files: &[&str]| {
-        let arguments: Vec<&str> = ["check"].iter().chain(files).copied().collect();
-        sinew(&arguments, "").status.code()
-    };
-    assert_eq!(status(&[&good, &good]), Some(0));
-    assert_eq!(status(&[&bad, &good]), Some(1));
-    assert_eq!(status(&[&missing, &bad, &good]), Some(2));
-    assert_eq!(status(&[]), Some(2));
+    for (files, status) in [
+        (&[&*good, &good][..], 0),
+        (&[&bad, &good], 1),
+        (&[&missing, &bad, &good], 2),
+        (&[], 2),
+    ] {
+        let output = sinew(&[&["check"], files].concat(), "");
+        assert_eq!(output.status.code(), Some(status), "{files:?}");
+    }
 
     // Files after a missing one are checked all the same, and each missing file is named.
     let other = folder.path("other.rat");
@@ -79,17 +80,16 @@ fn a_missing_file_is_a_sentence_and_exit_2() {
 #[test]
 fn files_that_are_no_use_are_told_with_their_lines() {
     let folder = Folder::new("no-use");
-    let told = |arguments: &[&str]| {
-        let output = sinew(arguments, "");
-        String::from_utf8_lossy(&output.stderr).into_owned()
-    };
+    fn messages(arguments: &[&str]) -> String {
+        String::from_utf8_lossy(&sinew(arguments, "").stderr).into_owned()
+    }
     let latin = folder.path("latin.rat");
     std::fs::write(
         &latin,
         b"surface A, diffuse Red\n# \xe9\nsphere A 1 0 0 0\n",
     )
     .unwrap();
-    let said = told(&["check", &latin]);
+    let said = messages(&["check", &latin]);
     assert!(
         said.contains("latin.rat:2: this line is not UTF-8"),
         "{said}"
@@ -101,17 +101,17 @@ fn files_that_are_no_use_are_told_with_their_lines() {
         ("nan.obj", "line 2: numbers within ±1e12 are needed here"),
     ] {
         let text = format!("surface A, diffuse Red\nmesh A {mesh}\n");
-        let said = told(&["check", &folder.write("mesh.rat", &text)]);
+        let said = messages(&["check", &folder.write("mesh.rat", &text)]);
         assert!(said.contains(words), "{said}");
     }
     let ball = folder.write("ball.rat", "surface A, diffuse Red\nsphere A 1 0 0 0\n");
     let film = folder.path("film.mp4");
-    let said = told(&["animate", &ball, "-f", "2", "-o", &film]);
+    let said = messages(&["animate", &ball, "-f", "2", "-o", &film]);
     assert!(said.contains("must end in .png or .gif"), "{said}");
     for size in ["1e300", "1e-300", "nan", "-1"] {
         let out = folder.path("ball.stl");
         let size = format!("--size={size}");
-        let said = told(&["mesh", &ball, "-o", &out, &size]);
+        let said = messages(&["mesh", &ball, "-o", &out, &size]);
         assert!(said.contains("from 1e-3 to 1e9"), "{said}");
     }
 }
@@ -157,13 +157,10 @@ fn render_writes_a_picture_and_counts_its_work() {
     let mut pixels = vec![0; reader.output_buffer_size().expect("size")];
     let frame = reader.next_frame(&mut pixels).expect("frame");
     assert_eq!((frame.width, frame.height), (40, 30));
-    let pixel = |x: usize, y: usize| &pixels[(y * 40 + x) * 3..][..3];
-    assert!(
-        pixel(20, 15)[0] > 2 * pixel(20, 15)[2],
-        "the ball is orange: {:?}",
-        pixel(20, 15)
-    );
-    assert_eq!(pixel(0, 0), pixel(39, 29), "the corners are background");
+    let [middle, first, last] =
+        [(20, 15), (0, 0), (39, 29)].map(|(x, y)| &pixels[(y * 40 + x) * 3..][..3]);
+    assert!(middle[0] > 2 * middle[2], "the ball is orange: {middle:?}");
+    assert_eq!(first, last, "the corners are background");
 }
 
 #[test]

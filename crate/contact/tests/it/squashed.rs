@@ -20,7 +20,7 @@ fn body(random: &mut Random) -> Arc<dyn Implicit> {
     let shaping = Shaping {
         kernel: random.pick(&[Kernel::Cubed, Kernel::Cauchy, Kernel::Gauss]),
         radius: random.range(0.25, 0.45),
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,

@@ -15,7 +15,7 @@ fn ball(kernel: Kernel, x: f64) -> Arc<dyn Implicit> {
     let shaping = Shaping {
         kernel,
         radius: 1.0,
-        blobbiness: -1.5,
+        blobbiness: 1.5,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,

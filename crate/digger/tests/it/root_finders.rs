@@ -45,23 +45,20 @@ fn meets(picture: &Picture, origin: DVec3, direction: DVec3) -> Option<f64> {
 fn easy() -> Scene {
     let mut scene = empty();
     scene.settings.influence = 1e-6;
-    clothe(&mut scene, vec![soft(-2.0, 1.0)]);
+    clothe(&mut scene, vec![soft(2.0, 1.0)]);
     let radius = 0.25;
     for shape in [
-        Shape::Cylinder {
-            base: DVec3::new(-1.0, 0.0, 0.1),
-            apex: DVec3::new(1.0, 0.0, 0.1),
+        Shape::cylinder(
+            DVec3::new(-1.0, 0.0, 0.1),
+            DVec3::new(1.0, 0.0, 0.1),
             radius,
-        },
-        Shape::Cylinder {
-            base: DVec3::new(0.1, -1.0, 0.0),
-            apex: DVec3::new(0.0, 1.0, 0.0),
+        ),
+        Shape::cylinder(
+            DVec3::new(0.1, -1.0, 0.0),
+            DVec3::new(0.0, 1.0, 0.0),
             radius,
-        },
-        Shape::Sphere {
-            center: DVec3::new(0.7, 0.7, 0.2),
-            radius,
-        },
+        ),
+        Shape::sphere(DVec3::new(0.7, 0.7, 0.2), radius),
     ] {
         scene.elements.push(element(shape, 0));
     }
@@ -110,9 +107,7 @@ fn methods_with_lipschitz_constants_miss_and_invent_nothing() {
         let mut scene = blend(seed, 2 + seed as usize % 7);
         scene.settings.influence = 1e-9;
         // Rays that leave through the far end of a plane are beyond what is compared.
-        scene
-            .elements
-            .retain(|e| !matches!(e.shape, Shape::Plane { .. }));
+        scene.elements.retain(|e| e.shape.bounds(0.0).is_some());
         let exact = Picture::new(&scene, [8, 8]);
         let field = scene.soft_surfaces().swap_remove(0).sum;
         for digger in [Digger::Lg, Digger::Sphere] {
@@ -187,15 +182,10 @@ fn pictures_of_all_diggers_are_much_alike() {
 fn rays_along_the_surface_come_to_an_end() {
     // All along the ray the field of the plane is T, and its slope 0.
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-1.0, 1.0)]);
-    scene.elements.push(element(
-        Shape::Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::Y,
-            radius: 0.25,
-        },
-        0,
-    ));
+    clothe(&mut scene, vec![soft(1.0, 1.0)]);
+    scene
+        .elements
+        .push(element(Shape::plane(DVec3::ZERO, DVec3::Y, 0.25), 0));
     for digger in ALL {
         let picture = dig(&scene, digger);
         for y in [0.25, 0.25 + 1e-13, 0.25 - 1e-13, 0.0] {
@@ -261,13 +251,13 @@ fn a_map_shows_costs_and_does_not_depend_on_tiles() {
 fn a_ray_through_very_many_primitives_comes_to_an_end() {
     let mut scene = empty();
     // Balls so weak that all together they never reach T, so that a ray meets all of them.
-    clothe(&mut scene, vec![soft(-1.0, 2e-5)]);
+    clothe(&mut scene, vec![soft(1.0, 2e-5)]);
     scene.settings.influence = 1e-9;
     let mut n = Random::new(1);
     for _ in 0..5_000 {
         let center = n.vector(0.3);
         let radius = 0.25;
-        let ball = Shape::Sphere { center, radius };
+        let ball = Shape::sphere(center, radius);
         scene.elements.push(element(ball, 0));
     }
     for digger in ALL {

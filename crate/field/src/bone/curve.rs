@@ -28,7 +28,8 @@
 //! Both precisions have spans of their own: those of double precision would cost single precision
 //! three times as much.
 use crate::Kernel;
-use crate::cubed::cone::Cone;
+use crate::kernel::Tail;
+use crate::kernel::cubed::cone::Cone;
 use core::f64::consts::PI;
 use glam::DVec3;
 
@@ -217,8 +218,8 @@ impl Curve<f64> {
     }
 
     /// Prepares a straight curve that has a closed form: of its pieces only the bounds are kept.
-    pub(crate) fn straight(cone: Cone<f64>, cubic: Cubic, law: Law<'_>) -> Self {
-        let pieces = cut(Kernel::Cubed, &[cubic], Some(law), Demands::SINGLE);
+    pub(crate) fn straight(kernel: Kernel, cone: Cone<f64>, cubic: Cubic, law: Law<'_>) -> Self {
+        let pieces = cut(kernel, &[cubic], Some(law), Demands::SINGLE);
         Self {
             nodes: Vec::new(),
             spans: Vec::new(),
@@ -244,21 +245,21 @@ impl Curve<f64> {
             demands = demands.relax();
             pieces = cut(kernel, cubics, law, demands);
         }
-        let smooth = matches!(kernel, Kernel::Cauchy | Kernel::Gauss);
+        let is_smooth = !(kernel.is_compact() || kernel.has_pole());
         let mut curve = Self {
             nodes: Vec::new(),
             spans: Vec::new(),
-            rule: gauss_legendre(match kernel {
-                Kernel::Inverse => demands.pole[0],
-                Kernel::Squared | Kernel::Cubed => demands.pole[1],
-                _ => demands.clipped,
+            rule: gauss_legendre(match kernel.tail() {
+                Tail::Power { exponent: 1, .. } => demands.pole[0],
+                Tail::Power { .. } => demands.pole[1],
+                Tail::Compact | Tail::Fast => demands.clipped,
             }),
             tapered: law.is_some(),
             cone: None,
             piece_bounds: pieces.iter().map(Piece::bounds).collect(),
             single: None,
         };
-        if smooth {
+        if is_smooth {
             let mut rules = vec![Vec::new(); 48];
             for piece in &pieces {
                 curve.nodes.extend(piece.nodes(kernel, demands, &mut rules));
@@ -348,10 +349,10 @@ impl Piece<'_> {
             v.length() <= 1e-6 * fastest
                 || along > 0.0 && v.cross(middle).length() * cosine <= along * sine
         });
-        let (slow, longest) = match kernel {
-            Kernel::Cauchy | Kernel::Gauss => (demands.slow, demands.longest),
-            Kernel::Inverse | Kernel::Squared | Kernel::Cubed => (1e-7, f64::INFINITY),
-            _ => (demands.slow, f64::INFINITY),
+        let (slow, longest) = match kernel.tail() {
+            Tail::Compact => (demands.slow, f64::INFINITY),
+            Tail::Power { .. } if kernel.has_pole() => (1e-7, f64::INFINITY),
+            Tail::Power { .. } | Tail::Fast => (demands.slow, demands.longest),
         };
         let even = fastest <= 3.0 * slowest || self.length <= slow;
         if !(straight && even) || longest.is_finite() && self.width() > longest {
@@ -413,7 +414,7 @@ impl Piece<'_> {
         // The error of n nodes is about ρ^−2n, where 1/half = (ρ − 1/ρ)/2 for poles at ±i; for
         // exp(−x²) it is about (half²/4)ⁿ/n!.
         let order = (2..36).find(|&n| {
-            let error = if kernel == Kernel::Gauss {
+            let error = if kernel.is_entire() {
                 (1..=n).fold(4.0 * half, |e, i| e * half * half / (4.0 * i as f64))
             } else {
                 let rho = 1.0 / half + (1.0 + 1.0 / (half * half)).sqrt();

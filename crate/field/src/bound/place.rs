@@ -2,7 +2,7 @@
 //!
 //! Points and segments are stored in [`Place`] itself, since a scene may have a million of them;
 //! other kinds are boxed.
-use crate::skeleton::{halves, nearest_on_segment};
+use crate::skeleton::{halves, nearest_on_segment, orthonormal};
 use crate::{Cut, Primitive, Skeleton};
 use core::f64::consts::{PI, TAU};
 use glam::DVec3;
@@ -102,11 +102,14 @@ impl Place {
                 Self::Triangle(Box::new((*corners, normal)))
             }
             polygon @ Skeleton::Polygon { .. } => Self::Polygon(Box::new(polygon.clone())),
-            Skeleton::Curve { control } => Self::Curve(chords(*control, SAG / width)),
             Skeleton::Plane { point, normal } => Self::Plane {
                 point: *point,
                 normal: normal.try_normalize().unwrap_or(DVec3::Z),
             },
+            line => {
+                let cubics = line.cubics(0.0).into_iter();
+                Self::Curve(cubics.flat_map(|c| chords(c, SAG / width)).collect())
+            }
         }
     }
 
@@ -143,10 +146,7 @@ impl Place {
 impl Sweep {
     fn new(center: DVec3, [u, v]: [DVec3; 2], radius: f64, angle: f64) -> Self {
         // With the same orthonormal axes as the field.
-        let u = u.try_normalize().unwrap_or(DVec3::X);
-        let v = (v - u * u.dot(v))
-            .try_normalize()
-            .unwrap_or_else(|| u.any_orthonormal_vector());
+        let (u, v) = orthonormal(u, v);
         let angle = angle.clamp(0.0, TAU);
         let half = 0.5 * angle.min(PI);
         Self {

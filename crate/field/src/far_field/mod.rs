@@ -35,7 +35,8 @@ mod expansion;
 mod source;
 mod sums;
 
-use crate::{Jet, Kernel, Primitive, THRESHOLD, inverse};
+use crate::kernel::Tail;
+use crate::{Jet, Kernel, Primitive, THRESHOLD};
 use core::cell::OnceCell;
 pub use expansion::{DEGREE, Expansion};
 use expansion::{Series, VECTORS, slope_of};
@@ -183,7 +184,7 @@ impl Smooth {
     }
 }
 
-/// Returns a kernel `(ε² + u²)^(−e/2)`, given e and `1/(ε² + u²)`.
+/// Returns a kernel `(ε² + u²)^(−e/2)`, given e, from 1 to 4, and `1/(ε² + u²)`.
 #[inline(always)]
 #[must_use]
 pub fn decay(power: i32, inverse: f32x8) -> f32x8 {
@@ -202,12 +203,12 @@ const DIAGONAL: f64 = 1.733;
 /// end and the Gaussian.
 #[must_use]
 pub fn power(kernel: Kernel) -> Option<(i32, f64)> {
-    match kernel {
-        Kernel::Cauchy => Some((4, 1.0)),
-        Kernel::Inverse => Some((1, inverse::POLE2)),
-        Kernel::Squared => Some((2, inverse::POLE2)),
-        Kernel::Cubed => Some((3, inverse::POLE2)),
-        _ => None,
+    match kernel.tail() {
+        Tail::Power {
+            exponent,
+            softening,
+        } => Some((exponent, softening)),
+        Tail::Compact | Tail::Fast => None,
     }
 }
 

@@ -402,7 +402,7 @@ mod tests {
                 let shaping = Shaping {
                     kernel,
                     radius: random.range(0.05, 0.55),
-                    blobbiness: -2.0,
+                    blobbiness: 2.0,
                     blob_scale: BlobScale::Relative,
                     strength: 1.0,
                     influence: 1e-3,

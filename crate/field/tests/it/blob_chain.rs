@@ -46,7 +46,7 @@ fn cases() -> Vec<(Primitive, f64)> {
             };
             let taper = (i % 4 == 3).then(|| Taper {
                 radius: size * random.range(0.3, 0.9),
-                blobbiness: -2.0,
+                blobbiness: 2.0,
             });
             let shaping = field::Shaping {
                 kernel: Kernel::Gauss,
@@ -54,9 +54,9 @@ fn cases() -> Vec<(Primitive, f64)> {
                 ..trials::skeletons::shaping(
                     size,
                     if i % 4 == 2 {
-                        -random.range(0.5, 16.0)
+                        random.range(0.5, 16.0)
                     } else {
-                        -random.range(0.5, 6.0)
+                        random.range(0.5, 6.0)
                     },
                 )
             };
@@ -109,7 +109,7 @@ fn other_bones_have_none() {
         let shaping = field::Shaping {
             kernel,
             strength,
-            ..trials::skeletons::shaping(1.0, -1.0)
+            ..trials::skeletons::shaping(1.0, 1.0)
         };
         primitive(skeleton, &shaping, None).blob_chain()
     };

@@ -15,10 +15,10 @@ const EIGHT: Evaluation<'static> = &jet::<f32x8>;
 
 /// Every check on every kind of skeleton, one test each, in a module named after the kernel.
 macro_rules! chart {
-    ($($module:ident: $kernel:expr;)*) => {$(
+    (() $($module:ident: $kernel:ident;)*) => {$(
         mod $module {
             use super::*;
-            chart!(@checks $kernel;
+            chart!(@checks Kernel::$kernel;
                 matches_quadrature: DOUBLE;
                 single_matches_double: [SINGLE, EIGHT];
                 gradient_is_the_derivative: DOUBLE;
@@ -47,17 +47,7 @@ macro_rules! chart {
     };
 }
 
-chart! {
-    cauchy: Kernel::Cauchy;
-    gauss: Kernel::Gauss;
-    inverse: Kernel::Inverse;
-    squared: Kernel::Squared;
-    metaballs: Kernel::Metaballs;
-    soft: Kernel::Soft;
-    quartic: Kernel::Quartic;
-    compact6: Kernel::Compact6;
-    cubed: Kernel::Cubed;
-}
+field::each_kernel!(chart!());
 
 /// Asserts that a check of every kernel on a kind of skeleton finds a fault.
 fn is_told(kind: Kind, check: impl Fn(Kernel, Kind)) {

@@ -34,7 +34,7 @@ fn blend(seed: u64) -> Blend {
                 base: random.vector(1.0),
                 apex: random.vector(1.0),
             };
-            Primitive::new(skeleton, &shaping(0.2, -2.0), None)
+            Primitive::new(skeleton, &shaping(0.2, 2.0), None)
         })
         .collect();
     let plain: Arc<dyn Implicit> = Arc::new(balls(random, 3));

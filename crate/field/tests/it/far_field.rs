@@ -33,7 +33,7 @@ fn primitive(kernel: Kernel, kind: usize, size: f64, n: &mut Random) -> Primitiv
     let shaping = Shaping {
         kernel,
         radius: size * (0.3 + n.unit()),
-        blobbiness: -1.0 - 3.0 * n.unit(),
+        blobbiness: 1.0 + 3.0 * n.unit(),
         blob_scale: BlobScale::Relative,
         strength: if n.unit() < 0.2 { -0.5 } else { 1.0 },
         influence: 1e-3,

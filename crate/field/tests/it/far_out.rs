@@ -14,7 +14,7 @@ fn gauss(skeleton: Skeleton) -> Primitive {
     let shaping = Shaping {
         kernel: Kernel::Gauss,
         radius: 1.0,
-        blobbiness: -30.0,
+        blobbiness: 30.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,

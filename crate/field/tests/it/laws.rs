@@ -100,7 +100,7 @@ fn radius_in_isolation() {
         for _ in 0..count(50) {
             let radius = random.decades(-2.0, 1.0);
             let blobbiness = match scale {
-                BlobScale::Relative => -random.decades(-1.0, 1.0),
+                BlobScale::Relative => random.decades(-1.0, 1.0),
                 BlobScale::Absolute => random.decades(-1.0, 1.0) / (radius * radius),
             };
             let shaping = Shaping {
@@ -171,7 +171,7 @@ fn fields_of_the_cubed_kernel_are_powers_of_the_distance() {
         let radius = random.decades(-2.0, 1.0);
         let shaping = Shaping {
             kernel: Kernel::Cubed,
-            ..shaping(radius, -random.decades(-1.0, 1.0))
+            ..shaping(radius, random.decades(-1.0, 1.0))
         };
         let distance = radius * random.decades(-1.0, 1.0);
         let long = 1e6 * radius;

@@ -50,13 +50,13 @@ impl Figure {
         let shaping = Shaping {
             kernel: self.kernel,
             radius: radius(from),
-            blobbiness: -2.0,
+            blobbiness: 2.0,
             blob_scale: BlobScale::Relative,
             strength: 1.0,
             influence: 1e-3,
             taper: (start != end).then_some(Taper {
                 radius: radius(to),
-                blobbiness: -2.0,
+                blobbiness: 2.0,
             }),
         };
         let skeleton = Skeleton::Segment {

@@ -24,7 +24,7 @@ fn sum(random: &mut Random) -> Sum {
             let shaping = Shaping {
                 kernel: Kernel::Gauss,
                 radius: random.decades(-1.7, -0.2),
-                blobbiness: -0.5 - 3.0 * random.unit(),
+                blobbiness: 0.5 + 3.0 * random.unit(),
                 blob_scale: BlobScale::Relative,
                 strength: 0.2 + random.unit(),
                 influence: 1e-3,
@@ -143,7 +143,7 @@ fn others_have_no_logarithm() {
     let shaping = |kernel, strength| Shaping {
         kernel,
         radius: 0.3,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength,
         influence: 1e-3,

@@ -164,7 +164,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
     // The bounds are of use: somewhere a good part of them is taken up.
     // The slopes of a plane of poles cancel but for a hair.
     let least = match kind {
-        Kind::Plane if !kernel.falls_fast() => 0.0,
+        Kind::Plane if !kernel.is_finite_over(2) => 0.0,
         _ => 0.02,
     };
     assert!(

@@ -10,10 +10,10 @@ const SINGLES: [Evaluation<'static>; 2] = [&jet::<f32>, &jet::<f32x8>];
 
 /// Every check, one test each, in a module named after the kernel.
 macro_rules! kernels {
-    ($($module:ident: $kernel:expr;)*) => {$(
+    (() $($module:ident: $kernel:ident;)*) => {$(
         mod $module {
             use super::*;
-            kernels!(@checks $kernel,
+            kernels!(@checks Kernel::$kernel,
                 matches_quadrature(DOUBLE),
                 single_matches_double(SINGLES),
                 gradient_is_the_derivative(DOUBLE),
@@ -34,14 +34,4 @@ macro_rules! kernels {
     };
 }
 
-kernels! {
-    cauchy: Kernel::Cauchy;
-    gauss: Kernel::Gauss;
-    inverse: Kernel::Inverse;
-    squared: Kernel::Squared;
-    metaballs: Kernel::Metaballs;
-    soft: Kernel::Soft;
-    quartic: Kernel::Quartic;
-    compact6: Kernel::Compact6;
-    cubed: Kernel::Cubed;
-}
+field::each_kernel!(kernels!());

@@ -8,17 +8,7 @@ use trials::{Random, count};
 /// Controls of one of several kinds.
 fn controls(kind: usize, random: &mut Random) -> Vec<DVec3> {
     let many = 1 + random.below(40);
-    let mut some = |mut make: Box<dyn FnMut(&mut Random) -> DVec3>| -> Vec<DVec3> {
-        (0..many).map(|_| make(random)).collect()
-    };
-    let mut made = match kind {
-        0 => some(Box::new(|n| n.vector(1.0))),
-        // Cospherical.
-        1 => some(Box::new(|n| n.direction() * 0.8)),
-        // Coplanar.
-        2 => some(Box::new(|n| n.vector(1.0) * DVec3::new(1.0, 1.0, 0.0))),
-        // Collinear.
-        3 => some(Box::new(|n| n.vector(1.0) * DVec3::X)),
+    let mut made: Vec<DVec3> = match kind {
         // A lattice, cospherical in eights.
         4 => {
             let lattice = (0..27).map(|i| {
@@ -37,12 +27,24 @@ fn controls(kind: usize, random: &mut Random) -> Vec<DVec3> {
             .chain([DVec3::ZERO])
             .map(|p| p * 0.9)
             .collect(),
-        // Close together, far from all else.
-        6 => some(Box::new(|n| DVec3::splat(0.3) + n.vector(1.0) * 1e-5)),
-        // Outside the box, some of them beyond the far corners.
-        7 => some(Box::new(|n| n.vector(1.0) * 8.0)),
-        // Nearly coplanar.
-        _ => some(Box::new(|n| n.vector(1.0) * DVec3::new(1.0, 1.0, 1e-11))),
+        _ => {
+            let one = (0..many).map(|_| match kind {
+                0 => random.vector(1.0),
+                // Cospherical.
+                1 => random.direction() * 0.8,
+                // Coplanar.
+                2 => random.vector(1.0) * DVec3::new(1.0, 1.0, 0.0),
+                // Collinear.
+                3 => random.vector(1.0) * DVec3::X,
+                // Close together, far from all else.
+                6 => DVec3::splat(0.3) + random.vector(1.0) * 1e-5,
+                // Outside the box, some of them beyond the far corners.
+                7 => random.vector(1.0) * 8.0,
+                // Nearly coplanar.
+                _ => random.vector(1.0) * DVec3::new(1.0, 1.0, 1e-11),
+            });
+            one.collect()
+        }
     };
     let mut apart: Vec<DVec3> = Vec::new();
     for p in made.drain(..) {
@@ -55,8 +57,7 @@ fn controls(kind: usize, random: &mut Random) -> Vec<DVec3> {
 
 /// Returns a point in general or in special position.
 fn point(kind: usize, controls: &[DVec3], random: &mut Random) -> DVec3 {
-    let mut some = || controls[random.below(controls.len())];
-    let (a, b, c) = (some(), some(), some());
+    let [a, b, c] = [(); 3].map(|()| controls[random.below(controls.len())]);
     let at = match kind {
         0 | 1 => random.vector(1.0),
         2 => a,
@@ -147,17 +148,15 @@ fn coordinates_are_continuous_and_local() {
     let mut random = Random::new(3);
     let controls: Vec<DVec3> = (0..400).map(|_| random.vector(1.0)).collect();
     let sibson = Sibson::new(&controls, &BOX).expect("controls that are apart");
-    let dense = |point: DVec3| {
-        let mut all = vec![0.0; sibson.sites().len()];
-        for (k, weight) in sibson.coordinates(point).expect("a point of the box") {
-            all[k as usize] = weight;
-        }
-        all
-    };
     for _ in 0..count(200) {
         let point = random.vector(1.0) * 0.5;
-        let one = dense(point);
-        let other = dense(point + random.direction() * 1e-7);
+        let [one, other] = [point, point + random.direction() * 1e-7].map(|point| {
+            let mut all = vec![0.0; sibson.sites().len()];
+            for (k, weight) in sibson.coordinates(point).expect("a point of the box") {
+                all[k as usize] = weight;
+            }
+            all
+        });
         let change = one
             .iter()
             .zip(&other)
@@ -172,6 +171,9 @@ fn coordinates_are_continuous_and_local() {
 
 #[test]
 fn deformation_reproduces_affine_moves_in_the_hull() {
+    fn turn(p: DVec3) -> DVec3 {
+        DVec3::new(0.2 * p.y + 0.1, -0.3 * p.x + p.z, p.z * 0.5)
+    }
     // Inside a dense cage whose corners are all controls a linear field of moves moves vertices
     // linearly.
     let mut random = Random::new(4);
@@ -182,7 +184,6 @@ fn deformation_reproduces_affine_moves_in_the_hull() {
     controls.extend((0..200).map(|_| random.vector(1.0) * 2.5));
     let vertices: Vec<DVec3> = (0..200).map(|_| random.vector(1.0) * 0.5).collect();
     let deformation = Deformation::new(&vertices, &controls).expect("controls that are apart");
-    let turn = |p: DVec3| DVec3::new(0.2 * p.y + 0.1, -0.3 * p.x + p.z, p.z * 0.5);
     let moves: Vec<DVec3> = controls.iter().map(|c| turn(*c)).collect();
     let moved = deformation.apply(&vertices, &moves);
     assert!(
@@ -206,21 +207,20 @@ fn vertex_on_a_control_moves_with_it() {
 
 #[test]
 fn bad_controls_are_told() {
-    let vertices = [DVec3::ZERO, DVec3::ONE];
-    let told = |controls: &[DVec3]| {
-        Deformation::new(&vertices, controls)
+    fn refusal(controls: &[DVec3]) -> String {
+        Deformation::new(&[DVec3::ZERO, DVec3::ONE], controls)
             .expect_err("on purpose")
             .to_string()
-    };
-    assert_eq!(told(&[]), "there are no control points");
-    assert_eq!(told(&[DVec3::NAN]), "control point 1 is no finite point");
+    }
+    assert_eq!(refusal(&[]), "there are no control points");
+    assert_eq!(refusal(&[DVec3::NAN]), "control point 1 is no finite point");
     assert_eq!(
-        told(&[DVec3::X, DVec3::Y, DVec3::X]),
+        refusal(&[DVec3::X, DVec3::Y, DVec3::X]),
         "control points 1 and 3 are in one place"
     );
     let many: Vec<DVec3> = (0..=MAX_CONTROLS).map(|i| DVec3::X * i as f64).collect();
     assert_eq!(
-        told(&many),
+        refusal(&many),
         "there are 4097 control points, more than the 4096 that are taken"
     );
     let nowhere = Deformation::new(&[DVec3::ZERO, DVec3::NAN], &[DVec3::X]);

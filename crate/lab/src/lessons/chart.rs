@@ -44,7 +44,7 @@ pub static WORDS: Words = Words {
     title: "The chart",
     name: "The chart",
     short: "Chart",
-    about: "nine kernels × seven primitives",
+    about: "every kernel on every primitive",
     sentences: "Every kernel can be convolved with every primitive; this is the whole table, \
                 traced just now. Some cells have a closed formula, some need an elliptic \
                 integral, some a small numerical one, and that shows in the time they take. \
@@ -143,10 +143,10 @@ const CURVE: [[f64; 2]; 4] = [[-1.1, -0.8], [-0.2, 1.9], [0.2, -1.9], [1.1, 0.8]
 
 /// Writes the line of the language that makes the bone.
 fn line(bone: Bone) -> String {
-    let list = |points: &[[f64; 2]]| -> String {
+    fn list(points: &[[f64; 2]]) -> String {
         let points = points.iter().map(|[x, y]| format!(" <{x} {y} 0>"));
         points.collect()
-    };
+    }
     match bone {
         Bone::Point => String::from("sphere flesh radius, <0 0 0>"),
         Bone::Line => String::from("cylinder flesh radius, <-1 -0.35 0> <1 0.35 0>"),
@@ -192,7 +192,7 @@ fn text((kernel, bone): Cell) -> String {
         },
         strength = strength(kernel, bone),
         bone = bone.with_article(),
-        formula = formulas::field(kernel, bone).0,
+        formula = formulas::cell(kernel, bone).formula,
         line = line(bone),
     )
 }
@@ -363,7 +363,7 @@ impl Chart {
             ui.painter()
                 .rect_stroke(picture, 6.0, stroke, StrokeKind::Inside);
         }
-        let way = formulas::way(kernel, bone);
+        let way = formulas::cell(kernel, bone).way;
         let cost = self.cost(cell);
         let small = FontId::proportional(11.5);
         let painter = ui.painter();
@@ -400,6 +400,7 @@ impl Chart {
     fn details(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let palette = theme::palette(ui.visuals());
         let (kernel, bone) = self.chosen;
+        let cell = formulas::cell(kernel, bone);
         let frame = Frame::new()
             .fill(palette.paper)
             .stroke(Stroke::new(1.0, palette.line))
@@ -412,9 +413,8 @@ impl Chart {
                 let title = format!("{} on {}", kernel.name(), bone.with_article());
                 ui.label(RichText::new(title).size(16.0).color(palette.strong));
                 ui.add_space(6.0);
-                let way = formulas::way(kernel, bone);
-                let colour = way_colour(ui, way);
-                ui.label(RichText::new(way).size(13.0).color(colour));
+                let colour = way_colour(ui, cell.way);
+                ui.label(RichText::new(cell.way).size(13.0).color(colour));
                 let cost = match self.relative(self.chosen).filter(|cost| cost.is_finite()) {
                     Some(_) => {
                         let time = self.costs.get(&self.chosen).copied().unwrap_or(f64::NAN);
@@ -433,10 +433,12 @@ impl Chart {
                     });
                 }
             });
-            let (formula, letters) = formulas::field(kernel, bone);
-            let formula = format!("{},     {formula}", formulas::kernel(kernel));
+            let formula = format!("{},     {}", kernel.formula(), cell.formula);
             ui.label(RichText::new(formula).size(15.0).color(palette.command));
-            remark(ui, format!("All lengths in kernel widths; {letters}."));
+            remark(
+                ui,
+                format!("All lengths in kernel widths; {}.", cell.letters),
+            );
         });
     }
 
@@ -463,10 +465,10 @@ mod tests {
     fn every_cell_has_a_formula_and_a_text() {
         for kernel in Kernel::ALL {
             for bone in BONES {
-                let (formula, letters) = formulas::field(kernel, bone);
-                assert!(formula.starts_with("F = ") && !letters.is_empty());
+                let cell = formulas::cell(kernel, bone);
+                assert!(cell.formula.starts_with("F = ") && !cell.letters.is_empty());
                 assert!(text((kernel, bone)).contains(kernel.name()));
-                assert!(!formulas::way(kernel, bone).is_empty());
+                assert!(!cell.way.is_empty());
             }
         }
     }

@@ -11,6 +11,7 @@ use crate::plot::{self, Axis, Plot, number};
 use crate::tools::{self, Stage, heading, reading, remark, slider};
 use egui::{Align2, Button, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};
 use field::Kernel;
+use field::kernel::Tail;
 use widgets::{places, theme};
 
 /// Shown part of the line.
@@ -144,21 +145,23 @@ impl Convolution {
 
     /// Computes the kernel's integral from 0 to u, an odd function.
     fn integral(&self, u: f64) -> f64 {
-        let along = match self.kernel {
-            Kernel::Inverse => libm::asinh(u.abs() / BESIDE) * BESIDE,
-            Kernel::Squared => libm::atan(u.abs() / BESIDE) * BESIDE,
-            Kernel::Cubed => BESIDE * u.abs() / (u * u + BESIDE * BESIDE).sqrt(),
-            kernel => kernel.along(u.abs()),
+        let along = match self.kernel.tail() {
+            Tail::Power { exponent, .. } if self.kernel.has_pole() => match exponent {
+                1 => libm::asinh(u.abs() / BESIDE) * BESIDE,
+                2 => libm::atan(u.abs() / BESIDE) * BESIDE,
+                _ => BESIDE * u.abs() / (u * u + BESIDE * BESIDE).sqrt(),
+            },
+            _ => self.kernel.along(u.abs()),
         };
         along.copysign(u)
     }
 
     /// Returns half of the field of an endless bar, in widths.
     fn endless(&self) -> f64 {
-        self.integral(if self.kernel == Kernel::Inverse {
-            ENDLESS
-        } else {
+        self.integral(if self.kernel.is_finite_over(1) {
             1e9
+        } else {
+            ENDLESS
         })
     }
 

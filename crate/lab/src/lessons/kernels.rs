@@ -1,4 +1,4 @@
-//! Lesson 1: the nine kernels, bare and as the field of a point.
+//! Lesson 1: the kernels, bare and as the field of a point.
 
 use crate::bench::Bench;
 use crate::command::Command;

@@ -420,13 +420,12 @@ mod tests {
             assert_eq!(height(DVec3::new(0.97, 0.0, 0.0)), 0.0, "{}", decay.name());
         }
         // Beside the region, propagation makes triangles of what without it are polygons.
-        let count = |how| {
+        let [with, without] = ["propagate", "local"].map(|how| {
             let clay = clay_of(&subdivide(how, 1)).expect("a plane");
             let mesh = clay.mesh();
             let polygons = mesh.faces().filter(|f| mesh.face_degree(*f) > 3).count();
             (mesh.face_count(), polygons)
-        };
-        let (with, without) = (count("propagate"), count("local"));
+        });
         assert!(
             with.0 > without.0 && with.1 == 0 && without.1 > 0,
             "{with:?} {without:?}"

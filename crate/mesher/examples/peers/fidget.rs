@@ -4,6 +4,7 @@ use fidget_core::context::Tree;
 use fidget_jit::JitShape;
 use fidget_mesh::{Octree, Settings};
 use field::Kernel;
+use field::Skeleton;
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
 use nalgebra::Matrix4;
@@ -16,7 +17,7 @@ use scene::{Element, Scene, Shape};
 /// Anything else in the scene.
 pub fn tree(scene: &Scene) -> Result<Tree, String> {
     let ball = |element: &Element| {
-        let Shape::Sphere { center, .. } = element.shape else {
+        let Some(&Skeleton::Point { center }) = element.shape.skeleton() else {
             return Err("only balls can be given to fidget");
         };
         let flesh = element.flesh.and_then(|i| scene.flesh.get(i as usize));
@@ -25,7 +26,7 @@ pub fn tree(scene: &Scene) -> Result<Tree, String> {
             return Err("only the quartic kernel can be given to fidget");
         }
         let radius = scene.radius(element);
-        let reach = radius * (1.0 + 2.0 / flesh.blobbiness.abs()).sqrt();
+        let reach = radius * (1.0 + 2.0 / flesh.blobbiness.unwrap_or(0.0)).sqrt();
         let square = |of: Tree, middle: f64| (of - middle as f32).square();
         let distance =
             square(Tree::x(), center.x) + square(Tree::y(), center.y) + square(Tree::z(), center.z);

@@ -13,7 +13,7 @@ fn shaping(radius: f64) -> Shaping {
     Shaping {
         kernel: Kernel::Gauss,
         radius,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
@@ -238,7 +238,7 @@ fn rings_and_branches_and_faces_are_closed() {
 fn scenes_are_coated_and_what_cannot_be_is_left_out() {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius: 0.2,
         ..Flesh::default()
     });
@@ -246,11 +246,9 @@ fn scenes_are_coated_and_what_cannot_be_is_left_out() {
         flesh: Some(0),
         ..Element::new(shape)
     };
-    scene.elements.push(soft(Shape::Plane {
-        point: DVec3::ZERO,
-        normal: DVec3::Y,
-        radius: 0.1,
-    }));
+    scene
+        .elements
+        .push(soft(Shape::plane(DVec3::ZERO, DVec3::Y, 0.1)));
     let mut coatings = Vec::new();
     assert!(
         coated(&scene, 0.1, &mut coatings).is_empty(),
@@ -258,10 +256,7 @@ fn scenes_are_coated_and_what_cannot_be_is_left_out() {
     );
     scene.elements.clear();
     for x in [0.0, f64::NAN, f64::INFINITY] {
-        scene.elements.push(soft(Shape::Sphere {
-            center: DVec3::X * x,
-            radius: 0.2,
-        }));
+        scene.elements.push(soft(Shape::sphere(DVec3::X * x, 0.2)));
     }
     let bodies = coated(&scene, 0.1, &mut coatings);
     assert!(bodies.len() <= 1);
@@ -328,7 +323,7 @@ fn no_webs_between_limbs() {
 fn scattered(limbs: usize, (length, radius): (f64, f64), seed: u64) -> Scene {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         ..Flesh::default()
     });
     let mut random = Random::new(seed);
@@ -337,7 +332,7 @@ fn scattered(limbs: usize, (length, radius): (f64, f64), seed: u64) -> Scene {
         let apex = base + length * random.vector(1.0);
         scene.elements.push(Element {
             flesh: Some(0),
-            ..Element::new(Shape::Cylinder { base, apex, radius })
+            ..Element::new(Shape::cylinder(base, apex, radius))
         });
     }
     scene

@@ -17,7 +17,7 @@ fn limb(x: f64, lean: f64, kernel: Kernel) -> Arc<dyn Implicit> {
     let shaping = Shaping {
         kernel,
         radius: 0.6,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,

@@ -28,7 +28,7 @@ fn coarse() -> Wishes {
 fn soft(shapes: impl IntoIterator<Item = Shape>) -> Scene {
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius: 0.3,
         ..Flesh::default()
     });
@@ -42,15 +42,11 @@ fn soft(shapes: impl IntoIterator<Item = Shape>) -> Scene {
 }
 
 fn sphere(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere { center, radius }
+    Shape::sphere(center, radius)
 }
 
 fn plane(radius: f64) -> Shape {
-    Shape::Plane {
-        point: DVec3::ZERO,
-        normal: DVec3::Y,
-        radius,
-    }
+    Shape::plane(DVec3::ZERO, DVec3::Y, radius)
 }
 
 #[test]
@@ -159,10 +155,9 @@ fn polygons_with_corners_on_their_sides_make_closed_prisms() {
         corner(1.0, 1.5),
     ];
     let mut scene = Scene::default();
-    scene.elements.push(Element::new(Shape::Polygon {
-        rings: vec![outer, hole],
-        radius: 0.1,
-    }));
+    scene
+        .elements
+        .push(Element::new(Shape::polygon(vec![outer, hole], 0.1)));
     let model = meshed(&scene, &coarse()).unwrap();
     let part = &model.parts[0];
     assert!(part.is_closed);
@@ -176,7 +171,7 @@ fn surfaces_that_touch_are_told() {
     let shaping = Shaping {
         kernel: Kernel::Gauss,
         radius: 1.0,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,

@@ -48,10 +48,7 @@ fn scene(face: &dyn Fn([DVec3; 3]) -> Shape) -> Scene {
 }
 
 fn triangle(corners: [DVec3; 3]) -> Shape {
-    Shape::Triangle {
-        corners,
-        radius: 0.0,
-    }
+    Shape::triangle(corners, 0.0)
 }
 
 fn meshed(scene: &Scene) -> Model {
@@ -82,10 +79,8 @@ fn assert_painted(name: &str, mesh: &mesh::TriangleMesh, unit: f64) {
 
 #[test]
 fn paint_is_vertex_colours_of_one_material_in_every_format() {
-    let patch = |corners: [DVec3; 3]| Shape::Patch {
-        corners,
-        normals: corners.map(|p| (p - 0.25).normalize()),
-    };
+    let patch =
+        |corners: [DVec3; 3]| Shape::patch(corners, corners.map(|p| (p - 0.25).normalize()));
     for (name, face) in [
         ("triangles", &triangle as &dyn Fn([DVec3; 3]) -> Shape),
         ("patches", &patch),
@@ -125,18 +120,12 @@ fn paint_is_vertex_colours_of_one_material_in_every_format() {
 
 #[test]
 fn thick_triangles_and_unpainted_shapes_beside_keep_their_colours() {
-    let mut scene = scene(&|corners| Shape::Triangle {
-        corners,
-        radius: 1e-6,
-    });
+    let mut scene = scene(&|corners| Shape::triangle(corners, 1e-6));
     scene.finishes.push(finish("plain", [0.0, 0.0, 1.0]));
     scene.elements.truncate(1);
     scene.elements.push(Element {
         finish: scene.finishes.len() as u32 - 1,
-        ..Element::new(Shape::Sphere {
-            center: DVec3::ONE * 5.0,
-            radius: 1.0,
-        })
+        ..Element::new(Shape::sphere(DVec3::ONE * 5.0, 1.0))
     });
     let model = meshed(&scene);
     let part = &model.parts[0];

@@ -17,7 +17,7 @@ fn shaping(kernel: Kernel, radius: f64) -> Shaping {
     Shaping {
         kernel,
         radius,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength: 1.0,
         influence: 1e-3,
@@ -362,15 +362,11 @@ fn each_phase_reports_often_and_can_be_cancelled() {
     use scene::{Element, Flesh, Scene, Shape};
     let mut scene = Scene::default();
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius: 0.4,
         ..Flesh::default()
     });
-    let cylinder = Shape::Cylinder {
-        base: DVec3::ZERO,
-        apex: DVec3::X,
-        radius: 0.4,
-    };
+    let cylinder = Shape::cylinder(DVec3::ZERO, DVec3::X, 0.4);
     let soft = Element {
         flesh: Some(0),
         ..Element::new(cylinder.clone())
@@ -410,23 +406,15 @@ fn each_phase_reports_often_and_can_be_cancelled() {
 fn shares_are_of_the_size_that_the_mesh_has() {
     use mesher::{Tolerance, Wishes, mesh_scene};
     use scene::{Element, Flesh, Scene, Shape};
-    let sphere = |at: DVec3| Shape::Sphere {
-        center: at,
-        radius: 0.5,
-    };
-    let arc = Shape::Arc {
-        center: DVec3::ZERO,
-        u: DVec3::X,
-        v: DVec3::new(0.0, 0.6, 0.8),
-        sweep: 2.0,
-        angle: 1.1,
-        radius: 0.1,
-    };
-    let slanted = Shape::Cylinder {
-        base: DVec3::ZERO,
-        apex: DVec3::new(1.0, 2.0, 0.5),
-        radius: 0.3,
-    };
+    let sphere = |at: DVec3| Shape::sphere(at, 0.5);
+    let arc = Shape::arc(
+        DVec3::ZERO,
+        [DVec3::X, DVec3::new(0.0, 0.6, 0.8)],
+        2.0,
+        1.1,
+        0.1,
+    );
+    let slanted = Shape::cylinder(DVec3::ZERO, DVec3::new(1.0, 2.0, 0.5), 0.3);
     let shapes = [
         vec![sphere(DVec3::ZERO)],
         vec![arc],
@@ -438,7 +426,7 @@ fn shares_are_of_the_size_that_the_mesh_has() {
     {
         let mut scene = Scene::default();
         scene.flesh.push(Flesh {
-            blobbiness: -1.0,
+            blobbiness: Some(1.0),
             radius: 0.3,
             ..Flesh::default()
         });

@@ -14,7 +14,7 @@ fn primitive(skeleton: Skeleton, kernel: Kernel, radius: f64, strength: f64) -> 
     let shaping = Shaping {
         kernel,
         radius,
-        blobbiness: -2.0,
+        blobbiness: 2.0,
         blob_scale: BlobScale::Relative,
         strength,
         influence: 1e-3,

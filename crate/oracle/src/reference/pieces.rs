@@ -508,7 +508,7 @@ fn range(
     let ends = [(from - 1e-6).max(0.0), (to + 1e-6).min(1.0)].map(|at| shaping.at(at));
     let [a, b] = ends.map(|s| s.radius);
     let (thin, thick) = (a.min(b), a.max(b));
-    let [a, b] = ends.map(|s| s.blobbiness.abs());
+    let [a, b] = ends.map(|s| s.blobbiness);
     let (mut low, mut high) = (a.min(b), a.max(b));
     if shaping.blob_scale == BlobScale::Absolute {
         low *= thin * thin;

@@ -11,7 +11,7 @@ fn scene(kernel: Kernel, seed: u64) -> Scene {
     let mut n = Random::new(seed * 8 + kernel as u64);
     let mut scene = empty();
     for i in 0..1 + seed % 3 {
-        let mut material = soft(-libm::exp(n.range(-2.0, 3.0)), 1.0);
+        let mut material = soft(libm::exp(n.range(-2.0, 3.0)), 1.0);
         material.kernel = Some(kernel);
         if i == 2 {
             material.strength = -0.7;
@@ -33,23 +33,20 @@ fn scene(kernel: Kernel, seed: u64) -> Scene {
         let kind = n.below(7);
         let radius = 0.25;
         let shape = match kind {
-            5 => Shape::Curve {
-                control: [0, 1, 2, 3].map(|_| n.vector(1.0)),
-                radius,
-            },
+            5 => Shape::curve([0, 1, 2, 3].map(|_| n.vector(1.0)), radius),
             6 => {
                 let (x, y) = (DVec3::X, (DVec3::Y + DVec3::Z * n.unit()).normalize());
                 let star = |i: u32, far: f64| {
                     let (sine, cosine) = libm::sincos(f64::from(i) * 1.1);
                     (x * cosine + y * sine) * far
                 };
-                Shape::Polygon {
-                    rings: vec![
+                Shape::polygon(
+                    vec![
                         (0..5).map(|i| star(i, 0.5 + 0.5 * n.unit())).collect(),
                         (0..5).map(|i| star(i, 0.2)).collect(),
                     ],
                     radius,
-                }
+                )
             }
             kind => n.shape(kind),
         };
@@ -168,14 +165,10 @@ fn slopes_change_no_faster_than_the_bound() {
 #[test]
 fn a_ball_is_found_to_the_last_digits() {
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-4.0, 1.0)]);
-    scene.elements.push(element(
-        Shape::Sphere {
-            center: DVec3::X,
-            radius: 0.25,
-        },
-        0,
-    ));
+    clothe(&mut scene, vec![soft(4.0, 1.0)]);
+    scene
+        .elements
+        .push(element(Shape::sphere(DVec3::X, 0.25), 0));
     let mut reference = reference(&scene);
     for (off, count) in [(0.0, 2), (0.2, 2), (0.25 - 1e-8, 2), (0.25 + 1e-8, 0)] {
         let origin = DVec3::new(-3.0, off, 0.0);

@@ -31,7 +31,7 @@ fn sample(width: u32, height: u32, seed: u32) -> Picture {
 }
 
 #[test]
-fn written_files_are_read_back() {
+fn files_are_written_and_read_back() {
     for &format in FORMATS {
         for (width, height) in [(1, 1), (7, 3), (40, 30)] {
             let picture = sample(width, height, 0);
@@ -188,12 +188,11 @@ const TIMING: Timing = Timing {
 #[test]
 fn an_animation_counts_its_frames() {
     let frame = sample(8, 6, 0);
-    let begin = |frames| {
+    for count in [0, 10_001] {
         let mut bytes = Vec::new();
-        Writer::begin(&mut bytes, Format::Png, &frame, frames, TIMING, false).map(drop)
-    };
-    assert_eq!(begin(0), Err(Problem::FrameCount(0)));
-    assert_eq!(begin(10_001), Err(Problem::FrameCount(10_001)));
+        let begun = Writer::begin(&mut bytes, Format::Png, &frame, count, TIMING, false);
+        assert_eq!(begun.map(drop), Err(Problem::FrameCount(count)));
+    }
     let mut bytes = Vec::new();
     let mut writer =
         Writer::begin(&mut bytes, Format::Png, &frame, 2, TIMING, false).expect("begun");
@@ -269,17 +268,15 @@ fn dots_mix_what_a_gif_lacks() {
         .flat_map(|(x, y)| [(x / 2) as u8, (y / 2) as u8, ((x + y) / 4) as u8, 255])
         .collect();
     let picture = Picture::new(512, 512, pixels).expect("a picture");
-    let error = |dither| {
+    let [plain, dithered] = [false, true].map(|dither| {
         let mut bytes = Vec::new();
         let writer = Writer::begin(&mut bytes, Format::Gif, &picture, 1, TIMING, dither);
         writer.and_then(Writer::finish).expect("written");
         let again = decode(&bytes, Format::Gif).expect("read");
         // The mean colour of each block of 16×16 is what the eye sees.
-        let small = |picture: &Picture| picture::resize(picture, 32, 32).expect("resized");
-        let (a, b) = (small(&picture), small(&again));
+        let [a, b] = [&picture, &again].map(|all| picture::resize(all, 32, 32).expect("resized"));
         let errors = a.pixels().iter().zip(b.pixels());
         errors.map(|(a, b)| u64::from(a.abs_diff(*b))).sum::<u64>()
-    };
-    let (plain, dithered) = (error(false), error(true));
+    });
     assert!(2 * dithered < plain, "{dithered} against {plain}");
 }

@@ -171,12 +171,7 @@ fn senseless_cameras_and_pointers_give_usable_cameras() {
 
 #[test]
 fn frame_sees_everything_and_no_more_than_needed() {
-    let ball = |x: f64| {
-        Element::new(Shape::Sphere {
-            center: DVec3::new(x, 2.0 * x, 100.0),
-            radius: 3.0,
-        })
-    };
+    let ball = |x: f64| Element::new(Shape::sphere(DVec3::new(x, 2.0 * x, 100.0), 3.0));
     let scene = Scene {
         elements: vec![ball(-7.0), ball(4.0), ball(20.0)],
         camera: camera_from_above(),
@@ -187,15 +182,13 @@ fn frame_sees_everything_and_no_more_than_needed() {
         let projection = camera.projection(size[0], size[1]);
         let mut widest: f64 = 0.0;
         for element in &scene.elements {
-            let Shape::Sphere { center, radius } = element.shape else {
-                unreachable!()
-            };
+            let (center, radius) = (element.shape.middle(), element.shape.radius());
             let v = projection.world_from_view.transpose() * (center - camera.eye);
             assert!(-v.z > radius);
             // Well inside: the bounding sphere of the whole scene touches the margin.
-            let reach = |x: f64, half: f64| (x.abs() + radius) / (-v.z - radius) / half;
-            widest = widest.max(reach(v.x, projection.half_width));
-            widest = widest.max(reach(v.y, projection.half_height));
+            for (x, half) in [(v.x, projection.half_width), (v.y, projection.half_height)] {
+                widest = widest.max((x.abs() + radius) / (-v.z - radius) / half);
+            }
         }
         assert!(widest < 1.3 && widest > 0.3, "{widest} at {size:?}");
     }

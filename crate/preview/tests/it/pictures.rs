@@ -12,13 +12,7 @@ use scene::{
 /// A ball of radius 1 at the origin, seen from z = 5.
 fn ball(finish: Finish, lights: Vec<Light>) -> Scene {
     Scene {
-        elements: vec![element(
-            Shape::Sphere {
-                center: DVec3::ZERO,
-                radius: 1.0,
-            },
-            0,
-        )],
+        elements: vec![element(Shape::sphere(DVec3::ZERO, 1.0), 0)],
         finishes: vec![finish],
         lights,
         background: [0.1, 0.2, 0.3].into(),
@@ -104,6 +98,9 @@ fn phong_with_point_and_distant_lights_and_gamma() {
 
 #[test]
 fn colours_at_the_corners_of_a_triangle_are_mixed() {
+    fn area(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+        (b - a).cross(c - a).z
+    }
     let corners = [[1.3, -0.8], [0.1, 1.2], [-1.2, -1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
     // Multiples of 1/31 and 1/63.
     let colors = [
@@ -118,26 +115,17 @@ fn colours_at_the_corners_of_a_triangle_are_mixed() {
         ..Finish::default()
     });
     scene.finishes = finishes.to_vec();
-    let flat = Shape::Triangle {
+    let flat = Shape::triangle(corners, 0.0);
+    let patch = Shape::patch(
         corners,
-        radius: 0.0,
-    };
-    let patch = Shape::Patch {
-        corners,
-        normals: [
+        [
             DVec3::Z,
             DVec3::new(0.3, 0.1, 1.0),
             DVec3::new(0.0, 0.4, 1.0),
         ],
-    };
+    );
     let size = [48, 48];
     let projection = scene.camera.projection(size[0], size[1]);
-    let place = |x: u32, y: u32| {
-        let [u, v] = [x, y].map(|i| (f64::from(i) + 0.5) / 48.0);
-        let ray = projection.direction(u, v);
-        projection.eye - ray * (projection.eye.z / ray.z)
-    };
-    let area = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).z;
     let whole = area(corners[0], corners[1], corners[2]);
     for shape in [flat, patch] {
         scene.elements = vec![Element {
@@ -152,7 +140,9 @@ fn colours_at_the_corners_of_a_triangle_are_mixed() {
             let picture = gpu.draw(&scene, size);
             let mut seen = 0;
             for (x, y) in (0..48).flat_map(|y| (0..48).map(move |x| (x, y))) {
-                let point = place(x, y);
+                let [u, v] = [x, y].map(|i| (f64::from(i) + 0.5) / 48.0);
+                let ray = projection.direction(u, v);
+                let point = projection.eye - ray * (projection.eye.z / ray.z);
                 let shares = [0, 1, 2]
                     .map(|k| area(point, corners[(k + 1) % 3], corners[(k + 2) % 3]) / whole);
                 if shares.iter().all(|share| *share > 1e-3) {
@@ -206,11 +196,7 @@ fn four_samples_are_averaged_as_light() {
     // but for an odd height the middle row is half of each.
     let mut scene = Scene {
         elements: vec![element(
-            Shape::Plane {
-                point: DVec3::new(0.0, -0.01, 0.0),
-                normal: DVec3::Y,
-                radius: 0.0,
-            },
+            Shape::plane(DVec3::new(0.0, -0.01, 0.0), DVec3::Y, 0.0),
             0,
         )],
         finishes: vec![Finish {
@@ -230,11 +216,9 @@ fn four_samples_are_averaged_as_light() {
         draft.set_sampling(Sampling::Four);
         let picture = gpu.render(&mut draft, &scene.camera, [9, 7]);
         assert_eq!(picture.size, [9, 7]);
-        let encode = |rgb: [f64; 3]| rgb.map(|c| libm::pow(c, 1.0 / f64::from(gamma)));
-        for x in 0..9 {
-            assert!(close(picture.at(x, 0), encode([0.0, 0.5, 1.0])));
-            assert!(close(picture.at(x, 3), encode([0.5, 0.5, 0.5])));
-            assert!(close(picture.at(x, 6), encode([1.0, 0.5, 0.0])));
+        for (y, rgb) in [(0, [0.0, 0.5, 1.0]), (3, [0.5; 3]), (6, [1.0, 0.5, 0.0])] {
+            let encoded = rgb.map(|c| libm::pow(c, 1.0 / f64::from(gamma)));
+            assert!((0..9).all(|x| close(picture.at(x, y), encoded)));
         }
     }
 }
@@ -261,14 +245,14 @@ fn sizes_and_generations() {
 
 #[test]
 fn more_lights_than_fit_leaves_the_weakest() {
-    let light = |strength: f32| Light {
+    let weak = Light {
         kind: LightKind::Distant { towards: DVec3::Z },
-        colour: [strength; 3],
+        colour: [0.001; 3],
         shadow: false,
         size: 0.0,
     };
-    let mut lights = vec![light(0.001); 40];
-    lights.push(light(0.5));
+    let mut lights = vec![weak; 41];
+    lights[40].colour = [0.5; 3];
     let scene = ball(
         Finish {
             ambient: [0.0; 3],
@@ -294,23 +278,19 @@ fn the_radius_that_counts_is_drawn_and_carving_is_not() {
     let mut scene = ball(bright, Vec::new());
     scene.flesh.push(Flesh {
         radius: 2.0,
-        blobbiness: -1.0,
+        blobbiness: Some(1.0),
         ..Flesh::default()
     });
     scene.elements[0].flesh = Some(0);
     scene.camera.fov = 60.0;
-    let covered = |scene: &Scene| -> Vec<usize> {
-        gpus()
-            .iter()
-            .map(|gpu| {
-                let picture = gpu.draw(scene, [40, 40]);
-                picture.pixels.iter().filter(|p| p[0] == 255).count()
-            })
-            .collect()
-    };
-    let own = covered(&scene);
-    scene.settings.fragile = scene::Fragile::ALL;
-    let fragile = covered(&scene);
+    let [own, fragile] = [scene.settings.fragile, scene::Fragile::ALL].map(|fragile| {
+        scene.settings.fragile = fragile;
+        let counts = gpus().iter().map(|gpu| {
+            let picture = gpu.draw(&scene, [40, 40]);
+            picture.pixels.iter().filter(|p| p[0] == 255).count()
+        });
+        counts.collect::<Vec<usize>>()
+    });
     for (own, fragile) in own.iter().zip(&fragile) {
         // Twice the radius, four times the area, more as it comes nearer.
         assert!((4.0..5.5).contains(&(*fragile as f64 / *own as f64)));
@@ -353,53 +333,20 @@ fn scenes_without_sense_are_drawn_without_harm() {
         for b in numbers {
             let p = DVec3::new(a, 1.0, b);
             for shape in [
-                Shape::Sphere {
-                    center: p,
-                    radius: a,
-                },
-                Shape::Cylinder {
-                    base: p,
-                    apex: DVec3::new(b, a, 0.0),
-                    radius: b,
-                },
+                Shape::sphere(p, a),
+                Shape::cylinder(p, DVec3::new(b, a, 0.0), b),
                 arc(p, DQuat::IDENTITY, a, b, 1.0),
                 arc(DVec3::ZERO, DQuat::IDENTITY, 1.0, a, b),
-                Shape::Arc {
-                    center: p,
-                    u: DVec3::splat(a),
-                    v: DVec3::splat(b),
-                    sweep: 1.0,
-                    angle: 2.0,
-                    radius: 0.1,
-                },
-                Shape::Triangle {
-                    corners: [p, DVec3::new(b, a, b), DVec3::splat(a)],
-                    radius: b,
-                },
-                Shape::Plane {
-                    point: p,
-                    normal: DVec3::new(b, a, 0.0),
-                    radius: a,
-                },
-                Shape::Cone {
-                    base: p,
-                    base_radius: a,
-                    apex: DVec3::new(b, a, 0.0),
-                    apex_radius: b,
-                },
-                Shape::Pipe {
-                    base: p,
-                    apex: DVec3::new(b, a, 0.0),
-                    radius: b,
-                },
-                Shape::Box {
-                    center: p,
-                    axes: [DVec3::X * a, DVec3::Y * b, DVec3::new(a, b, 1.0)],
-                },
-                Shape::Patch {
-                    corners: [p, DVec3::new(b, a, b), DVec3::splat(a)],
-                    normals: [p, DVec3::Z, DVec3::X * a],
-                },
+                Shape::arc(p, [DVec3::splat(a), DVec3::splat(b)], 1.0, 2.0, 0.1),
+                Shape::triangle([p, DVec3::new(b, a, b), DVec3::splat(a)], b),
+                Shape::plane(p, DVec3::new(b, a, 0.0), a),
+                Shape::cone(p, a, DVec3::new(b, a, 0.0), b),
+                Shape::pipe(p, DVec3::new(b, a, 0.0), b),
+                Shape::cuboid(p, [DVec3::X * a, DVec3::Y * b, DVec3::new(a, b, 1.0)]),
+                Shape::patch(
+                    [p, DVec3::new(b, a, b), DVec3::splat(a)],
+                    [p, DVec3::Z, DVec3::X * a],
+                ),
                 Shape::Quadric(Box::new(Quadric {
                     square: DMat3::from_diagonal(DVec3::new(a, b, 1.0)),
                     linear: p,
@@ -457,13 +404,7 @@ fn hundreds_of_thousands_of_elements_are_limited() {
     let elements = (0..count)
         .map(|i| {
             let place = DVec3::new((i % side) as f64, (i / side) as f64, 0.0);
-            element(
-                Shape::Sphere {
-                    center: place,
-                    radius: 0.4,
-                },
-                i as u32,
-            )
+            element(Shape::sphere(place, 0.4), i as u32)
         })
         .collect();
     let mut scene = Scene {
@@ -563,19 +504,13 @@ fn mesh_takes_the_place_of_soft_elements_alone() {
     }];
     let mut scene = ball(shiny(), lights.clone());
     scene.flesh.push(Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         ..Flesh::default()
     });
     scene.elements[0].flesh = Some(0);
     // A hard ball beside it.
     let (aside, small) = (DVec3::new(0.95, 0.95, 0.0), 0.3);
-    scene.elements.push(element(
-        Shape::Sphere {
-            center: aside,
-            radius: small,
-        },
-        0,
-    ));
+    scene.elements.push(element(Shape::sphere(aside, small), 0));
     let (vertices, triangles) = round(60, looks(&scene)[0]);
     let (origin, unit) = (DVec3::new(0.1, -0.1, 0.0), 0.5);
     let mesh = Mesh {
@@ -597,13 +532,10 @@ fn mesh_takes_the_place_of_soft_elements_alone() {
         let mut counts = [0; 3];
         for y in 0..size[1] {
             for x in 0..size[0] {
-                let share = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
-                let ray = projection.world_from_view
-                    * DVec3::new(
-                        share(x, size[0]) * projection.half_width,
-                        -share(y, size[1]) * projection.half_height,
-                        -1.0,
-                    );
+                let [u, v] = [(x, size[0]), (y, size[1])]
+                    .map(|(i, n)| (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0);
+                let (right, up) = (u * projection.half_width, -v * projection.half_height);
+                let ray = projection.world_from_view * DVec3::new(right, up, -1.0);
                 let ray = ray.normalize();
                 // Where the ray meets a ball, and how near it passes the middle, in radii.
                 let meet = |center: DVec3, radius: f64| {

@@ -141,25 +141,15 @@ fn compare_around(what: &str, shape: Shape, center: DVec3, size: f64) {
 }
 
 fn sphere(center: [f64; 3], radius: f64) -> Shape {
-    Shape::Sphere {
-        center: center.into(),
-        radius,
-    }
+    Shape::sphere(center.into(), radius)
 }
 
 fn cylinder(base: [f64; 3], apex: [f64; 3], radius: f64) -> Shape {
-    Shape::Cylinder {
-        base: base.into(),
-        apex: apex.into(),
-        radius,
-    }
+    Shape::cylinder(base.into(), apex.into(), radius)
 }
 
 fn triangle(corners: [[f64; 3]; 3], radius: f64) -> Shape {
-    Shape::Triangle {
-        corners: corners.map(DVec3::from),
-        radius,
-    }
+    Shape::triangle(corners.map(DVec3::from), radius)
 }
 
 #[test]
@@ -229,12 +219,7 @@ fn triangles() {
 }
 
 fn cone(ends: [[f64; 3]; 2], radii: [f64; 2]) -> Shape {
-    Shape::Cone {
-        base: ends[0].into(),
-        base_radius: radii[0],
-        apex: ends[1].into(),
-        apex_radius: radii[1],
-    }
+    Shape::cone(ends[0].into(), radii[0], ends[1].into(), radii[1])
 }
 
 #[test]
@@ -256,17 +241,9 @@ fn cones() {
 
 #[test]
 fn pipes() {
-    let pipe = Shape::Pipe {
-        base: DVec3::new(-0.8, -0.5, 0.1),
-        apex: DVec3::new(0.9, 0.6, -0.2),
-        radius: 0.4,
-    };
+    let pipe = Shape::pipe(DVec3::new(-0.8, -0.5, 0.1), DVec3::new(0.9, 0.6, -0.2), 0.4);
     compare_around("pipe", pipe, DVec3::ZERO, 1.0);
-    let upright = Shape::Pipe {
-        base: DVec3::NEG_Z * 0.5,
-        apex: DVec3::Z * 0.5,
-        radius: 0.7,
-    };
+    let upright = Shape::pipe(DVec3::NEG_Z * 0.5, DVec3::Z * 0.5, 0.7);
     compare_around("along the view", upright, DVec3::ZERO, 1.0);
 }
 
@@ -287,7 +264,7 @@ fn boxes() {
     ] {
         let axes = axes.map(|axis| rotation * axis * 0.7);
         let center = DVec3::new(0.1, 0.0, -0.1);
-        compare_around(what, Shape::Box { center, axes }, DVec3::ZERO, 1.0);
+        compare_around(what, Shape::cuboid(center, axes), DVec3::ZERO, 1.0);
     }
 }
 
@@ -299,13 +276,10 @@ fn patches() {
     // Bent outwards far enough that some would face away.
     let bent = corners.map(|corner| corner * 3.0 + DVec3::Z);
     for (what, normals) in [("round", round), ("flat", flat)] {
-        compare_around(what, Shape::Patch { corners, normals }, DVec3::ZERO, 1.0);
+        compare_around(what, Shape::patch(corners, normals), DVec3::ZERO, 1.0);
     }
     for gpu in gpus() {
-        let shape = Shape::Patch {
-            corners,
-            normals: bent,
-        };
+        let shape = Shape::patch(corners, bent);
         let camera = look([0.0, 0.0, 3.0], [0.0, 0.0, 0.0], 45.0);
         compare(gpu, "bent", slice::from_ref(&shape), camera);
     }
@@ -313,13 +287,15 @@ fn patches() {
 
 #[test]
 fn quadrics() {
-    let cut = |square: DMat3, linear: DVec3, constant: f64| {
+    fn cut(square: DMat3, linear: DVec3, constant: f64) -> Shape {
         let half = DVec3::new(0.9, 1.0, 0.8);
         let mut quadric = Quadric::new(square, linear, constant, -half, half).expect("a quadric");
         quadric.axes = quadric.axes.map(|axis| rotation() * axis);
         Shape::Quadric(Box::new(quadric))
-    };
-    let diagonal = |x, y, z| DMat3::from_diagonal(DVec3::new(x, y, z));
+    }
+    fn diagonal(x: f64, y: f64, z: f64) -> DMat3 {
+        DMat3::from_diagonal(DVec3::new(x, y, z))
+    }
     for (what, shape) in [
         ("ellipsoid", cut(diagonal(2.0, 1.3, 3.0), DVec3::ZERO, -1.0)),
         ("cut ball", cut(diagonal(1.0, 1.0, 1.0), DVec3::ZERO, -1.2)),
@@ -335,11 +311,11 @@ fn quadrics() {
 fn planes() {
     for gpu in gpus() {
         for radius in [0.0, 0.4] {
-            let floor = Shape::Plane {
-                point: DVec3::new(5.0, -1.0, 7.0),
-                normal: DVec3::new(0.1, 1.0, 0.05).normalize(),
+            let floor = Shape::plane(
+                DVec3::new(5.0, -1.0, 7.0),
+                DVec3::new(0.1, 1.0, 0.05).normalize(),
                 radius,
-            };
+            );
             let ball = sphere([0.0, -0.8, 0.0], 1.0);
             for (view, eye) in [
                 ("above", [1.0, 2.0, 5.0]),
@@ -496,22 +472,19 @@ fn a_grain_far_from_the_middle_of_a_large_scene_is_sharp() {
 /// A ball of patches, of which no ray passes between two.
 #[test]
 fn a_mesh_of_patches_has_no_gaps() {
-    let at = |i: u32, j: u32| {
+    fn at(i: u32, j: u32) -> DVec3 {
         let (a, b) = (f64::from(i) * TAU / 48.0, f64::from(j) * TAU / 80.0 - 0.3);
         let (sine, cosine) = libm::sincos(a);
         let (low, high) = libm::sincos(b);
         DVec3::new(cosine * high, sine * high, low)
-    };
+    }
     // More than the half of the ball that is seen, in one colour.
     let mut shapes = Vec::new();
     for i in 0..48 {
         for j in 0..24 {
             for (a, b, c) in [((0, 0), (1, 0), (1, 1)), ((0, 0), (1, 1), (0, 1))] {
                 let corners = [a, b, c].map(|(x, y)| at(i + x, j + y));
-                shapes.push(Shape::Patch {
-                    corners,
-                    normals: corners,
-                });
+                shapes.push(Shape::patch(corners, corners));
             }
         }
     }

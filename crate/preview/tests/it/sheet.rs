@@ -15,7 +15,9 @@ fn examples() -> PathBuf {
 
 /// The scene of an example, with the files that its text names.
 fn scene(name: &str) -> Scene {
-    let read = |name: &str| std::fs::read(examples().join(name)).unwrap();
+    fn read(name: &str) -> Vec<u8> {
+        std::fs::read(examples().join(name)).unwrap()
+    }
     let text = String::from_utf8(read(&format!("{name}.rat"))).unwrap();
     let mut files = vec![File {
         name: format!("{name}.rat"),
@@ -75,7 +77,7 @@ fn drafts(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> (Picture, Option<Picture>
     let is_endless = soft
         .elements
         .iter()
-        .any(|element| matches!(element.shape, scene::Shape::Plane { .. }));
+        .any(|element| element.shape.bounds(0.0).is_none());
     if soft.elements.is_empty() || is_endless || soft.elements.len() > MOST {
         return (plain, None);
     }

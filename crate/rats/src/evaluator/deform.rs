@@ -13,6 +13,7 @@ use crate::limits::{MAX_CONTROL_OPERANDS, MAX_DEFORMED, STEPS_PER_VERTEX};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
+use field::Skeleton;
 use fit::Deformation;
 use glam::DVec3;
 use scene::{Form, ImplicitMesh, Shape};
@@ -245,7 +246,7 @@ impl Vertices {
         let mut first = 0;
         for part in parts {
             match &part.element.shape {
-                Shape::Triangle { .. } | Shape::Patch { .. } => {
+                Shape::Bone(_) => {
                     triangles.push([0, 1, 2].map(|i| self.numbers[first + i]));
                     first += 3;
                 }
@@ -269,14 +270,14 @@ impl Vertices {
         for part in &mut *parts {
             let mut next = || numbers.next().map_or(DVec3::ZERO, |n| moved[n as usize]);
             match &mut part.element.shape {
-                Shape::Triangle { corners, .. } => *corners = [next(), next(), next()],
-                Shape::Patch {
-                    corners,
-                    normals: own,
-                } => {
-                    let before = *corners;
-                    *corners = [next(), next(), next()];
-                    normals.turn(&before, corners, own);
+                Shape::Bone(bone) => {
+                    if let Skeleton::Triangle { corners } = &mut bone.skeleton {
+                        let before = *corners;
+                        *corners = [next(), next(), next()];
+                        if let Some(own) = &mut bone.normals {
+                            normals.turn(&before, corners, own);
+                        }
+                    }
                 }
                 Shape::Function(function) => {
                     if let Form::Mesh(mesh) = &mut function.form {
@@ -295,10 +296,9 @@ impl Vertices {
             }
         }
         for part in parts {
-            if let Shape::Patch {
-                corners,
-                normals: own,
-            } = &mut part.element.shape
+            if let Shape::Bone(bone) = &mut part.element.shape
+                && let (Skeleton::Triangle { corners }, Some(own)) =
+                    (&bone.skeleton, &mut bone.normals)
             {
                 normals.mean(corners, own);
             }
@@ -309,7 +309,10 @@ impl Vertices {
 /// Returns the corners of a shape that can be deformed.
 fn corners(shape: &Shape) -> Option<Vec<DVec3>> {
     match shape {
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => Some(corners.to_vec()),
+        Shape::Bone(bone) => match bone.skeleton {
+            Skeleton::Triangle { corners } => Some(corners.to_vec()),
+            _ => None,
+        },
         Shape::Function(function) => match &function.form {
             Form::Mesh(mesh) => {
                 let places = mesh.positions.iter().copied();

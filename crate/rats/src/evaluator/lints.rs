@@ -8,7 +8,7 @@ use super::state::Evaluator;
 use crate::Severity;
 use field::{Primitive, THRESHOLD};
 use glam::DVec3;
-use scene::{Element, Scene, Shape, SoftSurface, Surface};
+use scene::{Element, Scene, SoftSurface, Surface};
 
 /// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]):
 /// limbs that taper take a millisecond each to prepare.
@@ -139,7 +139,7 @@ impl Evaluator<'_> {
                 continue;
             }
             // Most are strong enough by themselves, which is soon seen.
-            let points = bone(&element.shape);
+            let points = element.shape.samples();
             if points.iter().rev().any(|p| value(own, *p) >= THRESHOLD) {
                 continue;
             }
@@ -164,81 +164,10 @@ fn value(terms: &[Primitive], p: DVec3) -> f64 {
     field::sum(terms, p.to_array()).value
 }
 
-/// Returns points on a shape's skeleton, where its own field is strongest.
-fn bone(shape: &Shape) -> Vec<DVec3> {
-    match shape {
-        Shape::Sphere { center, .. } => vec![*center],
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => (0..=8)
-            .map(|i| base.lerp(*apex, f64::from(i) / 8.0))
-            .collect(),
-        Shape::Arc {
-            center,
-            u,
-            v,
-            sweep,
-            angle,
-            ..
-        } => (0..=8)
-            .map(|i| {
-                let t = angle * f64::from(i) / 8.0;
-                *center + (*u * libm::cos(t) + *v * libm::sin(t)) * *sweep
-            })
-            .collect(),
-        Shape::Box { center, .. } => vec![*center],
-        Shape::Quadric(quadric) => vec![quadric.center],
-        Shape::Function(function) => function.axis(),
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-            let [a, b, c] = *corners;
-            let middle = (a + b + c) / 3.0;
-            vec![
-                middle,
-                middle.lerp(a, 0.5),
-                middle.lerp(b, 0.5),
-                middle.lerp(c, 0.5),
-            ]
-        }
-        Shape::Polygon { rings, .. } => rings.iter().flatten().copied().take(16).collect(),
-        Shape::Curve { control, .. } => (0..=8)
-            .map(|i| {
-                let t = f64::from(i) / 8.0;
-                let [a, b, c, d] = *control;
-                let (ab, bc, cd) = (a.lerp(b, t), b.lerp(c, t), c.lerp(d, t));
-                ab.lerp(bc, t).lerp(bc.lerp(cd, t), t)
-            })
-            .collect(),
-        Shape::Plane { point, .. } => vec![*point],
-    }
-}
-
 /// Finds a ball around a shape as it is drawn: soft flesh reaches a little farther than its radius.
 /// `None` for a plane, which is everywhere.
 fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
-    if matches!(element.shape, Shape::Plane { .. }) {
-        return None;
-    }
-    let around = |points: &[DVec3]| {
-        let centre = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-        let reach = points.iter().map(|p| p.distance(centre));
-        (centre, reach.fold(0.0, f64::max))
-    };
-    let (centre, reach) = match &element.shape {
-        Shape::Sphere { center, .. } => (*center, 0.0),
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => around(corners),
-        Shape::Polygon { rings, .. } => around(&rings[0]),
-        Shape::Curve { control, .. } => around(control),
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => around(&[*base, *apex]),
-        Shape::Box { center, axes } => (*center, axes.iter().map(|a| a.length()).sum()),
-        Shape::Quadric(quadric) => {
-            let reach = quadric.axes.iter().map(|axis| axis.length()).sum();
-            (quadric.center, reach)
-        }
-        Shape::Function(function) => around(&<[DVec3; 2]>::from(function.corners())),
-        shape => around(&bone(shape)),
-    };
+    let (centre, reach) = element.shape.bounding_sphere()?;
     let flesh = scene.radius(element) * if scene.is_soft(element) { 1.5 } else { 1.0 };
     Some((centre, reach + flesh))
 }

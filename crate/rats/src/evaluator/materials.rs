@@ -16,23 +16,15 @@ use field::Kernel;
 use scene::{Finish, Flesh, Rgb};
 
 /// The kernels: how a skeleton's flesh fades with distance (fields.md §1).
-const KERNELS: &[OptionSpec] = &[
-    word_of(
-        "cauchy",
-        "1/(1+s²r²)²: wide and smooth, closed forms for every primitive",
-    ),
-    word_of("gauss", "exp(−a²r²): falls fast"),
-    word_of("inverse", "1/r: the Newtonian potential, very wide"),
-    word_of("squared", "1/r²"),
-    word_of("metaballs", "piecewise quadratic, nothing beyond r = 1"),
-    word_of(
-        "soft",
-        "the soft objects' polynomial of degree 6, nothing beyond r = 1",
-    ),
-    word_of("quartic", "(1−r²)², nothing beyond r = 1"),
-    word_of("compact6", "(1−r²)³, nothing beyond r = 1"),
-    word_of("cubed", "1/r³: no width, so the blobbiness is ignored"),
-];
+const KERNELS: &[OptionSpec] = &{
+    let mut words = [const { word_of("", "") }; Kernel::ALL.len()];
+    let mut i = 0;
+    while i < words.len() {
+        words[i] = word_of(Kernel::ALL[i].name(), Kernel::ALL[i].meaning());
+        i += 1;
+    }
+    words
+};
 
 /// Rays that `skip` names.
 const RAYS: &[OptionSpec] = &[
@@ -187,10 +179,11 @@ fn set_flesh(options: &Options<'_>, flesh: &mut Flesh) -> Outcome<()> {
         (flesh.radius, flesh.end_radius) = (radius, end);
     }
     for (blobbiness, end) in options.all(&BLOBBINESS) {
-        flesh.blobbiness = blobbiness;
+        // The published datasets write it negative; only its magnitude counts.
+        flesh.blobbiness = (blobbiness != 0.0).then(|| blobbiness.abs());
         flesh.end_blobbiness = None;
         if let Some((at_end, span)) = end {
-            flesh.end_blobbiness = Some(at_end);
+            flesh.end_blobbiness = Some(at_end.abs());
             if at_end == 0.0 || blobbiness == 0.0 {
                 return Err(Problem::new(
                     &span,

@@ -9,6 +9,8 @@ use crate::limits::{CURVE_WEIGHT, MAX_ELEMENTS, MAX_NESTED_OBJECTS, MAX_OBJECTS}
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
+use field::Skeleton;
+use field::skeleton::Map;
 use glam::DAffine3;
 use scene::{Body, Contact, Element, Shape};
 use std::cell::Cell;
@@ -41,10 +43,11 @@ pub struct Part {
 impl Part {
     /// Returns the number of shapes as which it counts.
     fn weight(&self) -> usize {
-        match &self.element.shape {
-            Shape::Polygon { rings, .. } => rings.iter().map(Vec::len).sum(),
-            Shape::Curve { .. } => CURVE_WEIGHT,
-            Shape::Function(function) => function.curves().map_or_else(
+        let (curves, skeleton) = (self.element.shape.curves(), self.element.shape.skeleton());
+        match (&self.element.shape, skeleton) {
+            (_, Some(Skeleton::Polygon { rings })) => rings.iter().map(Vec::len).sum(),
+            (_, Some(line)) if line.is_numeric() => CURVE_WEIGHT,
+            (Shape::Function(function), _) => curves.map_or_else(
                 || function.weight(),
                 |curves| {
                     let each = if curves.tapers() { CURVE_WEIGHT } else { 1 };
@@ -330,7 +333,7 @@ impl<'a> Model<'a> {
     /// Applies a transform to shapes.
     pub fn transform(&mut self, range: Range<usize>, transform: &Transform) {
         for part in &mut self.parts[range] {
-            part.element.shape = transform.apply(&part.element.shape);
+            part.element.shape = part.element.shape.transform(transform);
             part.growth *= transform.growth;
             let before = part.moved.as_deref().copied().unwrap_or_default();
             part.moved = Some(Box::new(transform.affine() * before));
@@ -409,16 +412,9 @@ impl<'a> Model<'a> {
     #[must_use]
     pub fn has_round(&self, range: Range<usize>) -> bool {
         self.parts[range].iter().any(|part| {
-            part.element.shape.curves().is_some()
-                || matches!(
-                    part.element.shape,
-                    Shape::Sphere { .. }
-                        | Shape::Arc { .. }
-                        | Shape::Cylinder { .. }
-                        | Shape::Pipe { .. }
-                        | Shape::Cone { .. }
-                        | Shape::Curve { .. }
-                )
+            let shape = &part.element.shape;
+            let skeleton = shape.skeleton();
+            shape.curves().is_some() || skeleton.is_some_and(|bone| bone.dimension() < 2)
         })
     }
 

@@ -17,6 +17,7 @@ use crate::reader::Name;
 use crate::scope::Scope;
 use crate::suggest;
 use crate::syntax::Command;
+use field::Skeleton as Bone;
 use glam::{DAffine3, DVec3};
 use motion::{Body, MOST_FRAMES, Obstacle, Settings, Setup, Simulation};
 use scene::{Curves, Form, Shape};
@@ -410,20 +411,21 @@ fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
         ends: [a, b],
         radii: [from, to],
     };
-    match part.element.shape {
-        Shape::Sphere { center, radius } => into.push(rod(center, center, radius, radius)),
-        Shape::Box { center, axes } => into.push(Obstacle::Box { center, axes }),
-        Shape::Plane { point, normal, .. } => into.push(Obstacle::Plane { point, normal }),
-        Shape::Cylinder { base, apex, radius } | Shape::Pipe { base, apex, radius } => {
-            into.push(rod(base, apex, radius, radius));
+    match &part.element.shape {
+        Shape::Bone(bone) => {
+            let [from, to] = bone.radii(bone.radius);
+            into.push(match bone.skeleton {
+                Bone::Point { center } => rod(center, center, from, to),
+                Bone::Segment { base, apex } => rod(base, apex, from, to),
+                Bone::Plane { point, normal } => Obstacle::Plane { point, normal },
+                _ => return false,
+            });
         }
-        Shape::Cone {
-            base,
-            base_radius,
-            apex,
-            apex_radius,
-        } => into.push(rod(base, apex, base_radius, apex_radius)),
-        Shape::Function(ref function) => {
+        Shape::Box(cuboid) => into.push(Obstacle::Box {
+            center: cuboid.center,
+            axes: cuboid.axes,
+        }),
+        Shape::Function(function) => {
             let Some(curves) = function.curves() else {
                 return false;
             };
@@ -432,7 +434,7 @@ fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
                 rod(at(a), at(b), from * part.growth, to * part.growth)
             }));
         }
-        _ => return false,
+        Shape::Quadric(_) => return false,
     }
     true
 }

@@ -11,7 +11,6 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use glam::DVec3;
-use scene::Shape;
 use std::ops::Range;
 
 /// Object that a transform is for.
@@ -218,7 +217,7 @@ fn explode<'a>(
     let range = target(run, command, object.as_ref())?;
     charge(run, command, &range)?;
     let parts = &run.model.parts[range.clone()];
-    let centres: Vec<DVec3> = parts.iter().map(|p| middle(&p.element.shape)).collect();
+    let centres: Vec<DVec3> = parts.iter().map(|p| p.element.shape.middle()).collect();
     let centre = centres.iter().sum::<DVec3>() / centres.len() as f64;
     // Without shapes there is no middle.
     if !centre.is_finite() {
@@ -229,35 +228,6 @@ fn explode<'a>(
         run.model.transform(index..index + 1, &shift);
     }
     Ok(Flow::Next)
-}
-
-/// Returns the middle of a shape's skeleton.
-fn middle(shape: &Shape) -> DVec3 {
-    match shape {
-        Shape::Sphere { center, .. } => *center,
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => (*base + *apex) * 0.5,
-        Shape::Box { center, .. } => *center,
-        Shape::Quadric(quadric) => quadric.center,
-        Shape::Function(function) => function.middle(),
-        Shape::Arc {
-            center,
-            u,
-            v,
-            sweep,
-            angle,
-            ..
-        } => *center + (*u * libm::cos(0.5 * angle) + *v * libm::sin(0.5 * angle)) * *sweep,
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-            corners.iter().sum::<DVec3>() / 3.0
-        }
-        Shape::Polygon { rings, .. } => rings.first().map_or(DVec3::ZERO, |ring| {
-            ring.iter().sum::<DVec3>() / ring.len().max(1) as f64
-        }),
-        Shape::Curve { control, .. } => control.iter().sum::<DVec3>() / 4.0,
-        Shape::Plane { point, .. } => *point,
-    }
 }
 
 /// `transform [object]`: what has been done to the object so far holds still while the shutter is

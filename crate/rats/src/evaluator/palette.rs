@@ -18,7 +18,7 @@ use std::ops::Range;
 pub struct Surface {
     /// The colours.
     pub finish: Finish,
-    /// The softness; hard with a blobbiness of 0.
+    /// The softness.
     pub flesh: Flesh,
     /// The colours it was made with, which a copy goes on from.
     pub colours: Colours,

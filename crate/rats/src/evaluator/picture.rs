@@ -6,9 +6,11 @@ use super::state::Evaluator;
 use crate::Severity;
 use crate::compiled::Placement;
 use crate::limits::MAX_MAGNITUDE;
+use field::Skeleton;
 use field::local::LocalError;
 use glam::DVec3;
 use scene::{Body, Element, Finish, Frame, Scene, Settings, Shape};
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::iter;
 
@@ -86,7 +88,7 @@ impl Evaluator<'_> {
                 part.element.frame = frame_of(&part, &mut scene.frames, &mut frames);
                 fault(&scene, &part.element)
             } else {
-                Some((TOO_FAR, ""))
+                Some((TOO_FAR.into(), ""))
             };
             let element = part.element;
             if let Some((message, hint)) = fault {
@@ -137,8 +139,10 @@ fn frame_of(
 
 /// Whether an element's flesh has a profile that its shape has no parameters for.
 fn ignores_profile(scene: &Scene, element: &Element) -> bool {
-    let has_no_parameters = matches!(element.shape, Shape::Polygon { .. } | Shape::Curve { .. })
-        || element.shape.curves().is_some();
+    let has_no_parameters = match element.shape.skeleton() {
+        Some(bone) => bone.is_numeric() || matches!(bone, Skeleton::Polygon { .. }),
+        None => element.shape.curves().is_some(),
+    };
     has_no_parameters
         && scene.is_soft(element)
         && element
@@ -147,63 +151,30 @@ fn ignores_profile(scene: &Scene, element: &Element) -> bool {
 }
 
 /// Message that an element cannot be drawn, and a hint, which may be empty.
-type Fault = (&'static str, &'static str);
+type Fault = (Cow<'static, str>, &'static str);
 
 /// Returns why an element cannot be drawn; `None` if it can be.
 fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
     let radius = scene.radius(element);
-    let is_soft = element.flesh.is_some() && element.shape.has_skeleton();
-    let needs_radius = is_soft
-        || matches!(
-            element.shape,
-            Shape::Sphere { .. }
-                | Shape::Cylinder { .. }
-                | Shape::Cone { .. }
-                | Shape::Pipe { .. }
-                | Shape::Arc { .. }
-                | Shape::Curve { .. }
-        );
+    let skeleton = element.shape.skeleton();
+    let is_soft = element.flesh.is_some() && skeleton.is_some();
+    let needs_radius = is_soft || skeleton.is_some_and(|bone| bone.dimension() < 2);
     if needs_radius && radius <= 0.0 {
         return Some(match is_soft {
             true => (
-                "this soft shape has no radius, so it is left out",
+                "this soft shape has no radius, so it is left out".into(),
                 "give its material a `radius` above 0",
             ),
             false => (
-                "this shape's radius is not above 0, so it is left out",
+                "this shape's radius is not above 0, so it is left out".into(),
                 "give it a radius above 0",
             ),
         });
     }
-    let degenerate = match element.shape {
-        Shape::Sphere { .. } | Shape::Plane { .. } => false,
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => base == apex,
-        Shape::Arc { sweep, angle, .. } => sweep <= 0.0 || angle <= 0.0,
-        Shape::Triangle {
-            corners: [a, b, c], ..
-        }
-        | Shape::Patch {
-            corners: [a, b, c], ..
-        } => {
-            let (ab, ac) = (b - a, c - a);
-            ab.cross(ac).length() <= 1e-12 * ab.length() * ac.length()
-        }
-        Shape::Polygon { ref rings, .. } => !has_area(rings),
-        Shape::Curve {
-            control: [a, b, c, d],
-            ..
-        } => a == b && b == c && c == d,
-        Shape::Box { axes, .. } => scene::quadric::inverse(axes).is_none(),
-        Shape::Quadric(ref quadric) => !quadric.is_surface(),
-        Shape::Function(ref function) => {
-            function.curves().is_none() && function.implicit().is_none()
-        }
-    };
     if (is_soft || element.shape.curves().is_some()) && scene.is_too_long(element) {
         return Some((
-            "this curve or tapering limb is more than 10,000 kernel widths long, so it is left out",
+            "this curve or tapering limb is more than 10,000 kernel widths long, so it is left out"
+                .into(),
             "give it a larger radius, or cut it into pieces",
         ));
     }
@@ -212,71 +183,24 @@ fn fault(scene: &Scene, element: &Element) -> Option<Fault> {
             Some(Err(LocalError::Reach)) => {
                 return Some((
                     "too many pieces of this skeleton are within its `local` \
-                     length, so it is left out",
+                     length, so it is left out"
+                        .into(),
                     "make `local` shorter, or `subdivide` less",
                 ));
             }
             Some(Err(LocalError::Unusable)) => {
                 return Some((
-                    "a skeleton with `local` adds flesh, so this one is left out",
+                    "a skeleton with `local` adds flesh, so this one is left out".into(),
                     "give its material a `strength` above 0, or take `local` out",
                 ));
             }
             Some(Ok(_)) | None => {}
         }
     }
-    let message = match element.shape {
-        Shape::Cylinder { .. } => "this cylinder's ends are the same point, so it is left out",
-        Shape::Pipe { .. } => "this pipe's ends are the same point, so it is left out",
-        Shape::Cone { .. } => "this cone's ends are the same point, so it is left out",
-        Shape::Box { .. } => "this box has no volume, so it is left out",
-        Shape::Quadric(_) => {
-            "this quadric is no surface, or its box has no volume, so it is left out"
-        }
-        Shape::Function(_) => "this function's numbers cannot be computed with, so it is left out",
-        Shape::Arc { .. } => "this arc has no length (sweep radius or width 0), so it is left out",
-        Shape::Curve { .. } => "this curve's points are all the same, so it is left out",
-        Shape::Polygon { .. } => "this polygon has no area, so it is left out",
-        _ => "this triangle has no area, so it is left out",
-    };
-    degenerate.then_some((message, ""))
-}
-
-/// Whether a polygon's outer ring has an area that is more than rounding.
-fn has_area(rings: &[Vec<DVec3>]) -> bool {
-    let Some(outer) = rings.first().filter(|ring| ring.len() >= 3) else {
-        return false;
-    };
-    let area: DVec3 = outer
-        .windows(2)
-        .map(|w| (w[0] - outer[0]).cross(w[1] - outer[0]))
-        .sum();
-    let reach = outer.iter().map(|p| p.distance(outer[0]));
-    let longest = reach.fold(0.0, f64::max);
-    area.length() > 1e-12 * longest * longest
+    Some((element.shape.fault()?.into(), ""))
 }
 
 /// Whether a shape is still within what a text may write; transforms can take it beyond.
 fn is_in_bounds(part: &Part) -> bool {
-    let shape = &part.element.shape;
-    let fits = |v: DVec3| v.abs().max_element() <= MAX_MAGNITUDE && v.is_finite();
-    let places = match *shape {
-        Shape::Sphere { center, .. } => fits(center),
-        Shape::Cylinder { base, apex, .. }
-        | Shape::Pipe { base, apex, .. }
-        | Shape::Cone { base, apex, .. } => fits(base) && fits(apex),
-        Shape::Arc { center, sweep, .. } => fits(center) && sweep.abs() <= MAX_MAGNITUDE,
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => {
-            corners.into_iter().all(fits)
-        }
-        Shape::Box { center, axes } => fits(center) && axes.into_iter().all(fits),
-        Shape::Quadric(ref quadric) => fits(quadric.center) && quadric.axes.into_iter().all(fits),
-        Shape::Polygon { ref rings, .. } => rings.iter().flatten().copied().all(fits),
-        Shape::Curve { control, .. } => control.into_iter().all(fits),
-        Shape::Plane { point, normal, .. } => fits(point) && normal.is_finite(),
-        Shape::Function(ref function) => {
-            <[DVec3; 2]>::from(function.corners()).into_iter().all(fits)
-        }
-    };
-    places && shape.radius().abs() <= MAX_MAGNITUDE && (1e-9..=1e9).contains(&part.growth)
+    part.element.shape.is_within(MAX_MAGNITUDE) && (1e-9..=1e9).contains(&part.growth)
 }

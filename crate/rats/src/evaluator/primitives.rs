@@ -19,6 +19,7 @@ use crate::strokes::{self, Sculpted};
 use crate::syntax::Command;
 use crate::{assets, is_strokes};
 use field::Kernel;
+use field::Skeleton;
 use glam::{DMat3, DVec3};
 use mesh::TriangleMesh;
 use scene::{Element, Quadric, Shape};
@@ -27,7 +28,7 @@ use std::rc::Rc;
 
 /// Makes the form of a command that makes one shape: the function that adds the shape, the shape,
 /// and the operands behind the material:
-/// `makes!(add, |radius, center| Shape::Sphere { center, radius }, …)`.
+/// `makes!(add, |radius, center| Shape::sphere(center, radius), …)`.
 macro_rules! makes {
     ($add:ident $(($kernel:expr))?, |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?) => {
         by_itself(
@@ -57,7 +58,7 @@ fn add<'a>(
 
 fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Shape {
     let (corners, radius) = ([a, b, c], 0.0);
-    Shape::Triangle { corners, radius }
+    Shape::triangle(corners, radius)
 }
 
 impl<'a> Evaluator<'a> {
@@ -71,13 +72,13 @@ impl<'a> Evaluator<'a> {
     ) -> Outcome<Flow> {
         let flesh = &self.palette.surfaces[material].flesh;
         let part = Part {
-            tapers: match shape {
-                Shape::Cylinder { .. } | Shape::Pipe { .. } | Shape::Arc { .. } => {
+            tapers: shape.bone().is_some_and(|bone| match bone.skeleton {
+                _ if bone.end_radius.is_some() => flesh.is_soft(),
+                Skeleton::Segment { .. } | Skeleton::Arc { .. } => {
                     flesh.end_radius.is_some() || flesh.end_blobbiness.is_some()
                 }
-                Shape::Cone { .. } => flesh.is_soft(),
                 _ => false,
-            },
+            }),
             element: Element {
                 flesh: flesh.is_soft().then_some(material as u32),
                 finish: material as u32,
@@ -102,7 +103,7 @@ impl<'a> Evaluator<'a> {
 pub static SPHERE: CommandSpec = row("sphere", "sphere; a point when soft")
     .with(makes!(
         add,
-        |radius, center| Shape::Sphere { center, radius },
+        |radius, center| Shape::sphere(center, radius),
         length("r", "the radius").role(Role::Radius),
         vector("POS", "the centre")
     ))
@@ -113,7 +114,7 @@ pub static SPHERE: CommandSpec = row("sphere", "sphere; a point when soft")
 pub static CYLINDER: CommandSpec = row("cylinder", "cylinder with lids; a line segment when soft")
     .with(makes!(
         add,
-        |radius, base, apex| Shape::Cylinder { base, apex, radius },
+        |radius, base, apex| Shape::cylinder(base, apex, radius),
         length("r", "the radius").role(Role::Radius),
         vector("BASE", "the base"),
         vector("APEX", "the apex")
@@ -123,7 +124,7 @@ pub static CYLINDER: CommandSpec = row("cylinder", "cylinder with lids; a line s
 pub static PIPE: CommandSpec = row("pipe", "cylinder without lids")
     .with(makes!(
         add,
-        |radius, base, apex| Shape::Pipe { base, apex, radius },
+        |radius, base, apex| Shape::pipe(base, apex, radius),
         length("r", "the radius").role(Role::Radius),
         vector("BASE", "the base"),
         vector("APEX", "the apex")
@@ -196,7 +197,7 @@ fn arch<'a>(
         ThreePoints::Line(base, apex) => {
             let message = "the three points lie on a line: a straight cylinder is drawn";
             run.warn(&command.span, message, "");
-            add(run, command, &sn, Shape::Cylinder { base, apex, radius })
+            add(run, command, &sn, Shape::cylinder(base, apex, radius))
         }
         ThreePoints::Same => Err(Problem::new(
             &command.span,
@@ -229,11 +230,7 @@ pub static TRIANGLE: CommandSpec = row("triangle", "flat triangle; a Cauchy tria
 pub static PLANE: CommandSpec = row("plane", "infinite plane")
     .with(makes!(
         add,
-        |point, normal| Shape::Plane {
-            point,
-            normal,
-            radius: 0.0
-        },
+        |point, normal| Shape::plane(point, normal, 0.0),
         vector("POS", "a point of the plane"),
         direction("NORM", "the normal")
     ))
@@ -301,7 +298,7 @@ fn polygon<'a>(
         let hint = format_args!("the furthest is {percent} of the polygon's size away from it");
         run.warn(&command.span, message, hint);
     }
-    add(run, command, &sn, Shape::Polygon { rings, radius: 0.0 })
+    add(run, command, &sn, Shape::polygon(rings, 0.0))
 }
 
 /// `curve sn b P1 P2 P3 P4 [P …]`: cubic Bézier curves, each beginning where the last one ends.
@@ -345,7 +342,7 @@ fn curve<'a>(
     }
     for i in (0..points.len() - 1).step_by(3) {
         let control = [points[i], points[i + 1], points[i + 2], points[i + 3]];
-        add(run, command, &sn, Shape::Curve { control, radius })?;
+        add(run, command, &sn, Shape::curve(control, radius))?;
     }
     Ok(Flow::Next)
 }
@@ -363,8 +360,10 @@ fn of_kernel<'a>(
     let flesh = &run.palette.surfaces[material].flesh;
     if !flesh.is_soft() {
         // Drawn as an offset surface, which has a radius.
-        if let Shape::Sphere { radius, .. } | Shape::Cylinder { radius, .. } = &mut shape {
-            *radius = flesh.radius;
+        if let Shape::Bone(bone) = &mut shape
+            && bone.skeleton.dimension() < 2
+        {
+            bone.radius = flesh.radius;
         }
     }
     run.add_of(command, material, shape, kernel)
@@ -373,10 +372,7 @@ fn of_kernel<'a>(
 pub static DOT: CommandSpec = row("dot", "point with a polynomial kernel")
     .with(makes!(
         of_kernel(Kernel::Quartic),
-        |center| Shape::Sphere {
-            center,
-            radius: 0.0
-        },
+        |center| Shape::sphere(center, 0.0),
         vector("POS", "the position")
     ))
     .example(flesh!("dot Flesh, -0.5 0 0\ndot Flesh, 0.5 0 0"));
@@ -384,10 +380,7 @@ pub static DOT: CommandSpec = row("dot", "point with a polynomial kernel")
 pub static GAUSS: CommandSpec = row("gauss", "point with a Gaussian kernel")
     .with(makes!(
         of_kernel(Kernel::Gauss),
-        |center| Shape::Sphere {
-            center,
-            radius: 0.0
-        },
+        |center| Shape::sphere(center, 0.0),
         vector("POS", "the position")
     ))
     .example(flesh!("gauss Flesh, -0.6 0 0\ngauss Flesh, 0.6 0 0"));
@@ -395,11 +388,7 @@ pub static GAUSS: CommandSpec = row("gauss", "point with a Gaussian kernel")
 pub static LINE: CommandSpec = row("line", "line segment with a Gaussian kernel")
     .with(makes!(
         of_kernel(Kernel::Gauss),
-        |base, apex| Shape::Cylinder {
-            base,
-            apex,
-            radius: 0.0
-        },
+        |base, apex| Shape::cylinder(base, apex, 0.0),
         vector("BASE", "the base"),
         vector("APEX", "the apex")
     ))
@@ -427,12 +416,7 @@ pub static TRIAD: CommandSpec = row("triad", "triangle with the Newtonian kernel
 pub static CONE: CommandSpec = row("cone", "cone with lids")
     .with(makes!(
         add,
-        |base_radius, base, apex_radius, apex| Shape::Cone {
-            base,
-            base_radius,
-            apex,
-            apex_radius
-        },
+        |base_radius, base, apex_radius, apex| Shape::cone(base, base_radius, apex, apex_radius),
         length("b", "the radius at the base")
             .role(Role::Radius)
             .at_least(0.0),
@@ -469,10 +453,10 @@ fn brick(size: DVec3) -> Shape {
 
 fn box_between(low: DVec3, high: DVec3) -> Shape {
     let half = (high - low).abs() * 0.5;
-    Shape::Box {
-        center: (low + high) * 0.5,
-        axes: [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * half),
-    }
+    Shape::cuboid(
+        (low + high) * 0.5,
+        [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * half),
+    )
 }
 
 pub static BOX: CommandSpec = row("box", "box between two corners")
@@ -499,10 +483,7 @@ pub static BRICK: CommandSpec = row("brick", "box around the origin")
 pub static PATCH: CommandSpec = row("patch", "triangle shaded as if it were curved")
     .with(makes!(
         add,
-        |v1, n1, v2, n2, v3, n3| Shape::Patch {
-            corners: [v1, v2, v3],
-            normals: [n1, n2, n3]
-        },
+        |v1, n1, v2, n2, v3, n3| Shape::patch([v1, v2, v3], [n1, n2, n3]),
         vector("V1", "the first corner"),
         direction("N1", "the first normal"),
         vector("V2", "the second corner"),
@@ -737,7 +718,7 @@ fn add_mesh<'a>(
     for (index, shape) in assets::shapes(mesh).enumerate() {
         let own = tinted.as_ref().map_or(material, |own| own[index]);
         let shape = match transform {
-            Some(transform) => transform.apply(&shape),
+            Some(transform) => shape.transform(transform),
             None => shape,
         };
         result = run.add_of(command, own, shape, Kernel::Cauchy).map(drop);

@@ -55,6 +55,7 @@ fn check(project: &Project) {
 fn absent(scene: &scene::Scene) -> usize {
     let flesh = scene.flesh.iter().flat_map(|flesh| {
         [
+            flesh.blobbiness.is_none(),
             flesh.profile.is_none(),
             flesh.kernel.is_none(),
             flesh.end_radius.is_none(),
@@ -62,7 +63,15 @@ fn absent(scene: &scene::Scene) -> usize {
         ]
     });
     let elements = scene.elements.iter();
-    let hard = elements.flat_map(|element| [element.flesh.is_none(), element.paint.is_none()]);
+    let hard = elements.flat_map(|element| {
+        let bone = element.shape.bone();
+        [
+            element.flesh.is_none(),
+            element.paint.is_none(),
+            bone.is_some_and(|bone| bone.end_radius.is_none()),
+            bone.is_some_and(|bone| bone.normals.is_none()),
+        ]
+    });
     let whole = scene
         .elements
         .iter()

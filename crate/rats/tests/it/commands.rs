@@ -1,5 +1,6 @@
 //! Commands, group by group.
 
+use field::Skeleton;
 use field::{BlobScale, Kernel, Wave};
 use glam::DVec3;
 use rats::{Compiled, File, HotValue, Project, Severity, compile};
@@ -30,10 +31,7 @@ fn scene(text: &str) -> Scene {
 #[track_caller]
 fn place(operands: &str) -> DVec3 {
     let scene = scene(&format!("surface s diff Red\nsphere s 1 {operands}"));
-    match scene.elements[0].shape.clone() {
-        Shape::Sphere { center, .. } => center,
-        other => panic!("{other:?}"),
-    }
+    scene.elements[0].shape.middle()
 }
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
@@ -138,9 +136,9 @@ fn random_numbers_are_frozen() {
 fn variables() {
     let text = "var a = 2\nvar V = 1 2 3\nvar C = Red\nvar A = a + 1\nsurface s diff C\n";
     let scene_of = |sphere: &str| scene(&format!("{text}{sphere}"));
-    let sphere = |text: &str| match scene_of(text).elements[0].shape.clone() {
-        Shape::Sphere { center, radius } => (center, radius),
-        other => panic!("{other:?}"),
+    let sphere = |text: &str| {
+        let shape = &scene_of(text).elements[0].shape;
+        (shape.middle(), shape.radius())
     };
     assert_eq!(sphere("sphere s a V"), (v(1.0, 2.0, 3.0), 2.0));
     assert_eq!(sphere("sphere s A V.z a V.x"), (v(3.0, 2.0, 1.0), 3.0));
@@ -258,7 +256,7 @@ fn surfaces() {
     assert_eq!((s.specular, s.shine), ([1.0; 3], 40.0));
     assert_eq!(
         (soft.radius, soft.blobbiness, soft.strength),
-        (0.3, -8.0, 2.0)
+        (0.3, Some(8.0), 2.0)
     );
     assert_eq!(soft.kernel, None);
     assert_eq!(scene.elements[0].kernel, Kernel::Cauchy);
@@ -327,43 +325,32 @@ fn shape(text: &str) -> Shape {
 fn primitives() {
     assert_eq!(
         shape("cylinder s .5 <0 0 0> <1 2 3>"),
-        Shape::Cylinder {
-            base: DVec3::ZERO,
-            apex: v(1.0, 2.0, 3.0),
-            radius: 0.5
-        }
+        Shape::cylinder(DVec3::ZERO, v(1.0, 2.0, 3.0), 0.5)
     );
     assert_eq!(
         shape("triangle s <0 0 0> <1 0 0> <0 1 0>"),
-        Shape::Triangle {
-            corners: [DVec3::ZERO, DVec3::X, DVec3::Y],
-            radius: 0.0
-        }
+        Shape::triangle([DVec3::ZERO, DVec3::X, DVec3::Y], 0.0)
     );
     assert_eq!(
         shape("plane s <0 0 1> <0 0 5>"),
-        Shape::Plane {
-            point: DVec3::Z,
-            normal: DVec3::Z,
-            radius: 0.0
-        }
+        Shape::plane(DVec3::Z, DVec3::Z, 0.0)
     );
-    let full = Shape::Arc {
-        center: DVec3::X,
-        u: DVec3::X,
-        v: DVec3::Y,
-        sweep: 2.0,
-        angle: std::f64::consts::TAU,
-        radius: 0.5,
-    };
+    let full = Shape::arc(
+        DVec3::X,
+        [DVec3::X, DVec3::Y],
+        2.0,
+        std::f64::consts::TAU,
+        0.5,
+    );
     assert_eq!(shape("torus s 2 .5 <1 0 0> <0 0 1>"), full);
     assert_eq!(shape("arc s 2 .5 <1 0 0> <0 0 3> 0 360"), full);
-    let Shape::Arc {
+    let arch = shape("arch s .1 <1 0 0> <0 1 0> <-1 0 0>");
+    let Some(&Skeleton::Arc {
         center,
-        sweep,
+        radius: sweep,
         angle,
         ..
-    } = shape("arch s .1 <1 0 0> <0 1 0> <-1 0 0>")
+    }) = arch.skeleton()
     else {
         panic!("an arc");
     };
@@ -405,10 +392,7 @@ fn centers(text: &str) -> Vec<DVec3> {
     scene(&format!("surface s diff Red\n{text}"))
         .elements
         .iter()
-        .map(|element| match element.shape.clone() {
-            Shape::Sphere { center, .. } => center,
-            other => panic!("{other:?}"),
-        })
+        .map(|element| element.shape.middle())
         .collect()
 }
 
@@ -704,10 +688,8 @@ fn variables_change_with_every_frame() {
         }];
         let compiled = rats::compile_at(&Project { files }, &[], frame);
         assert!(compiled.animated);
-        match compiled.scene.elements[0].shape {
-            Shape::Sphere { center, radius } => (center, radius),
-            ref other => panic!("{other:?}"),
-        }
+        let shape = &compiled.scene.elements[0].shape;
+        (shape.middle(), shape.radius())
     };
     assert_eq!(at(0.0), (v(1.0, 0.0, 0.0), 2.0));
     assert_eq!(at(4.0), (v(3.0, 0.0, 4.0), 0.125));

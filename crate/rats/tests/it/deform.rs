@@ -24,7 +24,12 @@ fn corners(compiled: &Compiled) -> Vec<DVec3> {
     let shapes = compiled.scene.elements.iter().map(|element| &element.shape);
     shapes
         .flat_map(|shape| match shape {
-            Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => corners.to_vec(),
+            Shape::Bone(bone) => bone
+                .skeleton
+                .landmarks()
+                .iter()
+                .map(|l| l.0)
+                .collect::<Vec<_>>(),
             Shape::Function(function) => match &function.form {
                 Form::Mesh(mesh) => mesh
                     .positions

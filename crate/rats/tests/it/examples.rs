@@ -1,5 +1,6 @@
 //! The examples that the page shows must compile without a word of complaint.
 
+use field::Skeleton;
 use rats::{Compiled, File, HotValue, Project, Severity, compile};
 use scene::{Scene, Shape};
 
@@ -16,6 +17,11 @@ fn example(name: &str) -> (String, Compiled) {
         }],
     };
     (text, compile(&project))
+}
+
+/// Returns the noun for a shape of a bone.
+fn noun(shape: &Shape) -> &'static str {
+    shape.bone().map_or("", scene::Bone::name)
 }
 
 fn count(scene: &Scene, is: fn(&Shape) -> bool) -> usize {
@@ -73,17 +79,22 @@ fn moving_a_slider_changes_one_value() {
 fn cowrie() {
     let (_, compiled) = example("cowrie");
     let scene = compiled.scene;
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Arc { .. })), 3);
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Cylinder { .. })), 100);
+    assert_eq!(count(&scene, |s| noun(s) == "arc"), 3);
+    assert_eq!(count(&scene, |s| noun(s) == "cylinder"), 100);
     assert_eq!(scene.finishes.len(), 4);
     assert!(scene.elements.iter().all(|e| scene.is_soft(e)));
     assert_eq!(scene.settings.frame, [640, 480]);
     // Every spike begins on the circle of the body, which the rotation has taken along.
-    let Shape::Arc { center, sweep, .. } = scene.elements[0].shape else {
+    let Some(&Skeleton::Arc {
+        center,
+        radius: sweep,
+        ..
+    }) = scene.elements[0].shape.skeleton()
+    else {
         panic!("the body comes first");
     };
     for element in &scene.elements[3..] {
-        let Shape::Cylinder { base, apex, .. } = element.shape else {
+        let Some(&Skeleton::Segment { base, apex }) = element.shape.skeleton() else {
             panic!("spikes come after");
         };
         assert!((base.distance(center) - sweep).abs() < 1e-12);
@@ -95,8 +106,8 @@ fn cowrie() {
 fn seahorse() {
     let (_, compiled) = example("seahorse");
     let scene = compiled.scene;
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Arc { .. })), 40);
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Sphere { .. })), 3);
+    assert_eq!(count(&scene, |s| noun(s) == "arc"), 40);
+    assert_eq!(count(&scene, |s| noun(s) == "sphere"), 3);
     let hard = scene.elements.iter().filter(|e| !scene.is_soft(e)).count();
     assert_eq!(hard, 2);
     let profiles = scene
@@ -110,14 +121,14 @@ fn seahorse() {
 #[test]
 fn icicle() {
     let scene = example("icicle").1.scene;
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Cylinder { .. })), 3);
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Sphere { .. })), 1);
+    assert_eq!(count(&scene, |s| noun(s) == "cylinder"), 3);
+    assert_eq!(count(&scene, |s| noun(s) == "sphere"), 1);
     for element in &scene.elements {
         assert!(scene.is_soft(element));
         assert_eq!(scene.radius(element), 0.25);
         assert_eq!(
             scene.flesh[element.flesh.expect("soft") as usize].blobbiness,
-            -0.3
+            Some(0.3)
         );
     }
 }
@@ -125,14 +136,14 @@ fn icicle() {
 #[test]
 fn tshape() {
     let scene = example("tshape").1.scene;
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Cylinder { .. })), 2);
+    assert_eq!(count(&scene, |s| noun(s) == "cylinder"), 2);
 }
 
 #[test]
 fn starfish() {
     let scene = example("starfish").1.scene;
     assert_eq!(scene.elements.len(), 7);
-    assert_eq!(count(&scene, |s| matches!(s, Shape::Arc { .. })), 7);
+    assert_eq!(count(&scene, |s| noun(s) == "arc"), 7);
 }
 
 #[test]
@@ -141,16 +152,10 @@ fn sphereflake() {
     assert_eq!(compiled.scene.elements.len(), 91);
     // The last of the database's second level.
     let wanted = glam::DVec3::new(0.471_404_520_791_031_35, -0.471_404_520_791_031_35, 0.0);
-    let is_there = compiled
-        .scene
-        .elements
-        .iter()
-        .any(|element| match element.shape {
-            Shape::Sphere { center, radius } => {
-                center.distance(wanted) < 1e-12 && (radius - 1.0 / 6.0).abs() < 1e-12
-            }
-            _ => false,
-        });
+    let is_there = compiled.scene.elements.iter().any(|element| {
+        let (center, radius) = (element.shape.middle(), element.shape.radius());
+        center.distance(wanted) < 1e-12 && (radius - 1.0 / 6.0).abs() < 1e-12
+    });
     assert!(is_there);
     for (depth, balls) in [(0.0, 10), (1.0, 10), (3.0, 820), (9.0, 820)] {
         let range = compiled.hot[0].literal.clone().expect("a literal");
@@ -182,14 +187,10 @@ fn the_thesis_s_models_have_its_numbers_of_elements() {
     for (name, numbers, hard) in wanted {
         let scene = example(name).1.scene;
         let found = [
-            count(&scene, |s| matches!(s, Shape::Sphere { .. })),
-            count(&scene, |s| {
-                matches!(s, Shape::Cylinder { .. } | Shape::Pipe { .. })
-            }),
-            count(&scene, |s| {
-                matches!(s, Shape::Arc { .. } | Shape::Curve { .. })
-            }),
-            count(&scene, |s| matches!(s, Shape::Triangle { .. })),
+            count(&scene, |s| noun(s) == "sphere"),
+            count(&scene, |s| ["cylinder", "pipe"].contains(&noun(s))),
+            count(&scene, |s| ["arc", "curve"].contains(&noun(s))),
+            count(&scene, |s| noun(s) == "triangle"),
         ];
         assert_eq!(found, numbers, "{name}");
         let found = scene.elements.iter().filter(|e| !scene.is_soft(e)).count();

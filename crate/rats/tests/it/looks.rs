@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rats::{Asset, Compiled, Project, Severity, compile_at};
-use scene::{Background, Finish, LightKind, Scene, Shape, Skip, Tone};
+use scene::{Background, Finish, LightKind, Scene, Skip, Tone};
 use texture::{Mapping, Method, Solid, Target, Wave};
 
 fn run(text: &str, assets: &[Asset], moment: f64) -> Compiled {
@@ -321,11 +321,7 @@ fn means_are_of_many_samples() {
 }
 
 fn places(scene: &Scene) -> Vec<f64> {
-    let x = |shape: &Shape| match shape {
-        Shape::Sphere { center, .. } => center.x,
-        other => panic!("{other:?}"),
-    };
-    scene.elements.iter().map(|e| x(&e.shape)).collect()
+    scene.elements.iter().map(|e| e.shape.middle().x).collect()
 }
 
 #[test]

@@ -32,7 +32,8 @@ fn sculpture_is_a_mesh_like_any_other() {
         |_, _, _| (),
     );
     let direct = direct.unwrap().to_triangles().unwrap();
-    let scene::Shape::Patch { corners, .. } = &hard.scene.elements[5].shape else {
+    let Some(field::Skeleton::Triangle { corners }) = hard.scene.elements[5].shape.skeleton()
+    else {
         panic!("smooth triangles");
     };
     assert_eq!(*corners, direct.corners(5));
@@ -75,9 +76,7 @@ fn paint_tints_the_material_where_it_is() {
         let scene = &compiled.scene;
         let mut tops = 0;
         for element in &scene.elements {
-            let (scene::Shape::Patch { corners, .. } | scene::Shape::Triangle { corners, .. }) =
-                &element.shape
-            else {
+            let Some(field::Skeleton::Triangle { corners }) = element.shape.skeleton() else {
                 panic!("triangles");
             };
             let [red, green, blue] = scene.finishes[element.finish as usize].diffuse;

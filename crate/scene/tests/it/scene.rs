@@ -10,7 +10,7 @@ use scene::{
 
 fn soft(radius: f64) -> Flesh {
     Flesh {
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         radius,
         ..Flesh::default()
     }
@@ -31,10 +31,7 @@ fn surface(scene: &Scene) -> SoftSurface {
 }
 
 fn ball(radius: f64) -> Shape {
-    Shape::Sphere {
-        center: DVec3::ZERO,
-        radius,
-    }
+    Shape::sphere(DVec3::ZERO, radius)
 }
 
 fn close(a: DVec3, b: DVec3) -> bool {
@@ -131,11 +128,7 @@ fn fragile_lets_the_material_overrule_a_soft_primitives_radius() {
         0.2,
         "a material without a radius has none to give"
     );
-    let tube = Shape::Cylinder {
-        base: DVec3::ZERO,
-        apex: DVec3::X,
-        radius: 0.1,
-    };
+    let tube = Shape::cylinder(DVec3::ZERO, DVec3::X, 0.1);
     assert_eq!(
         scene.radius(&element(tube.clone(), 0)),
         0.1,
@@ -179,14 +172,7 @@ fn a_scene_survives_the_journey_to_a_worker() {
         flesh: vec![soft(0.5)],
         ..Scene::default()
     };
-    scene.elements = vec![element(
-        Shape::Plane {
-            point: DVec3::ONE,
-            normal: DVec3::Y,
-            radius: 0.1,
-        },
-        0,
-    )];
+    scene.elements = vec![element(Shape::plane(DVec3::ONE, DVec3::Y, 0.1), 0)];
     scene.lights = vec![Light {
         kind: LightKind::Distant { towards: DVec3::Z },
         colour: [1.0, 0.5, 0.25],
@@ -228,11 +214,11 @@ fn limbs_are_cut_without_a_trace() {
     ];
     for kernel in [Kernel::Cauchy, Kernel::Gauss, Kernel::Quartic] {
         for bone in &bones {
-            for end in [None, Some((0.1, -3.0)), Some((0.0, -1.0))] {
+            for end in [None, Some((0.1, 3.0)), Some((0.0, 1.0))] {
                 let shaping = Shaping {
                     kernel,
                     radius: 0.4,
-                    blobbiness: -1.0,
+                    blobbiness: 1.0,
                     blob_scale: BlobScale::Relative,
                     strength: 1.0,
                     influence: 1e-3,
@@ -287,12 +273,7 @@ fn values(shape: Shape, flesh: Flesh) -> Vec<f64> {
 fn a_soft_cone_is_a_limb_that_tapers() {
     let (base, apex) = (DVec3::new(-0.5, 0.1, 0.0), DVec3::new(0.6, 0.3, 0.2));
     for (from, to) in [(0.4, 0.1), (0.2, 0.2), (0.3, 0.0), (0.0, 0.3)] {
-        let cone = Shape::Cone {
-            base,
-            base_radius: from,
-            apex,
-            apex_radius: to,
-        };
+        let cone = Shape::cone(base, from, apex, to);
         // The material's radius is ignored.
         let of_cone = values(cone, soft(7.0));
         let limb = Flesh {
@@ -300,7 +281,7 @@ fn a_soft_cone_is_a_limb_that_tapers() {
             ..soft(from)
         };
         let radius = 1.0;
-        let of_limb = values(Shape::Cylinder { base, apex, radius }, limb);
+        let of_limb = values(Shape::cylinder(base, apex, radius), limb);
         assert!(of_cone[0] > 0.0);
         for (a, b) in of_cone.iter().zip(&of_limb) {
             assert!((a - b).abs() < 1e-9 * a.max(1.0), "{from} {to}: {a} {b}");
@@ -314,12 +295,7 @@ fn a_soft_cone_is_a_limb_that_tapers() {
     let long = |apex: DVec3, apex_radius: f64| {
         let base = DVec3::ZERO;
         let base_radius = 1.0;
-        let shape = Shape::Cone {
-            base,
-            base_radius,
-            apex,
-            apex_radius,
-        };
+        let shape = Shape::cone(base, base_radius, apex, apex_radius);
         element(shape, 0)
     };
     assert_eq!(scene.radius(&long(DVec3::X, 2.0)), 2.0, "the larger one");
@@ -331,22 +307,20 @@ fn a_soft_cone_is_a_limb_that_tapers() {
 fn pipes_and_patches_have_the_skeletons_of_their_kin() {
     let (base, apex, radius) = (DVec3::NEG_X, DVec3::Y, 0.3);
     for given in [0.0, 0.5] {
-        let cylinder = Shape::Cylinder { base, apex, radius };
-        let pipe = Shape::Pipe { base, apex, radius };
+        let cylinder = Shape::cylinder(base, apex, radius);
+        let pipe = Shape::pipe(base, apex, radius);
         let flesh = soft(given);
         assert_eq!(values(pipe, flesh.clone()), values(cylinder, flesh));
     }
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let normals = [DVec3::Z; 3];
-    let flat = Shape::Triangle {
-        corners,
-        radius: 0.0,
-    };
-    let patch = Shape::Patch { corners, normals };
+    let flat = Shape::triangle(corners, 0.0);
+    let patch = Shape::patch(corners, normals);
     let flesh = soft(0.2);
     assert_eq!(values(patch.clone(), flesh.clone()), values(flat, flesh));
     // As an offset surface it is a prism; without flesh, itself.
-    assert!(matches!(patch.parts(0.2)[..], [Shape::Triangle { radius, .. }] if radius == 0.2));
+    let prism = patch.parts(0.2);
+    assert!(matches!(&prism[..], [Shape::Bone(own)] if own.radius == 0.2 && own.normals.is_none()));
     assert_eq!(patch.parts(0.0), [patch]);
 }
 
@@ -366,7 +340,7 @@ fn shapes_without_a_skeleton_stay_hard() {
     };
     let center = DVec3::ZERO;
     scene.elements = vec![
-        element(Shape::Box { center, axes }, 0),
+        element(Shape::cuboid(center, axes), 0),
         element(Shape::Quadric(Box::new(quadric)), 0),
     ];
     for element in &scene.elements {
@@ -430,7 +404,7 @@ fn flesh_grows_with_the_frame() {
             scene.settings.blob_scale = blob_scale;
             scene.settings.fragile = Fragile::ALL;
             let (base, apex, radius) = (DVec3::NEG_X, DVec3::Y, 0.3);
-            let tube = Shape::Cylinder { base, apex, radius };
+            let tube = Shape::cylinder(base, apex, radius);
             let grown = Element {
                 frame: 1,
                 ..element(tube.clone(), 0)

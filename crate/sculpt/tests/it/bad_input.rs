@@ -53,15 +53,14 @@ fn self_intersecting_meshes_are_sculpted() {
 #[test]
 fn edges_of_three_faces_and_bow_ties_are_repaired() {
     // Three sheets at one edge, and two fans at one vertex.
-    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let positions = vec![
-        corner(0.0, 0.0, 0.0),
-        corner(0.0, 0.0, 1.0),
-        corner(1.0, 0.0, 0.0),
-        corner(0.0, 1.0, 0.0),
-        corner(-1.0, -1.0, 0.0),
-        corner(0.3, 0.3, -1.0),
-        corner(-0.3, 0.3, -1.0),
+        DVec3::ZERO,
+        DVec3::Z,
+        DVec3::X,
+        DVec3::Y,
+        DVec3::new(-1.0, -1.0, 0.0),
+        DVec3::new(0.3, 0.3, -1.0),
+        DVec3::new(-0.3, 0.3, -1.0),
     ];
     let triangles = vec![[0, 1, 2], [0, 1, 3], [1, 0, 4], [0, 5, 6]];
     let (clay, repairs) = Clay::of_triangles(&TriangleMesh::new(positions, triangles)).unwrap();
@@ -83,19 +82,21 @@ fn faces_without_area_and_open_meshes_are_sculpted() {
 
 #[test]
 fn what_is_no_mesh_is_refused_in_words() {
-    let told = |mesh: TriangleMesh| Clay::of_triangles(&mesh).map(drop).unwrap_err().to_string();
-    assert_eq!(told(TriangleMesh::default()), "this mesh has no faces");
+    fn refusal(mesh: &TriangleMesh) -> String {
+        Clay::of_triangles(mesh).map(drop).unwrap_err().to_string()
+    }
+    assert_eq!(refusal(&TriangleMesh::default()), "this mesh has no faces");
     let far = vec![DVec3::ZERO, DVec3::X * 1e10, DVec3::Y];
     assert_eq!(
-        told(TriangleMesh::new(far, vec![[0, 1, 2]])),
+        refusal(&TriangleMesh::new(far, vec![[0, 1, 2]])),
         "vertex 1 (from 0) is not within 1e9"
     );
     let none = vec![DVec3::splat(f64::NAN), DVec3::X, DVec3::Y];
-    assert!(told(TriangleMesh::new(none, vec![[0, 1, 2]])).contains("not within"));
+    assert!(refusal(&TriangleMesh::new(none, vec![[0, 1, 2]])).contains("not within"));
     let many = vec![[0, 1, 2]; sculpt::limits::MAX_FACES + 1];
     let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
     assert!(
-        told(TriangleMesh::new(positions, many))
+        refusal(&TriangleMesh::new(positions, many))
             .contains("more than the 2000000 that can be sculpted")
     );
 }

@@ -35,9 +35,9 @@ fn make(text: &str) -> (Clay, usize) {
         .iter()
         .filter(|stroke| matches!(stroke, Stroke::Stage(_)))
         .count();
-    let mut load = |name: &str| Err(format!("there is no {name}"));
-    let clay = replay(&script, &mut load, 20_000_000, |_, _, _| ())
-        .expect("strokes that can be carried out");
+    let load = &mut |name: &str| Err(format!("there is no {name}"));
+    let clay =
+        replay(&script, load, 20_000_000, |_, _, _| ()).expect("strokes that can be carried out");
     (clay, stages)
 }
 

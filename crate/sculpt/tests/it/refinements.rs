@@ -193,6 +193,12 @@ fn loop_of_a_part_leaves_the_rest_and_makes_no_cracks() {
 
 #[test]
 fn averaging_flattens_without_new_vertices() {
+    fn top(clay: &Clay) -> f64 {
+        let mesh = clay.mesh();
+        mesh.vertices()
+            .map(|v| mesh.position(v).z)
+            .fold(0.0, f64::max)
+    }
     let mut clay = shape(Shape::Plane, 10);
     sweep(&mut clay, Action::Pull, DVec3::ZERO, 0.1);
     let tool = Tool::new(Form::Sphere, DVec3::splat(0.1));
@@ -200,12 +206,6 @@ fn averaging_flattens_without_new_vertices() {
     drag.step(&mut clay, PathPoint::new(DVec3::ZERO));
     drag.step(&mut clay, PathPoint::new(DVec3::Z));
     drag.finish(&mut clay);
-    let top = |clay: &Clay| {
-        clay.mesh()
-            .vertices()
-            .map(|v| clay.mesh().position(v).z)
-            .fold(0.0, f64::max)
-    };
     assert_eq!(top(&clay), 1.0);
     clay.average(1, 0.5).unwrap();
     assert!((top(&clay) - 0.5).abs() < 1e-12);
@@ -324,11 +324,11 @@ fn simplification_reduces_the_region_only() {
 
 #[test]
 fn bad_meshes_are_repaired_or_refused_in_words() {
-    let soup = |points: &[[f64; 3]], faces: &[&[u32]]| {
+    fn soup(points: &[[f64; 3]], faces: &[&[u32]]) -> PolygonSoup {
         let mut soup = PolygonSoup::new(points.iter().map(|p| DVec3::from(*p)).collect());
         faces.iter().for_each(|f| soup.add_face(f));
         soup
-    };
+    }
     let corners = [
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],

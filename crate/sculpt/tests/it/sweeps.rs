@@ -145,12 +145,10 @@ fn pressure_scales_and_masks_hold_back() {
     run(&mut clay, &mask, &[DVec3::X * -0.5]);
     let before = places(&clay);
     let mut drag = Drag::new(&clay, &Sweep::new(Action::Pull, ball(2.0)));
-    let point = |z, pressure| PathPoint {
-        position: DVec3::Z * z,
-        pressure,
-    };
-    drag.step(&mut clay, point(0.0, 1.0));
-    drag.step(&mut clay, point(1.0, 0.5));
+    for (z, pressure) in [(0.0, 1.0), (1.0, 0.5)] {
+        let position = DVec3::Z * z;
+        drag.step(&mut clay, PathPoint { position, pressure });
+    }
     drag.finish(&mut clay);
     for (v, old) in before.iter().enumerate() {
         let new = clay.mesh().position(VertexId(v as u32));
@@ -230,27 +228,28 @@ fn mirror_images_of_tools_make_mirror_images() {
 
 #[test]
 fn a_tool_on_its_mirror_plane_acts_once() {
-    let lifted = |planes: [bool; 3]| {
-        let word = if planes[0] { "symmetry x\n" } else { "" };
+    let [mirrored, single] = ["symmetry x\n", ""].map(|word| {
         let text = format!(
             "strokes 1\nstart plane 20\n{word}pull sphere 0.3 0.3 0.3 bell 0.5 : 0 0 0, 0 0 1\n"
         );
         let script: sculpt::Script = text.parse().unwrap();
         let clay = sculpt::replay(&script, &mut |_| Err(String::new()), u64::MAX, |_, _, _| ());
         places(&clay.unwrap())
-    };
-    assert_eq!(lifted([true, false, false]), lifted([false; 3]));
+    });
+    assert_eq!(mirrored, single);
 }
 
 #[test]
 fn region_follows_the_tool_and_limits_it() {
+    fn count(clay: &Clay) -> usize {
+        match clay.region() {
+            Region::All => clay.mesh().face_count(),
+            Region::Faces(faces) => faces.len(),
+        }
+    }
     let mut clay = plane();
     let mut choose = Sweep::new(Action::Region(Choice::Replace), ball(0.26));
     run(&mut clay, &choose, &[DVec3::X * -0.5, DVec3::X * 0.5]);
-    let count = |clay: &Clay| match clay.region() {
-        Region::All => clay.mesh().face_count(),
-        Region::Faces(faces) => faces.len(),
-    };
     let chosen = count(&clay);
     assert!((50..400).contains(&chosen), "{chosen}");
     choose.action = Action::Region(Choice::Remove);

@@ -7,7 +7,9 @@ use trials::{Random, count};
 
 /// Barr's parametric form, with angles from the equator and about the axis.
 fn on_surface(tool: &Tool, north: f64, east: f64) -> DVec3 {
-    let power = |x: f64, e: f64| x.signum() * libm::pow(x.abs(), e);
+    fn power(x: f64, e: f64) -> f64 {
+        x.signum() * libm::pow(x.abs(), e)
+    }
     let [e1, e2] = tool.exponents;
     let ring = power(libm::cos(north), e1);
     let p = DVec3::new(

@@ -9,7 +9,7 @@
 use document::session::Session;
 use pool::{Ticket, Tools};
 use preview::Mesh;
-use scene::{Element, Scene, Shape};
+use scene::{Element, Scene};
 use std::sync::Arc;
 use tools::{Detail, ViewMesh, ViewScene};
 
@@ -220,7 +220,7 @@ fn elements(session: &Session) -> usize {
 fn soft_part(scene: &Scene) -> Option<Scene> {
     let soft: Vec<&Element> = scene.elements.iter().filter(|e| scene.is_soft(e)).collect();
     let mut shapes = soft.iter().map(|element| &element.shape);
-    if !(1..=MOST).contains(&soft.len()) || shapes.any(|s| matches!(s, Shape::Plane { .. })) {
+    if !(1..=MOST).contains(&soft.len()) || shapes.any(|s| s.bounds(0.0).is_none()) {
         return None;
     }
     Some(Scene {

@@ -71,6 +71,27 @@ fn solid(target: Target, solid: Solid, low: DVec3, high: DVec3, scale: f64) -> T
     }
 }
 
+fn pigment(pattern: Solid, low: DVec3, high: DVec3, scale: f64) -> Vec<Texture> {
+    vec![solid(Target::Pigment, pattern, low, high, scale)]
+}
+
+fn bump(pattern: Solid, scale: f64) -> Vec<Texture> {
+    vec![solid(
+        Target::Normal,
+        pattern,
+        DVec3::ZERO,
+        DVec3::ONE,
+        scale,
+    )]
+}
+
+fn waves(target: Target, waves: [Wave; 2], scale: [f64; 2]) -> Vec<Texture> {
+    vec![Texture {
+        scale: DVec3::new(scale[0], scale[1], 1.0),
+        ..Texture::new(target, Method::Waves(waves))
+    }]
+}
+
 /// Returns a picture with an up, a right and letters' shapes: a bird's-eye map with a red F on
 /// stripes.
 fn picture() -> Rgb8 {
@@ -102,7 +123,6 @@ fn solids() -> Vec<Swatch> {
     use Solid as S;
     use Target::Pigment;
     let (black, white) = (DVec3::ZERO, DVec3::ONE);
-    let pigment = |s, low, high, scale| vec![solid(Pigment, s, low, high, scale)];
     let white_stone = plain(1.0, 1.0, 1.0, 0.35, 60.0);
     let dull = plain(1.0, 1.0, 1.0, 0.05, 8.0);
     let mut moon = pigment(S::Moon, black, white, 1.0);
@@ -168,12 +188,6 @@ fn solids() -> Vec<Swatch> {
 fn bumps() -> Vec<Swatch> {
     use Solid as S;
     let (black, white) = (DVec3::ZERO, DVec3::ONE);
-    let bump = |s: Solid, scale: f64, times: f64| {
-        vec![Texture {
-            times: DVec3::splat(times),
-            ..solid(Target::Normal, s, black, white, scale)
-        }]
-    };
     let clay = plain(0.8, 0.72, 0.62, 0.25, 20.0);
     let mut calm = solid(Target::Pigment, S::Marble, black, white, 2.0);
     calm.grain.turbulence = 0.25;
@@ -189,11 +203,11 @@ fn bumps() -> Vec<Swatch> {
         octaves: 2.5,
     };
     vec![
-        both("normal marble", clay, bump(S::Marble, 1.0, 1.0)),
-        both("normal granite", clay, bump(S::Granite, 1.0, 1.0)),
-        both("normal onion", clay, bump(S::Onion, 1.0, 1.0)),
-        both("normal wood", clay, bump(S::Wood, 1.0, 1.0)),
-        both("normal checker", clay, bump(S::Checker, 3.0, 1.0)),
+        both("normal marble", clay, bump(S::Marble, 1.0)),
+        both("normal granite", clay, bump(S::Granite, 1.0)),
+        both("normal onion", clay, bump(S::Onion, 1.0)),
+        both("normal wood", clay, bump(S::Wood, 1.0)),
+        both("normal checker", clay, bump(S::Checker, 3.0)),
         both(
             "marble, turbulence 0.25, scale 2",
             plain(0.7, 0.85, 0.75, 0.4, 60.0),
@@ -207,19 +221,15 @@ fn bumps() -> Vec<Swatch> {
         both(
             "sand: ripples, scale 0.5",
             plain(0.85, 0.75, 0.5, 0.1, 20.0),
-            bump(S::Ripples, 0.5, 1.0),
+            bump(S::Ripples, 0.5),
         ),
-        both("normal moon, scale 2", clay, bump(S::Moon, 2.0, 1.0)),
-        both("normal sandal", clay, bump(S::Sandal, 1.0, 1.0)),
+        both("normal moon, scale 2", clay, bump(S::Moon, 2.0)),
+        both("normal sandal", clay, bump(S::Sandal, 1.0)),
     ]
 }
 
 fn flat() -> Vec<Swatch> {
     let white = plain(1.0, 1.0, 1.0, 0.3, 30.0);
-    let waves = |target, u, v, x, y| Texture {
-        scale: DVec3::new(x, y, 1.0),
-        ..Texture::new(target, Method::Waves([u, v]))
-    };
     let red = Texture {
         scale: DVec3::new(8.0, 4.0, 1.0),
         mask: (0..32).map(|i| (i % 8 + i / 8) % 2 == 0).collect(),
@@ -254,12 +264,12 @@ fn flat() -> Vec<Swatch> {
         both(
             "normal sin cos",
             clay,
-            vec![waves(Target::Normal, Wave::Sin, Wave::Cos, 60.0, 30.0)],
+            waves(Target::Normal, [Wave::Sin, Wave::Cos], [60.0, 30.0]),
         ),
         both(
             "pigment hat step",
             plain(0.5, 0.6, 0.95, 0.3, 20.0),
-            vec![waves(Target::Pigment, Wave::Hat, Wave::Step, 6.0, 5.0)],
+            waves(Target::Pigment, [Wave::Hat, Wave::Step], [6.0, 5.0]),
         ),
         both("mask", white, vec![red]),
         both("img plain", white, vec![image.clone()]),
@@ -324,11 +334,11 @@ fn mappings() -> Vec<Swatch> {
     let prism = one(
         Box::new(move |p| {
             let q = DVec2::new(p.x, p.y);
-            let edge = |i: usize| {
+            let edges = [0, 1, 2].map(|i| {
                 let (a, b) = (corners[i].truncate(), corners[(i + 1) % 3].truncate());
                 (q - a).dot(-(b - a).perp().normalize())
-            };
-            edge(0).max(edge(1)).max(edge(2)).max(p.z.abs() - 0.15)
+            });
+            edges.into_iter().fold(p.z.abs() - 0.15, f64::max)
         }),
         Box::new(move |p| uv::triangle(corners, p)),
         turn,
@@ -340,15 +350,10 @@ fn mappings() -> Vec<Swatch> {
         DMat3::from_rotation_x(0.9),
         DVec3::ZERO,
     );
-    // Two elements of a field e^(−r²): a ball with the image, a limb with stripes.
-    let field = |p: DVec3| {
-        let ball = 2.2 * libm::exp(-2.0 * (p - DVec3::new(-0.8, 0.0, 0.0)).length_squared());
-        let d = segment_distance(DVec3::new(-0.6, 0.0, 0.0), DVec3::new(1.7, 0.25, 0.0), p);
-        (ball, 1.6 * libm::exp(-5.0 * d * d))
-    };
+    // A ball with the image and a limb with stripes, of the field `ball_and_limb`.
     let soft = Shape {
         distance: Box::new(move |p| {
-            let (a, b) = field(p);
+            let (a, b) = ball_and_limb(p);
             if a + b > 1e-3 {
                 0.28 * (1.0 - (a + b)).clamp(-1.0, 0.999)
             } else {
@@ -357,12 +362,12 @@ fn mappings() -> Vec<Swatch> {
         }),
         parts: vec![
             (
-                Box::new(move |p| field(p).0),
+                Box::new(|p| ball_and_limb(p).0),
                 Box::new(|p| uv::sphere(DVec3::new(-0.8, 0.0, 0.0), p)),
                 0,
             ),
             (
-                Box::new(move |p| field(p).1),
+                Box::new(|p| ball_and_limb(p).1),
                 Box::new(|p| {
                     uv::segment(DVec3::new(-0.6, 0.0, 0.0), DVec3::new(1.7, 0.25, 0.0), p)
                 }),
@@ -388,10 +393,17 @@ fn mappings() -> Vec<Swatch> {
 }
 
 /// Colour of a shape at a point of its space, seen along `ray`.
+/// Returns the fields e^(−r²) of two elements at a point.
+fn ball_and_limb(p: DVec3) -> (f64, f64) {
+    let ball = 2.2 * libm::exp(-2.0 * (p - DVec3::new(-0.8, 0.0, 0.0)).length_squared());
+    let d = segment_distance(DVec3::new(-0.6, 0.0, 0.0), DVec3::new(1.7, 0.25, 0.0), p);
+    (ball, 1.6 * libm::exp(-5.0 * d * d))
+}
+
 fn shade(swatch: &Swatch, shape: &Shape, point: DVec3, ray: DVec3, images: &[&dyn Image]) -> Vec3 {
-    let slope = |d: DVec3| (shape.distance)(point + 1e-5 * d) - (shape.distance)(point - 1e-5 * d);
-    let normal =
-        DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).normalize_or(DVec3::Z);
+    let slopes = DVec3::AXES
+        .map(|d| (shape.distance)(point + 1e-5 * d) - (shape.distance)(point - 1e-5 * d));
+    let normal = DVec3::from_array(slopes).normalize_or(DVec3::Z);
     let parts: Vec<_> = shape
         .parts
         .iter()

@@ -17,6 +17,5 @@ pub const ODD: [f64; 9] = [
 
 /// Gradient of a function by central differences.
 pub fn slope(f: impl Fn(DVec3) -> f64, p: DVec3, step: f64) -> DVec3 {
-    let along = |d: DVec3| (f(p + step * d) - f(p - step * d)) / (2.0 * step);
-    DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
+    DVec3::from_array(DVec3::AXES.map(|d| (f(p + step * d) - f(p - step * d)) / (2.0 * step)))
 }

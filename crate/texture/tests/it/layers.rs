@@ -192,61 +192,61 @@ fn masks_name_tiles_along_u_first() {
 
 #[test]
 fn faults_are_found() {
-    let fine = Texture::new(Target::Diffuse, Method::Colour(DVec3::ONE));
-    let with = |change: &dyn Fn(&mut Texture)| {
-        let mut texture = fine.clone();
+    fn check(change: impl FnOnce(&mut Texture)) -> Result<(), Fault> {
+        let mut texture = Texture::new(Target::Diffuse, Method::Colour(DVec3::ONE));
         change(&mut texture);
         texture.check()
-    };
-    assert_eq!(fine.check(), Ok(()));
+    }
+    assert_eq!(check(|_| ()), Ok(()));
     assert_eq!(
-        with(&|t| {
+        check(|t| {
             t.scale.x = 2.0;
             t.mask = vec![true; 3];
         }),
         Err(Fault::Mask(2, 1))
     );
     assert_eq!(
-        with(&|t| {
+        check(|t| {
             t.scale.x = -1.5;
             t.mask = vec![true; 2];
         }),
         Ok(())
     );
     assert_eq!(
-        with(&|t| {
+        check(|t| {
             t.scale = DVec3::new(100.0, 100.0, 1.0);
             t.mask = vec![true; 3];
         }),
         Err(Fault::LargeMask)
     );
     assert_eq!(
-        with(&|t| {
+        check(|t| {
             t.scale = DVec3::splat(1e9);
             t.mask = vec![true];
         }),
         Err(Fault::LargeMask)
     );
-    assert_eq!(with(&|t| t.times.y = f64::NAN), Err(Fault::Number));
-    assert_eq!(with(&|t| t.translate.z = 1e10), Err(Fault::Number));
+    assert_eq!(check(|t| t.times.y = f64::NAN), Err(Fault::Number));
+    assert_eq!(check(|t| t.translate.z = 1e10), Err(Fault::Number));
     assert_eq!(
-        with(&|t| t.grain.octaves = f64::INFINITY),
+        check(|t| t.grain.octaves = f64::INFINITY),
         Err(Fault::Number)
     );
     assert_eq!(
-        with(&|t| t.method = Method::Colour(DVec3::splat(f64::NAN))),
+        check(|t| t.method = Method::Colour(DVec3::splat(f64::NAN))),
         Err(Fault::Number)
     );
     let mut bent = region();
     assert_eq!(
-        with(&|t| t.method = Method::Image(0, Mapping::Region(region()))),
+        check(|t| t.method = Method::Image(0, Mapping::Region(region()))),
         Ok(())
     );
     bent.corners[2].z += 1.0;
     assert_eq!(
-        with(&|t| t.method = Method::Image(0, Mapping::Region(bent))),
+        check(|t| t.method = Method::Image(0, Mapping::Region(bent))),
         Err(Fault::Region)
     );
+    let fine = Texture::new(Target::Diffuse, Method::Colour(DVec3::ONE));
     let mut layers = vec![fine.clone(); MAX_LAYERS - 1];
     assert_eq!(
         stack(&mut layers, &[fine.clone(), fine.clone()]),
@@ -259,13 +259,13 @@ fn faults_are_found() {
 
 #[test]
 fn targets_scale_or_are_replaced() {
-    let half = |target, replace| {
+    fn half(target: Target, replace: bool) -> Surface {
         let texture = Texture {
             replace,
             ..Texture::new(target, Method::Colour(DVec3::new(0.5, 0.25, 1.0)))
         };
         apply(&[texture], full(), &at_uv(0.3, 0.3), &[])
-    };
+    }
     let f = full();
     let by = Vec3::new(0.5, 0.25, 1.0);
     assert_eq!(
@@ -325,11 +325,11 @@ fn targets_scale_or_are_replaced() {
 
 #[test]
 fn layers_go_on_one_another_in_order() {
-    let paint = |replace, colour| Texture {
-        replace,
-        ..Texture::new(Target::Diffuse, Method::Colour(colour))
-    };
-    let (red, half) = (paint(true, DVec3::X), paint(false, DVec3::splat(0.5)));
+    let [red, half] =
+        [(true, DVec3::X), (false, DVec3::splat(0.5))].map(|(replace, colour)| Texture {
+            replace,
+            ..Texture::new(Target::Diffuse, Method::Colour(colour))
+        });
     let site = at_uv(0.0, 0.0);
     assert_eq!(
         apply(&[red.clone(), half.clone()], full(), &site, &[]).diffuse,
@@ -413,10 +413,12 @@ fn bumps_of_solids_follow_their_relief() {
 
 #[test]
 fn bumps_of_waves_and_images_rise_towards_white() {
-    let waves = |x, y| Texture {
-        scale: DVec3::new(x, y, 1.0),
-        ..Texture::new(Target::Normal, Method::Waves([Wave::Sin, Wave::One]))
-    };
+    fn waves(x: f64, y: f64) -> Texture {
+        Texture {
+            scale: DVec3::new(x, y, 1.0),
+            ..Texture::new(Target::Normal, Method::Waves([Wave::Sin, Wave::One]))
+        }
+    }
     let site = at_uv(0.2, 0.4);
     // u grows along x: derivative ½ cos of the argument, whatever the gradient's length.
     let slope = waves(3.0, 1.0).slope(&site, &[]).unwrap();
@@ -514,26 +516,21 @@ fn textures_cross_dissolve() {
     let at = |x: f64| {
         // In front of the axis, away from poles and seams.
         let point = DVec3::new(x, 0.3, 1.0);
-        let part = |uv| {
-            apply(
-                std::slice::from_ref(&stripes),
-                full(),
-                &Site {
-                    point,
-                    normal: DVec3::Z,
-                    uv,
-                },
-                &[],
+        let segment = uv::segment(DVec3::new(-2.0, 0.0, 0.0), DVec3::ZERO, point);
+        let parts = [(-1.0, segment), (1.0, uv::sphere(DVec3::X, point))].map(|(center, uv)| {
+            let site = Site {
+                point,
+                normal: DVec3::Z,
+                uv,
+            };
+            let share = libm::exp(-(x - center) * (x - center));
+            (
+                share,
+                apply(std::slice::from_ref(&stripes), full(), &site, &[]),
             )
-        };
-        let share = |center: f64| libm::exp(-(x - center) * (x - center));
-        let a = part(uv::segment(DVec3::new(-2.0, 0.0, 0.0), DVec3::ZERO, point));
-        let b = part(uv::sphere(DVec3::X, point));
-        (
-            blend(&[(share(-1.0), a), (share(1.0), b)]).unwrap().diffuse,
-            a.diffuse,
-            b.diffuse,
-        )
+        });
+        let [(_, a), (_, b)] = parts;
+        (blend(&parts).unwrap().diffuse, a.diffuse, b.diffuse)
     };
     let (mixed, a, _) = at(-3.0);
     assert!((mixed - a).length() < 1e-3);

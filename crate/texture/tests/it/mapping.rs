@@ -2,7 +2,7 @@
 
 use crate::common::{ODD, slope};
 use core::f64::consts::{PI, TAU};
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use texture::uv::{self, Arc, Sheet, Uv};
 use texture::{Edge, Image, Region, Rgb8, Surface, blend, sample};
 use trials::{Random, count};
@@ -101,12 +101,15 @@ fn gradients_match_differences() {
 
 #[test]
 fn coordinates_are_where_the_table_says() {
-    let close = |a: DVec2, x: f64, y: f64| {
+    fn close(a: DVec2, x: f64, y: f64) {
         assert!(
             (a - DVec2::new(x, y)).length() < 1e-12,
             "{a} instead of ({x}, {y})"
-        )
-    };
+        );
+    }
+    fn cube(p: DVec3) -> DVec2 {
+        uv::cuboid(DVec3::ZERO, [DVec3::X, DVec3::Y, DVec3::Z], p).at
+    }
     // Seen from +z, u grows to the right and v upwards.
     close(uv::sphere(DVec3::ZERO, DVec3::Z).at, 0.5, 0.5);
     close(uv::sphere(DVec3::ZERO, DVec3::X).at, 0.75, 0.5);
@@ -174,7 +177,6 @@ fn coordinates_are_where_the_table_says() {
         0.25,
     );
     // The faces of a cube: from each side, u to the right.
-    let cube = |p: DVec3| uv::cuboid(DVec3::ZERO, [DVec3::X, DVec3::Y, DVec3::Z], p).at;
     close(cube(DVec3::new(0.5, 0.2, 1.0)), 0.75, 0.6);
     close(cube(DVec3::new(1.0, 0.2, -0.5)), 0.75, 0.6);
     close(cube(DVec3::new(-0.5, 0.2, -1.0)), 0.75, 0.6);
@@ -193,13 +195,13 @@ fn coordinates_are_where_the_table_says() {
 
 #[test]
 fn degenerate_primitives_have_coordinates() {
-    let p = DVec3::new(0.3, -0.2, 0.5);
-    let fine = |uv: Uv| {
+    fn fine(uv: Uv) {
         assert!(
             uv.at.is_finite() && uv.gradient[0].is_finite() && uv.gradient[1].is_finite(),
             "{uv:?}"
-        )
-    };
+        );
+    }
+    let p = DVec3::new(0.3, -0.2, 0.5);
     fine(uv::sphere(p, p));
     fine(uv::sphere(p, p + DVec3::Y));
     fine(uv::segment(p, p, p));
@@ -228,10 +230,12 @@ fn degenerate_primitives_have_coordinates() {
 
 #[test]
 fn images_interpolate_and_wrap() {
-    let image = corner_image();
-    let at =
-        |u: f64, v: f64, edge| DVec3::from_array(sample(&image, DVec2::new(u, v), edge).unwrap());
-    let is = |a: DVec3, b: DVec3| assert!((a - b).length() < 1e-12, "{a} instead of {b}");
+    fn at(u: f64, v: f64, edge: Edge) -> DVec3 {
+        DVec3::from_array(sample(&corner_image(), DVec2::new(u, v), edge).unwrap())
+    }
+    fn is(a: DVec3, b: DVec3) {
+        assert!((a - b).length() < 1e-12, "{a} instead of {b}");
+    }
     let (red, green, blue, white) = (DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE);
     is(at(0.25, 0.75, Edge::Wrap), red);
     is(at(0.75, 0.75, Edge::Wrap), green);
@@ -332,28 +336,33 @@ fn degenerate_regions_texture_nothing() {
 
 #[test]
 fn mixtures_are_weighted_means() {
+    fn surface(random: &mut Random) -> Surface {
+        Surface {
+            diffuse: random.vector(1.0).as_vec3().abs(),
+            ambient: random.vector(1.0).as_vec3().abs(),
+            specular: random.vector(1.0).as_vec3().abs(),
+            reflective: random.vector(1.0).as_vec3().abs(),
+            transparent: random.vector(1.0).as_vec3().abs(),
+            index: random.range(1.0, 2.0) as f32,
+            shine: random.range(1.0, 200.0) as f32,
+            normal: random.direction(),
+        }
+    }
     let mut random = Random::new(45);
-    let surface = |random: &mut Random| Surface {
-        diffuse: random.vector(1.0).as_vec3().abs(),
-        ambient: random.vector(1.0).as_vec3().abs(),
-        specular: random.vector(1.0).as_vec3().abs(),
-        reflective: random.vector(1.0).as_vec3().abs(),
-        transparent: random.vector(1.0).as_vec3().abs(),
-        index: random.range(1.0, 2.0) as f32,
-        shine: random.range(1.0, 200.0) as f32,
-        normal: random.direction(),
-    };
     for _ in 0..count(200) {
         let (a, b) = (surface(&mut random), surface(&mut random));
         let share = random.unit();
         let got = blend(&[(3.0 * share, a), (3.0 * (1.0 - share), b)]).unwrap();
         let (s, t) = (share as f32, 1.0 - share as f32);
-        let near = |x: Vec3, a: Vec3, b: Vec3| assert!((x - s * a - t * b).length() < 1e-5);
-        near(got.diffuse, a.diffuse, b.diffuse);
-        near(got.ambient, a.ambient, b.ambient);
-        near(got.specular, a.specular, b.specular);
-        near(got.reflective, a.reflective, b.reflective);
-        near(got.transparent, a.transparent, b.transparent);
+        for (x, a, b) in [
+            (got.diffuse, a.diffuse, b.diffuse),
+            (got.ambient, a.ambient, b.ambient),
+            (got.specular, a.specular, b.specular),
+            (got.reflective, a.reflective, b.reflective),
+            (got.transparent, a.transparent, b.transparent),
+        ] {
+            assert!((x - s * a - t * b).length() < 1e-5);
+        }
         assert!((got.index - s * a.index - t * b.index).abs() < 1e-5);
         assert!((got.shine - s * a.shine - t * b.shine).abs() < 1e-3);
         let normal = (share * a.normal + (1.0 - share) * b.normal).normalize();

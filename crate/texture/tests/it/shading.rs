@@ -86,8 +86,8 @@ fn dispersion_spreads_the_index() {
         assert!((n[2] - n[0] - spread).abs() < 1e-12);
         // On Cauchy's line: n against 1/λ² is straight.
         let x = [0.61, 0.55, 0.465_f64].map(|w| 1.0 / (w * w));
-        let slope = |i: usize, j: usize| (n[j] - n[i]) / (x[j] - x[i]);
-        assert!((slope(0, 1) - slope(1, 2)).abs() < 1e-12);
+        let [low, high] = [0, 1].map(|i| (n[i + 1] - n[i]) / (x[i + 1] - x[i]));
+        assert!((low - high).abs() < 1e-12);
     }
     assert!(dispersed(0.1, 9.0).iter().all(|n| *n > 0.0));
     assert!(dispersed(1.5, f64::NAN).iter().all(|n| *n == 1.5));
@@ -224,22 +224,21 @@ fn samples_spread_better_than_chance() {
 /// other.
 #[test]
 fn samples_of_pixels_and_purposes_are_independent() {
-    let count = 4_000_u32;
-    let correlation = |f: &dyn Fn(u32) -> (f64, f64)| {
-        (0..count)
-            .map(|i| {
-                let (a, b) = f(i);
-                (a - 0.5) * (b - 0.5)
-            })
-            .sum::<f64>()
-            / f64::from(count)
-            * 12.0
-    };
-    let first = |x: u32, y: u32, purpose| sample([x, y], 0, purpose);
+    fn correlation(f: impl Fn(u32) -> (f64, f64)) -> f64 {
+        let count = 4_000_u32;
+        let products = (0..count).map(|i| {
+            let (a, b) = f(i);
+            (a - 0.5) * (b - 0.5)
+        });
+        products.sum::<f64>() / f64::from(count) * 12.0
+    }
+    fn first(x: u32, y: u32, purpose: Purpose) -> [f64; 2] {
+        sample([x, y], 0, purpose)
+    }
     for (name, got) in [
         (
             "pixels beside",
-            correlation(&|i| {
+            correlation(|i| {
                 (
                     first(i % 64, i / 64, Purpose::Pixel)[0],
                     first(i % 64 + 1, i / 64, Purpose::Pixel)[0],
@@ -248,7 +247,7 @@ fn samples_of_pixels_and_purposes_are_independent() {
         ),
         (
             "pixels above",
-            correlation(&|i| {
+            correlation(|i| {
                 (
                     first(i % 64, i / 64, Purpose::Pixel)[1],
                     first(i % 64, i / 64 + 1, Purpose::Pixel)[1],
@@ -257,18 +256,18 @@ fn samples_of_pixels_and_purposes_are_independent() {
         ),
         (
             "purposes",
-            correlation(&|i| (first(i, 3, Purpose::Lens)[0], first(i, 3, Purpose::Time)[0])),
+            correlation(|i| (first(i, 3, Purpose::Lens)[0], first(i, 3, Purpose::Time)[0])),
         ),
         (
             "dimensions",
-            correlation(&|i| {
+            correlation(|i| {
                 let s = first(i, 7, Purpose::Sky);
                 (s[0], s[1])
             }),
         ),
         (
             "samples of one pixel",
-            correlation(&|i| {
+            correlation(|i| {
                 (
                     sample([8, 8], i, Purpose::Lens)[0],
                     sample([8, 8], i, Purpose::Light(0))[0],
@@ -307,10 +306,6 @@ fn fog_matches_quadrature() {
             random.direction()
         };
         let length = random.range(0.0, 20.0);
-        let density = |t: f64| {
-            let y = (origin + t * way).y / fog.height.unwrap();
-            if y <= 0.0 { 1.0 } else { libm::exp(-y) }
-        };
         let steps = 2_000;
         let h = length / f64::from(steps);
         let sum: f64 = (0..=steps)
@@ -322,7 +317,8 @@ fn fog_matches_quadrature() {
                 } else {
                     2.0
                 };
-                weight * density(f64::from(i) * h)
+                let y = (origin + f64::from(i) * h * way).y / fog.height.unwrap();
+                weight * if y <= 0.0 { 1.0 } else { libm::exp(-y) }
             })
             .sum();
         let want = libm::exp(-sum * h / 3.0 / fog.distance);

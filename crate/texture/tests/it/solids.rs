@@ -99,8 +99,9 @@ fn checker_is_a_checker() {
         assert_eq!(grey(Solid::Checker, p, CALM), if odd { 0.0 } else { 1.0 });
     }
     // A face on the border of cubes is of one colour, whatever rounding does.
-    let face = |y: f64| grey(Solid::Checker, DVec3::new(0.5, y, 0.5), CALM);
-    assert_eq!(face(1e-12), face(-1e-12));
+    let [above, below] =
+        [1e-12, -1e-12].map(|y| grey(Solid::Checker, DVec3::new(0.5, y, 0.5), CALM));
+    assert_eq!(above, below);
 }
 
 /// Without noise, onions depend on the distance from the middle but for their lines, and wood on
@@ -114,11 +115,10 @@ fn calm_wood_has_round_rings() {
             random.range(0.0, 6.3),
             random.range(0.0, 6.3),
         );
-        let at = |angle: f64, z: f64| DVec3::new(r * libm::cos(angle), r * libm::sin(angle), z);
-        let (x, y) = (
-            grey(Solid::Wood, at(a, -2.0), CALM),
-            grey(Solid::Wood, at(b, 5.0), CALM),
-        );
+        let [x, y] = [(a, -2.0), (b, 5.0)].map(|(angle, z)| {
+            let p = DVec3::new(r * libm::cos(angle), r * libm::sin(angle), z);
+            grey(Solid::Wood, p, CALM)
+        });
         assert!((x - y).abs() < 1e-9, "{x} and {y}");
         let other = random.direction();
         let (x, y) = (
@@ -132,10 +132,11 @@ fn calm_wood_has_round_rings() {
 /// The skin between shells is darker than the flesh, four times a unit.
 #[test]
 fn onion_has_four_shells_a_unit() {
-    let along = |r: f64| grey(Solid::Onion, r * DVec3::Y, CALM);
     for shell in 0..8 {
         let middle = f64::from(shell) * 0.25;
-        assert!(along(middle + 0.125) < 0.31 && along(middle) > 0.6);
+        let [dark, light] =
+            [middle + 0.125, middle].map(|r| grey(Solid::Onion, r * DVec3::Y, CALM));
+        assert!(dark < 0.31 && light > 0.6);
     }
 }
 
@@ -185,20 +186,17 @@ fn turbulence_0_makes_marble_of_straight_planes() {
     assert_ne!(a, grey(Solid::Granite, DVec3::new(0.4, 0.2, 0.3), CALM));
     // Dark veins where x + 0.3 y is whole, light half way, all along them.
     let mut random = Random::new(27);
-    let mean = |offset: f64, random: &mut Random| {
-        (0..300)
-            .map(|_| {
-                let (y, z) = (random.range(-9.0, 9.0), random.range(-9.0, 9.0));
-                grey(
-                    Solid::Marble,
-                    DVec3::new(3.0 + offset - 0.3 * y, y, z),
-                    CALM,
-                )
-            })
-            .sum::<f64>()
-            / 300.0
-    };
-    let (vein, between) = (mean(0.0, &mut random), mean(0.5, &mut random));
+    let [vein, between] = [0.0, 0.5].map(|offset| {
+        let values = (0..300).map(|_| {
+            let (y, z) = (random.range(-9.0, 9.0), random.range(-9.0, 9.0));
+            grey(
+                Solid::Marble,
+                DVec3::new(3.0 + offset - 0.3 * y, y, z),
+                CALM,
+            )
+        });
+        values.sum::<f64>() / 300.0
+    });
     assert!(vein < between - 0.4, "{vein}, {between}");
 }
 

@@ -31,7 +31,7 @@ use crate::root_isolation::BoundedTerms;
 use crate::surface_samples::SurfaceSamples;
 use crate::walk::Quest;
 use field::far_field::{Cell, FEW_NEAR, LOOSE, SMALLEST};
-use field::{Cut, FarField, Kernel, Primitive, THRESHOLD};
+use field::{Cut, FarField, Primitive, THRESHOLD};
 use glam::DVec3;
 use piece::{Piece, leaves};
 use points::Points;
@@ -117,7 +117,7 @@ impl FarBody {
     ) -> Option<Self> {
         // A field that falls as 1/r is so large where there are many elements that its rounding
         // leaves nothing to save.
-        if primitives.iter().any(|p| p.kernel == Kernel::Inverse) {
+        if !primitives.iter().all(|p| p.kernel.is_finite_over(1)) {
             return None;
         }
         if primitives.len() < FEWEST || !(radius > 0.0 && radius < f64::INFINITY) {
@@ -337,12 +337,9 @@ mod tests {
     /// Returns a cloud of balls of some finishes, in the scene's own places.
     fn cloud(kernel: Kernel, count: u32, finishes: u32, numbers: &mut Random) -> Soft {
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-4.0, 1.0); finishes as usize]);
+        clothe(&mut scene, vec![soft(4.0, 1.0); finishes as usize]);
         for i in 0..count {
-            let shape = Shape::Sphere {
-                center: numbers.vector(1.0),
-                radius: numbers.range(0.02, 0.07),
-            };
+            let shape = Shape::sphere(numbers.vector(1.0), numbers.range(0.02, 0.07));
             scene.elements.push(Element {
                 kernel,
                 ..element(shape, i % finishes)
@@ -480,12 +477,9 @@ mod tests {
     fn edits_give_the_picture_of_a_fresh_scene() {
         let mut numbers = Random::new(8);
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-4.0, 1.0); 2]);
+        clothe(&mut scene, vec![soft(4.0, 1.0); 2]);
         for i in 0..300 {
-            let shape = Shape::Sphere {
-                center: numbers.vector(1.0),
-                radius: numbers.range(0.02, 0.07),
-            };
+            let shape = Shape::sphere(numbers.vector(1.0), numbers.range(0.02, 0.07));
             let kernel = Kernel::Cauchy;
             let element = element(shape, i % 2);
             scene.elements.push(Element { kernel, ..element });
@@ -509,9 +503,9 @@ mod tests {
         let mut picture = crate::Picture::new(&scene, size);
         let mut pixels = trace(&picture);
         for number in [7, 100, 101] {
-            if let Shape::Sphere { center, .. } = &mut scene.elements[number].shape {
-                *center = 0.2 * scene.camera.eye + numbers.vector(0.15);
-            }
+            let shape = &mut scene.elements[number].shape;
+            let center = 0.2 * scene.camera.eye + numbers.vector(0.15);
+            *shape = Shape::sphere(center, shape.radius());
             let mut next = crate::Picture::new(&scene, size);
             let fresh = trace(&next);
             assert!(fresh != pixels, "the edit shows");

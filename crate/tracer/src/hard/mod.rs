@@ -18,8 +18,9 @@ mod triangle;
 mod tests;
 
 use crate::ray::Ray;
+use field::Skeleton;
 use glam::DVec3;
-use scene::Shape;
+use scene::{Ends, Shape};
 
 pub use cone::Cone;
 pub use cuboid::Cuboid;
@@ -75,37 +76,33 @@ impl Solid {
         if !radius.is_finite() {
             return None;
         }
-        match *shape {
-            Shape::Sphere { center, .. } => Sphere::new(center, radius).map(Self::Sphere),
-            Shape::Cylinder { base, apex, .. } => {
-                Cylinder::new(base, apex, radius).map(Self::Cylinder)
-            }
-            Shape::Arc {
+        let bone = match shape {
+            Shape::Bone(bone) => bone,
+            Shape::Box(own) => return Cuboid::new(own.center, own.axes).map(Self::Cuboid),
+            Shape::Quadric(own) => return Quadric::new(own).map(|q| Self::Quadric(Box::new(q))),
+            Shape::Function(_) => return None,
+        };
+        match bone.skeleton {
+            Skeleton::Point { center } => Sphere::new(center, radius).map(Self::Sphere),
+            Skeleton::Segment { base, apex } => match (bone.ends, bone.end_radius) {
+                (_, Some(end)) => Cone::new([base, apex], [bone.radius, end]).map(Self::Cone),
+                (Ends::Open, None) => Pipe::new(base, apex, radius).map(Self::Pipe),
+                (_, None) => Cylinder::new(base, apex, radius).map(Self::Cylinder),
+            },
+            Skeleton::Arc {
                 center,
                 u,
                 v,
-                sweep,
+                radius: sweep,
                 angle,
-                ..
             } => Tube::new(center, [u, v], sweep, angle, radius).map(Self::Tube),
-            Shape::Triangle { corners, .. } => Prism::new(corners, radius).map(Self::Prism),
-            Shape::Plane { point, normal, .. } => {
-                Plane::new(point, normal, radius).map(Self::Plane)
-            }
-            Shape::Cone {
-                base,
-                base_radius,
-                apex,
-                apex_radius,
-            } => Cone::new([base, apex], [base_radius, apex_radius]).map(Self::Cone),
-            Shape::Pipe { base, apex, .. } => Pipe::new(base, apex, radius).map(Self::Pipe),
-            Shape::Box { center, axes } => Cuboid::new(center, axes).map(Self::Cuboid),
-            Shape::Patch { corners, normals } => Patch::new(corners, normals).map(Self::Patch),
-            Shape::Quadric(ref quadric) => {
-                Quadric::new(quadric).map(|q| Self::Quadric(Box::new(q)))
-            }
+            Skeleton::Triangle { corners } => match &bone.normals {
+                Some(normals) => Patch::new(corners, **normals).map(Self::Patch),
+                None => Prism::new(corners, radius).map(Self::Prism),
+            },
+            Skeleton::Plane { point, normal } => Plane::new(point, normal, radius).map(Self::Plane),
             // Several solids: see `Shape::parts`.
-            Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => None,
+            _ => None,
         }
     }
 

@@ -70,14 +70,7 @@ fn spheres() {
     let mut seen = 0;
     for _ in 0..count(30) {
         let (center, radius) = (n.vector(1.0), 0.05 + n.unit());
-        let solid = Solid::new(
-            &Shape::Sphere {
-                center,
-                radius: 9.0,
-            },
-            radius,
-        )
-        .unwrap();
+        let solid = Solid::new(&Shape::sphere(center, 9.0), radius).unwrap();
         seen += check(&mut n, &solid, &|p| p.distance(center) < radius);
     }
     assert!(seen > count(200));
@@ -89,7 +82,7 @@ fn cylinders() {
     let mut seen = 0;
     for _ in 0..count(30) {
         let (base, apex, radius) = (n.vector(1.0), n.vector(1.0), 0.02 + n.unit());
-        let shape = Shape::Cylinder { base, apex, radius };
+        let shape = Shape::cylinder(base, apex, radius);
         let solid = Solid::new(&shape, radius).unwrap();
         let axis = (apex - base).normalize();
         let length = base.distance(apex);
@@ -116,14 +109,7 @@ fn tubes_thin_and_fat_short_and_closed() {
         } else {
             0.1 + 3.0 * (1.0 + n.range(-1.0, 1.0))
         };
-        let shape = Shape::Arc {
-            center,
-            u,
-            v,
-            sweep,
-            angle,
-            radius,
-        };
+        let shape = Shape::arc(center, [u, v], sweep, angle, radius);
         let solid = Solid::new(&shape, radius).unwrap();
         let w = u.cross(v);
         seen += check(&mut n, &solid, &|p| {
@@ -149,25 +135,14 @@ fn prisms_and_slabs() {
     for _ in 0..count(30) {
         let corners = [n.vector(2.0), n.vector(2.0), n.vector(2.0)];
         let half = 0.02 + 0.5 * n.unit();
-        let solid = Solid::new(
-            &Shape::Triangle {
-                corners,
-                radius: 0.0,
-            },
-            half,
-        )
-        .unwrap();
+        let solid = Solid::new(&Shape::triangle(corners, 0.0), half).unwrap();
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
         seen += check(&mut n, &solid, &|p| {
             is_over(corners, normal, p) && (p - a).dot(normal).abs() < half
         });
         let point = n.vector(1.0);
-        let plane = Shape::Plane {
-            point,
-            normal,
-            radius: 0.0,
-        };
+        let plane = Shape::plane(point, normal, 0.0);
         let solid = Solid::new(&plane, half).unwrap();
         seen += check(&mut n, &solid, &|p| (p - point).dot(normal).abs() < half);
     }
@@ -182,48 +157,25 @@ fn sheets_are_crossed_once() {
     };
     let mut out = Vec::new();
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-    Solid::new(
-        &Shape::Triangle {
-            corners,
-            radius: 0.0,
-        },
-        0.0,
-    )
-    .unwrap()
-    .crossings(&ray, &mut out);
-    let plane = Shape::Plane {
-        point: DVec3::NEG_Z,
-        normal: DVec3::Z,
-        radius: 0.0,
-    };
+    Solid::new(&Shape::triangle(corners, 0.0), 0.0)
+        .unwrap()
+        .crossings(&ray, &mut out);
+    let plane = Shape::plane(DVec3::NEG_Z, DVec3::Z, 0.0);
     Solid::new(&plane, 0.0).unwrap().crossings(&ray, &mut out);
     let beside = Ray {
         origin: DVec3::new(0.7, 0.7, 5.0),
         ..ray
     };
-    Solid::new(
-        &Shape::Triangle {
-            corners,
-            radius: 0.0,
-        },
-        0.0,
-    )
-    .unwrap()
-    .crossings(&beside, &mut out);
+    Solid::new(&Shape::triangle(corners, 0.0), 0.0)
+        .unwrap()
+        .crossings(&beside, &mut out);
     assert_eq!(out.iter().map(|c| c.t).collect::<Vec<_>>(), [5.0, 6.0]);
     assert_eq!(out[0].normal, DVec3::Z);
 }
 
 #[test]
 fn a_distant_eye_sees_a_thin_tube() {
-    let shape = Shape::Arc {
-        center: DVec3::ZERO,
-        u: DVec3::X,
-        v: DVec3::Y,
-        sweep: 1.0,
-        angle: TAU,
-        radius: 1e-3,
-    };
+    let shape = Shape::arc(DVec3::ZERO, [DVec3::X, DVec3::Y], 1.0, TAU, 1e-3);
     let solid = Solid::new(&shape, 1e-3).unwrap();
     let ray = Ray {
         origin: DVec3::new(1.0, 0.0, 1e5),
@@ -241,30 +193,13 @@ fn a_distant_eye_sees_a_thin_tube() {
 fn shapes_without_a_surface_are_refused() {
     for radius in [0.0, -1.0, f64::NAN] {
         let center = DVec3::ZERO;
-        assert!(Solid::new(&Shape::Sphere { center, radius }, radius).is_none());
+        assert!(Solid::new(&Shape::sphere(center, radius), radius).is_none());
     }
-    let point = Shape::Cylinder {
-        base: DVec3::ONE,
-        apex: DVec3::ONE,
-        radius: 1.0,
-    };
+    let point = Shape::cylinder(DVec3::ONE, DVec3::ONE, 1.0);
     assert!(Solid::new(&point, 1.0).is_none());
     let line = [DVec3::ZERO, DVec3::X, DVec3::X * 2.0];
-    assert!(
-        Solid::new(
-            &Shape::Triangle {
-                corners: line,
-                radius: 0.0
-            },
-            1.0
-        )
-        .is_none()
-    );
-    let nowhere = Shape::Plane {
-        point: DVec3::ZERO,
-        normal: DVec3::ZERO,
-        radius: 0.0,
-    };
+    assert!(Solid::new(&Shape::triangle(line, 0.0), 1.0).is_none());
+    let nowhere = Shape::plane(DVec3::ZERO, DVec3::ZERO, 0.0);
     assert!(Solid::new(&nowhere, 0.0).is_none());
 }
 
@@ -328,12 +263,7 @@ fn cones_blunt_and_pointed() {
             2 => radii[1] = radii[0] * (1.0 + 1e-9 * n.range(-1.0, 1.0)),
             _ => {}
         }
-        let shape = Shape::Cone {
-            base,
-            base_radius: radii[0],
-            apex,
-            apex_radius: radii[1],
-        };
+        let shape = Shape::cone(base, radii[0], apex, radii[1]);
         let solid = Solid::new(&shape, 0.0).unwrap();
         let axis = (apex - base).normalize();
         let length = base.distance(apex);
@@ -401,7 +331,7 @@ fn boxes_straight_and_sheared() {
         } else {
             [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * n.range(-1.0, 1.0))
         };
-        let solid = Solid::new(&Shape::Box { center, axes }, 0.0).unwrap();
+        let solid = Solid::new(&Shape::cuboid(center, axes), 0.0).unwrap();
         let [x, y, z] = axes;
         let volume = x.cross(y).dot(z);
         seen += check(&mut n, &solid, &|p| {
@@ -420,7 +350,7 @@ fn pipes_are_open() {
     let mut seen = 0;
     for _ in 0..count(40) {
         let (base, apex, radius) = (n.vector(1.0), n.vector(1.0), 0.02 + n.unit());
-        let solid = Solid::new(&Shape::Pipe { base, apex, radius }, radius).unwrap();
+        let solid = Solid::new(&Shape::pipe(base, apex, radius), radius).unwrap();
         let axis = (apex - base).normalize();
         let length = base.distance(apex);
         seen += check_sheet(&mut n, &solid, &|p| {
@@ -447,7 +377,7 @@ fn patches_are_flat_but_lit_round() {
     for _ in 0..count(60) {
         let corners = [n.vector(2.0), n.vector(2.0), n.vector(2.0)];
         let normals = [n.vector(1.0), n.vector(1.0), n.vector(1.0)];
-        let solid = Solid::new(&Shape::Patch { corners, normals }, 0.0).unwrap();
+        let solid = Solid::new(&Shape::patch(corners, normals), 0.0).unwrap();
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).normalize();
         seen += check_sheet(&mut n, &solid, &|p| {

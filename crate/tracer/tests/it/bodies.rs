@@ -441,9 +441,7 @@ fn functions_have_a_hard_form() {
         panic!("no function");
     };
     let ball = function.draft().remove(0);
-    let Shape::Sphere { center, radius } = ball else {
-        panic!("no ball");
-    };
+    let (center, radius) = (ball.middle(), ball.radius());
     let hits = picture.hits(center + 10.0 * DVec3::Z, DVec3::NEG_Z);
     assert!(hits.iter().any(|hit| (hit.t - 10.0 + radius).abs() < 1e-9));
 }
@@ -573,17 +571,14 @@ fn a_smooth_maximum_is_within_the_tolerance() {
 /// own.
 fn molecules(number: u32, apart: bool) -> Scene {
     let mut scene = trials::scenes::empty();
-    trials::scenes::clothe(&mut scene, vec![trials::scenes::soft(-4.0, 1.0)]);
+    trials::scenes::clothe(&mut scene, vec![trials::scenes::soft(4.0, 1.0)]);
     let mut numbers = Random::new(5);
     let radius = 0.7 / libm::cbrt(f64::from(number));
     for i in 0..number {
         let center = numbers.vector(1.0);
         let body = if apart { i } else { 0 };
         for around in [DVec3::X, DVec3::Y, DVec3::Z] {
-            let shape = Shape::Sphere {
-                center: center + 0.5 * radius * around,
-                radius: 0.6 * radius,
-            };
+            let shape = Shape::sphere(center + 0.5 * radius * around, 0.6 * radius);
             let element = Element {
                 kernel: Kernel::Gauss,
                 body,

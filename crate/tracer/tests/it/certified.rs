@@ -166,21 +166,14 @@ fn pictures_show_what_is_there() {
     for case in 0..count(4) {
         let mut scene = empty();
         let joined = case % 2 == 1;
-        clothe(&mut scene, vec![soft(-3.0, 1.0)]);
+        clothe(&mut scene, vec![soft(3.0, 1.0)]);
         for k in 0..if joined { 40 } else { 5 } {
             let blob = k % 2 == 0;
             let at = n.vector(1.0);
             let shape = match (joined, blob) {
                 (true, _) => n.shape(k),
-                (false, true) => Shape::Sphere {
-                    center: at,
-                    radius: n.range(0.1, 0.5),
-                },
-                (false, false) => Shape::Cylinder {
-                    base: at + n.vector(0.4),
-                    apex: at,
-                    radius: n.range(0.02, 0.15),
-                },
+                (false, true) => Shape::sphere(at, n.range(0.1, 0.5)),
+                (false, false) => Shape::cylinder(at + n.vector(0.4), at, n.range(0.02, 0.15)),
             };
             scene.elements.push(Element {
                 kernel: match (joined, blob) {
@@ -202,18 +195,15 @@ fn pictures_show_what_is_there() {
 #[test]
 fn a_thin_bone_beside_blobs_is_not_stepped_over() {
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-4.0, 1.0)]);
+    clothe(&mut scene, vec![soft(4.0, 1.0)]);
     scene.camera.eye = DVec3::new(0.0, 0.0, 0.02);
     scene.camera.fov = 0.2;
-    let blob = Shape::Sphere {
-        center: DVec3::new(0.0, 3.0, 0.0),
-        radius: 0.8,
-    };
-    let thin = Shape::Cylinder {
-        base: DVec3::new(-3e-5, 0.0, 0.0),
-        apex: DVec3::new(3e-5, 0.0, 0.0),
-        radius: 1e-5,
-    };
+    let blob = Shape::sphere(DVec3::new(0.0, 3.0, 0.0), 0.8);
+    let thin = Shape::cylinder(
+        DVec3::new(-3e-5, 0.0, 0.0),
+        DVec3::new(3e-5, 0.0, 0.0),
+        1e-5,
+    );
     for (shape, kernel) in [(blob, Kernel::Gauss), (thin, Kernel::Quartic)] {
         scene.elements.push(Element {
             kernel,

@@ -35,19 +35,12 @@ fn random_finish(random: &mut Random) -> Finish {
 fn shape(random: &mut Random) -> Shape {
     let center = random.vector(1.5);
     match random.below(5) {
-        0 => Shape::Box {
+        0 => Shape::cuboid(
             center,
-            axes: [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * random.range(0.001, 0.8)),
-        },
-        1 => Shape::Cylinder {
-            base: center,
-            apex: random.vector(1.5),
-            radius: random.range(0.01, 0.5),
-        },
-        2 => Shape::Triangle {
-            corners: [center, random.vector(2.0), random.vector(2.0)],
-            radius: 0.0,
-        },
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * random.range(0.001, 0.8)),
+        ),
+        1 => Shape::cylinder(center, random.vector(1.5), random.range(0.01, 0.5)),
+        2 => Shape::triangle([center, random.vector(2.0), random.vector(2.0)], 0.0),
         _ => ball(center, random.range(0.2, 1.0)),
     }
 }
@@ -59,7 +52,7 @@ fn brightest(seed: u64, light: f32) -> u8 {
     scene.settings.vanish = 0.0;
     for k in 0..7 {
         let (shape, finish) = (shape(&mut random), random_finish(&mut random));
-        if k % 3 == 0 && !matches!(shape, Shape::Box { .. }) {
+        if k % 3 == 0 && !matches!(shape, Shape::Box(_)) {
             add_soft(&mut scene, shape, finish);
         } else {
             add(&mut scene, shape, finish);
@@ -121,10 +114,10 @@ fn extreme(index: f32, dispersion: f32, thin: f64) -> Scene {
         dispersion,
         ..glass(index)
     };
-    let slab = Shape::Box {
-        center: DVec3::new(-1.0, 0.0, 0.0),
-        axes: [DVec3::X * 0.8, DVec3::Y * 0.8, DVec3::Z * thin],
-    };
+    let slab = Shape::cuboid(
+        DVec3::new(-1.0, 0.0, 0.0),
+        [DVec3::X * 0.8, DVec3::Y * 0.8, DVec3::Z * thin],
+    );
     add(&mut scene, slab, finish.clone());
     add_soft(
         &mut scene,
@@ -171,10 +164,10 @@ fn an_index_of_one_bends_nothing() {
     ruler(&mut scene, -3.0, 4.0);
     let bare = draw(&scene, SIZE);
     add(&mut scene, ball(DVec3::ZERO, 1.0), glass(1.0));
-    let thin = Shape::Box {
-        center: DVec3::new(0.0, 0.0, 2.0),
-        axes: [DVec3::X, DVec3::Y, DVec3::Z * 1e-6],
-    };
+    let thin = Shape::cuboid(
+        DVec3::new(0.0, 0.0, 2.0),
+        [DVec3::X, DVec3::Y, DVec3::Z * 1e-6],
+    );
     add(&mut scene, thin, glass(1.0));
     for (a, b) in draw(&scene, SIZE).into_iter().zip(bare) {
         assert!(apart(a, b) <= 1, "{a:?} {b:?}");

@@ -18,7 +18,7 @@ fn worm(seed: u64, touching: bool) -> Scene {
     scene.flesh = vec![Flesh {
         radius: 0.22,
         kernel: [None, Some(Kernel::Cauchy)][seed as usize % 2],
-        blobbiness: -2.0,
+        blobbiness: Some(2.0),
         ..Flesh::default()
     }];
     let mut nodes = Vec::new();

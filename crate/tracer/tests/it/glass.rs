@@ -138,7 +138,7 @@ fn slabs_shift_light_whether_boxes_or_meshes() {
     let mut meshed = whole.clone();
     let axes = [DVec3::X * half.x, DVec3::Y * half.y, DVec3::Z * half.z];
     let center = middle;
-    add(&mut whole, Shape::Box { center, axes }, glass(1.6));
+    add(&mut whole, Shape::cuboid(center, axes), glass(1.6));
     meshed.finishes.push(glass(1.6));
     for (i, mut corners) in triangles(low, high).into_iter().enumerate() {
         // The order of crossings tells inside from outside, not the corners'.
@@ -147,10 +147,7 @@ fn slabs_shift_light_whether_boxes_or_meshes() {
         }
         meshed.elements.push(Element {
             finish: 2,
-            ..Element::new(Shape::Triangle {
-                corners,
-                radius: 0.0,
-            })
+            ..Element::new(Shape::triangle(corners, 0.0))
         });
     }
     for scene in [whole, meshed] {
@@ -182,10 +179,7 @@ fn add_prism(scene: &mut Scene, index: f32) {
     for corners in corners {
         scene.elements.push(Element {
             finish: 1,
-            ..Element::new(Shape::Triangle {
-                corners,
-                radius: 0.0,
-            })
+            ..Element::new(Shape::triangle(corners, 0.0))
         });
     }
 }
@@ -237,11 +231,7 @@ fn a_prism_reflects_totally() {
         (DVec3::NEG_X, [1.0, 0.0, 0.0]),
         (DVec3::NEG_Z, [0.0, 0.0, 1.0]),
     ] {
-        let wall = Shape::Plane {
-            point: normal * 4.0,
-            normal,
-            radius: 0.0,
-        };
+        let wall = Shape::plane(normal * 4.0, normal, 0.0);
         let glow = Finish { ambient, ..black() };
         add(&mut scene, wall, glow);
     }
@@ -265,10 +255,7 @@ fn colours_part_at_total_reflection() {
         ambient: [1.0; 3],
         ..black()
     };
-    let wall = Shape::Box {
-        center: DVec3::X * -4.0,
-        axes: [DVec3::X * 0.1, DVec3::Y * 2.0, DVec3::Z],
-    };
+    let wall = Shape::cuboid(DVec3::X * -4.0, [DVec3::X * 0.1, DVec3::Y * 2.0, DVec3::Z]);
     add(&mut scene, wall, glow);
     let middle = draw(&scene, [9, 9])[40];
     assert_eq!([middle[0], middle[2]], [0, 255], "{middle:?}");
@@ -287,7 +274,7 @@ fn a_body_in_another_bends_light_by_both_indices() {
         ruler(&mut scene, -3.0, 2.0);
         let center = DVec3::ZERO;
         let axes = [DVec3::X * 9.0, DVec3::Y * 9.0, DVec3::Z * 1.5];
-        add(&mut scene, Shape::Box { center, axes }, glass(1.33));
+        add(&mut scene, Shape::cuboid(center, axes), glass(1.33));
         let shape = ball(DVec3::ZERO, 1.0);
         if soft {
             add_soft(&mut scene, shape, glass(index));
@@ -347,11 +334,7 @@ fn a_mirror_shows_what_the_mirrored_eye_sees() {
         reflective: [1.0; 3],
         ..black()
     };
-    let plane = Shape::Plane {
-        point: DVec3::ZERO,
-        normal: DVec3::Z,
-        radius: 0.0,
-    };
+    let plane = Shape::plane(DVec3::ZERO, DVec3::Z, 0.0);
     add(&mut scene, plane, mirror);
     let (seen, through) = (draw(&scene, SIZE), draw(&mirrored, SIZE));
     let (mut differ, mut lit) = (0, 0);
@@ -376,11 +359,7 @@ fn depth_and_vanishing_end_reflections() {
             reflective: [0.5; 3],
             ..black()
         };
-        let plane = Shape::Plane {
-            point: DVec3::Z * z,
-            normal: DVec3::Z,
-            radius: 0.0,
-        };
+        let plane = Shape::plane(DVec3::Z * z, DVec3::Z, 0.0);
         add(&mut scene, plane, mirror);
     }
     for depth in [0, 1, 2, 7] {
@@ -412,18 +391,10 @@ fn crowd(finish: &Finish) -> Scene {
     let radius = 0.2;
     add_soft(
         &mut scene,
-        Shape::Cylinder { base, apex, radius },
+        Shape::cylinder(base, apex, radius),
         finish.clone(),
     );
-    add(
-        &mut scene,
-        Shape::Cylinder {
-            base,
-            apex,
-            radius: 0.1,
-        },
-        finish.clone(),
-    );
+    add(&mut scene, Shape::cylinder(base, apex, 0.1), finish.clone());
     scene
 }
 
@@ -530,16 +501,12 @@ fn light_is_coloured_by_what_it_passes() {
             diffuse: [1.0; 3],
             ..black()
         };
-        let plane = Shape::Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::Y,
-            radius: 0.0,
-        };
+        let plane = Shape::plane(DVec3::ZERO, DVec3::Y, 0.0);
         add(&mut scene, plane, white);
         if let Some(finish) = finish {
             let (center, y) = (DVec3::Y * 1.0, DVec3::Y * 0.1);
             let axes = [DVec3::X, y, DVec3::Z].map(|axis| axis * 0.8);
-            add(&mut scene, Shape::Box { center, axes }, finish);
+            add(&mut scene, Shape::cuboid(center, axes), finish);
         }
         let towards = DVec3::Y;
         scene
@@ -582,10 +549,10 @@ fn rays_skip_what_they_are_told_to() {
             glow.clone(),
         );
         add(&mut scene, ball(DVec3::new(1.2, 0.0, 20.0), 0.9), glow);
-        let pane = Shape::Box {
-            center: DVec3::new(0.0, 0.0, 1.0),
-            axes: [DVec3::X * 0.5, DVec3::Y * 0.5, DVec3::Z * 0.05],
-        };
+        let pane = Shape::cuboid(
+            DVec3::new(0.0, 0.0, 1.0),
+            [DVec3::X * 0.5, DVec3::Y * 0.5, DVec3::Z * 0.05],
+        );
         add(&mut scene, pane, glass(1.0));
         let mirror = Finish {
             reflective: [1.0; 3],
@@ -596,7 +563,7 @@ fn rays_skip_what_they_are_told_to() {
         // Tilted so that it shows what is right behind the eye.
         let turn = glam::DMat3::from_rotation_y(-0.1);
         let axes = axes.map(|axis| turn * axis);
-        add(&mut scene, Shape::Box { center, axes }, mirror);
+        add(&mut scene, Shape::cuboid(center, axes), mirror);
         let pixels = draw(&scene, [49, 13]);
         [6, 24, 42].map(|x| pixels[6 * 49 + x][0] == 255)
     };

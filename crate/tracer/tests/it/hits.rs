@@ -59,14 +59,10 @@ fn rays_through_random_blends_cross_where_marching_says() {
 #[test]
 fn a_ray_grazing_a_ball_finds_both_crossings_or_none() {
     let mut scene = empty();
-    clothe(&mut scene, vec![trials::scenes::soft(-4.0, 1.0)]);
-    scene.elements.push(element(
-        Shape::Sphere {
-            center: DVec3::ZERO,
-            radius: 0.25,
-        },
-        0,
-    ));
+    clothe(&mut scene, vec![trials::scenes::soft(4.0, 1.0)]);
+    scene
+        .elements
+        .push(element(Shape::sphere(DVec3::ZERO, 0.25), 0));
     let picture = Picture::new(&scene, [8, 8]);
     for exponent in 1..10 {
         let off = 10f64.powi(-exponent);
@@ -93,13 +89,13 @@ fn scenes_far_away_and_of_any_size_are_hit_alike() {
         (1e-3, 50.0),
     ] {
         let mut scene = empty();
-        clothe(&mut scene, vec![trials::scenes::soft(-1.0, 1.0)]);
+        clothe(&mut scene, vec![trials::scenes::soft(1.0, 1.0)]);
         let center = DVec3::splat(shift);
         let radius = 0.25 * scale;
         scene.flesh[0].radius = radius;
         scene
             .elements
-            .push(element(Shape::Sphere { center, radius }, 0));
+            .push(element(Shape::sphere(center, radius), 0));
         let hits =
             Picture::new(&scene, [8, 8]).hits(center - DVec3::Z * (3.0 * scale), DVec3::Z * 7.0);
         assert_eq!(hits.len(), 2, "{scale} {shift}");
@@ -114,14 +110,14 @@ fn hard_and_soft_crossings_come_in_one_order() {
     let mut scene = empty();
     clothe(
         &mut scene,
-        vec![trials::scenes::soft(-1.0, 1.0), scene::Flesh::default()],
+        vec![trials::scenes::soft(1.0, 1.0), scene::Flesh::default()],
     );
     for (x, material) in [(-1.0, 0), (0.0, 1), (1.0, 0)] {
         let center = DVec3::X * x;
         let radius = 0.2;
         scene
             .elements
-            .push(element(Shape::Sphere { center, radius }, material));
+            .push(element(Shape::sphere(center, radius), material));
     }
     let picture = Picture::new(&scene, [8, 8]);
     let hits = picture.hits(DVec3::X * -4.0, DVec3::X);
@@ -148,7 +144,7 @@ fn faces_seen_from_behind_may_be_hidden() {
     let mut scene = empty();
     let corners = [DVec3::NEG_X - DVec3::Y, DVec3::X - DVec3::Y, DVec3::Y];
     let radius = 0.0;
-    scene.elements = vec![element(Shape::Triangle { corners, radius }, 0)];
+    scene.elements = vec![element(Shape::triangle(corners, radius), 0)];
     for double_sided in [true, false] {
         scene.settings.double_sided = double_sided;
         let picture = Picture::new(&scene, [8, 8]);

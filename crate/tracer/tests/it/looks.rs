@@ -15,7 +15,7 @@ pub fn dark() -> Scene {
             ..Camera::default()
         },
         flesh: vec![Flesh {
-            blobbiness: -2.0,
+            blobbiness: Some(2.0),
             ..Flesh::default()
         }],
         ..Scene::default()
@@ -59,7 +59,7 @@ pub fn add_soft(scene: &mut Scene, shape: Shape, finish: Finish) {
 
 /// Returns a ball.
 pub fn ball(center: DVec3, radius: f64) -> Shape {
-    Shape::Sphere { center, radius }
+    Shape::sphere(center, radius)
 }
 
 /// Adds a glowing plane across z whose brightness shows x: the fraction of `scale·x`.
@@ -73,11 +73,7 @@ pub fn ruler(scene: &mut Scene, z: f64, scale: f64) {
         }],
         ..Finish::default()
     };
-    let plane = Shape::Plane {
-        point: DVec3::Z * z,
-        normal: DVec3::Z,
-        radius: 0.0,
-    };
+    let plane = Shape::plane(DVec3::Z * z, DVec3::Z, 0.0);
     add(scene, plane, finish);
 }
 

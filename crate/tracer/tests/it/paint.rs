@@ -74,18 +74,15 @@ fn compare(scene: &Scene, height: f64, bound: f32) -> usize {
 
 #[test]
 fn corners_colours_are_mixed_by_barycentric_shares() {
-    let flat = Shape::Triangle {
-        corners: CORNERS,
-        radius: 0.0,
-    };
-    let patch = Shape::Patch {
-        corners: CORNERS,
-        normals: [
+    let flat = Shape::triangle(CORNERS, 0.0);
+    let patch = Shape::patch(
+        CORNERS,
+        [
             DVec3::Z,
             DVec3::new(0.3, 0.1, 1.0),
             DVec3::new(0.0, 0.4, 1.0),
         ],
-    };
+    );
     for shape in [flat, patch] {
         let mut scene = painting(shape);
         assert!(compare(&scene, 0.0, 1.0) > 100);
@@ -103,10 +100,7 @@ fn corners_colours_are_mixed_by_barycentric_shares() {
 
 #[test]
 fn paint_scatters_light_as_a_finish_of_its_colours() {
-    let flat = Shape::Triangle {
-        corners: CORNERS,
-        radius: 0.0,
-    };
+    let flat = Shape::triangle(CORNERS, 0.0);
     let mut scene = painting(flat);
     scene.lights.push(lamp());
     let color = [0.5, 0.25, 0.75];
@@ -127,12 +121,9 @@ fn paint_scatters_light_as_a_finish_of_its_colours() {
 
 #[test]
 fn flesh_over_a_painted_triangle_takes_the_colour_of_the_foot() {
-    let mut scene = painting(Shape::Triangle {
-        corners: CORNERS,
-        radius: 0.0,
-    });
+    let mut scene = painting(Shape::triangle(CORNERS, 0.0));
     scene.elements[0].flesh = Some(0);
-    scene.flesh[0].blobbiness = -30.0;
+    scene.flesh[0].blobbiness = Some(30.0);
     scene.flesh[0].radius = 0.05;
     // The height of the flesh moves the foot a little: the ray is not at right angles to the plane.
     assert!(compare(&scene, 0.05, 12.0) > 100);

@@ -1,5 +1,7 @@
 //! Tests of pictures: independence of tiles, passes, shadows, limits.
+use field::Skeleton;
 use glam::DVec3;
+use scene::Ends;
 use scene::{Finish, Flesh, Scene, Shape};
 use std::cell::Cell;
 use tracer::{Pass, Picture, SampleCache, Stats, Tile, tiles};
@@ -68,9 +70,7 @@ fn pictures_agree_with_exact_hits() {
         scene.lights.clear();
         scene.background = [1.0; 3].into();
         // Rays that leave through the far end of a plane are beyond what is compared.
-        scene
-            .elements
-            .retain(|e| !matches!(e.shape, Shape::Plane { .. }));
+        scene.elements.retain(|e| !e.shape.bounds(0.0).is_none());
         let size = [48, 40];
         let (pixels, stats) = whole(&scene, size, 64, Pass::Full);
         assert_eq!(stats.primary_rays, 48 * 40);
@@ -117,13 +117,9 @@ fn smoothing_touches_edges_only_and_tends_to_the_true_coverage() {
         ambient: [1.0; 3],
         ..Finish::default()
     }];
-    scene.elements.push(element(
-        Shape::Sphere {
-            center: DVec3::ZERO,
-            radius: 1.0,
-        },
-        0,
-    ));
+    scene
+        .elements
+        .push(element(Shape::sphere(DVec3::ZERO, 1.0), 0));
     let size = [64, 64];
     let (full, _) = whole(&scene, size, 64, Pass::Full);
     // The ball's outline is a circle in the picture: a cone of half angle asin(1/4).
@@ -165,28 +161,19 @@ fn where_nothing_differs_each_pixel_has_one_ray() {
 fn a_ball_casts_a_shadow_on_a_slab_and_not_on_itself() {
     for material in [0, 1] {
         let mut scene = empty();
-        clothe(&mut scene, vec![soft(-4.0, 1.0), Flesh::default()]);
+        clothe(&mut scene, vec![soft(4.0, 1.0), Flesh::default()]);
         scene.finishes[0].specular = [0.0; 3];
         // Light straight along z, past the eye; eye from the side.
         scene.lights[0].kind = scene::LightKind::Distant { towards: DVec3::Z };
         scene.camera.eye = DVec3::new(0.0, -4.0, 4.0);
         scene.camera.fov = 20.0;
         let center = DVec3::new(0.0, 0.0, 1.0);
-        scene.elements.push(element(
-            Shape::Sphere {
-                center,
-                radius: 0.25,
-            },
-            material,
-        ));
-        scene.elements.push(element(
-            Shape::Plane {
-                point: DVec3::ZERO,
-                normal: DVec3::Z,
-                radius: 0.0,
-            },
-            1,
-        ));
+        scene
+            .elements
+            .push(element(Shape::sphere(center, 0.25), material));
+        scene
+            .elements
+            .push(element(Shape::plane(DVec3::ZERO, DVec3::Z, 0.0), 1));
         let size = [96, 96];
         let projection = scene.camera.projection(size[0], size[1]);
         let picture = Picture::new(&scene, size);
@@ -450,7 +437,7 @@ fn a_tile_is_given_up_when_asked_to_stop() {
 #[test]
 fn a_surface_seen_from_inside_is_lit() {
     let mut scene = empty();
-    clothe(&mut scene, vec![soft(-0.5, 1.0)]);
+    clothe(&mut scene, vec![soft(0.5, 1.0)]);
     scene.background = [0.0, 0.0, 1.0].into();
     scene.camera.eye = DVec3::ZERO;
     scene.camera.target = DVec3::X;
@@ -461,7 +448,7 @@ fn a_surface_seen_from_inside_is_lit() {
     let center = DVec3::ZERO;
     scene
         .elements
-        .push(element(Shape::Sphere { center, radius }, 0));
+        .push(element(Shape::sphere(center, radius), 0));
     let (pixels, _) = whole(&scene, [16, 16], 16, Pass::Full);
     for p in pixels.chunks_exact(4) {
         assert!(p[0] > 200 && p[0] == p[2], "{p:?}");
@@ -496,43 +483,52 @@ fn strange_scenes_end() {
         scenes.push(scene);
         let mut scene = mixture(6);
         for flesh in &mut scene.flesh {
-            flesh.blobbiness = bad;
+            flesh.blobbiness = Some(bad);
             flesh.strength = bad;
         }
         scenes.push(scene);
         let mut scene = mixture(7);
         for (i, e) in scene.elements.iter_mut().enumerate() {
-            match &mut e.shape {
-                Shape::Sphere { center, .. } if i % 2 == 0 => center.y = bad,
-                Shape::Cylinder { radius, apex, base } => {
-                    *radius = bad;
+            let bone = match &mut e.shape {
+                Shape::Bone(bone) => bone,
+                Shape::Box(cuboid) => {
+                    cuboid.axes[1] *= bad;
+                    continue;
+                }
+                Shape::Quadric(quadric) => {
+                    quadric.constant = bad;
+                    continue;
+                }
+                Shape::Function(function) => {
+                    function.to_world.translation.x = bad;
+                    continue;
+                }
+            };
+            match &mut bone.skeleton {
+                _ if bone.end_radius.is_some() => bone.end_radius = Some(bad),
+                Skeleton::Point { center } if i % 2 == 0 => center.y = bad,
+                Skeleton::Point { .. } => bone.radius = bad,
+                Skeleton::Segment { apex, .. } if bone.ends == Ends::Open => apex.z = bad,
+                Skeleton::Segment { base, apex } => {
+                    bone.radius = bad;
                     if i % 3 == 0 {
                         *apex = *base;
                     }
                 }
-                Shape::Arc { sweep, angle, .. } => {
-                    if i % 2 == 0 {
-                        *sweep = bad;
-                    } else {
-                        *angle = bad;
+                Skeleton::Arc { radius, .. } if i % 2 == 0 => *radius = bad,
+                Skeleton::Arc { angle, .. } => *angle = bad,
+                Skeleton::Triangle { corners } => match &mut bone.normals {
+                    None => corners[1] = corners[0] + bad,
+                    Some(normals) => {
+                        normals[2] *= bad;
+                        if i % 2 == 0 {
+                            corners[0].x = bad;
+                        }
                     }
-                }
-                Shape::Triangle { corners, .. } => corners[1] = corners[0] + bad,
-                Shape::Polygon { rings, .. } => rings[0][0].x = bad,
-                Shape::Curve { control, .. } => control[2].y = bad,
-                Shape::Plane { normal, .. } => *normal *= bad,
-                Shape::Cone { apex_radius, .. } => *apex_radius = bad,
-                Shape::Pipe { apex, .. } => apex.z = bad,
-                Shape::Box { axes, .. } => axes[1] *= bad,
-                Shape::Patch { corners, normals } => {
-                    normals[2] *= bad;
-                    if i % 2 == 0 {
-                        corners[0].x = bad;
-                    }
-                }
-                Shape::Quadric(quadric) => quadric.constant = bad,
-                Shape::Function(function) => function.to_world.translation.x = bad,
-                Shape::Sphere { radius, .. } => *radius = bad,
+                },
+                Skeleton::Polygon { rings } => rings[0][0].x = bad,
+                Skeleton::Curve { control } => control[2].y = bad,
+                Skeleton::Plane { normal, .. } => *normal *= bad,
             }
         }
         scene.lights[0].kind = scene::LightKind::Point {

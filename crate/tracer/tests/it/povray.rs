@@ -7,6 +7,7 @@
 //! difference.
 
 use crate::looks::*;
+use field::Skeleton;
 use glam::DVec3;
 use scene::{Background, Finish, Light, LightKind, Scene, Shape};
 use std::f64::consts::TAU;
@@ -81,31 +82,32 @@ fn translate(scene: &Scene) -> String {
     }
     for element in &scene.elements {
         let look = look(&scene.finishes[element.finish as usize]);
-        let shape = match &element.shape {
-            Shape::Sphere { center, radius } => format!("sphere {{ {}, {radius}", vector(*center)),
-            Shape::Cylinder { base, apex, radius } => {
-                format!("cylinder {{ {}, {}, {radius}", vector(*base), vector(*apex))
+        if let Shape::Box(cuboid) = &element.shape {
+            let half = cuboid.axes[0] + cuboid.axes[1] + cuboid.axes[2];
+            let corners = [cuboid.center - half, cuboid.center + half].map(vector);
+            let _ = writeln!(text, "box {{ {}, {} {look} }}", corners[0], corners[1]);
+            continue;
+        }
+        let bone = element.shape.bone().expect("a translation");
+        let radius = bone.radius;
+        let shape = match bone.skeleton {
+            Skeleton::Point { center } => format!("sphere {{ {}, {radius}", vector(center)),
+            Skeleton::Segment { base, apex } => {
+                let (base, apex) = (vector(base), vector(apex));
+                match bone.end_radius {
+                    None => format!("cylinder {{ {base}, {apex}, {radius}"),
+                    Some(end) => format!("cone {{ {base}, {radius}, {apex}, {end}"),
+                }
             }
-            Shape::Cone {
-                base,
-                base_radius,
-                apex,
-                apex_radius,
-            } => format!(
-                "cone {{ {}, {base_radius}, {}, {apex_radius}",
-                vector(*base),
-                vector(*apex)
-            ),
-            Shape::Arc {
+            Skeleton::Arc {
                 center,
                 u,
                 v,
-                sweep,
+                radius: sweep,
                 angle,
-                radius,
             } => {
-                assert_eq!(*angle, TAU);
-                let axis = u.cross(*v);
+                assert_eq!(angle, TAU);
+                let axis = u.cross(v);
                 format!(
                     "torus {{ {sweep}, {radius} matrix <{},{},{}, {},{},{}, {},{},{}, {},{},{}>",
                     u.x,
@@ -122,24 +124,16 @@ fn translate(scene: &Scene) -> String {
                     center.z
                 )
             }
-            Shape::Box { center, axes } => {
-                let half = axes[0] + axes[1] + axes[2];
-                format!(
-                    "box {{ {}, {}",
-                    vector(*center - half),
-                    vector(*center + half)
-                )
-            }
-            Shape::Triangle { corners, .. } => format!(
+            Skeleton::Triangle { corners } => format!(
                 "triangle {{ {}, {}, {}",
                 vector(corners[0]),
                 vector(corners[1]),
                 vector(corners[2])
             ),
-            Shape::Plane { point, normal, .. } => {
-                format!("plane {{ {}, {}", vector(*normal), normal.dot(*point))
+            Skeleton::Plane { point, normal } => {
+                format!("plane {{ {}, {}", vector(normal), normal.dot(point))
             }
-            other => panic!("{other:?} has no translation"),
+            ref other => panic!("{other:?} has no translation"),
         };
         let _ = writeln!(text, "{shape} {look} }}");
     }
@@ -211,10 +205,10 @@ fn room() -> Scene {
         } else {
             [0.35, 0.15, 0.1]
         };
-        let stripe = Shape::Box {
-            center: DVec3::new(x + 0.5, -1.6, -2.0),
-            axes: [DVec3::X * 0.5, DVec3::Y * 0.1, DVec3::Z * 6.0],
-        };
+        let stripe = Shape::cuboid(
+            DVec3::new(x + 0.5, -1.6, -2.0),
+            [DVec3::X * 0.5, DVec3::Y * 0.1, DVec3::Z * 6.0],
+        );
         add(&mut scene, stripe, Finish { diffuse, ..black() });
     }
     for (position, colour) in [
@@ -239,36 +233,30 @@ fn mirror(share: [f32; 3]) -> Finish {
 }
 
 fn ring(center: DVec3, radius: f64) -> Shape {
-    Shape::Arc {
+    Shape::arc(
         center,
-        u: DVec3::X,
-        v: DVec3::new(0.0, 0.8, 0.6),
-        sweep: 0.8,
-        angle: TAU,
+        [DVec3::X, DVec3::new(0.0, 0.8, 0.6)],
+        0.8,
+        TAU,
         radius,
-    }
+    )
 }
 
 /// Adds every shape, in a row and of one finish.
 fn shapes(scene: &mut Scene, finish: &Finish) {
     let list = [
         ball(DVec3::new(-2.4, -0.6, 0.0), 0.9),
-        Shape::Box {
-            // Not on the floor: of two faces in one plane rounding would choose.
-            center: DVec3::new(2.5, -0.7, -0.5),
-            axes: [DVec3::X * 0.7, DVec3::Y * 0.7, DVec3::Z * 0.5],
-        },
-        Shape::Cylinder {
-            base: DVec3::new(-0.9, -1.4, 1.6),
-            apex: DVec3::new(0.6, -0.4, 2.1),
-            radius: 0.4,
-        },
-        Shape::Cone {
-            base: DVec3::new(0.2, -1.49, -1.6),
-            base_radius: 0.9,
-            apex: DVec3::new(0.3, 1.1, -1.9),
-            apex_radius: 0.25,
-        },
+        Shape::cuboid(
+            DVec3::new(2.5, -0.7, -0.5),
+            [DVec3::X * 0.7, DVec3::Y * 0.7, DVec3::Z * 0.5],
+        ),
+        Shape::cylinder(DVec3::new(-0.9, -1.4, 1.6), DVec3::new(0.6, -0.4, 2.1), 0.4),
+        Shape::cone(
+            DVec3::new(0.2, -1.49, -1.6),
+            0.9,
+            DVec3::new(0.3, 1.1, -1.9),
+            0.25,
+        ),
         ring(DVec3::new(1.6, 0.9, -2.6), 0.3),
     ];
     for shape in list {

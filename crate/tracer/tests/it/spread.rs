@@ -73,14 +73,14 @@ fn what_is_in_focus_is_sharp() {
     let mut scene = dark();
     scene.settings.samples = 4;
     scene.settings.contrast = [0.0; 3];
-    let disc = Shape::Triangle {
-        corners: [
+    let disc = Shape::triangle(
+        [
             DVec3::new(-1.0, -1.0, 0.0),
             DVec3::new(1.0, -1.0, 0.0),
             DVec3::new(0.0, 1.0, 0.0),
         ],
-        radius: 0.0,
-    };
+        0.0,
+    );
     add(&mut scene, disc, glowing([1.0; 3]));
     let sharp = draw_pass(&scene, [32; 2], Pass::Smooth);
     scene.lens.aperture = 0.3;
@@ -93,11 +93,7 @@ fn floor(blocker: Option<[DVec3; 3]>) -> Scene {
     let mut scene = dark();
     scene.up = DVec3::Z;
     scene.settings.samples = 8;
-    let plane = Shape::Plane {
-        point: DVec3::ZERO,
-        normal: DVec3::Z,
-        radius: 0.0,
-    };
+    let plane = Shape::plane(DVec3::ZERO, DVec3::Z, 0.0);
     add(&mut scene, plane, white());
     if let Some(corners) = blocker {
         let unseen = Finish {
@@ -108,7 +104,7 @@ fn floor(blocker: Option<[DVec3; 3]>) -> Scene {
             ..black()
         };
         let radius = 0.0;
-        add(&mut scene, Shape::Triangle { corners, radius }, unseen);
+        add(&mut scene, Shape::triangle(corners, radius), unseen);
     }
     scene
 }
@@ -228,10 +224,7 @@ fn an_open_shutter_shows_shares_of_time() {
     let at = |x: f64| {
         let mut scene = dark();
         scene.settings.samples = 4;
-        let block = Shape::Sphere {
-            center: DVec3::new(x, 0.0, 0.0),
-            radius,
-        };
+        let block = Shape::sphere(DVec3::new(x, 0.0, 0.0), radius);
         add(&mut scene, block, glowing([1.0; 3]));
         scene
     };
@@ -271,11 +264,7 @@ fn fog_takes_light_by_the_exponential_law() {
         distance,
         height: None,
     });
-    let plane = Shape::Plane {
-        point: DVec3::Z * -3.0,
-        normal: DVec3::new(0.8, 0.0, 0.6),
-        radius: 0.0,
-    };
+    let plane = Shape::plane(DVec3::Z * -3.0, DVec3::new(0.8, 0.0, 0.6), 0.0);
     add(&mut scene, plane, glowing([1.0, 0.0, 0.0]));
     const SIZE: [u32; 2] = [24, 24];
     for (pixel, (origin, direction)) in draw(&scene, SIZE).iter().zip(rays(&scene, SIZE)) {
@@ -323,10 +312,7 @@ fn busy(x: f64) -> Scene {
         let ball = ball(DVec3::new(x, 0.1, 0.3 * x), 0.6);
         add_soft(&mut scene, ball, finish);
     }
-    let hard = Shape::Sphere {
-        center: DVec3::new(0.9, -0.5, -1.0),
-        radius: 0.5,
-    };
+    let hard = Shape::sphere(DVec3::new(0.9, -0.5, -1.0), 0.5);
     add(&mut scene, hard, white());
     scene
 }

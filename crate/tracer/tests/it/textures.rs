@@ -127,7 +127,7 @@ fn textures_dissolve_over_a_blend() {
     let center = DVec3::new(0.7, 0.2, 0.1);
     let mut scene = dark();
     let radius = 0.3;
-    let segment = Shape::Cylinder { base, apex, radius };
+    let segment = Shape::cylinder(base, apex, radius);
     add_soft(&mut scene, segment, glowing(vec![first.clone()]));
     add_soft(&mut scene, ball(center, 0.5), glowing(vec![second.clone()]));
     let sum = scene.soft_surfaces().remove(0);
@@ -225,11 +225,7 @@ fn layers_lie_upon_each_other_where_their_masks_let_them() {
         ..colour(DVec3::X)
     };
     let mut scene = dark();
-    let plane = Shape::Plane {
-        point: DVec3::new(-0.5, -0.5, 0.0),
-        normal: DVec3::Z,
-        radius: 0.0,
-    };
+    let plane = Shape::plane(DVec3::new(-0.5, -0.5, 0.0), DVec3::Z, 0.0);
     add(&mut scene, plane, glowing(vec![colour(DVec3::Y), tiles]));
     check(&scene, |point, _| {
         // Tiles of half a unit, those on the diagonal red, the others as green as the layer below.

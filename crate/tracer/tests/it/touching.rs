@@ -63,7 +63,7 @@ fn flesh(numbers: &mut Random, scene: &mut Scene) -> u32 {
     scene.flesh.push(Flesh {
         radius: numbers.range(0.15, 0.25),
         kernel: numbers.pick(&kernels),
-        blobbiness: -numbers.range(1.0, 4.0),
+        blobbiness: Some(numbers.range(1.0, 4.0)),
         ..Flesh::default()
     });
     scene.flesh.len() as u32 - 1
@@ -143,15 +143,12 @@ fn local(
 fn ball_or_limb(numbers: &mut Random, scene: &mut Scene, body: u32) {
     let flesh = flesh(numbers, scene);
     let shapes = if numbers.chance(0.4) {
-        vec![Shape::Sphere {
-            center: numbers.vector(0.6),
-            radius: numbers.range(0.3, 0.6),
-        }]
+        vec![Shape::sphere(numbers.vector(0.6), numbers.range(0.3, 0.6))]
     } else {
         let [a, b, c] = [0; 3].map(|_| numbers.vector(0.6));
         let radius = numbers.range(0.2, 0.35);
         [(a, b), (b, c)]
-            .map(|(base, apex)| Shape::Cylinder { base, apex, radius })
+            .map(|(base, apex)| Shape::cylinder(base, apex, radius))
             .to_vec()
     };
     for shape in shapes {

@@ -1,11 +1,103 @@
 //! Shapes defined anew, by which points belong to them, and a patient ray caster in `f64` that
 //! shares neither formula nor method with the shaders.
 
+use field::Skeleton;
 use glam::{DVec2, DVec3};
-use scene::{Quadric, Scene, Shape};
+use scene::{Cuboid, Ends, Quadric, Scene, Shape};
 
 /// Steps along a ray. A chord shorter than a step is missed, which concerns silhouettes only.
 const STEPS: u32 = 1000;
+
+/// A shape by its name.
+enum Solid<'a> {
+    Sphere {
+        center: DVec3,
+    },
+    Cylinder {
+        base: DVec3,
+        apex: DVec3,
+    },
+    Cone {
+        base: DVec3,
+        base_radius: f64,
+        apex: DVec3,
+        apex_radius: f64,
+    },
+    Pipe {
+        base: DVec3,
+        apex: DVec3,
+    },
+    Arc {
+        center: DVec3,
+        u: DVec3,
+        v: DVec3,
+        sweep: f64,
+        angle: f64,
+    },
+    Triangle {
+        corners: [DVec3; 3],
+    },
+    Patch {
+        corners: [DVec3; 3],
+        normals: [DVec3; 3],
+    },
+    Plane {
+        point: DVec3,
+        normal: DVec3,
+    },
+    Box {
+        center: DVec3,
+        axes: [DVec3; 3],
+    },
+    Quadric(&'a Quadric),
+}
+
+fn name(shape: &Shape) -> Solid<'_> {
+    let bone = match shape {
+        Shape::Bone(bone) => bone,
+        Shape::Box(Cuboid { center, axes }) => {
+            let (center, axes) = (*center, *axes);
+            return Solid::Box { center, axes };
+        }
+        Shape::Quadric(quadric) => return Solid::Quadric(quadric),
+        Shape::Function(_) => unreachable!("drawn as its parts"),
+    };
+    match bone.skeleton {
+        Skeleton::Point { center } => Solid::Sphere { center },
+        Skeleton::Segment { base, apex } => match (bone.end_radius, bone.ends) {
+            (Some(apex_radius), _) => Solid::Cone {
+                base,
+                base_radius: bone.radius,
+                apex,
+                apex_radius,
+            },
+            (None, Ends::Open) => Solid::Pipe { base, apex },
+            (None, _) => Solid::Cylinder { base, apex },
+        },
+        Skeleton::Arc {
+            center,
+            u,
+            v,
+            radius: sweep,
+            angle,
+        } => Solid::Arc {
+            center,
+            u,
+            v,
+            sweep,
+            angle,
+        },
+        Skeleton::Triangle { corners } => match &bone.normals {
+            None => Solid::Triangle { corners },
+            Some(normals) => Solid::Patch {
+                corners,
+                normals: **normals,
+            },
+        },
+        Skeleton::Plane { point, normal } => Solid::Plane { point, normal },
+        Skeleton::Polygon { .. } | Skeleton::Curve { .. } => unreachable!("drawn as their parts"),
+    }
+}
 
 /// First crossing of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +117,9 @@ pub fn first(scene: &Scene, eye: DVec3, direction: DVec3) -> Option<Met> {
             && best.is_none_or(|met| distance < met.distance)
         {
             let mut normal = normal(&element.shape, radius, eye + direction * distance);
-            if let Shape::Patch {
+            if let Solid::Patch {
                 corners: [a, b, c], ..
-            } = element.shape
+            } = name(&element.shape)
             {
                 // A patch is seen from the side that its face shows, at most edge-on.
                 let face = (b - a).cross(c - a);
@@ -53,8 +145,8 @@ pub fn first(scene: &Scene, eye: DVec3, direction: DVec3) -> Option<Met> {
 /// Distance to the first point in front of the eye where the ray enters or leaves the shape.
 fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<f64> {
     // A flat thing has no inside: where the ray pierces its plane.
-    match *shape {
-        Shape::Plane { point, normal, .. } => {
+    match name(shape) {
+        Solid::Plane { point, normal, .. } => {
             let slope = direction.dot(normal);
             let height = (eye - point).dot(normal);
             return [radius, -radius]
@@ -63,7 +155,7 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
                 .filter(|t| *t > 0.0 && t.is_finite())
                 .min_by(f64::total_cmp);
         }
-        Shape::Triangle {
+        Solid::Triangle {
             corners: [p, q, r], ..
         } if radius == 0.0 => {
             let normal = (q - p).cross(r - p);
@@ -74,11 +166,8 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
         _ => {}
     }
     // A flat thing with normals of its own is where its plane is.
-    if let Shape::Patch { corners, .. } = *shape {
-        let flat = Shape::Triangle {
-            corners,
-            radius: 0.0,
-        };
+    if let Solid::Patch { corners, .. } = name(shape) {
+        let flat = Shape::triangle(corners, 0.0);
         return boundary(&flat, 0.0, eye, direction);
     }
     let (center, reach) = ball_around(shape, radius);
@@ -111,12 +200,12 @@ fn boundary(shape: &Shape, radius: f64, eye: DVec3, direction: DVec3) -> Option<
 }
 
 fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
-    match *shape {
-        Shape::Sphere { center, .. } => (center, 1.01 * radius),
-        Shape::Cylinder { base, apex, .. } => {
+    match name(shape) {
+        Solid::Sphere { center, .. } => (center, 1.01 * radius),
+        Solid::Cylinder { base, apex, .. } => {
             (base.midpoint(apex), base.distance(apex) * 0.5 + radius)
         }
-        Shape::Arc {
+        Solid::Arc {
             center,
             u,
             v,
@@ -136,12 +225,12 @@ fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
                 1.01 * (chord + radius),
             )
         }
-        Shape::Triangle { corners, .. } => {
+        Solid::Triangle { corners, .. } => {
             let center = (corners[0] + corners[1] + corners[2]) / 3.0;
             let far = corners.map(|c| c.distance(center));
             (center, far[0].max(far[1]).max(far[2]) + radius)
         }
-        Shape::Cone {
+        Solid::Cone {
             base,
             apex,
             base_radius,
@@ -150,13 +239,10 @@ fn ball_around(shape: &Shape, radius: f64) -> (DVec3, f64) {
             base.midpoint(apex),
             base.distance(apex) * 0.5 + base_radius.max(apex_radius),
         ),
-        Shape::Pipe { base, apex, .. } => (base.midpoint(apex), base.distance(apex) * 0.5 + radius),
-        Shape::Box { center, axes } => (center, axes.iter().map(|a| a.length()).sum()),
-        Shape::Quadric(ref q) => (q.center, q.axes.iter().map(|a| a.length()).sum()),
-        Shape::Plane { .. } | Shape::Patch { .. } => unreachable!("solved directly"),
-        Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => {
-            unreachable!("drawn as their parts")
-        }
+        Solid::Pipe { base, apex, .. } => (base.midpoint(apex), base.distance(apex) * 0.5 + radius),
+        Solid::Box { center, axes } => (center, axes.iter().map(|a| a.length()).sum()),
+        Solid::Quadric(q) => (q.center, q.axes.iter().map(|a| a.length()).sum()),
+        Solid::Plane { .. } | Solid::Patch { .. } => unreachable!("solved directly"),
     }
 }
 
@@ -180,9 +266,9 @@ fn about_axis(base: DVec3, apex: DVec3, p: DVec3) -> (f64, f64) {
 
 /// Whether an open surface is there at all, or cut off.
 fn reaches(shape: &Shape, p: DVec3) -> bool {
-    match *shape {
-        Shape::Pipe { base, apex, .. } => (0.0..=1.0).contains(&about_axis(base, apex, p).0),
-        Shape::Quadric(ref quadric) => in_quadric(quadric, p).abs().max_element() <= 1.0,
+    match name(shape) {
+        Solid::Pipe { base, apex, .. } => (0.0..=1.0).contains(&about_axis(base, apex, p).0),
+        Solid::Quadric(quadric) => in_quadric(quadric, p).abs().max_element() <= 1.0,
         _ => true,
     }
 }
@@ -205,15 +291,15 @@ fn inside_edges(corners: [DVec3; 3], p: DVec3) -> bool {
 }
 
 fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
-    match *shape {
-        Shape::Sphere { center, .. } => p.distance(center) <= radius,
-        Shape::Cylinder { base, apex, .. } => {
+    match name(shape) {
+        Solid::Sphere { center, .. } => p.distance(center) <= radius,
+        Solid::Cylinder { base, apex, .. } => {
             let axis = (apex - base).normalize();
             let along = (p - base).dot(axis);
             (0.0..=base.distance(apex)).contains(&along)
                 && (p - base - axis * along).length() <= radius
         }
-        Shape::Arc {
+        Solid::Arc {
             center,
             u,
             v,
@@ -224,13 +310,13 @@ fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
             let (distance, turned) = about_circle(center, u, v, sweep, p);
             distance <= radius && turned <= angle
         }
-        Shape::Triangle { corners, .. } => {
+        Solid::Triangle { corners, .. } => {
             let normal = (corners[1] - corners[0])
                 .cross(corners[2] - corners[0])
                 .normalize();
             (p - corners[0]).dot(normal).abs() <= radius && inside_edges(corners, p)
         }
-        Shape::Cone {
+        Solid::Cone {
             base,
             apex,
             base_radius,
@@ -240,26 +326,20 @@ fn inside(shape: &Shape, radius: f64, p: DVec3) -> bool {
             (0.0..=1.0).contains(&share)
                 && distance <= base_radius + (apex_radius - base_radius) * share
         }
-        Shape::Pipe { base, apex, .. } => about_axis(base, apex, p).1 <= radius,
-        Shape::Box { center, axes } => along(axes, p - center).abs().max_element() <= 1.0,
-        Shape::Quadric(ref quadric) => quadric.value(in_quadric(quadric, p)).0 <= 0.0,
-        Shape::Plane { .. } | Shape::Patch { .. } => unreachable!("solved directly"),
-        Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => {
-            unreachable!("drawn as their parts")
-        }
+        Solid::Pipe { base, apex, .. } => about_axis(base, apex, p).1 <= radius,
+        Solid::Box { center, axes } => along(axes, p - center).abs().max_element() <= 1.0,
+        Solid::Quadric(quadric) => quadric.value(in_quadric(quadric, p)).0 <= 0.0,
+        Solid::Plane { .. } | Solid::Patch { .. } => unreachable!("solved directly"),
     }
 }
 
 /// The normal of the face that a point of the surface is nearest to.
 fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
     let mut faces: Vec<(f64, DVec3)> = Vec::new();
-    match *shape {
-        Shape::Sphere { center, .. } => return (p - center).normalize(),
-        Shape::Plane { normal, .. } => return normal,
-        Shape::Polygon { .. } | Shape::Curve { .. } | Shape::Function(_) => {
-            unreachable!("drawn as their parts")
-        }
-        Shape::Patch { corners, normals } => {
+    match name(shape) {
+        Solid::Sphere { center, .. } => return (p - center).normalize(),
+        Solid::Plane { normal, .. } => return normal,
+        Solid::Patch { corners, normals } => {
             let [a, b, c] = corners;
             let n = (b - a).cross(c - a);
             let share = |q: DVec3, r: DVec3| (q - p).cross(r - p).dot(n);
@@ -268,24 +348,24 @@ fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
                 + normals[2].normalize() * share(a, b);
             return mixed.normalize();
         }
-        Shape::Pipe { base, apex, .. } => {
+        Solid::Pipe { base, apex, .. } => {
             let way = (apex - base).normalize();
             return (p - base).reject_from_normalized(way).normalize();
         }
-        Shape::Quadric(ref quadric) => {
+        Solid::Quadric(quadric) => {
             // From one side to the other along each axis of the world.
             let value = |p: DVec3| quadric.value(in_quadric(quadric, p)).0;
             let slope = |axis: DVec3| value(p + axis * 1e-5) - value(p - axis * 1e-5);
             return DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).normalize();
         }
-        Shape::Box { center, axes } => {
+        Solid::Box { center, axes } => {
             let at = along(axes, p - center);
             for i in 0..3 {
                 let across = axes[(i + 1) % 3].cross(axes[(i + 2) % 3]).normalize();
                 faces.push(((at[i].abs() - 1.0).abs(), across));
             }
         }
-        Shape::Cone {
+        Solid::Cone {
             base,
             apex,
             base_radius,
@@ -301,7 +381,7 @@ fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
             let aside = (p - base).reject_from_normalized(axis).normalize();
             faces.push((wall, (aside - axis * slope).normalize()));
         }
-        Shape::Cylinder { base, apex, .. } => {
+        Solid::Cylinder { base, apex, .. } => {
             let axis = (apex - base).normalize();
             let along = (p - base).dot(axis);
             let aside = p - base - axis * along;
@@ -309,7 +389,7 @@ fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
             faces.push(((p - apex).dot(axis).abs(), axis));
             faces.push(((aside.length() - radius).abs(), aside.normalize()));
         }
-        Shape::Arc {
+        Solid::Arc {
             center,
             u,
             v,
@@ -333,7 +413,7 @@ fn normal(shape: &Shape, radius: f64, p: DVec3) -> DVec3 {
                 }
             }
         }
-        Shape::Triangle { corners, .. } => {
+        Solid::Triangle { corners, .. } => {
             let [a, b, c] = corners;
             let n = (b - a).cross(c - a).normalize();
             if radius == 0.0 {

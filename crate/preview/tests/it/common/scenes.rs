@@ -45,18 +45,18 @@ pub fn index_of(colour: [f64; 3]) -> Option<usize> {
 /// A scene lit along the axes, red along x, green along y, blue along z, times `sign`: the colours
 /// are the positive parts of the normal times `sign`.
 pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
-    let light = |towards: DVec3, channel: usize| {
+    let lights = [0, 1, 2].map(|channel| {
         let mut colour = [0.0; 3];
         colour[channel] = 1.0;
         Light {
             kind: LightKind::Distant {
-                towards: towards * sign,
+                towards: DVec3::AXES[channel] * sign,
             },
             colour,
             shadow: false,
             size: 0.0,
         }
-    };
+    });
     Scene {
         elements: shapes.iter().map(|s| element(s.clone(), 0)).collect(),
         finishes: vec![Finish {
@@ -64,7 +64,7 @@ pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
             diffuse: [1.0; 3],
             ..Finish::default()
         }],
-        lights: vec![light(DVec3::X, 0), light(DVec3::Y, 1), light(DVec3::Z, 2)],
+        lights: lights.to_vec(),
         background: [0.0; 3].into(),
         camera,
         ..Scene::default()
@@ -73,14 +73,13 @@ pub fn by_normal(shapes: &[Shape], camera: Camera, sign: f64) -> Scene {
 
 /// An arc in the plane that a rotation makes of the xy-plane.
 pub fn arc(center: DVec3, rotation: DQuat, sweep: f64, angle: f64, radius: f64) -> Shape {
-    Shape::Arc {
+    Shape::arc(
         center,
-        u: rotation * DVec3::X,
-        v: rotation * DVec3::Y,
+        [rotation * DVec3::X, rotation * DVec3::Y],
         sweep,
         angle,
         radius,
-    }
+    )
 }
 
 pub fn look(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {

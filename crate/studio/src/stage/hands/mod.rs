@@ -6,14 +6,14 @@
 
 mod cage;
 mod knob;
-mod skeleton;
 
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Handle};
 use document::session::Session;
 use egui::{Color32, Key, Modifiers, Painter, Rect, Response, Stroke, Ui};
+use field::Skeleton;
 use glam::DVec3;
-use scene::{Camera, Origin, Scene, Shape};
+use scene::{Camera, Origin, Scene};
 use sketch::Sight;
 use std::ops::Range;
 
@@ -264,16 +264,16 @@ fn paint(painter: &Painter, sight: &Sight, scene: &Scene, chosen: usize) {
         .filter(|(index, other)| *index != chosen && other.origin == element.origin)
         .take(MOST_BONES);
     for (_, other) in others {
-        let size = 60.0 * sight.point(middle(&other.shape));
-        for line in skeleton::lines(&other.shape, size) {
+        let size = 60.0 * sight.point(other.shape.middle());
+        for line in other.shape.lines(size) {
             stroke(painter, sight, &line, 0.45);
         }
     }
-    let size = 80.0 * sight.point(middle(&element.shape));
-    for line in skeleton::lines(&element.shape, size) {
+    let size = 80.0 * sight.point(element.shape.middle());
+    for line in element.shape.lines(size) {
         stroke(painter, sight, &line, 1.0);
     }
-    if let Shape::Sphere { center, .. } = element.shape {
+    if let Some(&Skeleton::Point { center }) = element.shape.skeleton() {
         let radius = scene.radius(element);
         let axes = sight.projection.world_from_view;
         let rim = (0..=48).map(|i| {
@@ -281,22 +281,6 @@ fn paint(painter: &Painter, sight: &Sight, scene: &Scene, chosen: usize) {
             center + (axes.x_axis * cosine + axes.y_axis * sine) * radius
         });
         stroke(painter, sight, &rim.collect::<Vec<_>>(), 0.6);
-    }
-}
-
-/// Returns a place of a shape at which its size on the screen is measured.
-fn middle(shape: &Shape) -> DVec3 {
-    match shape {
-        Shape::Sphere { center, .. } | Shape::Arc { center, .. } | Shape::Box { center, .. } => {
-            *center
-        }
-        Shape::Cylinder { base, .. } | Shape::Cone { base, .. } | Shape::Pipe { base, .. } => *base,
-        Shape::Triangle { corners, .. } | Shape::Patch { corners, .. } => corners[0],
-        Shape::Polygon { rings, .. } => rings.iter().flatten().next().copied().unwrap_or_default(),
-        Shape::Curve { control, .. } => control[0],
-        Shape::Plane { point, .. } => *point,
-        Shape::Quadric(quadric) => quadric.center,
-        Shape::Function(function) => function.middle(),
     }
 }
 

@@ -13,10 +13,10 @@ use crate::places;
 use crate::wish::{TextWish, ViewWish, Wish, Wishes};
 use document::session::Session;
 use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
+use field::Skeleton;
 use glam::DVec3;
 use grip::Grip;
 use rats::TextEdit;
-use scene::Shape;
 use sketch::Sight;
 use sketch::drawn::{Spot, crossing, node_at, spot_at};
 use sketch::edits::{self, Base, Beginning, Brush, Intent, Root};
@@ -669,7 +669,7 @@ impl Pencil {
             let element = element as usize;
             let shape = &scene.elements[element];
             let alone = !session.compilation().placements[element].repeated;
-            if matches!(shape.shape, Shape::Sphere { .. }) && alone {
+            if matches!(shape.shape.skeleton(), Some(Skeleton::Point { .. })) && alone {
                 let origin = shape.origin;
                 let (file, span) = (
                     origin.file as usize,

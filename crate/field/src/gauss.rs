@@ -1,5 +1,0 @@
-//! The gauss kernel.
-
-pub mod arc;
-pub mod polygon;
-pub mod segment;

@@ -1,5 +1,0 @@
-//! The squared kernel.
-
-pub mod arc;
-pub mod polygon;
-pub mod segment;
