@@ -37,7 +37,7 @@ const STEEP: f64 = core::f64::consts::FRAC_PI_2;
 
 /// Value and gradient at a local position.
 #[inline(always)]
-pub fn jet<K: Falloff + ?Sized, R: Real>(bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R> {
+pub fn jet<K: Falloff, R: Real>(bone: &Curve<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let pair = |q: R| {
         let (value, fall) = K::falling(q);
         (value, -fall)

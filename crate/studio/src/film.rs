@@ -201,7 +201,7 @@ mod tests {
         assert_eq!(play(Playback::Loop, 3, 9, 3), [9, 0, 1]);
         assert_eq!(play(Playback::Mirror, 2, 0, 4), [0, 1, 0, 1]);
         for playback in Playback::ALL {
-            let order = ::picture::animation::mirrored(4).count() as u32;
+            let order = ::picture::animation::mirror(4).count() as u32;
             let length = if playback == Playback::Mirror {
                 order
             } else {
