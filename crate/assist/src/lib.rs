@@ -29,6 +29,7 @@ mod grammar;
 pub mod handles;
 pub mod highlight;
 pub mod hover;
+pub mod indent;
 pub mod index;
 pub mod manual;
 mod mend;

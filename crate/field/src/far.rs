@@ -156,7 +156,7 @@ mod tests {
                 let p = [x * flat, y * flat, height].map(|x| x * ratio * reach);
                 // In double precision the closed forms are used up to 18 times the reach.
                 for kernel in [Kernel::Inverse, Kernel::Squared, Kernel::Cubed] {
-                    let want = kernel.jet(&Bone::Triangle(Box::new(bone.clone())), p);
+                    let want = kernel.jet(&Bone::Triangle(Box::new(bone)), p);
                     let value = triangle(kernel, &bone, p);
                     let off: [f64; 3] =
                         core::array::from_fn(|i| value.gradient[i] - want.gradient[i]);

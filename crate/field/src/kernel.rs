@@ -246,7 +246,8 @@ mod tests {
     fn faults<K: Falloff>() -> Vec<(&'static str, &'static str, f64, f64)> {
         let mut faults = Vec::new();
         let mut near = |name: &'static str, got: f64, want: f64, size: f64| {
-            if !((got - want).abs() <= 1e-9 * (want.abs() + size)) {
+            let error = (got - want).abs();
+            if error.is_nan() || error > 1e-9 * (want.abs() + size) {
                 faults.push((K::NAME, name, got, want));
             }
         };

@@ -11,7 +11,7 @@ use egui::{
     Color32, ColorImage, Context, FontId, Pos2, Rect, TextureHandle, TextureOptions, Ui, vec2,
 };
 use pool::Assembly;
-use pool::{Job, Pool};
+use pool::{PictureJob, Pool};
 use rats::{File, Project, Severity};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -220,7 +220,7 @@ impl Pictures {
             self.number += 1;
             let mut assembly = Assembly::default();
             assembly.begin(self.number, wish.size);
-            self.pool.borrow_mut().start(Job {
+            self.pool.borrow_mut().start(PictureJob {
                 scene: &shared,
                 camera: None,
                 size: wish.size,

@@ -24,6 +24,7 @@ mod aabb;
 mod bvh;
 mod color;
 mod error;
+pub mod formats;
 mod half_edge;
 mod heights;
 mod intersect;
@@ -47,7 +48,7 @@ pub use half_edge::{
 pub use heights::{Heights, heights};
 pub use intersect::{Intersections, self_intersections};
 pub use measure::{closest_point, smallest_angle};
-pub use read::{read, read_mtl, read_points};
+pub use read::{read, read_mtl, read_points, read_with_remarks};
 pub use report::Topology;
 pub use simplify::{Level, levels_of_detail, simplify, simplify_part};
 pub use terra::terra;

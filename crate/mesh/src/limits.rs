@@ -24,5 +24,7 @@ pub const MAX_HALF_EDGES: usize = 60_000_000;
 pub const MAX_MATERIALS: usize = 10_000;
 /// Bytes of the description in a 3MF file, unpacked.
 pub const MAX_XML: usize = 64 * 1024 * 1024;
+/// Beams of a lattice in a 3MF file, and balls.
+pub const MAX_BEAMS: usize = 1_000_000;
 /// Triangles of a file that is written.
 pub const MAX_EXPORT_TRIANGLES: usize = 4_000_000;

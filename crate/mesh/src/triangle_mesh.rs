@@ -5,6 +5,7 @@ use crate::limits::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
 use core::ops::Range;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 
 /// Triangles that share vertices by index.
 ///
@@ -107,8 +108,9 @@ impl TriangleMesh {
         Ok(())
     }
 
-    /// Checks indices and positions, and removes triangles without area.
-    pub(crate) fn check(mut self) -> Result<Self, Error> {
+    /// Checks indices and positions, and removes triangles without area and those that are there
+    /// twice. Returns sentences about what was removed, too.
+    pub(crate) fn check(mut self) -> Result<(Self, Vec<String>), Error> {
         let count = self.positions.len();
         let last = self.triangles.iter().flatten().max();
         if let Some(last) = last.filter(|i| **i as usize >= count) {
@@ -127,7 +129,21 @@ impl TriangleMesh {
             ));
         }
         let count_of_triangles = self.triangles.len();
-        self.remove_flat_triangles();
+        let mut remarks = Vec::new();
+        let flat = self.keep_triangles(|[a, b, c]| {
+            let (ab, ac) = (b - a, c - a);
+            ab.cross(ac).length() > 1e-12 * ab.length() * ac.length()
+        });
+        if flat > 0 {
+            remarks.push(format!("{flat} triangles without an area are left out"));
+        }
+        let mut seen = HashSet::with_capacity(self.triangles.len());
+        let doubles = self.keep_triangles(|corners| seen.insert(key(corners)));
+        if doubles > 0 {
+            remarks.push(format!(
+                "{doubles} triangles that are there twice are left out"
+            ));
+        }
         if self.triangles.is_empty() {
             return fail(match count_of_triangles {
                 0 => String::from("there are no triangles in this file"),
@@ -154,19 +170,22 @@ impl TriangleMesh {
             }
             other => *other = None,
         }
-        Ok(self)
+        Ok((self, remarks))
     }
 
-    /// Removes triangles without area, and moves the ranges of the groups.
-    fn remove_flat_triangles(&mut self) {
+    /// Keeps the triangles whose corners pass a test, moves the ranges of the groups, and returns
+    /// the number of others.
+    fn keep_triangles(&mut self, mut passes: impl FnMut([DVec3; 3]) -> bool) -> usize {
         // How many triangles remain of the first i.
         let mut remaining = vec![0];
         let mut count = 0;
         for i in 0..self.triangles.len() {
-            let [a, b, c] = self.corners(i);
-            let (ab, ac) = (b - a, c - a);
-            count += u32::from(ab.cross(ac).length() > 1e-12 * ab.length() * ac.length());
+            count += u32::from(passes(self.corners(i)));
             remaining.push(count);
+        }
+        let before = self.triangles.len();
+        if count as usize == before {
+            return 0;
         }
         for group in &mut self.groups {
             let Range { start, end } = group.triangles;
@@ -178,5 +197,17 @@ impl TriangleMesh {
             triangle += 1;
             remaining[triangle] > remaining[triangle - 1]
         });
+        before - self.triangles.len()
     }
+}
+
+/// Returns numbers that are the same for triangles with the same corners that face the same side.
+fn key(corners: [DVec3; 3]) -> [[u64; 3]; 3] {
+    // A zero has no sign.
+    let bits = corners.map(|corner| (corner + DVec3::ZERO).to_array().map(f64::to_bits));
+    let [a, b, c] = bits;
+    [[a, b, c], [b, c, a], [c, a, b]]
+        .into_iter()
+        .min()
+        .unwrap_or(bits)
 }

@@ -7,10 +7,11 @@ use crate::grip::Hand;
 use egui::{ColorImage, Context, Pos2, Rect, TextureHandle, TextureId, TextureOptions, Vec2};
 use glam::DVec3;
 use mesh::TriangleMesh;
+use pool::clock;
 use sculpt::Loader;
 use std::rc::Rc;
 use viewport::{Found, Frame, Look, Surface, View};
-use widgets::{clock, theme};
+use widgets::theme;
 
 /// A wish of the place to the page.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! The manager of the tracing workers: scheduler, packed scene, finished tiles.
 
-use crate::job::{Job, TILE, TileDone};
+use crate::job::{PictureJob, TILE, TileDone};
 use crate::progress::Progress;
 use crate::run::Plan;
 use crate::scheduler::{Command, Scheduler};
@@ -9,7 +9,6 @@ use crate::workers::{Manager, Message, Workers};
 use tools::message::DIFFERENT_VERSIONS;
 use tracer::{Known, Pass};
 use worker::engine::KEPT;
-use worker::message::{pack, unpack};
 use worker::{Answer, Kind, Request};
 
 /// A pool without its workers.
@@ -35,7 +34,7 @@ impl<W: Workers> Core<W> {
         }
     }
 
-    pub fn start(&mut self, job: Job<'_>, now: f64) {
+    pub fn start(&mut self, job: PictureJob<'_>, now: f64) {
         self.done.clear();
         let tiles: usize = job
             .size
@@ -62,7 +61,7 @@ impl<W: Workers> Core<W> {
             kind: job.kind,
             shared,
         };
-        match pack(&request) {
+        match postcard::to_allocvec(&request) {
             Ok(bytes) => self.begin = bytes,
             Err(error) => self.scheduler.unavailable(&error.to_string(), now),
         }
@@ -189,7 +188,7 @@ impl<W: Workers> Core<W> {
         // Packing fails only when memory runs out; the worker then misses a message, hangs as far
         // as the scheduler can see, and is replaced, but for [`Request::Learn`]: then it takes
         // samples again.
-        if let Ok(bytes) = pack(request) {
+        if let Ok(bytes) = postcard::to_allocvec(request) {
             self.workers.send(index, &bytes);
         }
     }
@@ -215,7 +214,7 @@ impl<W: Workers + 'static> Manager for Core<W> {
 
     fn receive(&mut self, index: usize, message: Message, now: f64) -> bool {
         let answers = match message {
-            Message::Bytes(bytes) => unpack(&bytes)
+            Message::Bytes(bytes) => postcard::from_bytes(&bytes)
                 .unwrap_or_else(|_| vec![Answer::Failed(DIFFERENT_VERSIONS.to_owned())]),
             Message::Failed(reason) => vec![Answer::Failed(reason)],
         };

@@ -17,7 +17,7 @@ pub const MAX_WORKERS: usize = 16;
 
 /// A picture to trace.
 #[derive(Clone, Copy, Debug)]
-pub struct Job<'a> {
+pub struct PictureJob<'a> {
     /// Scene to draw. With `settings.samples` 1 there is no [`Pass::Smooth`]: it would equal
     /// [`Pass::Full`].
     pub scene: &'a Arc<Scene>,
@@ -34,7 +34,7 @@ pub struct Job<'a> {
     pub small: bool,
 }
 
-impl Job<'_> {
+impl PictureJob<'_> {
     /// Whether it needs the root finders for comparison.
     #[must_use]
     pub fn compares(&self) -> bool {
@@ -45,7 +45,7 @@ impl Job<'_> {
 /// A finished tile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileDone {
-    /// The number of the [`Job`].
+    /// The number of the [`PictureJob`].
     pub generation: u64,
     /// The pass in which it was traced.
     pub pass: Pass,

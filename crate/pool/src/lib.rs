@@ -9,7 +9,7 @@
 //! # #[cfg(not(target_arch = "wasm32"))] {
 //! let mut pool = pool::Pool::new(|| {});
 //! let scene = std::sync::Arc::new(scene::Scene::default());
-//! pool.start(pool::Job {
+//! pool.start(pool::PictureJob {
 //!     scene: &scene,
 //!     camera: None,
 //!     size: [80, 60],
@@ -37,6 +37,7 @@
 
 pub mod assembly;
 mod assign;
+pub mod clock;
 mod core;
 pub mod job;
 pub mod life;
@@ -60,7 +61,7 @@ use threads as platform;
 use web as platform;
 
 pub use assembly::{Assembly, Change, Image};
-pub use job::{Job, TileDone};
+pub use job::{PictureJob, TileDone};
 pub use pool::Pool;
 pub use progress::Progress;
 pub use tickets::{Ticket, Tools};

@@ -1,7 +1,7 @@
 //! The pool of tracing workers.
 
 use crate::core::Core;
-use crate::job::{Job, TileDone, worker_count};
+use crate::job::{PictureJob, TileDone, worker_count};
 use crate::platform::{Crew, DIGGER, PlatformWorkers, Program, TRACER, cores};
 use crate::progress::Progress;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ impl Pool {
 
     /// Begins a picture and forgets the one before. The first one that needs the root finders for
     /// comparison loads the program that has them; once loaded, that traces all pictures.
-    pub fn start(&mut self, job: Job<'_>) {
+    pub fn start(&mut self, job: PictureJob<'_>) {
         let compares = job.compares() || self.compares && self.crew.is_loaded();
         if self.compares != compares {
             let program = if compares { DIGGER } else { TRACER };

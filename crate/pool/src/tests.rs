@@ -2,14 +2,13 @@
 
 use crate::Pool;
 use crate::core::Core;
-use crate::job::{Job, MAX_WORKERS, TILE, TileDone};
+use crate::job::{MAX_WORKERS, PictureJob, TILE, TileDone};
 use crate::workers::{Manager, Workers};
 use scene::{Digger, Scene, Settings};
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tracer::{Pass, Tile};
-use worker::message::unpack;
 use worker::{Answer, Engine, Kind, Request, Step};
 
 fn finish(pool: &mut Pool) -> Vec<TileDone> {
@@ -36,7 +35,7 @@ fn scene() -> Arc<Scene> {
 fn picture_is_complete_and_replaced_by_a_new_one() {
     let mut pool = Pool::new(|| {});
     let scene = scene();
-    let job = |generation| Job {
+    let job = |generation| PictureJob {
         scene: &scene,
         camera: None,
         size: [100, 70],
@@ -68,7 +67,7 @@ fn picture_completes_without_a_killed_worker() {
     assert!(!pool.kill_worker(MAX_WORKERS + 1));
     assert!(pool.kill_worker(0));
     let scene = scene();
-    let job = Job {
+    let job = PictureJob {
         scene: &scene,
         camera: None,
         size: [64, 64],
@@ -105,7 +104,7 @@ fn root_finders_for_comparison_are_there_where_they_are_asked_for() {
         scene.settings.digger = digger;
         let shared = Arc::new(scene.clone());
         let tiles = [Kind::Colours, Kind::Errors].map(|kind| {
-            let job = Job {
+            let job = PictureJob {
                 scene: &shared,
                 camera: None,
                 size: [40, 32],
@@ -150,7 +149,7 @@ impl Workers for Desks {
     fn end(&mut self, _: usize) {}
 
     fn send(&mut self, index: usize, request: &[u8]) {
-        self.0[index].accept(unpack(request).unwrap());
+        self.0[index].accept(postcard::from_bytes(request).unwrap());
     }
 }
 
@@ -165,7 +164,7 @@ impl Workers for Asked {
     fn end(&mut self, _: usize) {}
 
     fn send(&mut self, _: usize, request: &[u8]) {
-        if let Ok(Request::Begin { shared, .. }) = unpack(request) {
+        if let Ok(Request::Begin { shared, .. }) = postcard::from_bytes(request) {
             self.0 = Some(shared);
         }
     }
@@ -183,7 +182,7 @@ fn take_turns(
     let engines = (0..workers).map(|_| Engine::default()).collect();
     let mut core = Core::new(workers, Desks(engines));
     core.note_program(Ok(()), 0.0);
-    let job = Job {
+    let job = PictureJob {
         scene,
         camera: None,
         size: [300, 260],
@@ -305,7 +304,7 @@ fn picture_shows_nothing_of_an_older_one() {
             // cancelled.
             let breaks = (picture % 2 == 0).then_some(2 * picture);
             let which = picture % 2;
-            let job = Job {
+            let job = PictureJob {
                 scene: &scenes[which],
                 camera: None,
                 size,
@@ -375,7 +374,7 @@ impl Workers for Stuck {
     }
 
     fn send(&mut self, index: usize, request: &[u8]) {
-        let mut request = unpack(request).unwrap();
+        let mut request = postcard::from_bytes(request).unwrap();
         if let Request::Trace(orders) = &mut request {
             orders.retain(|order| order.pass != Pass::Smooth || order.tile != self.2);
         }
@@ -391,7 +390,7 @@ fn samples_of_a_failed_picture_are_dropped() {
     let tile = tracer::tiles(260, 200, TILE)[0];
     let mut core = Core::new(2, Stuck(desks, Vec::new(), tile));
     core.note_program(Ok(()), 0.0);
-    let job = Job {
+    let job = PictureJob {
         scene: &scene,
         camera: None,
         size: [260, 200],
@@ -424,11 +423,11 @@ fn samples_of_a_failed_picture_are_dropped() {
 #[test]
 fn samples_are_shared_only_where_useful() {
     let mut scene = scene();
-    let mut shared = |workers, change: fn(&mut Settings, &mut Job<'_>)| {
+    let mut shared = |workers, change: fn(&mut Settings, &mut PictureJob<'_>)| {
         let plain = Arc::default();
         let settings = &mut Arc::make_mut(&mut scene).settings;
         settings.samples = 2;
-        let mut job = Job {
+        let mut job = PictureJob {
             scene: &plain,
             camera: None,
             size: [300, 260],
@@ -440,7 +439,7 @@ fn samples_are_shared_only_where_useful() {
         let mut core = Core::new(workers, Asked(None));
         core.note_program(Ok(()), 0.0);
         core.start(
-            Job {
+            PictureJob {
                 scene: &scene,
                 ..job
             },

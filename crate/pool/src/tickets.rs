@@ -6,7 +6,7 @@ use crate::workers::{Manager, Message, Workers};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
-use tools::message::{DIFFERENT_VERSIONS, pack_request, unpack, unpack_answer};
+use tools::message::{DIFFERENT_VERSIONS, unpack_answer};
 use tools::{Answer, Job, Pace, Request};
 
 /// Carries out jobs apart from the app, in one worker for each [`Pace`]. Clones share the workers.
@@ -151,7 +151,7 @@ impl<W: Workers> Jobs<W> {
             id,
             work: job.into(),
         };
-        match pack_request(&request) {
+        match postcard::to_allocvec(&request) {
             Ok(request) => {
                 let worker = J::PACE as usize;
                 let place = news.clone();
@@ -231,10 +231,11 @@ impl<W: Workers> Jobs<W> {
 fn note<J: Job>(news: &mut News<J::Output>, event: Event<'_>) {
     match event {
         Event::Fraction(fraction) => news.fraction = Some(fraction),
-        Event::Part(bytes) => news.parts.extend(unpack(bytes)),
+        Event::Part(bytes) => news.parts.extend(postcard::from_bytes(bytes)),
         Event::Over(result) => {
-            let result =
-                result.and_then(|bytes| unpack(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned()));
+            let result = result.and_then(|bytes| {
+                postcard::from_bytes(bytes).map_err(|_| DIFFERENT_VERSIONS.to_owned())
+            });
             news.result = Some(result);
         }
     }

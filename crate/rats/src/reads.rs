@@ -52,8 +52,8 @@ fn join(folder: &str, name: &str) -> Option<String> {
 }
 
 /// Endings of the files that are no texts: images and meshes.
-pub const ASSET_ENDINGS: [&str; 10] = [
-    "png", "tif", "tiff", "tga", "gif", "mtv", "obj", "ply", "stl", "glb",
+pub const ASSET_ENDINGS: [&str; 11] = [
+    "png", "tif", "tiff", "tga", "gif", "mtv", "obj", "ply", "stl", "glb", "3mf",
 ];
 
 /// Number of [`ASSET_ENDINGS`] that are those of images.

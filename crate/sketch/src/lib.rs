@@ -2,7 +2,9 @@
 //!
 //! A [`Stroke`] gathers what a hand draws on the screen, [`fit()`] smooths it, [`create`] and
 //! [`extend`] write it into a text; [`remove`], [`remove_curve`], [`cut`] and [`widen`] change what
-//! is there.
+//! is there. On a picture, [`Sight`] leads from places to points of the screen and back, [`drawn`]
+//! finds the text's skeletons, [`edits`] makes changes of texts of gestures, and [`page`] is the
+//! text that drawing begins with.
 //!
 //! ```
 //! use glam::DVec3;
@@ -26,14 +28,20 @@
 //! ```
 
 mod block;
+pub mod drawn;
 mod edit;
+pub mod edits;
 mod fit;
+pub mod page;
+mod sight;
 mod stroke;
 
 pub use block::{Block, CurveText, NodeText};
+pub use drawn::Drawn;
 pub use edit::{
     Limb, Start, create, cut, extend, free_name, insert, remove, remove_curve, widen,
     without_commands,
 };
 pub use fit::{MOST_NODES, Sample, fit};
+pub use sight::Sight;
 pub use stroke::{Mark, Stroke};

@@ -1,15 +1,17 @@
 //! The strip at the top: examples, the name of the work, undo, and above all Share.
 
-use crate::app::App;
-use crate::command::Command;
+use crate::film::FilmPanel;
 use crate::icon::{self, Icon};
-use crate::work::{Origin, Work};
+use crate::page::Dialog;
+use crate::page::Page;
+use crate::wish::{LabWish, SculptWish, Setting, TextWish, Wish, Wishes, WorkWish};
 use crate::{download, places, theme};
+use document::work::{Origin, Work};
 use egui::{Align, Button, Layout, RichText, TextEdit, Ui};
 
 /// Shows the bar.
-pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
-    let (work, theme_choice) = (&app.work, app.settings.theme);
+pub fn show(page: &Page, film: &FilmPanel, ui: &mut Ui, narrow: bool, wishes: &mut Wishes) {
+    let (work, theme_choice) = (&page.work, page.settings.theme);
     let palette = theme::palette(ui.visuals());
     ui.horizontal_centered(|ui| {
         ui.add_space(if narrow { 6.0 } else { 12.0 });
@@ -29,14 +31,14 @@ pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
             .on_hover_text("Pick a model to start from, or one of your own");
         places::note(ui.ctx(), "examples", gallery.rect);
         if gallery.clicked() {
-            commands.push(Command::ShowGallery);
+            wishes.push(Wish::Open(Dialog::Gallery));
         }
         let lab = ui
             .button("Lab")
             .on_hover_text("See and try out how convolution surfaces work");
         places::note(ui.ctx(), "lab", lab.rect);
         if lab.clicked() {
-            commands.push(Command::ShowLab);
+            wishes.push(LabWish::Show);
         }
         // A narrow page has it in its menu.
         if !narrow {
@@ -45,11 +47,11 @@ pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
                 .on_hover_text("Push and pull a mesh with virtual tools");
             places::note(ui.ctx(), "sculpt", sculpt.rect);
             if sculpt.clicked() {
-                commands.push(Command::ShowSculpt);
+                wishes.push(SculptWish::Show);
             }
         }
         if !narrow {
-            name(ui, work, commands);
+            name(ui, work, wishes);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(if narrow { 6.0 } else { 12.0 });
@@ -60,18 +62,18 @@ pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
                 .on_hover_text("Copy a link that carries the text and the view");
             places::note(ui.ctx(), "share", share.rect);
             if share.clicked() {
-                commands.push(Command::Share);
+                wishes.push(WorkWish::Share);
             }
             if narrow {
-                more(app, ui, commands);
+                more(page, film, ui, wishes);
             } else {
                 if icon::button(ui, Icon::Help, "How it works", true).clicked() {
-                    commands.push(Command::ShowHelp);
+                    wishes.push(Wish::Open(Dialog::Help));
                 }
                 let next = theme::other(ui);
                 let tip = format!("Colours: {}", theme::label(theme_choice));
                 if icon::button(ui, Icon::Theme, &tip, true).clicked() {
-                    commands.push(Command::SetTheme(next));
+                    wishes.push(Setting::Theme(next));
                 }
             }
             ui.spacing_mut().item_spacing.x = 2.0;
@@ -82,18 +84,18 @@ pub fn show(app: &App, ui: &mut Ui, narrow: bool, commands: &mut Vec<Command>) {
                 work.session.can_redo(),
             );
             if redo.clicked() {
-                commands.push(Command::Redo);
+                wishes.push(TextWish::Redo);
             }
             let undo = icon::button(ui, Icon::Undo, "Undo (Ctrl+Z)", work.session.can_undo());
             places::note(ui.ctx(), "undo", undo.rect);
             if undo.clicked() {
-                commands.push(Command::Undo);
+                wishes.push(TextWish::Undo);
             }
         });
     });
 }
 
-fn name(ui: &mut Ui, work: &Work, commands: &mut Vec<Command>) {
+fn name(ui: &mut Ui, work: &Work, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let mut name = work.name.clone();
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -124,12 +126,12 @@ fn name(ui: &mut Ui, work: &Work, commands: &mut Vec<Command>) {
         ui.label(RichText::new(kind).color(palette.weak).size(12.5));
     }
     if field.changed() {
-        commands.push(Command::Rename(name));
+        wishes.push(WorkWish::Rename(name));
     }
 }
 
-fn more(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    let choice = app.settings.theme;
+fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
+    let choice = page.settings.theme;
     let button = icon::button(ui, Icon::More, "More", true);
     places::note(ui.ctx(), "more", button.rect);
     egui::Popup::menu(&button).show(|ui| {
@@ -137,17 +139,17 @@ fn more(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
         let sculpt = ui.button("Sculpt");
         places::note(ui.ctx(), "sculpt", sculpt.rect);
         if sculpt.clicked() {
-            commands.push(Command::ShowSculpt);
+            wishes.push(SculptWish::Show);
         }
         if ui.button("How it works").clicked() {
-            commands.push(Command::ShowHelp);
+            wishes.push(Wish::Open(Dialog::Help));
         }
         if ui.button("Open files…").clicked() {
-            commands.push(Command::PickFiles);
+            wishes.push(WorkWish::PickFiles);
         }
         ui.separator();
         download::label(ui, "Download");
-        download::menu(app, ui, commands);
+        download::menu(page, film, ui, wishes);
         ui.separator();
         for theme in [
             theme::Choice::System,
@@ -156,7 +158,7 @@ fn more(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
         ] {
             let label = format!("Colours: {}", theme::label(theme));
             if ui.selectable_label(choice == theme, label).clicked() {
-                commands.push(Command::SetTheme(theme));
+                wishes.push(Setting::Theme(theme));
             }
         }
     });

@@ -1,7 +1,7 @@
 //! Saves the text and shows a message when the program stops unexpectedly.
 
-use crate::app::Parts;
-use crate::platform;
+use crate::page::Parts;
+use browser;
 use std::cell::{Cell, RefCell};
 use wasm_bindgen::JsValue;
 
@@ -23,11 +23,11 @@ pub fn install(parts: Parts) {
     std::panic::set_hook(Box::new(|info| {
         console_error_panic_hook::hook(info);
         HAS_STOPPED.set(true);
-        platform::set_stopped(true);
+        browser::set_stopped(true);
         let saved = PARTS.with(|parts| {
             let parts = parts.try_borrow().ok()?;
             let mut shelf = parts.as_ref()?.shelf.try_borrow_mut().ok()?;
-            shelf.flush(platform::unix_time()).ok()
+            shelf.flush(browser::unix_time()).ok()
         });
         let text = if saved.is_some() {
             "Sinew stopped unexpectedly. Your text is saved; reload the page to go on."

@@ -1,21 +1,23 @@
 //! The menu of everything that the page can save as a file.
 
-use crate::app::App;
-use crate::command::Command;
-use crate::recording::Kind;
+use crate::film::FilmPanel;
+use crate::page::Dialog;
+use crate::page::Page;
+use crate::wish::{FilmWish, ViewWish, Wish, Wishes, WorkWish};
 use crate::{places, theme};
+use browser::recording::Kind;
 use egui::{Button, RichText, Ui};
 
 /// Lists what there is to download.
-pub fn menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+pub fn menu(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     ui.set_width(270.0);
-    let size = app.renderer.image().map(|image| image.size);
+    let size = page.renderer.image().map(|image| image.size);
     let picture = match size {
         Some([width, height]) => format!("PNG, {width} × {height} pixels"),
         None => String::from("not traced yet"),
     };
     if row(ui, "download picture", "Picture", &picture) {
-        commands.push(Command::SavePng);
+        wishes.push(ViewWish::Save);
     }
     if row(
         ui,
@@ -23,7 +25,7 @@ pub fn menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
         "3D model …",
         "a mesh to print, or for Blender: STL, 3MF, GLB, OBJ, PLY",
     ) {
-        commands.push(Command::ShowMesh);
+        wishes.push(Wish::Open(Dialog::Mesh));
     }
     if row(
         ui,
@@ -31,17 +33,17 @@ pub fn menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
         "Project",
         "one zip of all texts, images and meshes",
     ) {
-        commands.push(Command::SaveProject);
+        wishes.push(WorkWish::Save);
     }
-    if app.work.session.is_animated() {
+    if page.work.session.is_animated() {
         ui.separator();
-        films(app, ui, commands);
+        films(film, ui, wishes);
     }
 }
 
 /// Lists the kinds of files that a film can become.
-pub fn films(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    let formats = app.videos.as_deref().unwrap_or_default();
+pub fn films(film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
+    let formats = film.formats.as_deref().unwrap_or_default();
     for kind in Kind::ALL {
         if kind.is_video() && formats.iter().all(|format| format.kind != kind) {
             continue;
@@ -49,7 +51,7 @@ pub fn films(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = format!("download {}", kind.extension());
         let title = format!("Film: {}", kind.label());
         if row(ui, &name, &title, kind.facts()) {
-            commands.push(Command::SaveFilm(kind));
+            wishes.push(FilmWish::Save(kind));
         }
     }
 }

@@ -1,8 +1,12 @@
 //! Entry point of the page's program.
 
-use crate::app::{App, Parts};
-use crate::request::Request;
-use crate::{boot, crash, emulation, handle, platform};
+use crate::app::App;
+use crate::crash;
+use crate::page::Parts;
+use crate::scripts::handle;
+use crate::scripts::request::Request;
+use browser::boot;
+use browser::emulation;
 use std::cell::Cell;
 use wasm_bindgen::prelude::*;
 
@@ -25,7 +29,7 @@ pub fn start() -> Result<(), JsValue> {
         let started = boot::start(CANVAS, move |context, backend| {
             if again.replace(true) {
                 // The GPU was lost, not because of the text: go on drawing it.
-                platform::set_stopped(false);
+                browser::set_stopped(false);
             }
             let state = context.wgpu_render_state.clone();
             App::new(&context.egui_ctx, state, backend, parts.clone())
@@ -60,7 +64,7 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
     });
     window.add_event_listener_with_callback("keydown", keys.as_ref().unchecked_ref())?;
     keys.forget();
-    platform::watch_pens();
+    browser::watch_pens();
     // A page that goes out of sight may never come back; phones end it without a further event.
     for event in ["pagehide", "visibilitychange"] {
         let shelf = parts.shelf.clone();
@@ -72,11 +76,11 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
         on(&target, event, move || {
             // A page that the user leaves early has not stopped unexpectedly.
             if event == "pagehide" && !crash::has_stopped() {
-                platform::set_stopped(false);
+                browser::set_stopped(false);
             }
             if let Ok(mut shelf) = shelf.try_borrow_mut() {
                 // A refused write was already reported, or will be at the next edit.
-                let _ = shelf.flush(platform::unix_time());
+                let _ = shelf.flush(browser::unix_time());
             }
         })?;
     }
@@ -96,7 +100,7 @@ fn on(
 
 impl eframe::App for App {
     fn raw_input_hook(&mut self, _ctx: &egui::Context, _input: &mut egui::RawInput) {
-        crate::frames::begin();
+        browser::frames::begin();
     }
 
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {

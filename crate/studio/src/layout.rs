@@ -1,46 +1,35 @@
 //! Layout of the page. Wide: text on the left, picture on the right, with a split that can be
 //! dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
 
-use crate::app::{App, Dialog, StandIn, Tab};
-use crate::command::Command;
-use crate::hands::Around;
 use crate::icon::{self, Icon};
-use crate::render::Phase;
+use crate::page::{Dialog, Page, Tab};
+use crate::panel::{Panel as _, Panels};
 use crate::settings::Show;
+use crate::stage::pencil;
+use crate::text::files;
 use crate::theme::{self, STRIP};
-use crate::view::{self, Grasp, Scenery};
-use crate::{
-    bar, download, files, fit_panel, intake, lamp, notice, pencil, places, platform, problems,
-    screen, size, sliders, status, timeline, tray,
-};
+use crate::wish::{Setting, ViewWish, Wish, Wishes};
+use crate::{bar, download, fit, notice, places, problems, screen, sculpt, sliders, status, tray};
+use document::{intake, size};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
-    RichText, ScrollArea, Stroke, Ui, Vec2, pos2, vec2,
+    RichText, ScrollArea, Stroke, Ui, pos2, vec2,
 };
 
 /// Draws everything.
-pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+pub fn show(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
     places::clear(ui.ctx());
-    if app.lab.is_open() {
-        let busy = app.renderer.phase() == Phase::Tracing;
-        let frame = lab::Frame {
-            dataset: app.work.session.dataset(),
-            tracing: busy.then(|| app.renderer.progress().fraction),
-            theme: app.settings.theme,
-            now: platform::now(ui.ctx()),
-        };
-        let mut wishes = Vec::new();
-        lab::show(&mut app.lab, &frame, ui, &mut wishes);
-        commands.extend(wishes.into_iter().filter_map(Command::of_lab));
+    if page.is_lab_open {
+        panels.lab.show(page, ui, wishes);
         return;
     }
-    if app.sculpts() {
+    if panels.sculpt.is_open() {
         let all = ui.max_rect();
-        app.sculpt(ui, commands);
-        if let Some(notice) = &app.notice {
-            notice::show(ui, all, notice, commands);
+        panels.sculpt.show(page, ui, wishes);
+        if let Some(notice) = &page.notice {
+            notice::show(ui, all, notice, wishes);
         }
-        dialogs(app, ui.ctx(), commands);
+        dialogs(page, panels, ui.ctx(), wishes);
         return;
     }
     let narrow = screen::is_narrow(ui.ctx());
@@ -51,56 +40,40 @@ pub fn show(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
     Panel::top("bar")
         .exact_size(bar_height)
         .frame(flat)
-        .show(ui, |ui| {
-            bar::show(app, ui, narrow, commands);
-        });
+        .show(ui, |ui| bar::show(page, &panels.film, ui, narrow, wishes));
     Panel::bottom("status")
         .exact_size(if narrow { 40.0 } else { 32.0 })
         .frame(flat)
         .show(ui, |ui| {
-            let enabled = app.work.session.is_enabled();
-            places::note(ui.ctx(), "status", ui.max_rect());
-            let reading = app.reading.current();
-            status::show(
-                ui,
-                &app.renderer,
-                (app.backend, app.stand_in),
-                enabled,
-                reading,
-                narrow,
-                commands,
-            );
+            status::show(page, panels.stage.stand_in, ui, narrow, wishes);
         });
     if narrow {
-        narrow_page(app, ui, commands);
+        narrow_page(page, panels, ui, wishes);
     } else {
         let width = ui.available_width();
         let panel = Panel::left("text")
-            .default_size((width * app.settings.split).clamp(300.0, 640.0))
+            .default_size((width * page.settings.split).clamp(300.0, 640.0))
             .size_range(260.0..=(width - 260.0).max(260.0))
             .show_separator_line(true)
             .frame(flat);
-        let side = panel.show(ui, |ui| text_side(app, ui, commands));
-        app.settings.split = (side.response.rect.width() / width.max(1.0)).clamp(0.15, 0.85);
+        let side = panel.show(ui, |ui| text_side(page, panels, ui, wishes));
+        page.settings.split = (side.response.rect.width() / width.max(1.0)).clamp(0.15, 0.85);
         CentralPanel::no_frame().show(ui, |ui| {
             let all = ui.max_rect();
             let head = Rect::from_min_size(all.min, vec2(all.width(), STRIP));
-            picture_head(app, ui, head, commands);
+            picture_head(page, panels, ui, head, wishes);
             ui.painter().hline(all.x_range(), head.bottom(), line);
-            stage(
-                app,
-                ui,
-                Rect::from_min_max(head.left_bottom(), all.max),
-                commands,
-            );
+            let below = Rect::from_min_max(head.left_bottom(), all.max);
+            stage(page, panels, ui, below, wishes);
         });
     }
-    dialogs(app, ui.ctx(), commands);
+    dialogs(page, panels, ui.ctx(), wishes);
     drop_hint(ui.ctx());
 }
 
 /// Shows the left side of a wide page: files, text, sliders, problems.
-fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+fn text_side(page: &Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
+    let session = &page.work.session;
     let palette = theme::palette(ui.visuals());
     let inset = Frame::new()
         .fill(palette.panel)
@@ -109,54 +82,37 @@ fn text_side(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         .exact_size(STRIP)
         .frame(Frame::new().fill(palette.panel))
         .show(ui, |ui| {
-            files::show(ui, &app.work.session, &mut app.editor, true, commands)
+            files::show(ui, session, &mut panels.text.editor, true, wishes);
         });
-    if !app.work.session.diagnostics().is_empty() {
+    if !session.diagnostics().is_empty() {
         Panel::bottom("problems")
             .resizable(true)
             .default_size(130.0)
             .size_range(64.0..=420.0)
             .frame(inset)
-            .show(ui, |ui| problem_list(app, ui, commands));
+            .show(ui, |ui| problems::show(page, ui, wishes));
     }
-    if app.fitting.open {
+    if panels.fit.0.open {
         Panel::bottom("fit")
-            .exact_size(fit_panel::HEIGHT)
+            .exact_size(fit::HEIGHT)
             .frame(inset)
-            .show(ui, |ui| fit_panel::show(app, ui, commands));
+            .show(ui, |ui| panels.fit.show(page, ui, wishes));
     }
-    if !app.work.session.compilation().hot.is_empty() {
-        let rows = sliders::height(ui, &app.work.session.compilation().hot);
+    if !session.compilation().hot.is_empty() {
+        let rows = sliders::height(ui, &session.compilation().hot);
         let most = (0.4 * ui.available_height()).clamp(60.0, 260.0);
         Panel::bottom("sliders")
             .exact_size(rows.min(most) + 42.0)
             .frame(inset)
-            .show(ui, |ui| slider_list(app, ui, commands));
+            .show(ui, |ui| panels.sliders.show(page, ui, wishes));
     }
-    CentralPanel::no_frame().show(ui, |ui| text_or_asset(app, ui, commands));
+    CentralPanel::no_frame().show(ui, |ui| text(page, panels, ui, wishes));
 }
 
-/// Shows the editor, or the image or mesh whose tab is open.
-fn text_or_asset(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    let assets = app.work.session.assets();
-    let shown = app.editor.asset.as_ref();
-    match shown.and_then(|name| assets.iter().find(|asset| asset.name == *name)) {
-        Some(asset) => {
-            if app.asset_view.show(ui, asset, commands) {
-                app.editor.asset = None;
-            }
-        }
-        None => {
-            app.editor.asset = None;
-            places::note(ui.ctx(), "editor", ui.available_rect_before_wrap());
-            let hints = app.settings.hints;
-            app.editor.lit = app.hands.lit(&app.work.session);
-            if app.is_short_of_time() {
-                ui.visuals_mut().text_cursor.blink = false;
-            }
-            app.editor.show(ui, &app.work.session, hints, commands);
-        }
-    }
+/// Shows the editor, in which the command of the chosen shape is lit.
+fn text(page: &Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
+    panels.text.editor.lit = panels.stage.hands.lit(&page.work.session);
+    panels.text.show(page, ui, wishes);
 }
 
 /// Shows the accepted kinds of files while files are dragged over the page.
@@ -178,63 +134,34 @@ fn drop_hint(ctx: &Context) {
     painter.galley(place.center() - galley.size() / 2.0, galley, palette.strong);
 }
 
-fn problem_list(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    places::note(ui.ctx(), "problems", ui.max_rect());
-    ScrollArea::vertical()
-        .id_salt("problems")
-        .min_scrolled_height(0.0)
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            let session = &app.work.session;
-            problems::show(ui, session.project(), session.diagnostics(), commands);
-        });
-}
-
-fn slider_list(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    let palette = theme::palette(ui.visuals());
-    places::note(ui.ctx(), "sliders", ui.max_rect());
-    if !screen::is_narrow(ui.ctx()) {
-        ui.label(RichText::new("Sliders").size(12.5).color(palette.weak))
-            .on_hover_text("Variables marked hot in the text");
-    }
-    ScrollArea::vertical()
-        .id_salt("sliders")
-        .min_scrolled_height(0.0)
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            let hot = &app.work.session.compilation().hot;
-            app.sliders.show(ui, hot, commands);
-        });
-}
-
 /// Shows the strip above the picture: draft or picture, size, download.
-fn picture_head(app: &App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
+fn picture_head(page: &Page, panels: &Panels, ui: &mut Ui, place: Rect, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     ui.painter().rect_filled(place, 0.0, palette.panel);
     let part = places::part("picture head", place);
     let mut ui = ui.new_child(part.layout(Layout::left_to_right(Align::Center)));
     ui.add_space(10.0);
-    if app.draft.is_some() {
-        show_choice(app, &mut ui, commands);
+    if page.screen.has_draft {
+        show_choice(page, &mut ui, wishes);
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.add_space(10.0);
         let tip = "Download: picture (Ctrl+S), project";
         let save = icon::button(ui, Icon::Save, tip, true);
         places::note(ui.ctx(), "download", save.rect);
-        Popup::menu(&save).show(|ui| download::menu(app, ui, commands));
+        Popup::menu(&save).show(|ui| download::menu(page, &panels.film, ui, wishes));
         if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
-            commands.push(Command::ShowAll);
+            wishes.push(ViewWish::ShowAll);
         }
-        size_menu(app, ui, commands);
-        if fit_panel::is_offered(app) {
-            fit_panel::button(app, ui, commands);
+        size_menu(page, ui, wishes);
+        if panels.fit.0.is_offered() {
+            panels.fit.button(ui, wishes);
         }
-        reset_view(app, ui, commands);
+        reset_view(page, ui, wishes);
     });
 }
 
-fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
+fn show_choice(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let layout = Layout::left_to_right(Align::Center);
     let background = ui.painter().add(egui::Shape::Noop);
@@ -256,7 +183,7 @@ fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
             ),
             (Show::Traced, "Traced", "Only the ray-traced picture"),
         ] {
-            let chosen = app.settings.show == show;
+            let chosen = page.settings.show == show;
             let colour = if chosen { palette.strong } else { palette.weak };
             let button = Button::new(RichText::new(text).size(12.5).color(colour))
                 .corner_radius(theme::ROUND - 1)
@@ -268,7 +195,7 @@ fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
             let button = ui.add(button).on_hover_text(tip);
             places::note(ui.ctx(), format!("show {text}").to_lowercase(), button.rect);
             if button.clicked() {
-                commands.push(Command::SetShow(show));
+                wishes.push(Setting::Show(show));
             }
         }
     });
@@ -277,11 +204,11 @@ fn show_choice(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.painter().set(background, shape);
 }
 
-fn size_menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    let label = RichText::new(app.settings.size.label()).size(12.5);
+fn size_menu(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
+    let label = RichText::new(page.settings.size.label()).size(12.5);
     let menu = ui.menu_button(label, |ui| {
         ui.set_min_width(170.0);
-        let [width, height] = app.work.session.frame();
+        let [width, height] = page.work.session.frame();
         for choice in size::Choice::ALL {
             let text = match choice {
                 size::Choice::Fit => choice.label().to_owned(),
@@ -291,25 +218,25 @@ fn size_menu(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
                 }
             };
             if ui
-                .selectable_label(app.settings.size == choice, text)
+                .selectable_label(page.settings.size == choice, text)
                 .clicked()
             {
-                commands.push(Command::SetSize(choice));
+                wishes.push(Setting::Size(choice));
             }
         }
     });
     menu.response.on_hover_text("Size of the traced picture");
 }
 
-fn reset_view(app: &App, ui: &mut Ui, commands: &mut Vec<Command>) {
-    if app.work.session.user_camera().is_some() {
+fn reset_view(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
+    if page.work.session.user_camera().is_some() {
         let reset = ui.button(RichText::new("Reset view").size(12.5));
         places::note(ui.ctx(), "reset view", reset.rect);
         if reset
             .on_hover_text("Go back to the camera of the text")
             .clicked()
         {
-            commands.push(Command::SetCamera(None));
+            wishes.push(ViewWish::SetCamera(None));
         }
     }
 }
@@ -321,195 +248,107 @@ fn has_tray(place: Rect, narrow: bool) -> bool {
     place.height() > height + if narrow { 60.0 } else { 160.0 }
 }
 
+/// Cuts a strip off the lower end of a place, and returns the strip as a space for widgets.
+fn strip(ui: &mut Ui, place: &mut Rect, height: f32, name: &str) -> Ui {
+    let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
+    place.max.y = strip.top();
+    let palette = theme::palette(ui.visuals());
+    ui.painter().rect_filled(strip, 0.0, palette.panel);
+    ui.new_child(places::part(name, strip))
+}
+
 /// Shows the picture in a place, with the strips below it and everything that is drawn on it.
-fn stage(app: &mut App, ui: &mut Ui, place: Rect, commands: &mut Vec<Command>) {
+fn stage(page: &mut Page, panels: &mut Panels, ui: &mut Ui, mut place: Rect, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let narrow = screen::is_narrow(ui.ctx());
+    let line = Stroke::new(1.0, palette.line);
     ui.painter().rect_filled(place, 0.0, palette.stage);
-    let mut place = place;
-    if app.work.session.is_animated() {
+    if page.work.session.is_animated() {
         let height = if narrow { 48.0 } else { STRIP };
-        let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
-        place.max.y = strip.top();
-        ui.painter().rect_filled(strip, 0.0, palette.panel);
-        let mut strip = ui.new_child(places::part("timeline", strip));
-        timeline::show(app, &mut strip, commands);
+        let mut strip = strip(ui, &mut place, height, "timeline");
+        panels.film.show(page, &mut strip, wishes);
     }
-    let draws = app.pencil.tool().is_some();
-    if draws {
-        let strip = Rect::from_min_max(
-            pos2(place.left(), place.bottom() - pencil::bar::HEIGHT),
-            place.max,
-        );
-        place.max.y = strip.top();
-        ui.painter().rect_filled(strip, 0.0, palette.panel);
-        let line = Stroke::new(1.0, palette.line);
-        ui.painter().hline(strip.x_range(), strip.top(), line);
-        let mut strip = ui.new_child(places::part("pencil", strip));
-        pencil::bar::show(app, &mut strip, commands);
-    } else if app.tray.is_used() && has_tray(place, narrow) {
-        let height = tray::strip::height(narrow, app.tray.folded);
-        let strip = Rect::from_min_max(pos2(place.left(), place.bottom() - height), place.max);
-        place.max.y = strip.top();
-        ui.painter().rect_filled(strip, 0.0, palette.panel);
-        let line = Stroke::new(1.0, palette.line);
-        ui.painter().hline(strip.x_range(), strip.top(), line);
-        let mut strip = ui.new_child(places::part("tray", strip));
-        tray::strip::show(&mut strip, &app.tray, narrow, commands);
+    if panels.stage.pencil.tool().is_some() {
+        let mut strip = strip(ui, &mut place, pencil::bar::HEIGHT, "pencil");
+        ui.painter().hline(place.x_range(), place.bottom(), line);
+        pencil::bar::show(&mut panels.stage.pencil, &mut strip, wishes);
+    } else if panels.tray.is_used() && has_tray(place, narrow) {
+        let height = tray::strip::height(narrow, panels.tray.folded);
+        let mut strip = strip(ui, &mut place, height, "tray");
+        ui.painter().hline(place.x_range(), place.bottom(), line);
+        panels.tray.show(page, &mut strip, wishes);
     }
-    let margin = if narrow { 0.0 } else { 18.0 };
-    let scale = ui.ctx().pixels_per_point();
-    let rect = view::fit(place.shrink(margin), app.work.session.frame(), scale);
-    // Sizes are taken in whole pixels, so that a picture is not traced anew for a rounding error.
-    app.place = [
-        (rect.width() * scale).round(),
-        (rect.height() * scale).round(),
-    ];
-    places::note(ui.ctx(), "picture", rect);
-    let now = platform::now(ui.ctx());
-    let slow = app.rest > 0.0;
-    if slow && app.renderer.is_near(view::SOON, now) {
-        // If it does not come by then, the draft is drawn.
-        ui.ctx().request_repaint_after_secs(view::SOON as f32);
-    }
-    let session = &app.work.session;
-    let mut stand_in = StandIn::Draft;
-    let draft = if view::needs_draft(app.settings.show, session, &app.renderer, slow, now) {
-        match &mut app.draft {
-            Some(draft) => {
-                let mesh = app.live.mesh(session, now);
-                stand_in = mesh.map_or(StandIn::Draft, |_| StandIn::Mesh);
-                draft.texture(session, app.place, mesh)
-            }
-            None => app.apart.texture(ui.ctx(), session, app.place),
-        }
+    panels.stage.caret = panels.text.editor.caret();
+    panels.stage.points = if panels.fit.0.open {
+        panels.fit.0.points()
     } else {
-        None
+        Vec::new()
     };
-    let stand_in = draft.map(|_| stand_in);
-    if app.stand_in != stand_in {
-        app.stand_in = stand_in;
-        // The status line, which names it, was drawn before.
-        ui.ctx().request_repaint();
-    }
-    let scenery = Scenery {
-        session,
-        renderer: &app.renderer,
-        draft,
-        show: app.settings.show,
-        now,
-        hint: !app.settings.turned,
-        round: if narrow { 0.0 } else { 5.0 },
-        grasp: Grasp {
-            draws,
-            wheel: app.pencil.takes_wheel(),
-            pinch: app.pencil.takes_pinch(),
-        },
-    };
-    let picture = view::show(ui, rect, &scenery, commands);
-    let around = Around {
-        session,
-        caret: app.editor.caret(),
-        covered: app.dialog.is_some(),
-        draft: draft.is_some(),
-        touch: app.touch == Some(true),
-    };
-    if app.fitting.open {
-        let sight = crate::hands::Sight::new(&session.camera(), rect);
-        let painter = ui.painter().with_clip_rect(rect);
-        fit_panel::points(&app.fitting, &painter, &sight, rect);
-    }
-    if draws {
-        let fresh = app.renderer.texture();
-        let fresh = fresh.is_some_and(|(_, generation)| generation == session.generation());
-        let around = pencil::Around {
-            session,
-            covered: app.dialog.is_some(),
-            late: draft.is_none() && !fresh,
-            touch: app.touch == Some(true),
-        };
-        app.pencil.show(ui, rect, &picture, &around, commands);
-        if let Some(pair) = app.pencil.alternative(session)
-            && session.is_enabled()
-            && pencil::bar::turn(ui, rect, pair)
-        {
-            app.pencil.turn(session, commands);
-        }
-    } else {
-        app.hands.show(ui, rect, &picture, &around, commands);
-        let is_well = session.is_enabled() && session.is_compiled() && session.errors() == 0;
-        if is_well && app.dialog.is_none() && lamp::is_dark(&session.compilation().scene) {
-            lamp::show(ui, rect, session, commands);
-        }
-        if session.is_enabled() && app.dialog.is_none() {
-            pencil::bar::start(ui, rect, commands);
-        }
-    }
-    if let Some(notice) = &app.notice {
-        notice::show(ui, place, notice, commands);
+    let mut inner = ui.new_child(places::part("stage", place));
+    panels.stage.show(page, &mut inner, wishes);
+    page.screen.place = panels.stage.place;
+    if let Some(notice) = &page.notice {
+        notice::show(ui, place, notice, wishes);
     }
     let rects = places::all(ui.ctx());
     let covers = ["notice", "draw other"]
         .iter()
         .filter_map(|name| rects.get(*name));
-    app.pencil.keep_off(covers.copied().collect());
+    let covers = covers.copied().collect();
+    panels.stage.pencil.keep_off(covers);
 }
 
 /// Shows a narrow page below the bar.
-fn narrow_page(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+fn narrow_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let all = ui.available_rect_before_wrap();
-    let [w, h] = app.work.session.frame().map(|side| side as f32);
+    let [w, h] = page.work.session.frame().map(|side| side as f32);
     // With the keyboard up there is little room; the text then matters more.
     let share = if all.height() < 420.0 { 0.34 } else { 0.46 };
-    if app.pencil.tool().is_some() {
-        stage(app, ui, all, commands);
+    if panels.stage.pencil.tool().is_some() {
+        stage(page, panels, ui, all, wishes);
         return;
     }
     let mut height = (all.width() * h / w).min(all.height() * share).max(80.0);
-    if app.tray.is_used() && all.height() >= 420.0 {
+    if panels.tray.is_used() && all.height() >= 420.0 {
         height += tray::strip::height(true, false);
     }
     let split = all.top() + height;
     stage(
-        app,
+        page,
+        panels,
         ui,
         Rect::from_min_max(all.min, pos2(all.right(), split)),
-        commands,
+        wishes,
     );
     let tabs = Rect::from_min_size(pos2(all.left(), split), vec2(all.width(), 48.0));
     ui.painter().rect_filled(tabs, 0.0, palette.panel);
     let part = places::part("tabs", tabs).layout(Layout::left_to_right(Align::Center));
-    tab_row(app, &mut ui.new_child(part), commands);
+    tab_row(page, panels, &mut ui.new_child(part), wishes);
     let below = Rect::from_min_max(tabs.left_bottom(), all.max);
     ui.painter().rect_filled(below, 0.0, palette.panel);
     let mut ui = ui.new_child(places::part("below", below));
-    match app.tab {
+    match page.tab {
         Tab::Text => {
-            let session = &app.work.session;
+            let session = &page.work.session;
             if session.project().files.len() > 1 || !session.assets().is_empty() {
                 let strip = Rect::from_min_size(below.min, vec2(below.width(), 46.0));
                 let mut strip = ui.new_child(places::part("files", strip));
-                files::show(
-                    &mut strip,
-                    &app.work.session,
-                    &mut app.editor,
-                    false,
-                    commands,
-                );
+                let editor = &mut panels.text.editor;
+                files::show(&mut strip, session, editor, false, wishes);
                 ui.add_space(46.0);
             }
-            text_or_asset(app, &mut ui, commands);
+            text(page, panels, &mut ui, wishes);
         }
         Tab::Sliders => {
             Frame::new().inner_margin(14).show(&mut ui, |ui| {
-                if app.work.session.compilation().hot.is_empty() {
+                if page.work.session.compilation().hot.is_empty() {
                     ui.weak(
                         "Write “hot” after a variable, as in  var r = 0.3 hot,  \
                             and it gets a slider here.",
                     );
                 } else {
-                    slider_list(app, ui, commands);
+                    panels.sliders.show(page, ui, wishes);
                 }
             });
         }
@@ -518,28 +357,28 @@ fn narrow_page(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
                 ScrollArea::vertical()
                     .id_salt("fit")
                     .auto_shrink(false)
-                    .show(ui, |ui| fit_panel::show(app, ui, commands));
+                    .show(ui, |ui| panels.fit.show(page, ui, wishes));
             });
         }
         Tab::Problems => {
             Frame::new().inner_margin(10).show(&mut ui, |ui| {
-                if app.work.session.diagnostics().is_empty() {
+                if page.work.session.diagnostics().is_empty() {
                     ui.weak("No problems.");
                 } else {
-                    problem_list(app, ui, commands);
+                    problems::show(page, ui, wishes);
                 }
             });
         }
     }
 }
 
-fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
+fn tab_row(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     ui.add_space(8.0);
     ui.spacing_mut().item_spacing.x = 4.0;
-    let problems = app.work.session.diagnostics().len();
-    let errors = app.work.session.errors() > 0;
-    let sliders = app.work.session.compilation().hot.len();
+    let problems = page.work.session.diagnostics().len();
+    let errors = page.work.session.errors() > 0;
+    let sliders = page.work.session.compilation().hot.len();
     let mut tabs = vec![(Tab::Text, String::from("Text"))];
     for (tab, title, count) in [
         (Tab::Sliders, "Sliders", sliders),
@@ -551,13 +390,13 @@ fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         };
         tabs.push((tab, title));
     }
-    if fit_panel::is_offered(app) {
+    if panels.fit.0.is_offered() {
         tabs.push((Tab::Fit, String::from("Fit")));
-    } else if app.tab == Tab::Fit {
-        app.tab = Tab::Text;
+    } else if page.tab == Tab::Fit {
+        page.tab = Tab::Text;
     }
     for (tab, text) in tabs {
-        let open = app.tab == tab;
+        let open = page.tab == tab;
         let colour = match (open, tab == Tab::Problems && errors) {
             (_, true) => palette.error,
             (true, _) => palette.strong,
@@ -571,25 +410,25 @@ fn tab_row(app: &mut App, ui: &mut Ui, commands: &mut Vec<Command>) {
         let button = ui.add(button);
         places::note(ui.ctx(), format!("tab {tab:?}").to_lowercase(), button.rect);
         if button.clicked() {
-            app.tab = tab;
-            app.fitting.open |= tab == Tab::Fit;
+            page.tab = tab;
+            panels.fit.0.open |= tab == Tab::Fit;
         }
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.add_space(6.0);
-        let is_moved = app.work.session.user_camera().is_some();
+        let is_moved = page.work.session.user_camera().is_some();
         if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
-            commands.push(Command::ShowAll);
+            wishes.push(ViewWish::ShowAll);
         }
         let tip = "Go back to the camera of the text";
         if is_moved && icon::button(ui, Icon::Home, tip, true).clicked() {
-            commands.push(Command::SetCamera(None));
+            wishes.push(ViewWish::SetCamera(None));
         }
     });
 }
 
-fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
-    let Some(dialog) = app.dialog else {
+fn dialogs(page: &Page, panels: &mut Panels, ctx: &Context, wishes: &mut Wishes) {
+    let Some(dialog) = page.dialog else {
         return;
     };
     let screen = ctx.content_rect();
@@ -619,31 +458,18 @@ fn dialogs(app: &mut App, ctx: &Context, commands: &mut Vec<Command>) {
             ui.set_width(size.x - inner);
             ui.set_max_height(size.y - inner);
             match dialog {
-                Dialog::Gallery => {
-                    let shelf = app.work.shelf().borrow();
-                    app.gallery
-                        .show(ui, shelf.open_id(), platform::unix_time(), commands);
-                }
+                Dialog::Gallery => panels.gallery.show(page, ui, wishes),
                 Dialog::Result => {
-                    let inner = size - Vec2::splat(inner);
-                    let kept = app.work.session.assets();
-                    let now = platform::now(ui.ctx());
-                    app.tray.show_large(ui, inner, kept, now, commands);
+                    let kept = page.work.session.assets();
+                    panels.tray.show_large(ui, kept, wishes);
                 }
-                Dialog::Mesh => {
-                    let inner = size - Vec2::splat(inner);
-                    let film = app.film();
-                    let (session, name) =
-                        (&app.work.session, crate::work::file_stem(&app.work.name));
-                    app.mesh_export
-                        .show(ui, inner, session, film, &name, commands);
-                }
-                Dialog::Help => app.help.show(ui, app.settings.hints, commands),
-                Dialog::Sculpt => app.sculpt_dialog(ui, commands),
+                Dialog::Mesh => panels.mesh.show(page, ui, wishes),
+                Dialog::Help => panels.help.show(page, ui, wishes),
+                Dialog::Sculpt => sculpt::ask(page, ui, wishes),
             }
         });
     places::note(ctx, "dialog", modal.response.rect);
     if modal.backdrop_response.clicked() {
-        commands.push(Command::Close);
+        wishes.push(Wish::Close);
     }
 }

@@ -1,83 +1,40 @@
 //! The page: an egui app that edits a dataset, shows the draft and the traced picture, and shares
 //! them.
 //!
-//! The user's work ([`session`], [`history`], [`picture`], [`storage`], [`share`]) does not depend
-//! on windows and is tested without one. [`app::App`] connects it to the widgets.
+//! The user's work is in crate `document`, which knows no window, the browser in crate `browser`.
+//! Here are the panels: each has its state, its widgets, its wishes and what they do in a file or a
+//! folder ([`panel`]). [`page::Page`] is what they share;
+//! [`app::App`] ticks and shows them, and has their [`wish`]es carried out.
 
-mod act;
-mod apart;
 pub mod app;
-mod arrivals;
-pub mod asset;
-pub mod asset_view;
-pub mod backend;
-pub mod bar;
-#[cfg(target_arch = "wasm32")]
-pub mod boot;
-pub mod code;
-pub mod command;
+mod bar;
 #[cfg(target_arch = "wasm32")]
 pub mod crash;
 mod download;
-pub mod draft;
-mod draw;
-pub mod editor;
-#[cfg(target_arch = "wasm32")]
-pub mod emulation;
 #[cfg(target_arch = "wasm32")]
 pub mod entry;
-pub mod examples;
-pub mod files;
+pub mod export;
 pub mod film;
-mod fit_panel;
-mod fitting;
-#[cfg(target_arch = "wasm32")]
-mod frames;
-pub mod gallery;
-#[cfg(target_arch = "wasm32")]
-pub mod handle;
-pub mod hands;
+pub mod fit;
 pub mod help;
-pub mod history;
-pub mod indent;
-pub mod intake;
-pub mod keyboard;
-pub mod lamp;
+mod keys;
 pub mod layout;
-mod live;
-pub mod marks;
-pub mod mesh_export;
-mod mesh_panel;
+mod lessons;
 pub mod notice;
-mod numerals;
-mod outside;
-pub mod pad;
-pub mod pencil;
-pub mod picture;
-pub mod platform;
-pub mod problems;
-pub mod project_file;
-pub mod reading;
-pub mod recording;
-pub mod reference;
+pub mod page;
+pub mod panel;
+mod problems;
 pub mod render;
-pub mod report;
-pub mod request;
-mod screening;
-mod sculpting;
-pub mod session;
+pub mod scripts;
+mod sculpt;
 pub mod settings;
-pub mod share;
-pub mod size;
 pub mod sliders;
-pub mod software;
-pub mod status;
-pub mod storage;
+pub mod stage;
+mod status;
+pub mod text;
 mod thumbnail;
-pub mod timeline;
 pub mod tray;
-pub mod view;
-pub mod work;
+pub mod wish;
+pub mod works;
 
-pub use backend::Backend;
-pub use widgets::{clock, fonts, icon, places, screen, slider, theme};
+pub use widgets::{fonts, icon, places, screen, slider, theme};

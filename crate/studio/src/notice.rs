@@ -1,8 +1,8 @@
 //! A message across the top of the picture: something that went wrong or was done, perhaps with a
 //! button. There is one at a time.
 
-use crate::command::Command;
 use crate::icon::{self, Icon};
+use crate::wish::{Wish, Wishes};
 use crate::{places, theme};
 use egui::{Align, Button, Frame, Label, Layout, Margin, Rect, RichText, Ui, vec2};
 
@@ -13,8 +13,8 @@ pub struct Notice {
     pub text: String,
     /// Whether something went wrong.
     pub bad: bool,
-    /// A button: its text and its command.
-    pub action: Option<(String, Command)>,
+    /// A button: its text and its wish.
+    pub action: Option<(String, Wish)>,
     /// Time at which the message disappears by itself, seconds on the app's clock.
     pub until: Option<f64>,
 }
@@ -44,14 +44,14 @@ impl Notice {
 
     /// Adds a button.
     #[must_use]
-    pub fn with_button(mut self, text: &str, command: Command) -> Self {
-        self.action = Some((text.to_owned(), command));
+    pub fn with_button(mut self, text: &str, wish: impl Into<Wish>) -> Self {
+        self.action = Some((text.to_owned(), wish.into()));
         self
     }
 }
 
 /// Shows a message at the top of a place.
-pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let width = (place.width() - 24.0).min(620.0);
     let top = place.center_top() + vec2(-width / 2.0, 12.0);
@@ -72,13 +72,13 @@ pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, commands: &mut Vec<Comman
     let shown = frame.show(&mut ui, |ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if icon::button(ui, Icon::Close, "Close this message", true).clicked() {
-                commands.push(Command::Close);
+                wishes.push(Wish::Close);
             }
-            if let Some((text, command)) = &notice.action {
+            if let Some((text, wish)) = &notice.action {
                 let button =
                     Button::new(RichText::new(text).color(palette.on_accent)).fill(palette.accent);
                 if ui.add(button).clicked() {
-                    commands.push(command.clone());
+                    wishes.push(wish.clone());
                 }
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

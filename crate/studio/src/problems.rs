@@ -1,8 +1,10 @@
 //! The list of all messages of the compiler. A click goes to the place.
 
-use crate::command::Command;
+use crate::page::Page;
+use crate::places;
 use crate::theme::{self, Palette};
-use egui::{Button, Color32, RichText, Sense, Ui, vec2};
+use crate::wish::{TextWish, Wish, Wishes};
+use egui::{Button, Color32, RichText, ScrollArea, Sense, Ui, vec2};
 use rats::{Diagnostic, Project, Severity};
 use std::ops::Range;
 
@@ -38,32 +40,34 @@ pub fn summary(diagnostics: &[Diagnostic]) -> String {
     parts.join(", ")
 }
 
-/// Shows the list.
-pub fn show(
-    ui: &mut Ui,
-    project: &Project,
-    diagnostics: &[Diagnostic],
-    commands: &mut Vec<Command>,
-) {
-    let palette = theme::palette(ui.visuals());
-    ui.spacing_mut().item_spacing.y = 2.0;
-    for (index, diagnostic) in diagnostics.iter().take(MOST).enumerate() {
-        ui.push_id(("problem", index), |ui| {
-            let clicked = row(ui, palette, project, diagnostic).clicked();
-            let place = (&diagnostic.file, &diagnostic.span);
-            commands.extend(jump(project, place).filter(|_| clicked));
-            more(ui, palette, project, diagnostic, commands);
-        });
-    }
-    if diagnostics.len() > MOST {
-        ui.weak(format!("… and {} more", diagnostics.len() - MOST));
-    }
+/// Shows the list in all of `ui`.
+pub fn show(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
+    places::note(ui.ctx(), "problems", ui.max_rect());
+    let session = &page.work.session;
+    let (project, diagnostics) = (session.project(), session.diagnostics());
+    let area = ScrollArea::vertical().id_salt("problems");
+    let area = area.min_scrolled_height(0.0).auto_shrink(false);
+    area.show(ui, |ui| {
+        let palette = theme::palette(ui.visuals());
+        ui.spacing_mut().item_spacing.y = 2.0;
+        for (index, diagnostic) in diagnostics.iter().take(MOST).enumerate() {
+            ui.push_id(("problem", index), |ui| {
+                let clicked = row(ui, palette, project, diagnostic).clicked();
+                let place = (&diagnostic.file, &diagnostic.span);
+                wishes.extend(jump(project, place).filter(|_| clicked));
+                more(ui, palette, project, diagnostic, wishes);
+            });
+        }
+        if diagnostics.len() > MOST {
+            ui.weak(format!("… and {} more", diagnostics.len() - MOST));
+        }
+    });
 }
 
-/// Returns the command that goes to a place, if its file is still there.
-fn jump(project: &Project, (name, span): (&String, &Range<usize>)) -> Option<Command> {
+/// Returns the wish that goes to a place, if its file is still there.
+fn jump(project: &Project, (name, span): (&String, &Range<usize>)) -> Option<TextWish> {
     let file = project.files.iter().position(|file| file.name == *name)?;
-    Some(Command::Jump {
+    Some(TextWish::Jump {
         file,
         range: span.clone(),
     })
@@ -75,7 +79,7 @@ fn more(
     palette: &Palette,
     project: &Project,
     diagnostic: &Diagnostic,
-    commands: &mut Vec<Command>,
+    wishes: &mut Wishes,
 ) {
     if diagnostic.related.is_empty() && diagnostic.command.is_none() {
         return;
@@ -96,7 +100,7 @@ fn more(
             };
             let text = format!("{place} {}", related.message);
             if ui.add(quiet(text)).on_hover_text("Go there").clicked() {
-                commands.extend(jump(project, (&related.file, &related.span)));
+                wishes.extend(jump(project, (&related.file, &related.span)));
             }
         }
         if let Some(name) = &diagnostic.command {
@@ -106,7 +110,7 @@ fn more(
                 .on_hover_text("How this command is written")
                 .clicked()
             {
-                commands.push(Command::ShowManual(name.clone()));
+                wishes.push(Wish::Manual(name.clone()));
             }
         }
     });

@@ -4,9 +4,9 @@
 //! pause, so that a large scene is not prepared anew at every key. The running picture is given up
 //! at the change itself, which frees the workers for the next one.
 
-use crate::picture;
+use document::picture;
 use egui::{ColorImage, TextureHandle, TextureOptions};
-use pool::{Assembly, Change, Image, Job, Pool, Progress};
+use pool::{Assembly, Change, Image, PictureJob, Pool, Progress};
 use scene::{Camera, Scene};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -162,7 +162,7 @@ impl Renderer {
             self.running = (generation, now);
             self.timings = Timings::default();
             self.assembly.begin(self.number, size);
-            self.pool.borrow_mut().start(Job {
+            self.pool.borrow_mut().start(PictureJob {
                 scene,
                 camera,
                 size,

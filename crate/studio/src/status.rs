@@ -1,11 +1,12 @@
 //! The strip at the bottom: progress and facts of the picture.
 
-use crate::Backend;
-use crate::app::StandIn;
-use crate::command::Command;
-use crate::numerals::{count, duration};
+use crate::page::Page;
 use crate::render::{Phase, Renderer, pass_label};
-use crate::theme;
+use crate::stage::StandIn;
+use crate::wish::{ViewWish, Wishes};
+use crate::{places, theme};
+use browser::Backend;
+use document::numerals::{count, duration};
 use egui::{Align, Button, Color32, Layout, Rect, RichText, Sense, Ui, vec2};
 
 /// Returns the state of the work in a few words. `reading` is the mesh file that is being read,
@@ -41,16 +42,17 @@ pub fn summary(renderer: &Renderer, enabled: bool, reading: Option<(&str, f32)>)
     }
 }
 
-/// Shows the strip, with the backend of the window and the stand-in for the traced picture.
+/// Shows the strip, with the stand-in for the traced picture.
 pub fn show(
+    page: &Page,
+    stand_in: Option<StandIn>,
     ui: &mut Ui,
-    renderer: &Renderer,
-    (backend, stand_in): (Backend, Option<StandIn>),
-    enabled: bool,
-    reading: Option<(&str, f32)>,
     narrow: bool,
-    commands: &mut Vec<Command>,
+    wishes: &mut Wishes,
 ) {
+    places::note(ui.ctx(), "status", ui.max_rect());
+    let (renderer, reading) = (&page.renderer, page.reading.current());
+    let enabled = page.work.session.is_enabled();
     let palette = theme::palette(ui.visuals());
     let progress = renderer.progress();
     let tracing = renderer.phase() == Phase::Tracing;
@@ -86,14 +88,14 @@ pub fn show(
                 .add(quiet("Cancel"))
                 .on_hover_text("Stop tracing this picture");
             if stop.clicked() {
-                commands.push(Command::Cancel);
+                wishes.push(ViewWish::Cancel);
             }
         } else if matches!(renderer.phase(), Phase::Done | Phase::Cancelled) {
             let again = ui
                 .add(quiet("Render again"))
                 .on_hover_text("Trace the picture anew");
             if again.clicked() {
-                commands.push(Command::Again);
+                wishes.push(ViewWish::Again);
             }
         } else {
             ui.skip_ahead_auto_ids(1);
@@ -109,7 +111,7 @@ pub fn show(
                 };
                 (stand_in.id().to_owned(), tip.to_owned())
             });
-            for (text, tip) in facts(renderer, backend, narrow)
+            for (text, tip) in facts(renderer, page.screen.backend, narrow)
                 .into_iter()
                 .chain(on_screen)
             {

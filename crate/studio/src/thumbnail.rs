@@ -1,6 +1,6 @@
 //! Small pictures that are files beside the page, fetched when they are first shown.
 
-use crate::{examples, platform};
+use document::examples;
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui, Vec2};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -22,7 +22,7 @@ impl Thumbnail {
         let inbox = Rc::new(RefCell::new(None));
         let (letter, ctx) = (inbox.clone(), ui.ctx().clone());
         // A file that does not come leaves its place empty.
-        platform::fetch(path, move |bytes| {
+        browser::fetch(path, move |bytes| {
             *letter.borrow_mut() = bytes;
             ctx.request_repaint();
         });

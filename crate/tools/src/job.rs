@@ -3,7 +3,7 @@
 use crate::coating::CoatScene;
 use crate::fitting::FitMesh;
 use crate::meshing::{MeshScene, WriteMesh};
-use crate::message::{Answer, DIFFERENT_VERSIONS, Request, pack, unpack};
+use crate::message::{Answer, DIFFERENT_VERSIONS, Request, pack};
 use crate::reading::{ReadMeasured, ReadMesh};
 use crate::view::ViewScene;
 use core::ops::ControlFlow;
@@ -132,7 +132,7 @@ impl<'a, T> Progress<'a, T> {
 
 /// Carries out a packed [`Request`]. The packed answers go to `send`, the last one with the result.
 pub fn serve(request: Vec<u8>, send: &mut Outlet<'_>) {
-    let unpacked = unpack(&request);
+    let unpacked = postcard::from_bytes(&request);
     drop(request);
     match unpacked {
         Ok(Request { id, work }) => work.run(id, send),

@@ -1,7 +1,7 @@
 //! Messages between the page and a tools worker: plain data, packed as bytes.
 
 use crate::job::Work;
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 
 /// The trouble of a page and a worker that do not understand each other.
 pub const DIFFERENT_VERSIONS: &str = "page and worker are of different versions; reload the page";
@@ -75,22 +75,6 @@ pub fn unpack_answer(bytes: &[u8]) -> Result<(Answer, &[u8]), postcard::Error> {
     postcard::take_from_bytes(bytes)
 }
 
-/// Packs a request.
-///
-/// # Errors
-/// Only if memory runs out while writing.
-pub fn pack_request(request: &Request) -> Result<Vec<u8>, postcard::Error> {
-    postcard::to_allocvec(request)
-}
-
-/// Unpacks a request, or the output behind an answer, of the same build.
-///
-/// # Errors
-/// As [`unpack_answer`].
-pub fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, postcard::Error> {
-    postcard::from_bytes(bytes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,8 +92,8 @@ mod tests {
             id: 7,
             work: job.clone().into(),
         };
-        let packed = pack_request(&request).unwrap();
-        let Ok(Request { id: 7, work }) = unpack(&packed) else {
+        let packed = postcard::to_allocvec(&request).unwrap();
+        let Ok(Request { id: 7, work }) = postcard::from_bytes(&packed) else {
             panic!("{packed:?}");
         };
         assert!(matches!(work, Work::ReadMesh(again) if *again == job));
@@ -122,8 +106,8 @@ mod tests {
         let packed = pack(&Answer::Done { id: 7 }, &mesh).unwrap();
         let (answer, output) = unpack_answer(&packed).unwrap();
         assert_eq!(answer, Answer::Done { id: 7 });
-        assert_eq!(unpack(output), Ok(mesh));
-        assert!(unpack::<Request>(&[9, 9, 9]).is_err());
+        assert_eq!(postcard::from_bytes(output), Ok(mesh));
+        assert!(postcard::from_bytes::<Request>(&[9, 9, 9]).is_err());
         assert!(unpack_answer(&[]).is_err());
     }
 }

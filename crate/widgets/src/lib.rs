@@ -1,7 +1,6 @@
 //! The look of the page, shared by its editor and its lab: two palettes ([`theme`]), two fonts
 //! ([`fonts`]), drawn icons ([`icon`]), sliders ([`slider`]), the width below which a page is
-//! narrow ([`screen`]), a [`clock`], and the places of widgets for tests that click them
-//! ([`places`]).
+//! narrow ([`screen`]), and the places of widgets for tests that click them ([`places`]).
 //!
 //! ```
 //! use widgets::{icon, places, theme};
@@ -17,7 +16,6 @@
 //! assert!(places::all(&context)["undo"].width() >= 28.0);
 //! ```
 
-pub mod clock;
 pub mod fonts;
 pub mod icon;
 pub mod places;

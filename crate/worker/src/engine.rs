@@ -528,7 +528,7 @@ mod tests {
         // Nonsense does no harm.
         let mut fifth = worker(true);
         let nonsense = |tile: Tile, bytes: Vec<u8>| -> Known {
-            crate::message::unpack(&crate::message::pack(&(tile, bytes)).unwrap()).unwrap()
+            postcard::from_bytes(&postcard::to_allocvec(&(tile, bytes)).unwrap()).unwrap()
         };
         let far = Tile {
             x: u32::MAX - 3,
@@ -663,9 +663,9 @@ mod tests {
     #[test]
     fn messages_survive_packing_and_other_bytes_are_refused() {
         let request = begin(7);
-        let bytes = crate::message::pack(&request).unwrap();
-        assert_eq!(crate::message::unpack::<Request>(&bytes), Ok(request));
-        assert!(crate::message::unpack::<Request>(&[9, 9, 9]).is_err());
-        assert!(crate::message::unpack::<Request>(&[]).is_err());
+        let bytes = postcard::to_allocvec(&request).unwrap();
+        assert_eq!(postcard::from_bytes::<Request>(&bytes), Ok(request));
+        assert!(postcard::from_bytes::<Request>(&[9, 9, 9]).is_err());
+        assert!(postcard::from_bytes::<Request>(&[]).is_err());
     }
 }

@@ -4,7 +4,6 @@
 //! From then on each message is one packed [`Request`]. Work is done in steps, each begun by a
 //! message the worker sends to itself, so that requests which came in meanwhile are seen first.
 
-use crate::message::{pack, unpack};
 use crate::{Answer, Engine, Request, Step};
 use js_sys::{Array, Uint8Array};
 use std::cell::RefCell;
@@ -76,7 +75,7 @@ pub fn serve(engine: Engine) -> Result<(), JsValue> {
 
     let on_message = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
         let bytes = Uint8Array::new(&event.data()).to_vec();
-        let Ok(request) = unpack::<Request>(&bytes) else {
+        let Ok(request) = postcard::from_bytes::<Request>(&bytes) else {
             send(&[Answer::Failed(String::from(
                 "page and worker are of different versions; reload the page",
             ))]);
@@ -144,7 +143,7 @@ fn clock() -> f64 {
 /// Sends answers, giving the memory away instead of copying it again. What cannot be packed or sent
 /// is missed by the page, which then replaces this worker.
 fn send(answers: &[Answer]) {
-    if let (Ok(scope), Ok(bytes)) = (scope(), pack(&answers)) {
+    if let (Ok(scope), Ok(bytes)) = (scope(), postcard::to_allocvec(&answers)) {
         let buffer = Uint8Array::from(bytes.as_slice()).buffer();
         let _ = scope.post_message_with_transfer(&buffer, &Array::of1(&buffer));
     }

@@ -1,7 +1,7 @@
 //! Messages between the page and a tracing worker: plain data, packed as bytes.
 
 use scene::{Camera, Scene};
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use tracer::{Known, Pass, Stats, Tile};
 
@@ -95,20 +95,4 @@ pub enum Answer {
     },
     /// The worker cannot go on, for this reason. The page replaces it.
     Failed(String),
-}
-
-/// Packs a message.
-///
-/// # Errors
-/// Only if memory runs out while writing.
-pub fn pack<T: Serialize>(message: &T) -> Result<Vec<u8>, postcard::Error> {
-    postcard::to_allocvec(message)
-}
-
-/// Unpacks a message of the same build.
-///
-/// # Errors
-/// If the bytes are not such a message, as happens when page and worker are of different builds.
-pub fn unpack<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, postcard::Error> {
-    postcard::from_bytes(bytes)
 }

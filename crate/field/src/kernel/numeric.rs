@@ -11,6 +11,9 @@ use core::f64::consts::{PI, TAU};
 
 /// Relative error of integrals.
 const TOLERANCE: f64 = 1e-13;
+/// Relative error of integrals over a face's edges, whose integrands are integrals and differences
+/// themselves: less would be their noise, which bisection does not end in.
+const OVER_EDGES: f64 = 1e-10;
 /// Distance at which kernels that never end, and fall faster than u⁻¹, are over.
 const FAR: f64 = 1e6;
 
@@ -39,6 +42,7 @@ fn around_0<const N: usize>(
     [a, b]: [f64; 2],
     grain: f64,
     kinks: impl Iterator<Item = f64>,
+    tolerance: f64,
     f: impl Fn(f64) -> [f64; N],
 ) -> [f64; N] {
     let mut breaks = vec![a, b, 0.0];
@@ -50,18 +54,19 @@ fn around_0<const N: usize>(
     }
     breaks.retain(|t| (a..=b).contains(t));
     heap_sort(&mut breaks, |a, b| a < b);
-    core::array::from_fn(|i| integral(&mut |t| f(t)[i], &breaks, TOLERANCE))
+    core::array::from_fn(|i| integral(&mut |t| f(t)[i], &breaks, tolerance))
 }
 
 /// Integrates functions of t and of the squared distance q = rest + t².
 fn on_line<K: Falloff, const N: usize>(
     rest: f64,
     ends: [f64; 2],
+    tolerance: f64,
     f: impl Fn(f64, f64) -> [f64; N],
 ) -> [f64; N] {
     let kinks = K::KINKS.iter().map(|u| (u * u - rest).max(0.0).sqrt());
     let grain = (softening::<K>() + rest).sqrt();
-    around_0(ends, grain, kinks, |t| f(t, rest + t * t))
+    around_0(ends, grain, kinks, tolerance, |t| f(t, rest + t * t))
 }
 
 /// Computes [`Falloff::jet`]: of points, planes and curves for all kernels, of other bones for
@@ -98,13 +103,13 @@ pub(crate) fn jet<K: Falloff, R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet
 
 /// Computes [`Falloff::along`].
 pub(super) fn along<K: Falloff>(u: f64) -> f64 {
-    on_line::<K, 2>(0.0, [0.0, u], |_, q| pair::<K>(q))[0]
+    on_line::<K, 2>(0.0, [0.0, u], TOLERANCE, |_, q| pair::<K>(q))[0]
 }
 
 /// Computes [`Falloff::over_ring`].
 pub(super) fn ring<K: Falloff>(p: f64, q: f64) -> f64 {
     let kinks = K::KINKS.iter().map(|u| u * u - p);
-    around_0([0.0, q - p], softening::<K>() + p, kinks, |t| {
+    around_0([0.0, q - p], softening::<K>() + p, kinks, TOLERANCE, |t| {
         pair::<K>(p + t)
     })[0]
 }
@@ -112,7 +117,7 @@ pub(super) fn ring<K: Falloff>(p: f64, q: f64) -> f64 {
 /// Computes [`Falloff::line`].
 pub(super) fn line<K: Falloff>(distance: f64) -> f64 {
     let ends = [0.0, end::<K>()];
-    2.0 * on_line::<K, 2>(distance * distance, ends, |_, q| pair::<K>(q))[0]
+    2.0 * on_line::<K, 2>(distance * distance, ends, TOLERANCE, |_, q| pair::<K>(q))[0]
 }
 
 /// Computes [`Falloff::plane`].
@@ -158,7 +163,7 @@ fn by_lanes<R: Real>(p: [R; 3], jet: impl Fn([f64; 3]) -> [f64; 4]) -> Jet<R> {
 fn segment<K: Falloff, R: Real>(bone: &Segment<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let half = bone.half.lane(0);
     by_lanes(p, |[x, y, z]| {
-        on_line::<K, 4>(y * y + z * z, [-half - x, half - x], |t, q| {
+        on_line::<K, 4>(y * y + z * z, [-half - x, half - x], TOLERANCE, |t, q| {
             let [value, slope] = pair::<K>(q);
             [value, -2.0 * t * slope, 2.0 * y * slope, 2.0 * z * slope]
         })
@@ -187,7 +192,7 @@ fn arc<K: Falloff, R: Real>(bone: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
                 let square = ((u * u - rest) / reach).clamp(0.0, 1.0);
                 2.0 * libm::asin(square.sqrt())
             });
-            let part = around_0([a, b], 2.0 * grain, kinks, |angle| {
+            let part = around_0([a, b], 2.0 * grain, kinks, TOLERANCE, |angle| {
                 let sine = libm::sin(0.5 * angle);
                 let [value, slope] = pair::<K>(rest + reach * sine * sine);
                 let (sine, cosine) = libm::sincos(azimuth + angle);
@@ -216,7 +221,7 @@ fn face<K: Falloff, R: Real>(edges: &[Edge<R::Scalar>], p: [R; 3]) -> Jet<R> {
             let start = edge.start.lane(0) - (ax * x + ay * y);
             let h = ax * y - ay * x - edge.offset.lane(0);
             let ends = [start, start + edge.length.lane(0)];
-            let own = on_line::<K, 4>(z * z + h * h, ends, |t, q| {
+            let own = on_line::<K, 4>(z * z + h * h, ends, OVER_EDGES, |t, q| {
                 let (height, square) = (z * z, h * h + t * t);
                 let [mean, rise] = if square < near {
                     [0, 1].map(|i| {

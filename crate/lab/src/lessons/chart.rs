@@ -215,7 +215,7 @@ fn time(cell: Cell) -> Option<f64> {
     for _ in 0..3 {
         let mut sum = f32x8::splat(0.0);
         let mut count = 0u32;
-        let begun = widgets::clock::stopwatch();
+        let begun = pool::clock::stopwatch();
         let mut taken = 0.0;
         while taken < TIMING {
             for place in &places {
@@ -223,7 +223,7 @@ fn time(cell: Cell) -> Option<f64> {
                 sum += jet.value + jet.gradient[0] + jet.gradient[1] + jet.gradient[2];
             }
             count += 64;
-            taken = widgets::clock::stopwatch() - begun;
+            taken = pool::clock::stopwatch() - begun;
         }
         black_box(sum);
         quickest = quickest.min(1e9 * taken / (8.0 * f64::from(count)));
@@ -250,8 +250,8 @@ impl Chart {
         }
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
-        let begun = widgets::clock::stopwatch();
-        while !self.is_timed() && widgets::clock::stopwatch() - begun < budget {
+        let begun = pool::clock::stopwatch();
+        while !self.is_timed() && pool::clock::stopwatch() - begun < budget {
             let index = self.timings % CELLS;
             let cell = (Kernel::ALL[index / BONES.len()], BONES[index % BONES.len()]);
             let cost = time(cell).unwrap_or(f64::NAN);

@@ -262,12 +262,12 @@ impl Slice {
         let Some(subject) = &self.subject else { return };
         let functions = subject.functions();
         let elements = elements_of(&subject.bodies);
-        let begun = widgets::clock::stopwatch();
+        let begun = pool::clock::stopwatch();
         let frame = f64::from(ui.input(|input| input.unstable_dt));
         let budget = (SHARE * frame).clamp(BUDGET[0], BUDGET[1]);
         while self.level < LEVELS.len() {
             let is_full = self.filling.go_on(&functions, elements, &cut.window, || {
-                widgets::clock::stopwatch() - begun > budget
+                pool::clock::stopwatch() - begun > budget
             });
             if !is_full {
                 break;
@@ -308,7 +308,7 @@ impl Slice {
             if self.level < LEVELS.len() {
                 self.filling = grid(self.level, cut.tall);
             }
-            if widgets::clock::stopwatch() - begun > budget {
+            if pool::clock::stopwatch() - begun > budget {
                 break;
             }
         }

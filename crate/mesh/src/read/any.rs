@@ -13,13 +13,29 @@ use crate::triangle_mesh::TriangleMesh;
 /// for sRGB.
 ///
 /// Polygons are cut into triangles that all start at their first corner, which is right for convex
-/// ones. Triangles without an area are left out. A file in which some triangles have no normals is
-/// read as if none had.
+/// ones. Triangles without an area are left out, and so are those that are there twice, facing the
+/// same side. A file in which some triangles have no normals is read as if none had.
 ///
 /// # Errors
 /// If the file is of none of these formats, is broken, asks for what cannot be read, has no
 /// triangles or is over one of the [`limits`].
 pub fn read(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Error> {
+    read_with_remarks(name, bytes).map(|(mesh, _)| mesh)
+}
+
+/// Reads a mesh as [`read`] does, and returns sentences about what was left out, too.
+///
+/// ```
+/// let obj = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 2 3 1\n";
+/// let (mesh, remarks) = mesh::read_with_remarks("a.obj", obj)?;
+/// assert_eq!(mesh.triangles.len(), 1);
+/// assert_eq!(remarks, ["1 triangles that are there twice are left out"]);
+/// # Ok::<(), mesh::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with_remarks(name: &str, bytes: &[u8]) -> Result<(TriangleMesh, Vec<String>), Error> {
     if bytes.len() > limits::MAX_BYTES {
         return fail(format!(
             "this file has {} MB, more than the {} MB that are taken",

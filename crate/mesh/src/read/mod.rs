@@ -8,8 +8,8 @@ mod obj;
 mod ply;
 mod stl;
 mod three_mf;
-mod xml;
 
-pub use any::read;
+pub use any::{read, read_with_remarks};
+pub(crate) use cursor::Cursor;
 pub use mtl::read_mtl;
 pub use ply::read_points;

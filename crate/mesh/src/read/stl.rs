@@ -22,13 +22,17 @@ pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if wanted == Some(size) {
         return numbers(&bytes[HEAD..]);
     }
-    let text = bytes.trim_ascii_start();
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let text = text.trim_ascii_start();
     let begins = text
         .get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     // Text has no zeros; numbers hardly go without.
     if begins && !text.iter().take(1000).any(|byte| *byte == 0) {
-        return lines(&String::from_utf8_lossy(text));
+        // Lines count from the file's first.
+        let before = &bytes[..bytes.len() - text.len()];
+        let first = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+        return words(&String::from_utf8_lossy(text), first);
     }
     match wanted {
         Some(wanted) if wanted < size => numbers(&bytes[HEAD..wanted as usize]),
@@ -56,29 +60,54 @@ fn numbers(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     Ok(mesh)
 }
 
-fn lines(text: &str) -> Result<TriangleMesh, Error> {
+/// Reads text, in which words count, not lines.
+fn words(text: &str, first: usize) -> Result<TriangleMesh, Error> {
     let mut mesh = TriangleMesh::default();
     let mut corners: Vec<DVec3> = Vec::new();
-    for (line, number) in text.lines().zip(1..) {
-        let mut words = line.split_ascii_whitespace();
-        let Some(word) = words.next() else { continue };
-        let at_line = |text: &str| Error(format!("line {number}: {text}"));
-        if word.eq_ignore_ascii_case("vertex") {
-            let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
-            let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
-                return Err(at_line("a vertex needs three numbers"));
-            };
-            if corners.len() == 3 {
-                return Err(at_line("a facet has more than three vertices"));
+    // Numbers of the vertex that has begun, and its line.
+    let mut vertex: Option<(Vec<f64>, usize)> = None;
+    for (line, number) in text.lines().zip(first..) {
+        // Whether words are a solid's name, which may be any, up to the end of its line.
+        let mut is_name = false;
+        for word in line.split_ascii_whitespace() {
+            if let Some((mut numbers, begin)) = vertex.take() {
+                let Ok(coordinate) = word.parse() else {
+                    return fail(format!("line {begin}: a vertex needs three numbers"));
+                };
+                numbers.push(coordinate);
+                match numbers[..] {
+                    [x, y, z] => corners.push(DVec3::new(x, y, z)),
+                    _ => vertex = Some((numbers, begin)),
+                }
+                continue;
             }
-            corners.push(DVec3::new(x, y, z));
-        } else if word.eq_ignore_ascii_case("endfacet") {
-            let Ok(triangle) = <[DVec3; 3]>::try_from(&corners[..]) else {
-                return Err(at_line("a facet has fewer than three vertices"));
-            };
-            add(&mut mesh, triangle)?;
-            corners.clear();
+            if is_name && !word.eq_ignore_ascii_case("facet") {
+                continue;
+            }
+            match word.to_ascii_lowercase().as_str() {
+                "facet" => is_name = false,
+                "solid" | "endsolid" => is_name = true,
+                "vertex" if corners.len() == 3 => {
+                    return fail(format!(
+                        "line {number}: a facet has more than three vertices"
+                    ));
+                }
+                "vertex" => vertex = Some((Vec::new(), number)),
+                "endfacet" => {
+                    let Ok(triangle) = <[DVec3; 3]>::try_from(&corners[..]) else {
+                        return fail(format!(
+                            "line {number}: a facet has fewer than three vertices"
+                        ));
+                    };
+                    add(&mut mesh, triangle)?;
+                    corners.clear();
+                }
+                _ => {}
+            }
         }
+    }
+    if let Some((_, begin)) = vertex {
+        return fail(format!("line {begin}: a vertex needs three numbers"));
     }
     if !corners.is_empty() {
         return fail("this STL file is cut off in the middle of a facet");

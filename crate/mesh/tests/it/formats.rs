@@ -2,7 +2,7 @@
 
 use crate::common::{Model, binary_ply, glb, png_of, tetrahedron};
 use glam::DVec3;
-use mesh::{Heights, TriangleMesh, heights, limits, read, terra};
+use mesh::{Heights, TriangleMesh, heights, limits, read, read_with_remarks, terra};
 
 /// The corners of each triangle: what a mesh is, however it is stored.
 fn faces(mesh: &TriangleMesh) -> Vec<[DVec3; 3]> {
@@ -64,12 +64,12 @@ fn every_format_gives_the_same_model() {
 
 #[test]
 fn obj_has_many_ways_to_say_a_face() {
-    let text = "# a square, twice\r\nv 0 0 0\r\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\n\
-                vt 0 0\no name\nf 1 2 3 4\nf -4/1 \\\n -3/1 -2/1 # the end\n";
+    let text = "# a square, and half of it\r\nv 0 0 0\r\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\n\
+                vt 0 0\no name\nf 1 2 3 4\nf -4/1 \\\n -3/1 -1/1 # the end\n";
     let mesh = read("x.obj", text.as_bytes()).unwrap();
     let [a, b, c, d] =
         [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
-    assert_eq!(faces(&mesh), [[a, b, c], [a, c, d], [a, b, c]]);
+    assert_eq!(faces(&mesh), [[a, b, c], [a, c, d], [a, b, d]]);
     assert_eq!(mesh.positions.len(), 4, "corners are shared");
     assert_eq!(mesh.normals, None);
     // One corner with two normals is two corners.
@@ -180,8 +180,10 @@ fn limits_hold() {
     message("x.obj", vec![b'\n'; limits::MAX_BYTES + 1]);
     let line = "v 1 0 0\nv 0 1 0\nv 0 0 1\n";
     let most = format!("{line}{}", "f 1 2 3\n".repeat(limits::MAX_TRIANGLES));
-    let mesh = read("x.obj", most.as_bytes()).unwrap();
-    assert_eq!(mesh.triangles.len(), limits::MAX_TRIANGLES);
+    let (mesh, remarks) = read_with_remarks("x.obj", most.as_bytes()).unwrap();
+    assert_eq!(mesh.triangles.len(), 1);
+    let doubles = limits::MAX_TRIANGLES - 1;
+    assert!(remarks[0].starts_with(&format!("{doubles} triangles that are there twice")));
     assert!(message("x.obj", format!("{most}f 1 2 3\n")).contains("200000 triangles"));
     // A fan is many triangles in one line.
     let fan = format!("{line}f {}", "1 2 3 ".repeat(limits::MAX_TRIANGLES));

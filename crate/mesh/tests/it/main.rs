@@ -7,6 +7,7 @@ mod exports;
 mod formats;
 mod half_edge;
 mod intersect;
+mod odd;
 mod rigs;
 mod simplify;
 mod solids;

@@ -9,7 +9,6 @@ use std::rc::Rc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Instant;
-use worker::message::{pack, unpack};
 use worker::{Answer, Engine, Request, Step};
 
 pub use workers::Threads as PlatformWorkers;
@@ -45,7 +44,7 @@ pub const TOOLS: Program = Program {
 
 /// Returns the number of the picture that a request begins or ends.
 fn generation(request: &[u8]) -> Option<u64> {
-    match unpack(request) {
+    match postcard::from_bytes(request) {
         Ok(Request::Begin { generation, .. } | Request::Stop { generation }) => Some(generation),
         _ => None,
     }
@@ -54,7 +53,7 @@ fn generation(request: &[u8]) -> Option<u64> {
 /// Runs a tracing worker's engine.
 fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
     let clock = Instant::now();
-    let answer = |answer| pack(&[answer].as_slice()).is_ok_and(send);
+    let answer = |answer| postcard::to_allocvec(&[answer].as_slice()).is_ok_and(send);
     let mut engine = Engine::new(digger::prepare);
     let mut listened = answer(Answer::Started);
     let mut generation = 0;
@@ -65,7 +64,7 @@ fn trace(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
             inbox.try_recv()
         };
         match message {
-            Ok(bytes) => match unpack(&bytes) {
+            Ok(bytes) => match postcard::from_bytes(&bytes) {
                 Ok(request) => {
                     if let Request::Begin { generation: n, .. } | Request::Stop { generation: n } =
                         request

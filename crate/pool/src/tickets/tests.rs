@@ -11,7 +11,7 @@ use tools::{CoatScene, ReadMesh, Work};
 fn serve(inbox: &Receiver<Vec<u8>>, wanted: &AtomicU64, send: &Outlet<'_>) {
     send(Answer::Started.to_bytes());
     for request in inbox {
-        if let Ok(Request { work, .. }) = unpack(&request)
+        if let Ok(Request { work, .. }) = postcard::from_bytes(&request)
             && let Work::ReadMesh(job) = work
         {
             match job.name.as_str() {

@@ -6,8 +6,9 @@
 mod page;
 mod workers;
 
+use crate::clock::stopwatch;
 use crate::workers::{Manager, Message};
-use page::{Timer, load, now};
+use page::{Timer, load};
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
 use wasm_bindgen_futures::spawn_local;
@@ -73,7 +74,7 @@ impl<M> Clone for Crew<M> {
 
 impl<M: Manager> Inner<M> {
     fn receive(&mut self, index: usize, message: Message) {
-        if self.manager.receive(index, message, now()) {
+        if self.manager.receive(index, message, stopwatch()) {
             (self.repaint)();
         }
     }
@@ -141,7 +142,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
 
     /// Asks the manager.
     pub fn ask<T>(&self, question: impl FnOnce(&mut M, f64) -> T) -> T {
-        question(&mut self.inner.borrow_mut().manager, now())
+        question(&mut self.inner.borrow_mut().manager, stopwatch())
     }
 
     /// Gives the manager work.
@@ -164,7 +165,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
         let timer = Timer::new(move || {
             let Some(inner) = weak.upgrade() else { return };
             let inner = &mut *inner.borrow_mut();
-            if inner.manager.tick(now()) {
+            if inner.manager.tick(stopwatch()) {
                 (inner.repaint)();
             }
             if !inner.manager.is_busy() {

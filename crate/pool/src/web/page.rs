@@ -1,4 +1,4 @@
-//! The page that workers are started by: its clock, its timers, and the loading of wasm.
+//! The page that workers are started by: its timers, and the loading of wasm.
 
 use js_sys::WebAssembly;
 use wasm_bindgen::prelude::*;
@@ -11,13 +11,6 @@ const TICK: i32 = 120;
 /// Returns the page's window.
 pub fn window() -> Option<Window> {
     web_sys::window()
-}
-
-/// Returns the seconds since the page was opened.
-pub fn now() -> f64 {
-    window()
-        .and_then(|window| window.performance())
-        .map_or(0.0, |performance| performance.now() / 1000.0)
 }
 
 /// Fetches and compiles a wasm module, by its path relative to the page.

@@ -735,3 +735,10 @@ fn an_instance_of_a_body_is_a_new_body() {
     assert_eq!(of_each, [1, 2, 3, 0, 4, 0, 0, 5, 6]);
     assert_eq!(names, ["", "A", "C", "B", "B", "D", "R"]);
 }
+
+#[test]
+fn files_of_meshes_are_asked_for_by_their_endings() {
+    let names = ["a.obj", "b.PLY", "c.stl", "d.glb", "e.3mf"];
+    let text = names.map(|name| format!("mesh s {name}\n")).concat();
+    assert_eq!(rats::asset_names(&text), names);
+}

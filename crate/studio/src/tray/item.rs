@@ -1,13 +1,13 @@
 //! An entry of the tray: a result, or the reason why there is none.
 
-use crate::asset;
 use ::picture::animation::{self, Frames};
 use ::picture::{Format, Picture, Problem, file, resize};
+use document::asset;
 use egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use std::path::Path;
 use std::sync::Arc;
 
-use super::desk::MAX_PIXELS;
+use document::desk::MAX_PIXELS;
 
 /// Longest side of a thumbnail, pixels.
 const THUMBNAIL: u32 = 256;

@@ -1,11 +1,11 @@
 //! A result, shown large and played if it moves, with buttons that save or keep it.
 
 use super::item::{Content, Film, Item, texture};
-use crate::asset::{self, Asset, Kind};
-use crate::command::Command;
-use crate::gallery::contain;
+use crate::wish::{TrayWish, Wish, Wishes};
+use crate::works::gallery::contain;
 use crate::{places, theme};
 use ::picture::animation::Frames;
+use document::asset::{self, Asset, Kind};
 use egui::{
     Align, Button, ColorImage, Key, Label, Layout, Modifiers, RichText, ScrollArea, Sense,
     TextureHandle, TextureOptions, Ui, Vec2, vec2,
@@ -113,11 +113,11 @@ impl Large {
         items: &[Item],
         kept: &[Asset],
         now: f64,
-        commands: &mut Vec<Command>,
+        wishes: &mut Wishes,
     ) {
         // The tray may have changed since it was opened.
         let Some(item) = items.get(self.open) else {
-            commands.push(Command::Close);
+            wishes.push(Wish::Close);
             return;
         };
         let palette = theme::palette(ui.visuals());
@@ -126,7 +126,7 @@ impl Large {
         let mut turn = |forward: bool| {
             let count = items.len();
             let step = if forward { 1 } else { count - 1 };
-            commands.push(Command::ShowResult((self.open + step) % count));
+            wishes.push(TrayWish::Show((self.open + step) % count));
         };
         if back || forth {
             turn(forth);
@@ -150,7 +150,7 @@ impl Large {
             });
         });
         if close {
-            commands.push(Command::Close);
+            wishes.push(Wish::Close);
         }
         ui.add_space(8.0);
         let Content::File(film) = &item.content else {
@@ -164,7 +164,7 @@ impl Large {
             });
             ui.add_space(8.0);
             if find(ui) {
-                commands.push(Command::FindResult(self.open));
+                wishes.push(TrayWish::Find(self.open));
             }
             return;
         };
@@ -181,13 +181,13 @@ impl Large {
             let save = ui.add(Button::new(save).fill(palette.accent));
             places::note(ui.ctx(), "save result", save.rect);
             if save.on_hover_text("Write it to a file").clicked() {
-                commands.push(Command::SaveResult(self.open));
+                wishes.push(TrayWish::Save(self.open));
             }
             if asset::kind(&film.name) == Some(Kind::Image) && keep(ui, film, kept) {
-                commands.push(Command::KeepResult(self.open));
+                wishes.push(TrayWish::Keep(self.open));
             }
             if find(ui) {
-                commands.push(Command::FindResult(self.open));
+                wishes.push(TrayWish::Find(self.open));
             }
         });
     }

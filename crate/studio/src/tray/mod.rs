@@ -4,18 +4,21 @@
 //! picture have changed. They run in small steps, a few milliseconds in each frame, and wait for
 //! the traced picture only if they read it. The tray's contents stay until a new run is complete.
 
-pub mod desk;
 pub mod item;
 pub mod large;
 pub mod strip;
 
-use crate::asset::Asset;
-use crate::command::Command;
-use crate::picture::Image;
-use crate::session::Session;
+use crate::page::{Dialog, Moment, Page};
+use crate::panel::Panel;
+use crate::screen;
+use crate::wish::{TextWish, Wishes, WorkWish};
 use darkroom::{Bench, Done, Step};
-use desk::Desk;
-use egui::{Context, Ui, Vec2};
+use document::asset::Asset;
+use document::desk::Desk;
+use document::intake::Incoming;
+use document::picture::Image;
+use document::session::Session;
+use egui::{Context, Ui};
 use item::{Content, Film, Item};
 use large::Large;
 use rats::Tool;
@@ -26,6 +29,21 @@ use std::sync::Arc;
 const QUIET: f64 = 0.3;
 /// Seconds of work in a frame of the page after which no further step begins.
 const SLICE: f64 = 0.008;
+
+/// Wishes about results, by their numbers on the tray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrayWish {
+    /// Show one large.
+    Show(usize),
+    /// Write one to a file.
+    Save(usize),
+    /// Go to the command that made one.
+    Find(usize),
+    /// Make one an image of the work.
+    Keep(usize),
+    /// Show only the head of the tray, or all of it.
+    Fold(bool),
+}
 
 /// Inputs of the jobs besides the traced picture.
 #[derive(Clone, Default, PartialEq)]
@@ -88,12 +106,42 @@ struct Run {
 }
 
 impl Tray {
-    /// Forgets all but whether the tray is folded, when another work was opened.
-    pub fn clear(&mut self) {
-        *self = Self {
-            folded: self.folded,
-            ..Self::default()
-        };
+    /// Carries out a wish.
+    pub fn act(&mut self, wish: TrayWish, page: &mut Page, at: &Moment<'_>) {
+        match wish {
+            TrayWish::Show(index) => {
+                self.large.open = index;
+                page.dialog = Some(Dialog::Result);
+            }
+            TrayWish::Save(index) => {
+                if let Some(film) = self.items().get(index).and_then(Item::film) {
+                    // The browser makes a file of the last part of the name.
+                    let name = film.name.rsplit(['/', '\\']).next().unwrap_or_default();
+                    browser::download(name, film.mime(), &film.bytes);
+                    page.tell(format!("Saved {name}, {}.", film.facts()), at.now);
+                }
+            }
+            TrayWish::Find(index) => {
+                if let Some((file, range)) = self.place_of(index, &page.work.session) {
+                    page.dialog = None;
+                    page.wish(TextWish::Jump { file, range });
+                }
+            }
+            TrayWish::Keep(index) => {
+                if let Some(film) = self.items().get(index).and_then(Item::film) {
+                    // A free name: an image of the work is not replaced. The text stays in view.
+                    let file = Incoming {
+                        name: page.work.session.free_name(&film.name),
+                        bytes: Ok(film.bytes.to_vec()),
+                    };
+                    page.wish(WorkWish::Take {
+                        files: vec![file],
+                        show: false,
+                    });
+                }
+            }
+            TrayWish::Fold(folded) => self.folded = folded,
+        }
     }
 
     /// Whether there is anything to show.
@@ -111,26 +159,15 @@ impl Tray {
         }
     }
 
-    /// Shows a result large.
-    pub fn open(&mut self, index: usize) {
-        self.large.open = index;
-    }
-
-    /// Shows the result that was opened, in a window of a size. `kept` are the images of the work.
-    pub fn show_large(
-        &mut self,
-        ui: &mut Ui,
-        size: Vec2,
-        kept: &[Asset],
-        now: f64,
-        commands: &mut Vec<Command>,
-    ) {
+    /// Shows the result that was opened, in all of `ui`. `kept` are the images of the work.
+    pub fn show_large(&mut self, ui: &mut Ui, kept: &[Asset], wishes: &mut Wishes) {
         // As `items`, which would borrow all of the tray.
         let items = match &self.run {
             Some(run) if self.items.is_empty() => &run.items,
             _ => &self.items,
         };
-        self.large.show(ui, size, items, kept, now, commands);
+        let (size, now) = (ui.available_size(), browser::now(ui.ctx()));
+        self.large.show(ui, size, items, kept, now, wishes);
     }
 
     /// Returns file and bytes of the command that made a result, if the text is still the same.
@@ -158,15 +195,9 @@ impl Tray {
         }
     }
 
-    /// Returns the seconds until [`Self::tick`] may begin jobs; `None` if none wait.
-    #[must_use]
-    pub fn wait(&self, now: f64) -> Option<f64> {
-        Some((self.due? - now).max(0.0))
-    }
-
     /// Goes on with the jobs. `picture` is the traced picture if it is finished, with the session's
     /// generation.
-    pub fn tick(
+    fn go_on(
         &mut self,
         ctx: &Context,
         session: &Session,
@@ -241,10 +272,40 @@ impl Tray {
     }
 }
 
+impl Panel for Tray {
+    /// Shows the strip below the picture.
+    fn show(&mut self, _page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
+        let narrow = screen::is_narrow(ui.ctx());
+        strip::show(ui, self, narrow, wishes);
+    }
+
+    fn tick(&mut self, page: &mut Page, at: &Moment<'_>) {
+        if page.is_lab_open {
+            return;
+        }
+        let session = &page.work.session;
+        let finished = page.renderer.image().filter(|_| page.is_finished());
+        let picture = finished.map(|image| (session.generation(), image));
+        self.go_on(at.ctx, session, picture, at.now);
+    }
+
+    fn wait(&self, page: &Page, now: f64) -> Option<f64> {
+        let due = self.due.filter(|_| !page.is_lab_open)?;
+        Some((due - now).max(0.0))
+    }
+
+    fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
+        *self = Self {
+            folded: self.folded,
+            ..Self::default()
+        };
+    }
+}
+
 impl Run {
     /// Works for [`SLICE`] seconds. Returns whether there is more to do.
     fn go_on(&mut self, ctx: &Context) -> bool {
-        let start = crate::clock::stopwatch();
+        let start = pool::clock::stopwatch();
         self.waits = false;
         loop {
             let has_decoded = self.items.iter_mut().any(|item| match &mut item.content {
@@ -264,7 +325,7 @@ impl Run {
                     self.take(job, command, finished);
                 }
             }
-            if crate::clock::stopwatch() - start > SLICE {
+            if pool::clock::stopwatch() - start > SLICE {
                 return true;
             }
         }

@@ -2,9 +2,9 @@
 
 use super::Tray;
 use super::item::{Content, Film, Item};
-use crate::command::Command;
-use crate::gallery::contain;
 use crate::icon::{self, Icon};
+use crate::wish::{TrayWish, Wishes};
+use crate::works::gallery::contain;
 use crate::{places, theme};
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
@@ -51,10 +51,10 @@ pub fn height(narrow: bool, folded: bool) -> f32 {
 }
 
 /// Shows the strip in all of `ui`.
-pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, wishes: &mut Wishes) {
     places::note(ui.ctx(), "tray", ui.max_rect());
     if !narrow {
-        head(ui, tray, commands);
+        head(ui, tray, wishes);
         if tray.folded {
             return;
         }
@@ -76,7 +76,7 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
                 ui.add_space(12.0);
                 for (index, item) in tray.items().iter().enumerate() {
                     if card(ui, item, measures) {
-                        commands.push(Command::ShowResult(index));
+                        wishes.push(TrayWish::Show(index));
                     }
                 }
                 let state = tray.state();
@@ -90,7 +90,7 @@ pub fn show(ui: &mut Ui, tray: &Tray, narrow: bool, commands: &mut Vec<Command>)
 }
 
 /// Shows the title, the progress of the jobs, and a button that folds the strip.
-fn head(ui: &mut Ui, tray: &Tray, commands: &mut Vec<Command>) {
+fn head(ui: &mut Ui, tray: &Tray, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), HEAD), Sense::hover());
     let part = places::part("tray head", rect).layout(Layout::left_to_right(Align::Center));
@@ -122,7 +122,7 @@ fn head(ui: &mut Ui, tray: &Tray, commands: &mut Vec<Command>) {
         let fold = icon::button(ui, sign, tip, true);
         places::note(ui.ctx(), "fold tray", fold.rect);
         if fold.clicked() {
-            commands.push(Command::FoldTray(!tray.folded));
+            wishes.push(TrayWish::Fold(!tray.folded));
         }
     });
 }

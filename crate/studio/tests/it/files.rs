@@ -1,15 +1,15 @@
 //! Files that are dropped or opened, and the tabs they become.
 
 use crate::driver::Window;
+use document::intake::Incoming;
+use document::{share, storage};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use rats::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use studio::app::Parts;
-use studio::intake::Incoming;
-use studio::request::Request;
-use studio::{platform, share, storage};
+use studio::page::Parts;
+use studio::scripts::request::Request;
 
 const TEXT: &str = "\
 framesize 64 48
@@ -107,9 +107,9 @@ fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
     window
         .harness
         .get_by_label_contains("not the images and meshes");
-    let shared = share::open(&platform::hash()).unwrap().unwrap();
+    let shared = share::open(&browser::hash()).unwrap().unwrap();
     assert_eq!(shared.project.files.len(), 1);
-    platform::set_hash("");
+    browser::set_hash("");
 
     window.harness.get_by_label("Back to the text").click();
     window.steps(3);
@@ -156,14 +156,14 @@ fn files_can_be_chosen_with_a_button_on_a_desk_and_on_a_phone() {
     let mut window = Window::with_text(TEXT);
     let button = window.place("open files").center();
     window.click(button);
-    assert!(platform::was_asked_for_files());
+    assert!(browser::was_asked_for_files());
     drop(window);
     let mut window = Window::open(390.0, 844.0);
     let more = window.place("more").center();
     window.click(more);
     window.harness.get_by_label("Open files…").click();
     window.steps(2);
-    assert!(platform::was_asked_for_files());
+    assert!(browser::was_asked_for_files());
     // The tabs have room there too.
     take_in(&mut window, &[("tri.obj", OBJ)]);
     window.place("tab tri.obj");
@@ -180,7 +180,7 @@ fn a_project_is_one_file_and_can_be_opened_again() {
     window.click(menu);
     let choice = window.place("download project").center();
     window.click(choice);
-    let (name, bytes) = platform::last_download().expect("a file");
+    let (name, bytes) = browser::last_download().expect("a file");
     assert_eq!(name, "Main.zip");
     window.harness.get_by_label_contains("Saved Main.zip");
 

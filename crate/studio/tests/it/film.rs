@@ -2,7 +2,6 @@
 
 use crate::driver::Window;
 use egui_kittest::kittest::Queryable;
-use studio::platform;
 
 const TEXT: &str = "\
 framesize 32 24
@@ -79,7 +78,7 @@ fn save(window: &mut Window, format: &str) -> (String, Vec<u8>) {
     window.click(choice);
     for _ in 0..2000 {
         window.steps(1);
-        if let Some(file) = platform::last_download() {
+        if let Some(file) = browser::last_download() {
             return file;
         }
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -125,7 +124,7 @@ fn playing_goes_through_the_frames_and_editing_stops_a_film() {
     window
         .harness
         .get_by_label_contains("The film was not saved");
-    assert_eq!(platform::last_download(), None);
+    assert_eq!(browser::last_download(), None);
 }
 
 #[test]
@@ -147,6 +146,6 @@ fn a_film_can_be_stopped_on_a_phone() {
     window
         .harness
         .get_by_label_contains("You stopped it. The film was not saved");
-    assert_eq!(platform::last_download(), None);
+    assert_eq!(browser::last_download(), None);
     window.place("slider frame");
 }

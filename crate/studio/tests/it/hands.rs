@@ -3,11 +3,12 @@
 
 use crate::driver::Window;
 use assist::handles::Editable;
+use document::examples;
 use egui::{Key, Modifiers, Pos2, Rect, TextEdit, vec2};
 use egui_kittest::kittest::Queryable;
+use sketch::Sight;
 use std::time::Instant;
-use studio::hands::Sight;
-use studio::{examples, places};
+use studio::places;
 use tracer::Picker;
 
 /// A text with a ball on the left, and three on the right from a loop.

@@ -1,14 +1,15 @@
 //! The lab, driven as a user drives it: its links, its lessons, and the work that it leaves alone.
 
+use browser::Backend;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use lab::{Lesson, Report};
 use rats::{File, Project};
-use studio::Backend;
-use studio::app::{App, Parts};
-use studio::request::Request;
-use studio::{places, platform};
+use studio::app::App;
+use studio::page::Parts;
+use studio::places;
+use studio::scripts::request::Request;
 
 const TEXT: &str = "\
 framesize 64 48
@@ -28,7 +29,7 @@ struct Window {
 
 impl Window {
     fn open([width, height]: [f32; 2], parts: Parts) -> Self {
-        platform::set_stopped(false);
+        browser::set_stopped(false);
         let inner = parts.clone();
         let harness = Harness::builder()
             .with_size(vec2(width, height))
@@ -52,7 +53,7 @@ impl Window {
 
     /// Opens a window with a small text of the user's own, whose picture is soon finished.
     fn with_work(size: [f32; 2]) -> Self {
-        platform::set_hash("");
+        browser::set_hash("");
         let mut window = Self::open(size, Parts::new());
         let file = File {
             name: String::from("main.rat"),
@@ -126,7 +127,7 @@ impl Window {
 
     /// Follows a link in the open page, or goes back to it.
     fn follow(&mut self, hash: &str) {
-        platform::set_hash(hash);
+        browser::set_hash(hash);
         self.parts.requests.ask(Request::HashChanged);
         self.steps(4);
     }
@@ -151,7 +152,7 @@ fn the_lab_is_one_click_away_and_leaves_the_work_alone() {
         assert!(window.lab().is_none());
         window.click("lab");
         assert_eq!(window.lab().unwrap().lesson, "kernels");
-        assert_eq!(platform::hash(), "#lab=kernels");
+        assert_eq!(browser::hash(), "#lab=kernels");
         assert_eq!(window.text(), TEXT);
         // Keys of the editor do nothing here.
         window
@@ -160,10 +161,10 @@ fn the_lab_is_one_click_away_and_leaves_the_work_alone() {
         window.harness.event(Event::Text(String::from("x")));
         window.steps(3);
         window.click("lab lesson convolution");
-        assert_eq!(platform::hash(), "#lab=convolution");
+        assert_eq!(browser::hash(), "#lab=convolution");
         window.click("lab back");
         assert!(window.lab().is_none());
-        assert_eq!(platform::hash(), "");
+        assert_eq!(browser::hash(), "");
         assert_eq!(window.text(), TEXT);
         // The lab remembers the lesson.
         window.click("lab");
@@ -172,13 +173,13 @@ fn the_lab_is_one_click_away_and_leaves_the_work_alone() {
         window.steps(3);
         assert!(window.lab().is_none());
     }
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
 fn links_open_lessons_and_the_way_back_leads_to_the_work() {
     let parts = Parts::new();
-    platform::set_hash("#lab=superposition");
+    browser::set_hash("#lab=superposition");
     let mut window = Window::open(DESK, parts.clone());
     assert_eq!(window.lab().unwrap().lesson, "superposition");
     assert!(window.parts.shelf.borrow().entries().is_empty());
@@ -200,18 +201,18 @@ fn links_open_lessons_and_the_way_back_leads_to_the_work() {
             text: String::from("# theirs\n"),
         }],
     };
-    let link = studio::share::link("https://sinew.example/", &theirs, None).unwrap();
+    let link = document::share::link("https://sinew.example/", &theirs, None).unwrap();
     let fragment = &link[link.find('#').unwrap()..];
     window.follow(fragment);
     assert!(window.lab().is_none());
     assert_eq!(window.text(), "# theirs\n");
     // From there to the lab and back: the same work, the same address.
     window.click("lab");
-    assert_eq!(platform::hash(), "#lab=slice");
+    assert_eq!(browser::hash(), "#lab=slice");
     window.click("lab back");
-    assert_eq!(platform::hash(), fragment);
+    assert_eq!(browser::hash(), fragment);
     assert_eq!(window.text(), "# theirs\n");
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -246,7 +247,7 @@ fn every_lesson_is_drawn_at_both_sizes_and_in_both_palettes() {
             }
         }
     }
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -266,7 +267,7 @@ fn every_control_of_the_lab_has_a_name() {
             window.harness.run();
         }
     }
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -305,7 +306,7 @@ fn grips_change_their_readings() {
     assert!(window.reading("radius") > 1.5);
     window.click("lab kernel gauss");
     assert_eq!(window.reading("chosen"), 2.0);
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -326,7 +327,7 @@ fn a_slice_is_refined_and_shows_the_field_under_the_pointer() {
     window.harness.event(Event::PointerMoved(figure.center()));
     window.steps(2);
     assert!(window.reading("value") < 1.0, "outside");
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -353,7 +354,7 @@ fn spans_are_held_against_the_exact_surface() {
         window.reading("finished") == 1.0 && window.lab().unwrap().waiting == 0
     });
     assert!(worst(&window)[0] != two);
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -389,14 +390,14 @@ fn a_picture_of_the_editor_that_runs_is_finished_first() {
         window.lab().unwrap().drawn == 4 && window.lab().unwrap().waiting == 0
     });
     assert_eq!(window.parts.outbox.borrow().report.phase, "done");
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
 fn every_lesson_opens_as_a_dataset_that_compiles() {
     for lesson in Lesson::all() {
         let parts = Parts::new();
-        platform::set_hash("");
+        browser::set_hash("");
         let mut window = Window::open(DESK, parts.clone());
         // A work of the user's own.
         let editor = window.place("editor");
@@ -419,7 +420,7 @@ fn every_lesson_opens_as_a_dataset_that_compiles() {
         assert!(text.starts_with("# ") && text != own, "{lesson:?}");
         let report = window.parts.outbox.borrow().report.clone();
         assert_eq!(report.diagnostics, [], "{lesson:?}: {text}");
-        assert_eq!(platform::hash(), "");
+        assert_eq!(browser::hash(), "");
         // The user's work is on the shelf, and the way back leads to the lesson.
         let mut shelf = parts.shelf.borrow_mut();
         let [entry] = shelf.entries().try_into().expect("one work");
@@ -441,5 +442,5 @@ fn a_cell_opens_in_the_editor() {
     window.click("lab open cell");
     assert!(window.text().contains("The kernel cauchy on an arc"));
     window.harness.get_by_label("Lab");
-    platform::set_hash("");
+    browser::set_hash("");
 }

@@ -1,13 +1,14 @@
 //! The tray: results of the commands on pictures, below the picture.
 
 use crate::driver::Window;
+use document::intake::Incoming;
+use document::picture;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use studio::app::Parts;
-use studio::intake::Incoming;
-use studio::picture::Image;
-use studio::request::Request;
-use studio::{picture, places, platform};
+use pool::Image;
+use studio::page::Parts;
+use studio::places;
+use studio::scripts::request::Request;
 
 const SCENE: &str = "\
 framesize 64 48
@@ -81,7 +82,7 @@ fn tools_on_two_dropped_pictures_give_results_that_are_shown_saved_and_kept() {
     window.harness.get_by_label("wrote collage.png, 80×30");
     window.harness.get_by_label("Save").click();
     window.steps(2);
-    let (name, bytes) = platform::last_download().expect("a file");
+    let (name, bytes) = browser::last_download().expect("a file");
     assert_eq!((name.as_str(), &bytes[1..4]), ("collage.png", &b"PNG"[..]));
     window.key(Modifiers::NONE, Key::ArrowRight);
     window.key(Modifiers::NONE, Key::ArrowRight);
@@ -144,8 +145,8 @@ fn the_traced_picture_is_one_of_the_files_unless_it_is_not_saved() {
     open(&mut window, "small.png");
     window.harness.get_by_label("Save").click();
     window.steps(2);
-    let (_, bytes) = platform::last_download().expect("a file");
-    let read = studio::examples::decode(&bytes).unwrap();
+    let (_, bytes) = browser::last_download().expect("a file");
+    let read = document::examples::decode(&bytes).unwrap();
     assert_eq!(read.rgba, traced);
     window.key(Modifiers::NONE, Key::Escape);
 
@@ -162,8 +163,8 @@ fn the_traced_picture_is_one_of_the_files_unless_it_is_not_saved() {
         window.harness.get_by_label("Save").click();
         window.steps(2);
         window.key(Modifiers::NONE, Key::Escape);
-        let (_, bytes) = platform::last_download().expect("a file");
-        fresh = studio::examples::decode(&bytes).unwrap().rgba != traced;
+        let (_, bytes) = browser::last_download().expect("a file");
+        fresh = document::examples::decode(&bytes).unwrap().rgba != traced;
         if fresh {
             break;
         }

@@ -1,16 +1,17 @@
 //! The window, driven as a user drives it, by keys and pointer.
 
 use crate::driver::Window;
+use browser::Backend;
+use document::share;
 use egui::{Event, Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use rats::{File, Project};
 use std::cell::RefCell;
 use std::rc::Rc;
-use studio::Backend;
-use studio::app::{App, Parts};
-use studio::request::Request;
-use studio::{platform, share};
+use studio::app::App;
+use studio::page::Parts;
+use studio::scripts::request::Request;
 
 const TEXT: &str = "\
 framesize 64 48
@@ -128,7 +129,7 @@ fn a_click_counts_though_the_first_picture_comes_meanwhile() {
         }],
     };
     let link = share::link("https://sinew.example/", &theirs, None).unwrap();
-    platform::set_hash(&link[link.find('#').unwrap()..]);
+    browser::set_hash(&link[link.find('#').unwrap()..]);
     let mut window = Window::open_with(1000.0, 700.0, parts);
     let button = window.harness.get_by_label("Back to my work");
     let at = button.rect().center();
@@ -141,7 +142,7 @@ fn a_click_counts_though_the_first_picture_comes_meanwhile() {
     window.press(at, false);
     window.steps(2);
     assert!(window.text().starts_with("# mine\n"), "{}", window.text());
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -161,7 +162,7 @@ fn a_shared_link_leaves_the_users_work_alone() {
         }],
     };
     let link = share::link("https://sinew.example/", &theirs, None).unwrap();
-    platform::set_hash(&link[link.find('#').unwrap()..]);
+    browser::set_hash(&link[link.find('#').unwrap()..]);
     let mut window = Window::open_with(1000.0, 700.0, parts.clone());
     assert_eq!(window.text(), "# theirs\n");
     assert!(window.place("notice").width() > 100.0);
@@ -169,19 +170,19 @@ fn a_shared_link_leaves_the_users_work_alone() {
     window.steps(3);
     let text = window.text();
     assert!(text.starts_with("# mine\n"), "{text}");
-    assert_eq!(platform::hash(), "");
+    assert_eq!(browser::hash(), "");
 
     // A damaged link says so and changes nothing.
-    platform::set_hash("#rubbish");
+    browser::set_hash("#rubbish");
     window.parts.requests.ask(Request::HashChanged);
     window.steps(3);
     assert!(window.text().starts_with("# mine\n"));
     assert!(window.place("notice").width() > 100.0);
-    platform::set_hash("");
+    browser::set_hash("");
     drop(window);
 
     // A link that is edited becomes a work of its own.
-    platform::set_hash(&link[link.find('#').unwrap()..]);
+    browser::set_hash(&link[link.find('#').unwrap()..]);
     let mut window = Window::open_with(1000.0, 700.0, parts.clone());
     window.edit();
     window.write("# ours\n");
@@ -195,7 +196,7 @@ fn a_shared_link_leaves_the_users_work_alone() {
         .collect();
     assert_eq!(names.len(), 2, "{names:?}");
     assert_eq!(
-        platform::hash(),
+        browser::hash(),
         "",
         "the address does not carry another work"
     );
@@ -222,10 +223,10 @@ fn share_copies_a_link_that_opens_the_same_text() {
             _ => None,
         })
         .expect("copied");
-    assert!(copied.ends_with(&platform::hash()));
-    let shared = share::open(&platform::hash()).unwrap().unwrap();
+    assert!(copied.ends_with(&browser::hash()));
+    let shared = share::open(&browser::hash()).unwrap().unwrap();
     assert_eq!(shared.project.files[0].text, TEXT);
-    platform::set_hash("");
+    browser::set_hash("");
 }
 
 #[test]
@@ -233,7 +234,7 @@ fn the_picture_can_be_saved() {
     let mut window = Window::with_text(TEXT);
     window.finish();
     window.key(Modifiers::COMMAND, Key::S);
-    let (name, bytes) = platform::last_download().expect("a file");
+    let (name, bytes) = browser::last_download().expect("a file");
     assert_eq!(name, "Main.png");
     assert!(bytes.starts_with(b"\x89PNG"));
 }
@@ -281,7 +282,7 @@ fn too_long_a_paste_is_refused_in_words() {
 #[test]
 fn after_a_bad_start_nothing_is_drawn_until_the_user_says_so() {
     let parts = Parts::new();
-    platform::set_stopped(true);
+    browser::set_stopped(true);
     let inner = parts.clone();
     let mut harness = Harness::builder()
         .with_size(vec2(1000.0, 700.0))
@@ -299,7 +300,7 @@ fn after_a_bad_start_nothing_is_drawn_until_the_user_says_so() {
     harness.get_by_label("Draw").click();
     harness.run_steps(5);
     assert_ne!(parts.outbox.borrow().report.phase, "idle");
-    platform::set_stopped(false);
+    browser::set_stopped(false);
 }
 
 /// Checks that parts of the page are on the screen and do not overlap.
@@ -459,13 +460,13 @@ fn large_mesh_is_read_apart_while_the_picture_stays() {
     window.finish();
     let picture = window.image();
     let mut mesh = String::from("v -1 -1 0\nv 1 -1 0\nv 0 1 0\n");
-    while mesh.len() <= studio::asset::LARGE_MESH {
+    while mesh.len() <= document::asset::LARGE_MESH {
         mesh.push_str("# a comment that makes the file large\n");
     }
     mesh.push_str("f 1 2 3\n");
     let text = TEXT.replace("sphere flesh size, 0 0 0", "mesh flesh big.obj");
     let files = [("big.obj", mesh), ("main.rat", text)];
-    let files = files.map(|(name, text)| studio::intake::Incoming {
+    let files = files.map(|(name, text)| document::intake::Incoming {
         name: name.to_owned(),
         bytes: Ok(text.into_bytes()),
     });

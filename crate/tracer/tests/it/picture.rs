@@ -70,7 +70,7 @@ fn pictures_agree_with_exact_hits() {
         scene.lights.clear();
         scene.background = [1.0; 3].into();
         // Rays that leave through the far end of a plane are beyond what is compared.
-        scene.elements.retain(|e| !e.shape.bounds(0.0).is_none());
+        scene.elements.retain(|e| e.shape.bounds(0.0).is_some());
         let size = [48, 40];
         let (pixels, stats) = whole(&scene, size, 64, Pass::Full);
         assert_eq!(stats.primary_rays, 48 * 40);

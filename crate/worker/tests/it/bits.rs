@@ -4,7 +4,6 @@
 use crate::common::{FEW, TILE, compile, trace};
 use tracer::{Pass, tiles};
 use trials::bits::{Hash, compare};
-use worker::message::pack;
 
 #[test]
 fn scenes_and_tiles_have_the_kept_bits() {
@@ -12,7 +11,7 @@ fn scenes_and_tiles_have_the_kept_bits() {
     for name in FEW {
         let mut scene = compile(name);
         let mut packed = Hash::default();
-        packed.bytes(&pack(&scene).expect("a scene is packed"));
+        packed.bytes(&postcard::to_allocvec(&scene).expect("a scene is packed"));
         found.push((format!("{name} packed"), packed));
         scene.settings.samples = 2;
         let size = [128; 2];
@@ -21,7 +20,7 @@ fn scenes_and_tiles_have_the_kept_bits() {
             let mut hash = Hash::default();
             for (_, pixels, stats) in trace(&scene, size, [(pass, tile)].into_iter()) {
                 hash.bytes(&pixels);
-                hash.bytes(&pack(&stats).expect("counts are packed"));
+                hash.bytes(&postcard::to_allocvec(&stats).expect("counts are packed"));
             }
             found.push((format!("{name} {pass:?}"), hash));
         }

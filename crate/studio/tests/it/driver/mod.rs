@@ -2,12 +2,14 @@
 
 // Each test file uses a part of it.
 
+use browser::Backend;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, vec2};
 use egui_kittest::Harness;
 use rats::{File, Project};
-use studio::app::{App, Parts};
-use studio::request::Request;
-use studio::{Backend, places, platform};
+use studio::app::App;
+use studio::page::Parts;
+use studio::places;
+use studio::scripts::request::Request;
 
 /// A window and the parts of its app.
 pub struct Window {
@@ -21,7 +23,7 @@ impl Window {
     }
 
     pub fn open_with(width: f32, height: f32, parts: Parts) -> Self {
-        platform::set_stopped(false);
+        browser::set_stopped(false);
         let inner = parts.clone();
         let harness = Harness::builder()
             .with_size(vec2(width, height))

@@ -1,0 +1,5 @@
+//! Parts of file formats that more than meshes are read from: XML, PLY's tables, 3MF's packages.
+
+pub mod package;
+pub mod ply;
+pub mod xml;

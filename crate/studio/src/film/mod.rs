@@ -1,0 +1,216 @@
+//! The film of an animated work: the strip below the picture, playback, and saving the frames.
+
+mod timeline;
+
+use crate::page::{Moment, Page};
+use crate::panel::Panel;
+use crate::render::Phase;
+use crate::scripts::request::Request;
+use crate::settings::Show;
+use crate::wish::Wishes;
+use browser::recording::{Kind, Recording, VideoFormat};
+use document::player::{Playback, Player};
+use document::{asset, mesh_export, work};
+use egui::{Context, Ui};
+
+/// Wishes about the film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilmWish {
+    /// Play it, or pause it.
+    Play,
+    /// Show a frame.
+    SetFrame(u32),
+    /// Set the number of frames.
+    SetLength(u32),
+    /// Set the number of frames that are shown in a second.
+    SetRate(u16),
+    /// Choose what follows the last frame.
+    SetPlayback(Playback),
+    /// Write all frames to a file.
+    Save(Kind),
+    /// Stop writing them.
+    Stop,
+}
+
+/// A film that is being saved.
+struct Saving {
+    recording: Recording,
+    /// The revision of the text.
+    revision: u64,
+    /// The frame that was on show before.
+    before: u32,
+    /// The size of the picture that tests had asked for.
+    forced: Option<[u32; 2]>,
+}
+
+/// The film of the open work.
+#[derive(Default)]
+pub struct FilmPanel {
+    player: Player,
+    saving: Option<Saving>,
+    /// The browser's encoders of videos, once they were asked for.
+    pub formats: Option<Vec<VideoFormat>>,
+}
+
+impl FilmPanel {
+    /// Returns the number of frames and their rate.
+    #[must_use]
+    pub fn length(&self) -> mesh_export::Film {
+        mesh_export::Film {
+            count: self.player.count,
+            rate: self.player.rate,
+        }
+    }
+
+    /// Carries out a wish.
+    pub fn act(&mut self, wish: FilmWish, page: &mut Page, at: &Moment<'_>) {
+        let player = &mut self.player;
+        match wish {
+            FilmWish::Play => {
+                let first = player.toggle(page.work.session.film_frame(), at.now);
+                page.go_to_frame(first);
+            }
+            FilmWish::SetFrame(frame) => {
+                player.pause();
+                page.work.session.set_film_frame(frame);
+            }
+            FilmWish::SetLength(count) => {
+                player.count = count;
+                player.chosen = true;
+            }
+            FilmWish::SetRate(rate) => {
+                player.rate = rate;
+                player.chosen = true;
+            }
+            FilmWish::SetPlayback(playback) => player.playback = playback,
+            FilmWish::Save(kind) => self.begin(kind, page, at),
+            FilmWish::Stop => self.stop(page, "You stopped it."),
+        }
+    }
+
+    /// Begins to save all frames.
+    fn begin(&mut self, kind: Kind, page: &mut Page, at: &Moment<'_>) {
+        let size = kind.size(page.size(at.ctx));
+        let formats = self.formats.as_deref().unwrap_or_default();
+        let result = Recording::begin(kind, &self.player, size, formats, at.now);
+        if let Some(recording) = page.accept(result) {
+            self.saving = Some(Saving {
+                recording,
+                revision: page.work.session.revision(),
+                before: page.work.session.film_frame(),
+                forced: page.screen.forced.replace(size),
+            });
+            page.notice = None;
+            page.go_to_frame(0);
+        }
+    }
+
+    /// Gives up saving the film, for a reason that is shown.
+    fn stop(&mut self, page: &mut Page, why: &str) {
+        if let Some(saving) = self.saving.take() {
+            page.screen.forced = saving.forced;
+            page.go_to_frame(saving.before);
+            page.warn(format!("{why} The film was not saved."));
+        }
+    }
+
+    /// Adds a frame that is finished to the film, or ends the film after the last one.
+    fn save_frame(&mut self, page: &mut Page, at: &Moment<'_>) {
+        let Some(saving) = &mut self.saving else {
+            return;
+        };
+        if saving.revision != page.work.session.revision() {
+            self.stop(page, "The text changed.");
+            return;
+        }
+        if page.renderer.phase() == Phase::Cancelled {
+            self.stop(page, "The picture was stopped.");
+            return;
+        }
+        if saving.recording.next_frame().is_some() {
+            let Some(image) = page.renderer.image().filter(|_| page.is_finished()) else {
+                return;
+            };
+            match saving.recording.add(image) {
+                Ok(()) => {
+                    if let Some(next) = saving.recording.next_frame() {
+                        page.go_to_frame(next);
+                        return;
+                    }
+                }
+                Err(trouble) => {
+                    self.stop(page, &trouble);
+                    return;
+                }
+            }
+        }
+        match saving.recording.finish() {
+            // A video's encoder works beside the page.
+            Ok(None) => at.ctx.request_repaint_after_secs(0.01),
+            Ok(Some(bytes)) => self.save(&bytes, page, at.now),
+            Err(trouble) => self.stop(page, &trouble),
+        }
+    }
+
+    /// Saves the file of a film that is complete.
+    fn save(&mut self, bytes: &[u8], page: &mut Page, now: f64) {
+        let Some(saving) = self.saving.take() else {
+            return;
+        };
+        let kind = saving.recording.kind;
+        let stem = work::file_stem(&page.work.name);
+        let name = format!("{stem}-film.{}", kind.extension());
+        browser::download(&name, kind.mime(), bytes);
+        let size = asset::size(bytes.len());
+        page.screen.forced = saving.forced;
+        page.go_to_frame(saving.before);
+        let count = self.player.count;
+        page.tell(format!("Saved {name}, {count} frames, {size}."), now);
+    }
+}
+
+impl Panel for FilmPanel {
+    fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
+        timeline::show(self, page, ui, wishes);
+    }
+
+    /// Shows the next frame of the film if its time has come, or saves the one that is finished.
+    fn tick(&mut self, page: &mut Page, at: &Moment<'_>) {
+        let is_animated = page.work.session.is_animated();
+        if is_animated && self.formats.is_none() {
+            self.formats = Some(Vec::new());
+            let requests = page.parts.requests.clone();
+            browser::video_formats(move |formats| requests.ask(Request::Videos(formats)));
+        }
+        if self.saving.is_some() {
+            self.player.pause();
+            self.save_frame(page, at);
+            return;
+        }
+        if !is_animated || page.is_lab_open {
+            self.player.pause();
+        }
+        self.player.follow(page.work.session.film_rate());
+        let has_draft = page.screen.has_draft && page.settings.show != Show::Traced;
+        let ready = has_draft || page.is_finished();
+        let frame = page.work.session.film_frame();
+        if let Some(next) = self.player.next(frame, ready, at.now) {
+            page.go_to_frame(next);
+        }
+    }
+
+    fn wait(&self, page: &Page, now: f64) -> Option<f64> {
+        // A frame that was finished just now is taken into the film at the next tick.
+        if self.saving.is_some() && page.is_finished() {
+            return Some(0.0);
+        }
+        self.player.wait(now)
+    }
+
+    fn forget(&mut self, page: &mut Page, _ctx: &Context) {
+        self.player = Player::default();
+        if let Some(saving) = self.saving.take() {
+            page.screen.forced = saving.forced;
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Keys of the whole page.
+
+use crate::page::Page;
+use crate::panel::Panels;
+use crate::stage::pencil::tool::Tool;
+use crate::wish::{LabWish, TextWish, ViewWish, Wish, Wishes};
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+/// Lists the wishes of keys that are pressed.
+pub fn listen(page: &Page, panels: &Panels, ctx: &Context, wishes: &mut Wishes) {
+    let pressed = |modifiers: Modifiers, key: Key| {
+        ctx.input_mut(|input| input.consume_shortcut(&KeyboardShortcut::new(modifiers, key)))
+    };
+    if panels.sculpt.is_open() && page.dialog.is_none() {
+        // Sculpting has keys of its own.
+        return;
+    }
+    if page.is_lab_open {
+        // The text is out of sight, so no key may change it.
+        if pressed(Modifiers::NONE, Key::Escape) {
+            wishes.push(LabWish::Close);
+        }
+        return;
+    }
+    // The longer combination first: the shorter one matches it too.
+    if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || pressed(Modifiers::COMMAND, Key::Y)
+    {
+        wishes.push(TextWish::Redo);
+    } else if pressed(Modifiers::COMMAND, Key::Z) {
+        wishes.push(TextWish::Undo);
+    }
+    if pressed(Modifiers::COMMAND, Key::S) {
+        wishes.push(ViewWish::Save);
+    }
+    if page.dialog.is_some() && pressed(Modifiers::NONE, Key::Escape) {
+        wishes.push(Wish::Close);
+    }
+    let types = ctx.egui_wants_keyboard_input();
+    if page.dialog.is_none() && !types && pressed(Modifiers::NONE, Key::D) {
+        let tool = match panels.stage.pencil.tool() {
+            None => Some(Tool::Draw),
+            Some(_) => None,
+        };
+        wishes.push(ViewWish::SetTool(tool));
+    }
+}

@@ -1,0 +1,318 @@
+//! The picture's place: the traced picture and what stands in for it, the camera, and the hands and
+//! the pencil that work on it.
+
+pub mod apart;
+pub mod draft;
+pub mod hands;
+pub mod lamp;
+mod live;
+pub mod pencil;
+pub mod view;
+
+use crate::page::{self, Moment, Page};
+use crate::panel::Panel;
+use crate::render::Phase;
+use crate::wish::{TextWish, Wishes, WorkWish};
+use crate::{places, screen};
+use apart::Apart;
+use document::{examples, picture, work};
+use draft::Draft;
+use egui::{Color32, Context, Painter, Rect, TextureId, Ui, Vec2};
+use egui_wgpu::RenderState;
+use glam::DVec3;
+use hands::Hands;
+use live::LiveMesh;
+use pencil::{Pencil, tool::Tool};
+use pool::Tools;
+use rats::TextEdit;
+use scene::Camera;
+use sketch::Sight;
+use view::{Grasp, Scenery};
+
+/// Wishes about the picture and the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewWish {
+    /// Look at the scene with this camera, or with that of the text if it is `None`.
+    SetCamera(Option<Camera>),
+    /// Bring the whole model into view.
+    ShowAll,
+    /// Let a mesh of the surface follow the hand, which begins to drag.
+    Follow,
+    /// Choose no shape.
+    LetGo,
+    /// Take a tool for drawing in hand, or lay it down.
+    SetTool(Option<Tool>),
+    /// Stop the picture.
+    Cancel,
+    /// Trace the picture again.
+    Again,
+    /// Write the picture to a file.
+    Save,
+}
+
+/// The stand-in for a traced picture that is not there yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StandIn {
+    /// The elements before they melt together.
+    Draft,
+    /// A mesh of their surface.
+    Mesh,
+}
+
+impl StandIn {
+    /// The name, for the status line and for scripts.
+    #[must_use]
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Mesh => "mesh",
+        }
+    }
+}
+
+/// The picture and everything on it.
+pub struct Stage {
+    draft: Option<Draft>,
+    /// The draft where there is none on the window's device.
+    apart: Apart,
+    /// The true surface for the draft.
+    live: LiveMesh,
+    /// The stand-in for the traced picture on the screen.
+    pub stand_in: Option<StandIn>,
+    /// Handles of the chosen shape.
+    pub hands: Hands,
+    /// The tool for drawing.
+    pub pencil: Pencil,
+    /// The file and byte of the editor's caret. The layout keeps it up to date.
+    pub caret: Option<(usize, usize)>,
+    /// Measured points to draw over the picture. The layout keeps them up to date.
+    pub points: Vec<DVec3>,
+    /// The picture's place in device pixels.
+    pub place: [f32; 2],
+}
+
+impl Stage {
+    /// Makes a place without a picture. `state` is there when the window's device can draw drafts.
+    #[must_use]
+    pub fn new(state: Option<RenderState>, tools: Tools) -> Self {
+        Self {
+            draft: state.map(Draft::new),
+            apart: Apart::default(),
+            live: LiveMesh::new(tools),
+            stand_in: None,
+            hands: Hands::default(),
+            pencil: Pencil::default(),
+            caret: None,
+            points: Vec::new(),
+            place: [640.0, 480.0],
+        }
+    }
+
+    /// Carries out a wish.
+    pub fn act(&mut self, wish: ViewWish, page: &mut Page, at: &Moment<'_>) {
+        let session = &mut page.work.session;
+        match wish {
+            ViewWish::SetCamera(camera) => {
+                session.set_camera(camera);
+                page.settings.turned = true;
+                if camera.is_some() {
+                    self.live.want();
+                }
+            }
+            ViewWish::ShowAll => {
+                if let Some(scene) = session.scene() {
+                    let camera = preview::orbit::frame(scene, session.camera(), session.frame());
+                    session.set_camera(Some(camera));
+                }
+            }
+            ViewWish::Follow => self.live.want(),
+            ViewWish::LetGo => self.hands.clear(),
+            ViewWish::SetTool(tool) => self.take_tool(tool, page, at.ctx),
+            ViewWish::Cancel => page.renderer.cancel(),
+            ViewWish::Again => page.renderer.again(at.now),
+            ViewWish::Save => save(page, at.now),
+        }
+    }
+
+    /// Takes a drawing tool in hand, or lays it down. Drawing begins on an empty page if the open
+    /// work is an example or a link without a skeleton.
+    fn take_tool(&mut self, tool: Option<Tool>, page: &mut Page, ctx: &Context) {
+        let begins = tool.is_some() && self.pencil.tool().is_none();
+        self.pencil.take(tool);
+        self.hands.let_go();
+        let session = &mut page.work.session;
+        if !begins || !session.is_compiled() {
+            return;
+        }
+        let is_one = session.project().files.len() == 1 && session.assets().is_empty();
+        if is_one && is_blank(session.text(0)) {
+            session.set_camera(None);
+            let text = sketch::page::fresh(page::ratio(ctx));
+            page.wish(TextWish::step(TextEdit::whole(0, text)));
+        } else if matches!(page.work.origin, work::Origin::Example | work::Origin::Link)
+            && !Pencil::has_skeleton(session)
+        {
+            page.wish(WorkWish::DrawNew);
+        }
+    }
+
+    /// Returns the texture of the stand-in for the traced picture, if one is needed.
+    fn stand_in(&mut self, page: &Page, ctx: &Context, now: f64) -> Option<TextureId> {
+        let (session, slow) = (&page.work.session, page.screen.rest > 0.0);
+        if slow && page.renderer.is_near(view::SOON, now) {
+            // If it does not come by then, the draft is drawn.
+            ctx.request_repaint_after_secs(view::SOON as f32);
+        }
+        let mut stand_in = StandIn::Draft;
+        let texture = if view::needs_draft(page.settings.show, session, &page.renderer, slow, now) {
+            match &mut self.draft {
+                Some(draft) => {
+                    let mesh = self.live.mesh(session, now);
+                    stand_in = mesh.map_or(StandIn::Draft, |_| StandIn::Mesh);
+                    draft.texture(session, self.place, mesh)
+                }
+                None => self.apart.texture(ctx, session, self.place),
+            }
+        } else {
+            None
+        };
+        let stand_in = texture.map(|_| stand_in);
+        if self.stand_in != stand_in {
+            self.stand_in = stand_in;
+            // The status line, which names it, was drawn before.
+            ctx.request_repaint();
+        }
+        texture
+    }
+}
+
+impl Panel for Stage {
+    fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
+        let session = &page.work.session;
+        let narrow = screen::is_narrow(ui.ctx());
+        let margin = if narrow { 0.0 } else { 18.0 };
+        let scale = ui.ctx().pixels_per_point();
+        let rect = view::fit(ui.max_rect().shrink(margin), session.frame(), scale);
+        // Sizes are taken in whole pixels, so that a picture is not traced anew for a rounding
+        // error.
+        self.place = [
+            (rect.width() * scale).round(),
+            (rect.height() * scale).round(),
+        ];
+        places::note(ui.ctx(), "picture", rect);
+        let now = browser::now(ui.ctx());
+        let draft = self.stand_in(page, ui.ctx(), now);
+        let draws = self.pencil.tool().is_some();
+        let scenery = Scenery {
+            session,
+            renderer: &page.renderer,
+            draft,
+            show: page.settings.show,
+            now,
+            hint: !page.settings.turned,
+            round: if narrow { 0.0 } else { 5.0 },
+            grasp: Grasp {
+                draws,
+                wheel: self.pencil.takes_wheel(),
+                pinch: self.pencil.takes_pinch(),
+            },
+        };
+        let picture = view::show(ui, rect, &scenery, wishes);
+        let sight = Sight::new(&session.camera(), rect);
+        points(
+            &self.points,
+            &ui.painter().with_clip_rect(rect),
+            &sight,
+            rect,
+        );
+        let (covered, touch) = (page.dialog.is_some(), page.screen.touch == Some(true));
+        if draws {
+            let around = pencil::Around {
+                session,
+                covered,
+                late: draft.is_none() && !page.is_fresh(),
+                touch,
+            };
+            self.pencil.show(ui, rect, &picture, &around, wishes);
+            if let Some(pair) = self.pencil.alternative(session)
+                && session.is_enabled()
+                && pencil::bar::turn(ui, rect, pair)
+            {
+                self.pencil.turn(session, wishes);
+            }
+            return;
+        }
+        let around = hands::Around {
+            session,
+            caret: self.caret,
+            covered,
+            draft: draft.is_some(),
+            touch,
+        };
+        self.hands.show(ui, rect, &picture, &around, wishes);
+        if !session.is_enabled() || covered {
+            return;
+        }
+        let is_well = session.is_compiled() && session.errors() == 0;
+        if is_well && lamp::is_dark(&session.compilation().scene) {
+            lamp::show(ui, rect, session, wishes);
+        }
+        pencil::bar::start(ui, rect, wishes);
+    }
+
+    fn tick(&mut self, page: &mut Page, at: &Moment<'_>) {
+        if page.is_reading {
+            self.live.give_way();
+        }
+        let is_drawn = self.draft.is_some() && self.stand_in.is_some();
+        let rests = rests(page);
+        self.live.tick(&page.work.session, at.now, is_drawn, rests);
+    }
+
+    fn wait(&self, page: &Page, now: f64) -> Option<f64> {
+        let wait = self.live.wait(&page.work.session, now);
+        wait.filter(|_| rests(page))
+    }
+
+    fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
+        self.live.forget();
+        self.hands.clear();
+        self.pencil.clear();
+    }
+}
+
+/// Whether a text is empty, or that of a new work.
+fn is_blank(text: &str) -> bool {
+    text.trim().is_empty() || text.trim() == examples::BLANK.trim()
+}
+
+/// Whether neither a picture nor a file keeps workers busy.
+fn rests(page: &Page) -> bool {
+    let is_tracing = matches!(page.renderer.phase(), Phase::Waiting | Phase::Tracing);
+    !is_tracing && !page.is_reading
+}
+
+/// Draws measured points over the picture.
+fn points(points: &[DVec3], painter: &Painter, sight: &Sight, rect: Rect) {
+    for point in points {
+        if let Some(at) = sight.screen(*point).filter(|at| rect.contains(*at)) {
+            let square = Rect::from_center_size(at, Vec2::splat(2.2));
+            painter.rect_filled(square, 0.0, Color32::from_rgb(90, 200, 255));
+        }
+    }
+}
+
+/// Writes the picture to a file.
+fn save(page: &mut Page, now: f64) {
+    let Some(image) = page.renderer.image() else {
+        page.warn("There is no picture to save yet.");
+        return;
+    };
+    let [width, height] = image.size;
+    let png = picture::png(image).map_err(|error| error.to_string());
+    if let Some(bytes) = page.accept(png) {
+        let name = format!("{}.png", work::file_stem(&page.work.name));
+        browser::download(&name, "image/png", &bytes);
+        page.tell(format!("Saved {name}, {width} × {height} pixels."), now);
+    }
+}

@@ -1,0 +1,434 @@
+//! The text editor: colours, line numbers, underlined mistakes, indentation, completions, cards,
+//! the line that says how a command is written, definitions, renaming.
+
+mod answers;
+mod completion;
+mod folding;
+mod hover;
+mod place;
+mod rename;
+mod signature;
+mod tint;
+
+use crate::problems;
+use crate::text::code::Colouring;
+use crate::text::keyboard::is_brace;
+use crate::text::marks::{self, Marks};
+use crate::theme::{self, Palette};
+use crate::wish::{TextWish, Wishes};
+use assist::indent::{self, Edited};
+use document::session::Session;
+use egui::text::{CCursor, CCursorRange};
+use egui::{
+    Align, FontId, Galley, Key, Margin, Modifiers, Pos2, Rect, ScrollArea, TextBuffer, TextEdit,
+    Ui, pos2,
+};
+use place::{Place, id, to_bytes, to_chars};
+use std::ops::Range;
+
+/// The state of the editor that is not part of the user's work.
+#[derive(Default)]
+pub struct Editor {
+    /// The file on show.
+    pub file: usize,
+    /// The image or mesh on show instead, by its name.
+    pub asset: Option<String>,
+    buffer: String,
+    synced: Option<(u64, usize)>,
+    colouring: Colouring,
+    folding: folding::Folding,
+    marks: Marks,
+    jump: Option<Range<usize>>,
+    place: Option<usize>,
+    /// The cursor before the last frame's edits.
+    before: Option<CCursorRange>,
+    /// The line of the cursor, from 1.
+    line: usize,
+    completions: completion::Popup,
+    hover: hover::Hover,
+    signature: signature::Line,
+    tints: tint::Tints,
+    rename: Option<rename::Rename>,
+    /// Whether a letter was typed in the last frame, which may open the completions.
+    typed: bool,
+    /// The file and byte of the cursor.
+    caret: Option<(usize, usize)>,
+    /// The file and bytes of the commands that are chosen in the picture, shown on a light ground.
+    pub lit: Option<(usize, Range<usize>)>,
+}
+
+impl Editor {
+    /// Shows a file.
+    pub fn open(&mut self, file: usize) {
+        self.file = file;
+        self.asset = None;
+    }
+
+    /// Selects a byte range of a file and scrolls to it, at the next frame.
+    pub fn jump(&mut self, file: usize, range: Range<usize>) {
+        self.open(file);
+        self.jump = Some(range);
+    }
+
+    /// Takes the session's text again after an edit was refused, with the cursor where it was.
+    pub fn resync(&mut self, ctx: &egui::Context) {
+        self.synced = None;
+        if let Some(mut state) = TextEdit::load_state(ctx, id()) {
+            state.cursor.set_char_range(self.before);
+            state.store(ctx, id());
+        }
+    }
+
+    /// Shows a byte of a file, without taking the focus from where it is.
+    pub fn show_place(&mut self, file: usize, byte: usize) {
+        self.open(file);
+        self.place = Some(byte);
+    }
+
+    /// Returns the file and byte of the cursor; `None` until the text has had the focus.
+    #[must_use]
+    pub fn caret(&self) -> Option<(usize, usize)> {
+        self.caret
+    }
+
+    /// Shows the first file from the top, when another work was opened.
+    pub fn reset(&mut self, ctx: &egui::Context) {
+        self.open(0);
+        self.completions.close();
+        self.folding.clear();
+        self.rename = None;
+        self.synced = None;
+        self.caret = None;
+        self.jump = None;
+        ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
+    }
+
+    /// Shows the editor in all the space of `ui`, with `hints` also the line at the caret that says
+    /// how its command is written.
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, hints: bool, wishes: &mut Wishes) {
+        self.file = self
+            .file
+            .min(session.project().files.len().saturating_sub(1));
+        if self.synced != Some((session.revision(), self.file)) {
+            session.text(self.file).clone_into(&mut self.buffer);
+            self.synced = Some((session.revision(), self.file));
+        }
+        self.marks.update(
+            session.revision(),
+            session.project(),
+            self.file,
+            session.diagnostics(),
+        );
+        let palette = theme::palette(ui.visuals());
+        ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);
+        self.before =
+            TextEdit::load_state(ui.ctx(), id()).and_then(|state| state.cursor.char_range());
+        self.offer(ui, session);
+        let chosen = self.completions.keys(ui);
+        let mut is_step = self.write(ui, chosen);
+        self.ask(ui, session, wishes);
+        let has_changed = self.keys(ui);
+        let height = ui.available_height();
+        let lines = self.buffer.bytes().filter(|byte| *byte == b'\n').count() + 1;
+        let digits = lines.to_string().len().max(2);
+        let gutter = digits as f32 * theme::CODE_SIZE * 0.6 + 26.0;
+        let caret = ScrollArea::vertical()
+            .id_salt(("editor", self.file))
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                let caret = self.text(ui, palette, session, gutter, height, wishes);
+                let focused = ui.memory(|memory| memory.has_focus(id()));
+                if let (Some((caret, place)), true, true) = (caret, focused, hints) {
+                    self.signature.show(ui, session, place, self.line, caret);
+                }
+                if let Some((caret, place)) = caret {
+                    let right = ui.max_rect().right() - 10.0;
+                    let row = Rect::from_x_y_ranges(caret.left()..=right, caret.y_range());
+                    self.tints.show(ui, session, place, row, wishes);
+                }
+                caret
+            })
+            .inner;
+        if let Some((caret, _)) = caret {
+            let chosen = self.completions.show(ui, caret);
+            is_step |= self.write(ui, chosen);
+            self.show_rename(ui, session, caret, wishes);
+        }
+        let (file, text) = (self.file, &self.buffer);
+        if is_step {
+            wishes.push(TextWish::step(rats::TextEdit::whole(file, text)));
+        } else if has_changed || text != session.text(file) {
+            wishes.push(TextWish::edit(rats::TextEdit::whole(file, text)));
+        }
+    }
+
+    /// Shows the text. Returns the caret's rectangle and place.
+    fn text(
+        &mut self,
+        ui: &mut Ui,
+        palette: &'static Palette,
+        session: &Session,
+        gutter: f32,
+        height: f32,
+        wishes: &mut Wishes,
+    ) -> Option<(Rect, Place)> {
+        let dark = ui.visuals().dark_mode;
+        let wanted = self.jump.as_ref().map(|range| range.start).or(self.place);
+        if let Some(byte) = wanted {
+            let line = line_of(&self.buffer, byte);
+            self.folding.reveal(self.file, line);
+        }
+        let (colouring, folding, file) = (&mut self.colouring, &mut self.folding, self.file);
+        let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
+            let job = colouring.job(text.as_str(), palette, dark, width);
+            let job = folding::hide(job, &folding.update(file, text.as_str()));
+            ui.fonts_mut(|fonts| fonts.layout_job(job))
+        };
+        let margin = Margin {
+            left: gutter.min(120.0) as i8,
+            right: 12,
+            top: 10,
+            bottom: 40,
+        };
+        let behind = ui.painter().add(egui::Shape::Noop);
+        let output = TextEdit::multiline(&mut self.buffer)
+            .id(id())
+            .code_editor()
+            // Escape closes what is open, and only then leaves the text.
+            .event_filter(egui::EventFilter {
+                tab: true,
+                horizontal_arrows: true,
+                vertical_arrows: true,
+                escape: self.completions.is_open() || self.signature.is_open(self.line),
+            })
+            .frame(egui::Frame::new().inner_margin(margin))
+            .desired_width(f32::INFINITY)
+            .min_size(egui::vec2(0.0, height))
+            .hint_text("Write a dataset here, or pick an example.")
+            .layouter(&mut layouter)
+            .show(ui);
+        let (galley, origin) = (output.galley.clone(), output.galley_pos);
+        if output.response.response.changed() {
+            self.typed = ui.input(|input| {
+                input.events.iter().any(writes_letters)
+                    || self.completions.is_open() && input.key_pressed(Key::Backspace)
+            });
+        }
+        let mut state = output.state;
+        if let Some(range) = self.jump.take() {
+            let start = to_chars(&self.buffer, range.start);
+            let end = to_chars(&self.buffer, range.end);
+            let selected = CCursorRange::two(CCursor::new(start), CCursor::new(end));
+            state.cursor.set_char_range(Some(selected));
+            state.clone().store(ui.ctx(), id());
+            place::focus(ui.ctx());
+            let place = galley.pos_from_cursor(CCursor::new(start));
+            ui.scroll_to_rect(place.translate(origin.to_vec2()), Some(Align::Center));
+        } else if let Some(byte) = self.place.take() {
+            let cursor = CCursor::new(to_chars(&self.buffer, byte));
+            state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
+            state.clone().store(ui.ctx(), id());
+            let place = galley.pos_from_cursor(cursor);
+            // With a few rows around it, as a command may take several.
+            let around = place
+                .translate(origin.to_vec2())
+                .expand2(egui::vec2(0.0, 70.0));
+            ui.scroll_to_rect(around, None);
+        } else if let Some(range) = output.cursor_range {
+            let byte = to_bytes(&self.buffer, range.primary.index.0);
+            let byte = self.out_of_folds(ui, byte, &mut state);
+            self.caret = Some((self.file, byte));
+            self.line = line_of(&self.buffer, byte) + 1;
+        }
+        if let Some((file, range)) = &self.lit
+            && *file == self.file
+        {
+            let chars = to_chars(&self.buffer, range.start)..to_chars(&self.buffer, range.end);
+            let light = palette.accent.gamma_multiply(0.22);
+            let rows = marks::rows(&galley, chars).into_iter().map(|row| {
+                let row = row
+                    .translate(origin.to_vec2())
+                    .expand2(egui::vec2(3.0, 0.0));
+                egui::Shape::rect_filled(row, 3.0, light)
+            });
+            ui.painter().set(behind, egui::Shape::Vec(rows.collect()));
+        }
+        self.marks.paint(ui.painter(), palette, &galley, origin);
+        let focused = ui.memory(|memory| memory.has_focus(id()));
+        let rows = self.line_numbers(ui, palette, &galley, origin, focused);
+        let x = origin.x - gutter.min(120.0) + 9.0;
+        if let Some(line) = self.folding.show(ui, palette, self.file, &rows, x) {
+            self.fold(ui, line);
+        }
+        self.point(&output.response.response, session, &galley, origin, wishes);
+        let caret = state.cursor.char_range()?.primary;
+        let rect = galley.pos_from_cursor(caret).translate(origin.to_vec2());
+        let byte = to_bytes(&self.buffer, caret.index.0);
+        let file = self.file;
+        Some((rect, Place { file, byte }))
+    }
+
+    /// Acts on F8, Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Returns
+    /// whether the text changed.
+    fn keys(&mut self, ui: &Ui) -> bool {
+        if !ui.memory(|memory| memory.has_focus(id())) {
+            return false;
+        }
+        let folds = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F8));
+        if let (true, Some((_, byte))) = (folds, self.caret) {
+            self.fold(ui, line_of(&self.buffer, byte));
+        }
+        let Some(mut state) = TextEdit::load_state(ui.ctx(), id()) else {
+            return false;
+        };
+        let action: Option<fn(&str, Range<usize>) -> Edited> = ui.input_mut(|input| {
+            if input.consume_key(Modifiers::SHIFT, Key::Tab) {
+                Some(indent::back_tab as _)
+            } else if input.consume_key(Modifiers::NONE, Key::Tab) {
+                Some(indent::tab as _)
+            } else if input.consume_key(Modifiers::COMMAND, Key::Slash) {
+                Some(indent::comment as _)
+            } else if input.consume_key(Modifiers::NONE, Key::Enter) {
+                Some(indent::enter as _)
+            } else if let Some(index) = input.events.iter().position(is_brace) {
+                input.events.remove(index);
+                Some(indent::brace as _)
+            } else {
+                None
+            }
+        });
+        let Some(action) = action else {
+            return false;
+        };
+        let selected = state.cursor.char_range().map_or(0..0, |range| {
+            range.as_sorted_char_range().start.0..range.as_sorted_char_range().end.0
+        });
+        let selected = to_bytes(&self.buffer, selected.start)..to_bytes(&self.buffer, selected.end);
+        let (text, selected) = action(&self.buffer, selected);
+        self.buffer = text;
+        let selected = CCursorRange::two(
+            CCursor::new(to_chars(&self.buffer, selected.start)),
+            CCursor::new(to_chars(&self.buffer, selected.end)),
+        );
+        state.cursor.set_char_range(Some(selected));
+        state.store(ui.ctx(), id());
+        true
+    }
+
+    /// Draws the numbers of the lines in view. Returns those lines, from 0, and their rows.
+    fn line_numbers(
+        &self,
+        ui: &Ui,
+        palette: &Palette,
+        galley: &Galley,
+        origin: Pos2,
+        focused: bool,
+    ) -> Vec<(usize, Rect)> {
+        let mut rows = Vec::new();
+        let painter = ui.painter();
+        let clip = painter.clip_rect();
+        let font = FontId::monospace(11.5);
+        let mut line = 1;
+        let mut starts = true;
+        for row in &galley.rows {
+            let rect = row.rect().translate(origin.to_vec2());
+            // Folded lines have no height.
+            let is_seen = rect.bottom() >= clip.top() && rect.top() <= clip.bottom();
+            if starts && is_seen && rect.height() > 2.0 {
+                rows.push((line - 1, rect));
+                let here = focused && line == self.line;
+                let colour = if here { palette.text } else { palette.comment };
+                painter.text(
+                    pos2(origin.x - 14.0, rect.center().y),
+                    egui::Align2::RIGHT_CENTER,
+                    line,
+                    font.clone(),
+                    colour.gamma_multiply(if here { 1.0 } else { 0.75 }),
+                );
+                if let Some(severity) = self.marks.of_line(line) {
+                    painter.circle_filled(
+                        pos2(origin.x - 7.0, rect.center().y),
+                        2.5,
+                        problems::colour(palette, severity),
+                    );
+                }
+            }
+            starts = row.ends_with_newline;
+            line += usize::from(starts);
+        }
+        rows
+    }
+
+    /// Folds or unfolds the block around a line, and takes the caret out of a folded one.
+    fn fold(&mut self, ui: &Ui, line: usize) {
+        let shut = self.folding.toggle(self.file, line);
+        if let (Some(shut), Some((_, byte))) = (shut, self.caret)
+            && (shut.start + 1..shut.end).contains(&line_of(&self.buffer, byte))
+        {
+            self.place = Some(end_of_line(&self.buffer, shut.start));
+        }
+        ui.ctx().request_repaint();
+    }
+
+    /// Returns the caret's byte outside of folds: arrow keys step over a fold, and any other way
+    /// into one opens it.
+    fn out_of_folds(
+        &mut self,
+        ui: &Ui,
+        byte: usize,
+        state: &mut egui::text_edit::TextEditState,
+    ) -> usize {
+        let line = line_of(&self.buffer, byte);
+        let Some(fold) = self.folding.around(self.file, line) else {
+            return byte;
+        };
+        let arrows = [
+            Key::ArrowUp,
+            Key::ArrowDown,
+            Key::ArrowLeft,
+            Key::ArrowRight,
+        ];
+        if !ui.input(|input| arrows.iter().any(|key| input.key_pressed(*key))) {
+            self.folding.reveal(self.file, line);
+            ui.ctx().request_repaint();
+            return byte;
+        }
+        let lines = self.buffer.matches('\n').count() + 1;
+        let went_down = self.line <= fold.start + 1;
+        let target = if went_down && fold.end < lines {
+            fold.end
+        } else {
+            fold.start
+        };
+        let byte = if went_down && target == fold.end {
+            end_of_line(&self.buffer, target - 1) + 1
+        } else {
+            end_of_line(&self.buffer, target)
+        };
+        let cursor = CCursor::new(to_chars(&self.buffer, byte));
+        state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
+        state.clone().store(ui.ctx(), id());
+        byte
+    }
+}
+
+/// Returns the line of a byte, from 0.
+fn line_of(text: &str, byte: usize) -> usize {
+    text[..text.floor_char_boundary(byte)].matches('\n').count()
+}
+
+/// Returns the byte at the end of a line, before its line feed.
+fn end_of_line(text: &str, line: usize) -> usize {
+    let ends = text.match_indices('\n').map(|(at, _)| at);
+    ends.skip(line).chain([text.len()]).next().unwrap_or(0)
+}
+
+/// Whether an event types letters, on a keyboard or on that of a phone.
+fn writes_letters(event: &egui::Event) -> bool {
+    match event {
+        egui::Event::Text(text) | egui::Event::Ime(egui::ImeEvent::Commit(text)) => {
+            !text.is_empty() && text.chars().all(char::is_alphanumeric)
+        }
+        _ => false,
+    }
+}

@@ -1,0 +1,192 @@
+//! Whole works: the gallery, opening, naming, deleting, saving and sharing them, and files that
+//! arrive from outside.
+
+mod arrivals;
+pub mod gallery;
+
+use crate::page::{self, Moment, Page};
+use crate::stage::pencil::tool::Tool;
+use crate::wish::ViewWish;
+use document::asset::{self, Asset};
+use document::intake::Incoming;
+use document::project_file::{self, Project};
+use document::work::Origin;
+use document::{examples, share, work};
+use gallery::Gallery;
+
+/// Wishes about whole works.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WorkWish {
+    /// Open an example, whose files may have to be fetched first.
+    OpenExample(usize),
+    /// Open an example whose files were fetched; its text is `None` if that did not come.
+    OpenFetched {
+        /// The number of the example.
+        index: usize,
+        /// The text.
+        text: Option<String>,
+        /// The images and meshes.
+        assets: Vec<Asset>,
+    },
+    /// Open a saved work.
+    OpenSaved(String),
+    /// Open a text as an example is opened.
+    OpenText {
+        /// The name of the work.
+        name: String,
+        /// The dataset.
+        text: String,
+    },
+    /// Begin an empty work.
+    New,
+    /// Begin an empty work to draw on.
+    DrawNew,
+    /// Go back to the user's own work, which a link has replaced.
+    GoBack,
+    /// Give the work another name.
+    Rename(String),
+    /// Delete a saved work.
+    Delete(String),
+    /// Compile and trace again after a failed start.
+    Enable,
+    /// Write all texts, images and meshes to one file.
+    Save,
+    /// Make a link, copy it, and put it into the address bar.
+    Share,
+    /// Choose files to take in.
+    PickFiles,
+    /// Take in files.
+    Take {
+        /// The files.
+        files: Vec<Incoming>,
+        /// Whether what was taken in is shown.
+        show: bool,
+    },
+}
+
+impl Gallery {
+    /// Carries out a wish.
+    pub fn act(&mut self, wish: WorkWish, page: &mut Page, at: &Moment<'_>) {
+        match wish {
+            WorkWish::OpenExample(index) => {
+                let example = examples::ALL.get(index).filter(|e| e.files.is_empty());
+                match example.and_then(|example| example.text) {
+                    Some(text) => {
+                        let result = page.work.open_example(index, text, Vec::new());
+                        show_opened(page, result);
+                    }
+                    None => arrivals::fetch_example(page, index),
+                }
+            }
+            WorkWish::OpenFetched {
+                index,
+                text: Some(text),
+                assets,
+            } => {
+                let result = page.work.open_example(index, &text, assets);
+                show_opened(page, result);
+            }
+            WorkWish::OpenFetched { text: None, .. } => {
+                page.dialog = None;
+                page.warn(
+                    "This example could not be loaded. Check the connection and try again; \
+                        your work stays open.",
+                );
+            }
+            WorkWish::OpenSaved(id) => {
+                let result = page.work.open_saved(&id);
+                show_opened(page, result);
+            }
+            WorkWish::OpenText { name, text } => {
+                let result = page.work.open_text(&name, text, Origin::Example);
+                show_opened(page, result);
+            }
+            WorkWish::New => {
+                let text = String::from(examples::BLANK);
+                let result = page.work.open_text("Untitled", text, Origin::Fresh);
+                show_opened(page, result);
+            }
+            WorkWish::DrawNew => {
+                let text = sketch::page::fresh(page::ratio(at.ctx));
+                let result = page.work.open_text("Drawing", text, Origin::Fresh);
+                show_opened(page, result);
+                page.wish(ViewWish::SetTool(Some(Tool::Draw)));
+            }
+            WorkWish::GoBack => {
+                if let Some(id) = page.work.before().map(str::to_owned) {
+                    browser::set_hash("");
+                    let result = page.work.open_saved(&id);
+                    show_opened(page, result);
+                }
+            }
+            WorkWish::Rename(name) => page.work.rename(name, at.now),
+            WorkWish::Delete(id) => {
+                let shelf = &page.parts.shelf;
+                shelf.borrow_mut().delete(&id);
+                self.refresh(shelf.borrow().entries());
+            }
+            WorkWish::Enable => {
+                page.notice = None;
+                page.work.session.enable();
+            }
+            WorkWish::Save => save(page, at.now),
+            WorkWish::Share => share(page, at),
+            WorkWish::PickFiles => browser::pick_files(page.parts.requests.taker()),
+            WorkWish::Take { files, show } => arrivals::take_in(page, files, show, at),
+        }
+    }
+
+    /// Reads the list of saved works anew, before the gallery is shown.
+    pub fn open(&mut self, page: &mut Page) {
+        let result = page.work.flush();
+        page.accept(result);
+        self.refresh(page.parts.shelf.borrow().entries());
+    }
+}
+
+/// Shows a work that was opened, or why it could not be.
+fn show_opened(page: &mut Page, result: Result<(), String>) {
+    if result.is_ok() {
+        page.leave_lesson();
+        browser::set_hash("");
+    } else {
+        page.dialog = None;
+    }
+    page.accept(result);
+}
+
+/// Writes all texts, images and meshes to one file.
+fn save(page: &mut Page, now: f64) {
+    let session = &page.work.session;
+    let packed = project_file::pack(&Project {
+        name: page.work.name.clone(),
+        texts: session.project().files.clone(),
+        assets: session.assets().to_vec(),
+        camera: session.user_camera(),
+    });
+    if let Some(bytes) = page.accept(packed) {
+        let name = format!("{}.zip", work::file_stem(&page.work.name));
+        browser::download(&name, "application/zip", &bytes);
+        let size = asset::size(bytes.len());
+        page.tell(format!("Saved {name}, {size}. Open it here to go on."), now);
+    }
+}
+
+/// Copies a link to the work, and puts it into the address bar.
+fn share(page: &mut Page, at: &Moment<'_>) {
+    let session = &page.work.session;
+    let link = share::link(&browser::page(), session.project(), session.user_camera());
+    let carries = if session.assets().is_empty() {
+        "It carries the text and the view."
+    } else {
+        "It carries the texts and the view, not the images and meshes."
+    };
+    if let Some(link) = page.accept(link) {
+        if let Some((_, fragment)) = link.split_once('#') {
+            browser::set_hash(&format!("#{fragment}"));
+        }
+        let size = share::size(&link);
+        at.ctx.copy_text(link);
+        page.tell(format!("Link copied ({size}). {carries}"), at.now);
+    }
+}
