@@ -32,6 +32,9 @@ fn every_sign_that_the_page_writes_can_be_drawn() {
     let mut signs = BTreeSet::new();
     for folder in [
         "src",
+        "../browser/src",
+        "../document/src",
+        "../field/src/kernel",
         "../lab/src",
         "../widgets/src",
         "../rats/src",
