@@ -37,9 +37,21 @@ for (const [file, words] of [
     await sinew.load('surface s diffuse Gold\nsphere s 1 0 0 0\n');
     await sinew.until((status) => status.errors === 0 && status.failure);
     await sinew.keep(`without ${file}`);
-    // Once it comes, all is well.
+    // Once it comes, all is well: also for who asks while the last fetch is still failing.
     await sinew.page.unroute(`**/${file}`);
+    let fail;
+    const failing = new Promise((resolve) => { fail = resolve; });
+    const started = new Promise((resolve) => {
+      sinew.page.route(`**/${file}`, async (route) => {
+        resolve();
+        await failing;
+        await route.abort();
+      }, { times: 1 });
+    });
     await sinew.page.evaluate(() => sinew.render());
+    await started;
+    await sinew.page.evaluate(() => sinew.render());
+    fail();
     const { failure } = await sinew.finished();
     assert.equal(failure, null);
     await sinew.close();

@@ -10,6 +10,7 @@ use crate::clock::stopwatch;
 use crate::workers::{Manager, Message};
 use page::{Timer, load};
 use std::cell::RefCell;
+use std::mem::replace;
 use std::rc::{Rc, Weak};
 use wasm_bindgen_futures::spawn_local;
 use workers::describe;
@@ -61,7 +62,19 @@ struct Inner<M> {
     manager: M,
     repaint: Box<dyn Fn()>,
     timer: Option<Timer>,
-    is_loading: bool,
+    loading: Loading,
+}
+
+/// The state of the workers' program while it is not there.
+#[derive(Clone, Copy, PartialEq)]
+enum Loading {
+    /// Nothing is fetched.
+    Idle,
+    /// It is being fetched.
+    Started,
+    /// It is being fetched, and was asked for once more meanwhile: if the fetch fails, which may
+    /// have been lost before that, it is fetched again.
+    Repeated,
 }
 
 impl<M> Clone for Crew<M> {
@@ -101,7 +114,7 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
                 manager: manager(workers),
                 repaint: Box::new(repaint),
                 timer: None,
-                is_loading: false,
+                loading: Loading::Idle,
             })
         });
         Self { inner }
@@ -110,27 +123,32 @@ impl<M: Manager<Workers = PlatformWorkers>> Crew<M> {
     /// Loads the workers' program, unless that was done.
     pub fn load(&self) {
         let inner = &mut *self.inner.borrow_mut();
-        if inner.is_loading || inner.manager.workers().has_module() {
+        if inner.manager.workers().has_module() {
             return;
         }
-        inner.is_loading = true;
+        if inner.loading != Loading::Idle {
+            inner.loading = Loading::Repeated;
+            return;
+        }
+        inner.loading = Loading::Started;
         let Program { wasm, name, .. } = inner.program;
         let weak = Rc::downgrade(&self.inner);
         spawn_local(async move {
             let module = load(wasm).await;
             let Some(inner) = weak.upgrade() else { return };
             let crew = Self { inner };
+            let loading = replace(&mut crew.inner.borrow_mut().loading, Loading::Idle);
+            if module.is_err() && loading == Loading::Repeated {
+                crew.load();
+                return;
+            }
             crew.ask(|manager, now| {
                 let outcome = module.map(|module| manager.workers().set_module(module));
                 let outcome = outcome
                     .map_err(|error| format!("{name} could not be loaded: {}", describe(error)));
                 manager.note_program(outcome, now);
             });
-            {
-                let inner = &mut *crew.inner.borrow_mut();
-                inner.is_loading = false;
-                (inner.repaint)();
-            }
+            (crew.inner.borrow().repaint)();
             crew.watch();
         });
     }
