@@ -1,8 +1,9 @@
-//! Images and meshes that a work refers to: accepted formats, and messages about them.
+//! Images, meshes and skeletons that a work refers to: accepted formats, and messages about them.
 //!
 //! Only their headers are read here; the language interprets them.
 
 use ::picture::{Format, file};
+use archive::Archive;
 pub use rats::Asset;
 use std::path::Path;
 
@@ -15,6 +16,9 @@ pub const MAX_ASSETS: usize = 16;
 /// Longest side of an image, pixels.
 pub const MAX_SIDE: u32 = 4096;
 
+/// Most members of a 3MF file that is looked into.
+const MOST_MEMBERS: usize = 1000;
+
 /// A mesh file of more bytes than this is read by a tools worker, not by the page's thread.
 pub const LARGE_MESH: usize = 256 << 10;
 
@@ -25,6 +29,8 @@ pub enum Kind {
     Image,
     /// A mesh of triangles or polygons.
     Mesh,
+    /// Limbs with radii.
+    Skeleton,
 }
 
 /// Returns the end of a file's name after the last dot, in lower case.
@@ -40,9 +46,52 @@ pub fn extension(name: &str) -> String {
 pub fn kind(name: &str) -> Option<Kind> {
     match extension(name).as_str() {
         "png" | "gif" | "tga" | "tif" | "tiff" | "mtv" => Some(Kind::Image),
-        "obj" | "ply" | "stl" | "glb" => Some(Kind::Mesh),
+        "obj" | "ply" | "stl" | "glb" | "3mf" => Some(Kind::Mesh),
+        "swc" | "vtp" | "vtk" | "csv" | "pdb" | "ent" | "xyz" => Some(Kind::Skeleton),
         _ => None,
     }
+}
+
+/// Whether a file holds limbs: by its name, or as its content says where files of that name may
+/// hold a mesh or points, too.
+#[must_use]
+pub fn is_skeleton(name: &str, bytes: &[u8]) -> bool {
+    let has_line = |begins: &dyn Fn(&[u8]) -> bool| {
+        let mut lines = bytes.split(|byte| *byte == b'\n' || *byte == b'\r');
+        lines.any(|line| begins(line.trim_ascii_start()))
+    };
+    match extension(name).as_str() {
+        "obj" => {
+            let has = |word: &'static [u8]| has_line(&|line: &[u8]| line.starts_with(word));
+            has(b"l ") && !has(b"f ")
+        }
+        "ply" => ply_head(bytes).is_some_and(|head| element_count(head, "edge") > Some(0)),
+        // A molecule counts its atoms in its first line, and names an element in each of the others.
+        "xyz" => {
+            let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
+            let mut lines = text.lines();
+            let is_count = lines
+                .next()
+                .is_some_and(|line| line.trim().parse::<u32>().is_ok());
+            let third = lines.nth(1).and_then(|line| line.split_whitespace().next());
+            is_count && third.is_some_and(|word| word.starts_with(|c: char| c.is_alphabetic()))
+        }
+        "3mf" => has_beams(bytes),
+        _ => kind(name) == Some(Kind::Skeleton),
+    }
+}
+
+/// Whether a 3MF file has a beam lattice: one of its models says so near its beginning.
+fn has_beams(bytes: &[u8]) -> bool {
+    let Ok(archive) = Archive::open(bytes, MOST_MEMBERS) else {
+        return false;
+    };
+    let models = archive.entries().iter();
+    let models = models.filter(|entry| entry.name.ends_with(".model"));
+    models.take(16).any(|entry| {
+        let text = archive.read(entry, 2 * MAX_ASSET).unwrap_or_default();
+        text.windows(11).any(|part| part == b"beamlattice")
+    })
 }
 
 /// Whether this is a mesh so large that reading it would freeze the page's thread.
@@ -68,6 +117,14 @@ pub fn facts(asset: &Asset) -> Result<String, String> {
             }
             Ok(format!("{width} × {height} pixels"))
         }
+        _ if is_skeleton(&asset.name, &asset.bytes) => Ok(String::from("a skeleton")),
+        Some(Kind::Skeleton) => Err(String::from("no skeleton could be found in it")),
+        Some(Kind::Mesh) if extension(&asset.name) == "3mf" => {
+            match Archive::open(&asset.bytes, MOST_MEMBERS) {
+                Ok(_) => Ok(String::from("a mesh")),
+                Err(error) => Err(format!("it {error}")),
+            }
+        }
         Some(Kind::Mesh) => {
             let counts = match extension(&asset.name).as_str() {
                 "obj" => obj(&asset.bytes),
@@ -79,7 +136,9 @@ pub fn facts(asset: &Asset) -> Result<String, String> {
                 .map(Counts::words)
                 .ok_or_else(|| String::from("no mesh could be found in it"))
         }
-        None => Err(String::from("it is neither an image nor a mesh")),
+        None => Err(String::from(
+            "it is neither an image nor a mesh nor a skeleton",
+        )),
     }
 }
 
@@ -132,21 +191,26 @@ fn obj(bytes: &[u8]) -> Option<Counts> {
     (counts.corners > Some(0) && counts.faces > 0).then_some(counts)
 }
 
-fn ply(bytes: &[u8]) -> Option<Counts> {
+/// Returns the header of a PLY file.
+fn ply_head(bytes: &[u8]) -> Option<&str> {
     let head = &bytes[..bytes.len().min(64 * 1024)];
     let end = head.windows(10).position(|part| part == b"end_header")?;
     let head = std::str::from_utf8(&head[..end]).ok()?;
-    if !head.starts_with("ply") {
-        return None;
-    }
-    let count = |element: &str| {
-        head.lines()
-            .find_map(|line| line.strip_prefix("element ")?.trim().strip_prefix(element))
-            .and_then(|number| number.trim().parse::<u64>().ok())
-    };
+    head.starts_with("ply").then_some(head)
+}
+
+/// Returns the number of elements of a name that the header of a PLY file tells.
+fn element_count(head: &str, element: &str) -> Option<u64> {
+    head.lines()
+        .find_map(|line| line.strip_prefix("element ")?.trim().strip_prefix(element))
+        .and_then(|number| number.trim().parse::<u64>().ok())
+}
+
+fn ply(bytes: &[u8]) -> Option<Counts> {
+    let head = ply_head(bytes)?;
     Some(Counts {
-        corners: Some(count("vertex")?),
-        faces: count("face")?,
+        corners: Some(element_count(head, "vertex")?),
+        faces: element_count(head, "face")?,
     })
 }
 
@@ -228,6 +292,33 @@ mod tests {
         assert_eq!(describe("a.glb", &glb).unwrap(), "24 corners, 12 faces");
         glb[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
         assert!(describe("a.glb", &glb).is_err());
+    }
+
+    #[test]
+    fn content_tells_skeletons_from_meshes_and_points() {
+        let is_skeleton = |name: &str, text: &str| is_skeleton(name, text.as_bytes());
+        assert!(is_skeleton("a.swc", ""));
+        assert!(is_skeleton("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"));
+        assert!(!is_skeleton("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\nf 1 2 1\n"));
+        assert!(is_skeleton(
+            "a.ply",
+            "ply\nelement vertex 2\nelement edge 1\nend_header\n"
+        ));
+        assert!(!is_skeleton("a.ply", "ply\nelement vertex 2\nend_header\n"));
+        assert!(is_skeleton("a.xyz", "2\nwater\nO 0 0 0\nH 1 0 0\n"));
+        assert!(!is_skeleton("a.xyz", "0 0 0\n1 0 0\n0 1 0\n"));
+        assert!(!is_skeleton("a.xyz", "2\n\n0 0 0\n1 0 0\n"));
+        assert!(!is_skeleton("a.3mf", "no archive"));
+        let model = "<model><b:beamlattice/></model>";
+        let member = |text| archive::Member::new("3D/a.model", text);
+        let file = |text: &'static str| archive::write(&[member(text.as_bytes())]).unwrap();
+        assert!(super::is_skeleton("a.3mf", &file(model)));
+        assert!(!super::is_skeleton("a.3mf", &file("<model/>")));
+        assert_eq!(describe("a.3mf", &file("<model/>")).unwrap(), "a mesh");
+        assert_eq!(
+            describe("a.obj", b"v 0 0 0\nv 1 0 0\nl 1 2\n").unwrap(),
+            "a skeleton"
+        );
     }
 
     #[test]

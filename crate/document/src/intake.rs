@@ -13,8 +13,8 @@ const TEXTS: [&str; 6] = ["rat", "art", "ice", "dat", "txt", "strokes"];
 const MEASURED: [&str; 2] = ["xyz", "json"];
 /// The kinds of files that are accepted, in words.
 pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif \
-    .mtv), meshes (.obj .ply .stl .glb), points to fit to (.ply .xyz), outlines (.json) and \
-    projects (.zip)";
+    .mtv), meshes (.obj .ply .stl .glb .3mf), skeletons (.swc .3mf .vtp .vtk .csv .obj .ply .xyz \
+    .pdb), points to fit to (.ply .xyz), outlines (.json) and projects (.zip)";
 /// Most files that are read at once.
 pub const MOST: usize = 32;
 
@@ -48,7 +48,10 @@ pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
     let (most, what) = if project_file::is_project(name) {
         (project_file::MAX_BYTES, "a project")
     } else if asset::kind(name).is_some() || MEASURED.contains(&asset::extension(name).as_str()) {
-        (MAX_ASSET, "an image, a mesh or a cloud of points")
+        (
+            MAX_ASSET,
+            "an image, a mesh, a skeleton or a cloud of points",
+        )
     } else {
         (MAX_TEXT, "a text")
     };
@@ -152,7 +155,10 @@ pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
 fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     check_length(name, bytes.len() as f64)?;
     let extension = asset::extension(name);
-    if MEASURED.contains(&extension.as_str()) || (extension == "ply" && !has_faces(&bytes)) {
+    let is_skeleton = asset::is_skeleton(name, &bytes);
+    let is_measured =
+        MEASURED.contains(&extension.as_str()) || (extension == "ply" && !has_faces(&bytes));
+    if is_measured && !is_skeleton {
         sorted.measured.push((name.to_owned(), bytes));
     } else if asset::kind(name).is_some() {
         let asset = asset(name, bytes)?;
@@ -169,6 +175,27 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
         return Err(format!("Sinew takes {KINDS}"));
     }
     Ok(())
+}
+
+/// Returns a text that draws skeletons among files which came without a text; `None` if there are
+/// none. It lights them from afar, as their size is not known before they are read.
+#[must_use]
+pub fn text_of_skeletons(assets: &[Asset]) -> Option<File> {
+    let skeletons = assets
+        .iter()
+        .filter(|own| asset::is_skeleton(&own.name, &own.bytes));
+    let mut text = String::from(
+        "light White, position -1e9 2e9 2e9\nlight Gray40, position 2e9 0 1e9\n\
+         surface Flesh, diffuse SandyBrown, specular Gray40, shine 40, radius 0.5, \
+         kernel compact6, blobbiness -8\n",
+    );
+    let mut count = 0;
+    for skeleton in skeletons {
+        count += 1;
+        text += &format!("skeleton Flesh, SKELETON{count} {}\n", skeleton.name);
+    }
+    let name = String::from("main.rat");
+    (count > 0).then_some(File { name, text })
 }
 
 /// Whether a file is no cloud of points: the header of a PLY file lists faces, or is damaged.
@@ -231,6 +258,32 @@ mod tests {
         assert_eq!(sorted.texts[2].text, "# ä");
         assert_eq!(sorted.texts[1].text, "sphere a 1, 0 0 0\n");
         assert_eq!(sorted.refused, Vec::<String>::new());
+    }
+
+    #[test]
+    fn skeletons_get_a_text_that_draws_them() {
+        let sorted = sort(vec![
+            file("a b.swc", b"1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n"),
+            file("m.xyz", b"2\n\nO 0 0 0\nH 1 0 0\n"),
+        ]);
+        assert_eq!(sorted.refused, Vec::<String>::new());
+        assert!(sorted.measured.is_empty());
+        let file = text_of_skeletons(&sorted.assets).unwrap();
+        assert_eq!(rats::asset_names(&file.text), ["a-b.swc", "m.xyz"]);
+        for asset in &sorted.assets {
+            let recipe = rats::Recipe::default();
+            let graph = recipe.make(&asset.name, &asset.bytes);
+            rats::keep_skeleton(asset, recipe, graph.map_err(|error| error.to_string()));
+        }
+        let project = rats::Project { files: vec![file] };
+        let compiled = rats::compile_at(&project, &sorted.assets, 0.0);
+        let bad = compiled
+            .diagnostics
+            .iter()
+            .filter(|told| told.severity == rats::Severity::Error);
+        assert_eq!(bad.count(), 0, "{:?}", compiled.diagnostics);
+        assert_eq!(compiled.scene.elements.len(), 3, "limbs and two atoms");
+        assert_eq!(text_of_skeletons(&[]), None);
     }
 
     #[test]

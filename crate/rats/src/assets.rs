@@ -1,9 +1,10 @@
-//! Meshes, height fields and images made of a project's files, kept while the files are: a text is
-//! compiled at every keystroke, a large file should be read once.
+//! Meshes, height fields, skeletons and images made of a project's files, kept while the files are:
+//! a text is compiled at every keystroke, a large file should be read once.
 
 use crate::limits::MAX_IMAGE_PIXELS;
 use crate::project::Asset;
 use glam::DVec3;
+use limbs::{Graph, Recipe};
 use mesh::{Error, Topology, TriangleMesh};
 use picture::Format;
 use scene::Shape;
@@ -20,32 +21,32 @@ type Made<T> = Result<T, Error>;
 /// Name of a file, and the size of a height field made of it.
 type How = (String, Option<DVec3>);
 
-/// A mesh or image made of some bytes.
-struct Kept<T> {
+/// Something made of some bytes, and how.
+struct Kept<T, H> {
     bytes: Weak<[u8]>,
-    how: How,
+    how: H,
     made: Made<T>,
 }
 
-impl<T> Kept<T> {
-    fn is_of(&self, asset: &Asset, how: &How) -> bool {
+impl<T, H: PartialEq> Kept<T, H> {
+    fn is_of(&self, asset: &Asset, how: &H) -> bool {
         let bytes = self.bytes.upgrade();
         self.how == *how && bytes.is_some_and(|bytes| Arc::ptr_eq(&bytes, &asset.bytes))
     }
 }
 
 /// The last [`KEPT`] results, in the order of their use.
-struct Cache<T>(Vec<Kept<T>>);
+struct Cache<T, H = How>(Vec<Kept<T, H>>);
 
-impl<T: Clone> Cache<T> {
+impl<T: Clone, H: PartialEq> Cache<T, H> {
     /// Returns what was made of a file before, which becomes the last one to be dropped.
-    fn find(&mut self, asset: &Asset, how: &How) -> Option<Made<T>> {
+    fn find(&mut self, asset: &Asset, how: &H) -> Option<Made<T>> {
         let index = self.0.iter().position(|kept| kept.is_of(asset, how))?;
         self.0[index..].rotate_left(1);
         self.0.last().map(|kept| kept.made.clone())
     }
 
-    fn keep(&mut self, asset: &Asset, how: How, made: Made<T>) {
+    fn keep(&mut self, asset: &Asset, how: H, made: Made<T>) {
         self.0.retain(|kept| kept.bytes.strong_count() > 0);
         if self.0.len() >= KEPT {
             self.0.remove(0);
@@ -57,7 +58,7 @@ impl<T: Clone> Cache<T> {
         });
     }
 
-    fn get(&mut self, asset: &Asset, how: How, read: impl FnOnce(&[u8]) -> Made<T>) -> Made<T> {
+    fn get(&mut self, asset: &Asset, how: H, read: impl FnOnce(&[u8]) -> Made<T>) -> Made<T> {
         self.find(asset, &how).unwrap_or_else(|| {
             let made = read(&asset.bytes);
             self.keep(asset, how, made.clone());
@@ -69,6 +70,8 @@ impl<T: Clone> Cache<T> {
 thread_local! {
     static MESHES: RefCell<Cache<Rc<TriangleMesh>>> = const { RefCell::new(Cache(Vec::new())) };
     static TOPOLOGIES: RefCell<Cache<Rc<Topology>>> = const { RefCell::new(Cache(Vec::new())) };
+    static SKELETONS: RefCell<Cache<Rc<Graph>, (String, Recipe)>> =
+        const { RefCell::new(Cache(Vec::new())) };
     static IMAGES: RefCell<Cache<Arc<Rgb8>>> = const { RefCell::new(Cache(Vec::new())) };
 }
 
@@ -125,6 +128,41 @@ pub fn image(asset: &Asset) -> Made<Arc<Rgb8>> {
             }))
         })
     })
+}
+
+/// Returns the skeleton of a file; `None` if it has not been read, and is not to be read here.
+///
+/// # Errors
+/// A sentence on what is wrong with the file.
+pub fn skeleton(asset: &Asset, recipe: &Recipe) -> Option<Made<Rc<Graph>>> {
+    let how = (asset.name.clone(), recipe.clone());
+    SKELETONS.with_borrow_mut(|cache| {
+        #[cfg(not(feature = "readers"))]
+        return cache.find(asset, &how);
+        #[cfg(feature = "readers")]
+        Some(cache.get(asset, how, |bytes| {
+            let made = recipe.make(&asset.name, bytes);
+            made.map(Rc::new).map_err(|error| Error(error.to_string()))
+        }))
+    })
+}
+
+/// Whether [`keep_skeleton`] or an earlier compilation has this skeleton.
+#[must_use]
+pub fn is_skeleton_read(asset: &Asset, recipe: &Recipe) -> bool {
+    let how = (asset.name.clone(), recipe.clone());
+    SKELETONS.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
+}
+
+/// Keeps the skeleton of a file that was read elsewhere, or the error message of its reader, for
+/// all compilations by this thread while the file's bytes are kept. It must be what
+/// [`Recipe::make`] gives.
+pub fn keep_skeleton(asset: &Asset, recipe: Recipe, skeleton: Result<Graph, String>) {
+    let how = (asset.name.clone(), recipe);
+    SKELETONS.with_borrow_mut(|cache| {
+        cache.0.retain(|kept| !kept.is_of(asset, &how));
+        cache.keep(asset, how, skeleton.map(Rc::new).map_err(Error));
+    });
 }
 
 /// Returns the triangles as shapes: patches where the mesh has normals, else flat ones.

@@ -61,10 +61,11 @@ mod text_edit;
 pub mod tool;
 mod value;
 
-pub use assets::{is_mesh_read, keep_mesh};
+pub use assets::{is_mesh_read, is_skeleton_read, keep_mesh, keep_skeleton};
 pub use compile::{compile, compile_at, provenance};
-pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement};
+pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement, Unread};
 pub use diagnostic::{Diagnostic, Related, Severity};
+pub use limbs::Recipe;
 pub use project::{Asset, File, Project};
 pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};
 pub use strokes::{is_strokes, keep_sculpted, start_file};

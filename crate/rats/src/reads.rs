@@ -51,9 +51,10 @@ fn join(folder: &str, name: &str) -> Option<String> {
     Some(parts.join("/"))
 }
 
-/// Endings of the files that are no texts: images and meshes.
-pub const ASSET_ENDINGS: [&str; 11] = [
-    "png", "tif", "tiff", "tga", "gif", "mtv", "obj", "ply", "stl", "glb", "3mf",
+/// Endings of the files that are no texts: images, meshes and skeletons.
+pub const ASSET_ENDINGS: [&str; 18] = [
+    "png", "tif", "tiff", "tga", "gif", "mtv", "obj", "ply", "stl", "glb", "3mf", "swc", "vtp",
+    "vtk", "csv", "xyz", "pdb", "ent",
 ];
 
 /// Number of [`ASSET_ENDINGS`] that are those of images.
@@ -73,8 +74,8 @@ fn has_ending(name: &str, endings: &[&str]) -> bool {
     })
 }
 
-/// Returns the images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`),
-/// in order, wherever it does. A text of strokes asks for the mesh that it starts from.
+/// Returns the images, meshes and skeletons that a text asks for (`mesh`, `terra`, `texture`,
+/// `background`, `skeleton`), in order, wherever it does. A text of strokes asks for the mesh that it starts from.
 #[must_use]
 pub fn asset_names(text: &str) -> Vec<String> {
     let mut lines = text.lines().map(str::trim_start);
@@ -85,7 +86,7 @@ pub fn asset_names(text: &str) -> Vec<String> {
     let mut symbols = Symbols::default();
     let syntax = parse(text, &mut symbols);
     let mut names = Vec::new();
-    let commands = ["mesh", "terra", "texture", "background"];
+    let commands = ["mesh", "terra", "texture", "background", "skeleton"];
     collect(&syntax.block, &commands, &syntax, text, &mut names);
     names.retain(|name| has_ending(name, &ASSET_ENDINGS));
     names
@@ -170,10 +171,17 @@ mod tests {
     fn images_and_meshes_are_found() {
         let text = "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\n\
             mesh robust\ntexture Mona { diffuse mona.tif plain, scale 2 2 1 }\n\
-            background Red\nbackground sky.png\n";
+            background Red\nbackground sky.png\nskeleton Clay, N n-1.swc scale 2\n\
+            skeleton Clay, M { node A <0 0.5 .3> node B <1 0 0> curve A B }\n";
         assert_eq!(
             asset_names(text),
-            ["parts/bunny.ply", "hills.png", "mona.tif", "sky.png"]
+            [
+                "parts/bunny.ply",
+                "hills.png",
+                "mona.tif",
+                "sky.png",
+                "n-1.swc"
+            ]
         );
     }
 }

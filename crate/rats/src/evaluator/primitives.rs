@@ -72,6 +72,7 @@ impl<'a> Evaluator<'a> {
     ) -> Outcome<Flow> {
         let flesh = &self.palette.surfaces[material].flesh;
         let part = Part {
+            limbs: 0,
             tapers: shape.bone().is_some_and(|bone| match bone.skeleton {
                 _ if bone.end_radius.is_some() => flesh.is_soft(),
                 Skeleton::Segment { .. } | Skeleton::Arc { .. } => {
@@ -619,7 +620,7 @@ pub static MESH: CommandSpec = row(
 .with(by_itself(mesh, plain![SN, MESH_FILE], MESH_OPTIONS))
 .default("robust")
 .details(
-    "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB \
+    "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL, GLB or 3MF \
      (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, \
      made by strokes of tools (Sculpt writes them). Where the mesh has colours (of vertices), or \
      is painted, they are multiplied with the material's diffuse and ambient. Soft: each triangle \
