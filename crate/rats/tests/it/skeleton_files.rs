@@ -17,7 +17,7 @@ fn compile(text: &str, name: &str, content: &str) -> Compiled {
         name: name.to_owned(),
         bytes: content.as_bytes().into(),
     };
-    let text = format!("eyep 0 0 900\nsurface s, diffuse Red\nsurface t, diffuse Blue\n{text}");
+    let text = format!("verbose off\neyep 0 0 900\nsurface s, diffuse Red\nsurface t, diffuse Blue\n{text}");
     compile_at(&Project::single(text), &[asset], 0.0)
 }
 
