@@ -66,7 +66,7 @@ pub use compile::{compile, compile_at, provenance};
 pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
-pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};
+pub use reads::{asset_names, is_image, is_mesh, places, reads};
 pub use strokes::{is_strokes, keep_sculpted, start_file};
 pub use text_edit::TextEdit;
 pub use tool::Tool;
