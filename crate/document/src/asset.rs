@@ -18,9 +18,6 @@ pub const MAX_SIDE: u32 = 4096;
 /// Most members of a 3MF package.
 const MAX_PARTS: usize = 4096;
 
-/// A mesh file of more bytes than this is read by a tools worker, not by the page's thread.
-pub const LARGE_MESH: usize = 256 << 10;
-
 /// Kind of an asset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -46,12 +43,6 @@ pub fn kind(name: &str) -> Option<Kind> {
     } else {
         rats::is_mesh(name).then_some(Kind::Mesh)
     }
-}
-
-/// Whether this is a mesh so large that reading it would freeze the page's thread.
-#[must_use]
-pub fn is_large_mesh(asset: &Asset) -> bool {
-    kind(&asset.name) == Some(Kind::Mesh) && asset.bytes.len() > LARGE_MESH
 }
 
 /// Describes the file's content in a few words.
@@ -222,10 +213,7 @@ mod tests {
     use super::*;
 
     fn describe(name: &str, bytes: &[u8]) -> Result<String, String> {
-        facts(&Asset {
-            name: String::from(name),
-            bytes: bytes.into(),
-        })
+        facts(&Asset::unread(name, bytes))
     }
 
     #[test]

@@ -148,10 +148,7 @@ pub fn check_name(name: &str) -> Result<(), String> {
 /// If it is too large, or not of the format that its name says.
 pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
     check_length(name, bytes.len() as f64)?;
-    let asset = Asset {
-        name: name.to_owned(),
-        bytes: bytes.into(),
-    };
+    let asset = Asset::unread(name, bytes);
     asset::facts(&asset)?;
     Ok(asset)
 }

@@ -1,8 +1,8 @@
-//! Reading the large meshes of a work apart from the page's thread.
+//! Reading the meshes of a work apart from the page's thread.
 //!
-//! A large mesh file goes to a tools worker; its mesh, or the reader's error message, is kept for
-//! compiling by [`rats::keep_mesh`]. Until then the session does not compile texts that name it and
-//! the last good picture stays.
+//! A mesh file goes to a tools worker, as the page's program has no readers; its mesh, or the
+//! reader's error message, is kept by the asset ([`Asset::keep_mesh`]). Until then the session does
+//! not compile texts that name it and the last good picture stays.
 
 use crate::asset::Asset;
 use crate::session::Session;
@@ -46,7 +46,7 @@ impl MeshReading {
         let mut any_read = false;
         self.files.retain_mut(|file| match file.ticket.result() {
             Some(mesh) => {
-                rats::keep_mesh(&file.asset, mesh);
+                file.asset.keep_mesh(mesh);
                 any_read = true;
                 false
             }
@@ -82,22 +82,14 @@ impl MeshReading {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::asset::LARGE_MESH;
     use crate::session::Kept;
     use rats::{File, Project};
     use std::time::{Duration, Instant};
 
-    /// A mesh file of more than [`LARGE_MESH`] bytes with one triangle.
-    fn large(name: &str, face: &str) -> Asset {
-        let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-        while text.len() <= LARGE_MESH {
-            text.push_str("# a comment that makes the file large\n");
-        }
-        text.push_str(face);
-        Asset {
-            name: name.to_owned(),
-            bytes: text.into_bytes().into(),
-        }
+    /// A mesh file with a triangle.
+    fn unread(name: &str, face: &str) -> Asset {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}");
+        Asset::unread(name, text.into_bytes())
     }
 
     fn session(text: &str, assets: Vec<Asset>) -> Session {
@@ -121,16 +113,16 @@ mod tests {
         }
     }
 
-    const TEXT: &str = "surface a, diffuse Red\nmesh a big.obj\n";
+    const TEXT: &str = "surface a, diffuse Red\nmesh a tri.obj\n";
 
     #[test]
     fn session_compiles_once_its_mesh_is_read() {
-        let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
         session.compile();
         assert!(!session.is_compiled() && session.scene().is_none());
         let mut reading = MeshReading::new(Tools::new(|| {}));
         assert!(!reading.tick(&session));
-        assert_eq!(reading.current(), Some(("big.obj", 0.0)));
+        assert_eq!(reading.current(), Some(("tri.obj", 0.0)));
         read_all(&mut reading, &session);
         session.compile();
         assert!(session.is_compiled());
@@ -144,7 +136,7 @@ mod tests {
         session.compile();
         let generation = session.generation();
         session
-            .put_assets(vec![large("big.obj", "f 1 2 9\n")])
+            .put_assets(vec![unread("tri.obj", "f 1 2 9\n")])
             .unwrap();
         session.compile();
         assert!(session.is_compiled(), "the text does not name it");
@@ -166,10 +158,10 @@ mod tests {
 
     #[test]
     fn mesh_that_is_removed_is_not_read() {
-        let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
         let mut reading = MeshReading::new(Tools::new(|| {}));
         reading.tick(&session);
-        session.remove_asset("big.obj");
+        session.remove_asset("tri.obj");
         assert!(!reading.tick(&session));
         assert_eq!(reading.current(), None);
         session.compile();

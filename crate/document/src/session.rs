@@ -619,20 +619,20 @@ impl Session {
         self.enabled = true;
     }
 
-    /// Returns large meshes that the text names and that are not read yet. [`Session::compile`]
-    /// waits until [`rats::keep_mesh`] was called for each.
+    /// Returns meshes that the text names and that are not read yet. [`Session::compile`] waits
+    /// until [`Asset::keep_mesh`] was called for each.
     pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
         self.assets.iter().filter(|asset| {
             // A text in the same folder may leave the folder out.
             let name = asset.name.rsplit('/').next().unwrap_or_default();
-            asset::is_large_mesh(asset)
+            !asset.has_mesh()
+                && rats::is_mesh(name)
                 && self.project.files.iter().any(|f| f.text.contains(name))
-                && !rats::is_mesh_read(asset)
         })
     }
 
-    /// Compiles the present text if it changed since the last call and all large meshes that it
-    /// names are read. Call it after the text was stored, so that no text is lost if the compiler
+    /// Compiles the present text if it changed since the last call and all meshes that it names are
+    /// read. Call it after the text was stored, so that no text is lost if the compiler
     /// stops the program.
     pub fn compile(&mut self) {
         if !self.enabled || !self.stale || self.unread_meshes().next().is_some() {
@@ -849,10 +849,7 @@ mod tests {
     #[test]
     fn images_come_and_go_within_their_limits() {
         let mut session = Session::of_text(TEXT);
-        let image = |name: &str, bytes: usize| Asset {
-            name: name.to_owned(),
-            bytes: vec![0; bytes].into(),
-        };
+        let image = |name: &str, bytes: usize| Asset::unread(name, vec![0; bytes]);
         let revision = session.revision();
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();

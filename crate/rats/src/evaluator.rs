@@ -47,7 +47,7 @@ mod words;
 
 use crate::Project;
 use crate::compiled::{Compiled, Placement};
-use crate::project::Asset;
+use crate::asset::Asset;
 use crate::provenance::Provenance;
 use crate::scope::Scope;
 use crate::sources::Sources;

@@ -222,9 +222,6 @@ impl App {
         if let Some(trouble) = page.work.tick(now) {
             page.warn(trouble);
         }
-        if page.reading.tick(&page.work.session) {
-            page.work.session.compile();
-        }
         let panels = &mut self.panels;
         panels.mesh.film = panels.film.length();
         panels.mesh.tick(page, &at);

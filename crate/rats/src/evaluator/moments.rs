@@ -3,7 +3,7 @@
 use super::frozen::Frozen;
 use super::state::Evaluator;
 use crate::limits::{MAX_ELEMENTS, MAX_MOMENTS, MAX_STEPS};
-use crate::project::Asset;
+use crate::asset::Asset;
 use crate::scope::Scope;
 use crate::sources::Sources;
 use crate::symbol::Symbols;

@@ -33,10 +33,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
                 *text = bytes.and_then(|bytes| String::from_utf8(bytes).ok());
             } else {
                 let name = path.rsplit('/').next().unwrap_or(path).to_owned();
-                assets.extend(bytes.map(|bytes| Asset {
-                    name,
-                    bytes: bytes.into(),
-                }));
+                assets.extend(bytes.map(|bytes| Asset::unread(name, bytes)));
             }
             if *missing == 0 {
                 let (text, assets) = (text.take(), std::mem::take(assets));
