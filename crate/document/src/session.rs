@@ -625,8 +625,7 @@ impl Session {
         self.assets.iter().filter(|asset| {
             // A text in the same folder may leave the folder out.
             let name = asset.name.rsplit('/').next().unwrap_or_default();
-            !asset.has_mesh()
-                && rats::is_mesh(name)
+            asset.is_unread()
                 && self.project.files.iter().any(|f| f.text.contains(name))
         })
     }

@@ -1,5 +1,6 @@
 //! The formats of mesh files.
 
+use crate::error::Error;
 use serde::{Deserialize, Serialize};
 
 /// File format that can be read and written.
@@ -22,6 +23,12 @@ impl Format {
     pub const ALL: [Self; 5] = [Self::Glb, Self::ThreeMf, Self::Stl, Self::Obj, Self::Ply];
     /// The endings of file names, for messages.
     pub const ENDINGS: &str = ".glb, .3mf, .stl, .obj, .ply";
+
+    /// The error of a file that is of none of the formats.
+    #[must_use]
+    pub fn needed() -> Error {
+        Error(format!("meshes are read from files {}", Self::ENDINGS))
+    }
 
     /// The ending of file names, without the dot.
     #[must_use]

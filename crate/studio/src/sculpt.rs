@@ -167,7 +167,7 @@ pub enum SculptWish {
 
 /// Whether the file that a text of strokes starts from is there and not read yet.
 fn must_wait(session: &Session, name: &str, text: &str) -> bool {
-    start_of(session, name, text).is_some_and(|asset| !asset.has_mesh())
+    start_of(session, name, text).is_some_and(|asset| asset.is_unread())
 }
 
 /// The sculpture that is worked on, in place of the editor.
@@ -376,9 +376,13 @@ fn mesh_model(page: &mut Page, now: f64) {
         union: true,
         rig: false,
     };
-    let requests = page.parts.requests.clone();
+    let (requests, of) = (page.parts.requests.clone(), page.work.number());
     let taker = Box::new(move |result| {
-        requests.ask(Request::Wish(SculptWish::Mesh(result).into()));
+        requests.ask(Request::Late {
+            of,
+            what: String::from("The mesh to be sculpted"),
+            wish: SculptWish::Mesh(result).into(),
+        });
     });
     page.tell("The model is being meshed; then you can sculpt it.", now);
     page.parts.requests.ask(Request::Mesh(order, taker));
