@@ -92,8 +92,7 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
                 break;
             }
             if let Some(bytes) = inside(&folder, &name).and_then(|path| bytes(&path)) {
-                let bytes = bytes.into();
-                assets.push(Asset { name, bytes });
+                assets.push(Asset::new(name, bytes));
                 break;
             }
         }

@@ -26,7 +26,8 @@ enum Seen {
 /// `sinew fit MESH --control CAGE --points CLOUD -o OUT`.
 #[derive(Args)]
 pub struct Fit {
-    /// The mesh: .obj, .ply, .stl, .glb or .3mf
+    /// The mesh
+    #[arg(help = format!("The mesh: {}", Format::ENDINGS))]
     mesh: PathBuf,
     /// A mesh around it whose vertices are the control points
     #[arg(long, value_name = "CAGE")]
@@ -58,9 +59,12 @@ pub struct Fit {
     /// Most iterations
     #[arg(long, default_value_t = 60, value_name = "N")]
     iterations: usize,
-    /// The file to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj,
-    /// .stl, .glb, .3mf); may be given for each
-    #[arg(short, long, required = true, value_name = "OUT")]
+    /// The files to write
+    #[arg(short, long, required = true, value_name = "OUT", help = format!(
+        "The file to write: a dataset with `deform` lines (.rat) or the deformed mesh ({}); \
+         may be given for each",
+        Format::ENDINGS
+    ))]
     output: Vec<PathBuf>,
     /// Print numbers of the fit as JSON on the standard output
     #[arg(long)]
@@ -218,8 +222,8 @@ impl<'a> Target<'a> {
             .map(|format| Self::Mesh(path, format))
             .ok_or_else(|| {
                 format!(
-                    "{name}: the result is a dataset (.rat) or a mesh \
-                     (.ply, .obj, .stl, .glb, .3mf)"
+                    "{name}: the result is a dataset (.rat) or a mesh ({})",
+                    Format::ENDINGS
                 )
             })
     }

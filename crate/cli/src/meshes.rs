@@ -78,7 +78,7 @@ impl Mesh {
     pub fn run(&self) -> Outcome {
         let name = self.output.to_string_lossy();
         let format = Format::of_name(&name).ok_or_else(|| {
-            format!("{name}: the name must end in .glb, .3mf, .stl, .obj or .ply")
+            format!("{name}: the name must end in one of {}", Format::ENDINGS)
         })?;
         let is_sound = MILLIMETRES.contains(&self.size);
         if !is_sound {

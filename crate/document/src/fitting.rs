@@ -681,10 +681,7 @@ mod tests {
                     text: text.to_owned(),
                 }],
             },
-            assets: vec![Asset {
-                name: String::from("head.obj"),
-                bytes: obj.into_bytes().into(),
-            }],
+            assets: vec![Asset::new("head.obj", obj.into_bytes())],
             ..Kept::default()
         };
         let mut session = Session::new(kept, true);

@@ -11,12 +11,20 @@ use rats::link::MAX_NAME;
 const TEXTS: [&str; 6] = ["rat", "art", "ice", "dat", "txt", "strokes"];
 /// Extensions of measured points and outlines, beside PLY files without faces.
 const MEASURED: [&str; 2] = ["xyz", "json"];
-/// The kinds of files that are accepted, in words.
-pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif \
-    .mtv), meshes (.obj .ply .stl .glb .3mf), skeletons (.swc .3mf .vtp .vtk .csv .obj .ply .xyz \
-    .pdb), points to fit to (.ply .xyz), outlines (.json) and projects (.zip)";
 /// Most files that are read at once.
 pub const MOST: usize = 32;
+
+/// Returns the kinds of files that are accepted, in words.
+#[must_use]
+pub fn kinds() -> String {
+    format!(
+        "texts (.{}), images ({}), meshes ({}), skeletons (.swc, .3mf, .vtp, .vtk, .csv, .obj, \
+            .ply, .xyz, .pdb), points to fit to (.ply, .xyz), outlines (.json) and projects (.zip)",
+        TEXTS.join(", ."),
+        ::picture::Format::ENDINGS,
+        mesh::Format::ENDINGS
+    )
+}
 
 /// A file from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,10 +151,7 @@ pub fn check_name(name: &str) -> Result<(), String> {
 /// If it is too large, or not of the format that its name says.
 pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
     check_length(name, bytes.len() as f64)?;
-    let asset = Asset {
-        name: name.to_owned(),
-        bytes: bytes.into(),
-    };
+    let asset = Asset::unread(name, bytes);
     asset::facts(&asset)?;
     Ok(asset)
 }
@@ -172,7 +177,7 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
             text,
         });
     } else {
-        return Err(format!("Sinew takes {KINDS}"));
+        return Err(format!("Sinew takes {}", kinds()));
     }
     Ok(())
 }
@@ -198,15 +203,16 @@ pub fn text_of_skeletons(assets: &[Asset]) -> Option<File> {
     (count > 0).then_some(File { name, text })
 }
 
-/// Whether a file is no cloud of points: the header of a PLY file lists faces, or is damaged.
+/// Whether a PLY file is no cloud of points: its heading lists faces, or is damaged.
 fn has_faces(bytes: &[u8]) -> bool {
-    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
-    let header = start.split("end_header").next().unwrap_or_default();
-    let mut lines = header.lines();
-    let is_ply = lines.next().is_some_and(|line| line.trim() == "ply");
-    let has_vertices = header.contains("element vertex");
-    let faces = lines.find_map(|line| line.trim().strip_prefix("element face"));
-    !is_ply || !has_vertices || faces.is_some_and(|count| count.trim() != "0")
+    let Ok(elements) = mesh::formats::ply::elements(bytes) else {
+        return true;
+    };
+    let is_face = |name: &str| matches!(name, "face" | "tristrips");
+    elements.iter().all(|element| element.name != "vertex")
+        || elements
+            .iter()
+            .any(|element| is_face(element.name) && element.count > 0)
 }
 
 /// Returns a name, or a part of one between folders, with a hyphen for each character that a name
@@ -273,7 +279,7 @@ mod tests {
         for asset in &sorted.assets {
             let recipe = rats::Recipe::default();
             let graph = recipe.make(&asset.name, &asset.bytes);
-            rats::keep_skeleton(asset, recipe, graph.map_err(|error| error.to_string()));
+            asset.keep_skeleton(recipe, graph.map_err(|error| error.to_string()));
         }
         let project = rats::Project { files: vec![file] };
         let compiled = rats::compile_at(&project, &sorted.assets, 0.0);

@@ -422,6 +422,12 @@ impl MeshExport {
             .retain(|filming| matches!(filming.next, Next::Script(_)));
     }
 
+    /// Ends the jobs of the dialog and forgets its mesh, when another work was opened.
+    pub fn forget(&mut self) {
+        self.stop();
+        (self.made, self.written, self.trouble) = (None, None, None);
+    }
+
     /// Ends the jobs of the dialog at the user's wish, until the settings change.
     pub fn give_up(&mut self, session: &Session, film: Film) {
         self.stop();

@@ -1,8 +1,9 @@
-//! Reading the large meshes and the skeletons of a work apart from the page's thread.
+//! Reading the meshes and skeletons of a work apart from the page's thread.
 //!
-//! A large mesh file goes to a tools worker; its mesh, or the reader's error message, is kept for
-//! compiling by [`rats::keep_mesh`]. Until then the session does not compile texts that name it and
-//! the last good picture stays. So it is with files of skeletons, whatever their size.
+//! A mesh file goes to a tools worker, as the page's program has no readers; its mesh, or the
+//! reader's error message, is kept by the asset ([`Asset::keep_mesh`]). Until then the session does
+//! not compile texts that name it and the last good picture stays. So it is with skeletons, of
+//! which the compiler says how they are wanted.
 
 use crate::asset::Asset;
 use crate::session::Session;
@@ -63,7 +64,7 @@ impl MeshReading {
         let mut any_read = false;
         self.files.retain_mut(|file| match file.ticket.result() {
             Some(mesh) => {
-                rats::keep_mesh(&file.asset, mesh);
+                file.asset.keep_mesh(mesh);
                 any_read = true;
                 false
             }
@@ -94,7 +95,7 @@ impl MeshReading {
         self.skeletons
             .retain_mut(|file| match file.ticket.result() {
                 Some(graph) => {
-                    rats::keep_skeleton(&file.asset, file.recipe.clone(), graph);
+                    file.asset.keep_skeleton(file.recipe.clone(), graph);
                     any_read = true;
                     false
                 }
@@ -137,22 +138,14 @@ impl MeshReading {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::asset::LARGE_MESH;
     use crate::session::Kept;
     use rats::{File, Project};
     use std::time::{Duration, Instant};
 
-    /// A mesh file of more than [`LARGE_MESH`] bytes with one triangle.
-    fn large(name: &str, face: &str) -> Asset {
-        let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-        while text.len() <= LARGE_MESH {
-            text.push_str("# a comment that makes the file large\n");
-        }
-        text.push_str(face);
-        Asset {
-            name: name.to_owned(),
-            bytes: text.into_bytes().into(),
-        }
+    /// A mesh file with a triangle.
+    fn unread(name: &str, face: &str) -> Asset {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}");
+        Asset::unread(name, text.into_bytes())
     }
 
     fn session(text: &str, assets: Vec<Asset>) -> Session {
@@ -176,16 +169,16 @@ mod tests {
         }
     }
 
-    const TEXT: &str = "surface a, diffuse Red\nmesh a big.obj\n";
+    const TEXT: &str = "surface a, diffuse Red\nmesh a tri.obj\n";
 
     #[test]
     fn session_compiles_once_its_mesh_is_read() {
-        let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
         session.compile();
         assert!(!session.is_compiled() && session.scene().is_none());
         let mut reading = MeshReading::new(Tools::new(|| {}));
         assert!(!reading.tick(&session));
-        assert_eq!(reading.current(), Some(("big.obj", 0.0)));
+        assert_eq!(reading.current(), Some(("tri.obj", 0.0)));
         read_all(&mut reading, &session);
         session.compile();
         assert!(session.is_compiled());
@@ -199,7 +192,7 @@ mod tests {
         session.compile();
         let generation = session.generation();
         session
-            .put_assets(vec![large("big.obj", "f 1 2 9\n")])
+            .put_assets(vec![unread("tri.obj", "f 1 2 9\n")])
             .unwrap();
         session.compile();
         assert!(session.is_compiled(), "the text does not name it");
@@ -221,10 +214,10 @@ mod tests {
 
     #[test]
     fn mesh_that_is_removed_is_not_read() {
-        let mut session = session(TEXT, vec![large("big.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
         let mut reading = MeshReading::new(Tools::new(|| {}));
         reading.tick(&session);
-        session.remove_asset("big.obj");
+        session.remove_asset("tri.obj");
         assert!(!reading.tick(&session));
         assert_eq!(reading.current(), None);
         session.compile();
@@ -235,21 +228,15 @@ mod tests {
     #[test]
     fn session_compiles_once_its_skeleton_is_read() {
         let limb = b"1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n";
-        let asset = Asset {
-            name: String::from("n.swc"),
-            bytes: limb.as_slice().into(),
-        };
+        let asset = Asset::unread("n.swc", *limb);
         let text = "eyep 0 0 90\nsurface a, diffuse Red\nskeleton a, N n.swc\n";
         let mut session = session(text, vec![asset]);
         session.compile();
         let mut reading = MeshReading::new(Tools::new(|| {}));
-        // Where rats has the readers it does not wait.
-        if !session.is_compiled() {
-            assert!(!reading.tick(&session));
-            assert_eq!(reading.current(), Some(("n.swc", 0.0)));
-            read_all(&mut reading, &session);
-            session.compile();
-        }
+        assert!(!session.is_compiled() && !reading.tick(&session));
+        assert_eq!(reading.current(), Some(("n.swc", 0.0)));
+        read_all(&mut reading, &session);
+        session.compile();
         assert!(session.is_compiled());
         assert_eq!(session.diagnostics(), []);
         assert_eq!(session.compilation().scene.elements.len(), 1);

@@ -622,30 +622,28 @@ impl Session {
         self.enabled = true;
     }
 
-    /// Returns large meshes that the text names and that are not read yet. [`Session::compile`]
-    /// waits until [`rats::keep_mesh`] was called for each.
+    /// Returns meshes that the text names and that are not read yet. [`Session::compile`] waits
+    /// until [`Asset::keep_mesh`] was called for each.
     pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
         self.assets.iter().filter(|asset| {
             // A text in the same folder may leave the folder out.
             let name = asset.name.rsplit('/').next().unwrap_or_default();
-            asset::is_large_mesh(asset)
-                && self.project.files.iter().any(|f| f.text.contains(name))
-                && !rats::is_mesh_read(asset)
+            asset.is_unread() && self.project.files.iter().any(|f| f.text.contains(name))
         })
     }
 
     /// Returns the files whose skeletons the text asks for, and how they are made, which are not
-    /// read yet. [`Session::compile`] waits until [`rats::keep_skeleton`] was called for each.
+    /// read yet. [`Session::compile`] waits until [`Asset::keep_skeleton`] was called for each.
     pub fn unread_skeletons(&self) -> impl Iterator<Item = (&Asset, &Recipe)> {
         self.unread.iter().filter_map(|wanted| {
             let asset = self.assets.iter().find(|asset| asset.name == wanted.name)?;
-            let is_read = rats::is_skeleton_read(asset, &wanted.recipe);
+            let is_read = asset.skeleton(&wanted.recipe).is_some();
             (!is_read).then_some((asset, &wanted.recipe))
         })
     }
 
-    /// Compiles the present text if it changed since the last call and all large meshes and all
-    /// skeletons that it names are read. Call it after the text was stored, so that no text is lost if the compiler
+    /// Compiles the present text if it changed since the last call and all meshes and skeletons that
+    /// it names are read. Call it after the text was stored, so that no text is lost if the compiler
     /// stops the program.
     pub fn compile(&mut self) {
         let is_waiting =
@@ -871,10 +869,7 @@ mod tests {
     #[test]
     fn images_come_and_go_within_their_limits() {
         let mut session = Session::of_text(TEXT);
-        let image = |name: &str, bytes: usize| Asset {
-            name: name.to_owned(),
-            bytes: vec![0; bytes].into(),
-        };
+        let image = |name: &str, bytes: usize| Asset::unread(name, vec![0; bytes]);
         let revision = session.revision();
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();

@@ -31,7 +31,7 @@ pub struct Compiled {
     /// The deformations that were carried out, in order.
     pub deforms: Vec<Deform>,
     /// Skeletons that have not been read, where compiling does not read them: without them the
-    /// scene is not that of the text (see [`crate::keep_skeleton`]).
+    /// scene is not that of the text (see [`crate::Asset::keep_skeleton`]).
     pub unread: Vec<Unread>,
 }
 

@@ -47,8 +47,8 @@ mod watched;
 mod words;
 
 use crate::Project;
+use crate::asset::Asset;
 use crate::compiled::{Compiled, Placement};
-use crate::project::Asset;
 use crate::provenance::Provenance;
 use crate::scope::Scope;
 use crate::sources::Sources;

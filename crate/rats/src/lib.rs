@@ -24,6 +24,7 @@
 //! the functions that run them; as plain data it also serves help and the editor (the crate
 //! `assist`). All bounds are in [`limits`].
 
+mod asset;
 mod assets;
 pub mod colours;
 pub mod commands;
@@ -61,13 +62,13 @@ mod text_edit;
 pub mod tool;
 mod value;
 
-pub use assets::{is_mesh_read, is_skeleton_read, keep_mesh, keep_skeleton};
+pub use asset::Asset;
 pub use compile::{compile, compile_at, provenance};
 pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement, Unread};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use limbs::Recipe;
-pub use project::{Asset, File, Project};
-pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};
+pub use project::{File, Project};
+pub use reads::{asset_names, is_image, is_mesh, is_skeleton, places, reads};
 pub use strokes::{is_strokes, keep_sculpted, start_file};
 pub use text_edit::TextEdit;
 pub use tool::Tool;

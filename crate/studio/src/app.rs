@@ -212,7 +212,8 @@ impl App {
         let started = *self.started.get_or_insert(now);
         let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
         if !dropped.is_empty() {
-            browser::read_dropped(dropped, self.page.parts.requests.taker());
+            let of = self.page.work.number();
+            browser::read_dropped(dropped, self.page.parts.requests.taker(of));
         }
         let mut answers = Vec::new();
         for request in self.page.parts.requests.take() {
@@ -222,9 +223,6 @@ impl App {
         page.settle(now);
         if let Some(trouble) = page.work.tick(now) {
             page.warn(trouble);
-        }
-        if page.reading.tick(&page.work.session) {
-            page.work.session.compile();
         }
         if page.to_frame.is_some() && page.work.session.is_compiled() {
             let is_open = page.to_frame.take() == Some(page.work.number());
@@ -418,6 +416,11 @@ impl App {
                 self.carry_out(wish.into(), at);
             }
             Request::Wish(wish) => self.carry_out(wish, at),
+            Request::Late { of, wish, .. } if of == page.work.number() => self.carry_out(wish, at),
+            Request::Late { what, .. } => page.warn(format!(
+                "{what} came after another work was opened, and was left out. \
+                    Go back to the work that it was for, and ask for it again."
+            )),
             Request::Videos(formats) => self.panels.film.formats = Some(formats),
             Request::SetCamera(camera) => page.work.session.set_camera(camera),
             Request::Picture(answer) => answer(page.renderer.image()),

@@ -127,7 +127,7 @@ fn drop_hint(ctx: &Context) {
     painter.rect_filled(place, 0.0, palette.stage.gamma_multiply(0.85));
     let edge = Stroke::new(2.0, palette.accent);
     painter.rect_stroke(place.shrink(14.0), 10.0, edge, egui::StrokeKind::Inside);
-    let text = format!("Drop {} here", intake::KINDS);
+    let text = format!("Drop {} here", intake::kinds());
     let font = egui::FontId::proportional(17.0);
     let width = place.width() - 60.0;
     let galley = painter.layout(text, font, palette.strong, width);

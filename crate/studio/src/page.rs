@@ -110,7 +110,7 @@ pub struct Moment<'a> {
 pub struct Page {
     /// The open work.
     pub work: Work,
-    /// Large meshes on their way into the work.
+    /// Meshes on their way into the work.
     pub reading: MeshReading,
     /// Number of the work whose whole model is to be brought into view once it is compiled.
     pub to_frame: Option<u64>,
@@ -171,11 +171,14 @@ impl Page {
         }
     }
 
-    /// Puts a changed work on the shelf, and compiles it.
+    /// Puts a changed work on the shelf, has the meshes that it names read, and compiles it.
     pub fn settle(&mut self, now: f64) {
         // The work in a link is not the one on the screen any more.
         if self.work.settle(now) && Lesson::of_hash(&browser::hash()).is_none() {
             browser::set_hash("");
+        }
+        if self.reading.tick(&self.work.session) {
+            self.work.session.compile();
         }
     }
 

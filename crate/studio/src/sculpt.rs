@@ -53,7 +53,8 @@ fn start_of(session: &Session, name: &str, text: &str) -> Option<Asset> {
 /// Reads the file that strokes start from.
 fn load(start: Option<&Asset>, name: &str) -> Result<mesh::TriangleMesh, String> {
     let asset = start.ok_or_else(|| format!("there is no mesh `{name}` in this work"))?;
-    mesh::read(&asset.name, &asset.bytes).map_err(|error| error.to_string())
+    let mesh = asset.mesh().map_err(|error| error.to_string())?;
+    Ok((*mesh).clone())
 }
 
 /// The colour of clay.
@@ -164,15 +165,24 @@ pub enum SculptWish {
     Close,
 }
 
+/// Whether the file that a text of strokes starts from is there and not read yet.
+fn must_wait(session: &Session, name: &str, text: &str) -> bool {
+    start_of(session, name, text).is_some_and(|asset| asset.is_unread())
+}
+
 /// The sculpture that is worked on, in place of the editor.
 #[derive(Default)]
-pub struct SculptPanel(Option<Box<Sculpting>>);
+pub struct SculptPanel {
+    open: Option<Box<Sculpting>>,
+    /// The text that is opened once the file that it starts from is read.
+    next: Option<String>,
+}
 
 impl SculptPanel {
     /// Whether the sculpting view is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        self.0.is_some()
+        self.open.is_some()
     }
 
     /// Carries out a wish. `on_show` is the text in the editor.
@@ -206,27 +216,32 @@ impl SculptPanel {
                 grow_flesh(page, &name, flesh, edge, at.now);
             }
             SculptWish::Fit(name) => {
-                self.0 = None;
+                self.open = None;
                 page.wish(FitWish::Show(true));
                 page.wish(FitWish::Choose(name));
             }
-            SculptWish::Close => self.0 = None,
+            SculptWish::Close => self.open = None,
         }
     }
 
     /// Opens a text of strokes.
     fn open(&mut self, name: &str, page: &mut Page) {
         page.dialog = None;
+        self.next = None;
         let session = &page.work.session;
         let mut files = session.project().files.iter();
         let Some(file) = files.find(|file| file.name == name) else {
             return;
         };
+        if must_wait(session, name, &file.text) {
+            self.next = Some(name.to_owned());
+            return;
+        }
         let start = start_of(session, name, &file.text);
         match Sculpting::open(name, &file.text, &mut |name| load(start.as_ref(), name)) {
             Ok(place) => {
                 page.notice = None;
-                self.0 = Some(Box::new(place));
+                self.open = Some(Box::new(place));
             }
             Err(trouble) => page.warn(format!("{name}, {trouble}.")),
         }
@@ -235,7 +250,7 @@ impl SculptPanel {
     /// Returns the state for scripts.
     #[must_use]
     pub fn report(&self) -> Option<report::Sculpture> {
-        self.0.as_ref().map(|place| report::Sculpture {
+        self.open.as_ref().map(|place| report::Sculpture {
             name: place.name.clone(),
             counts: place.counts(),
             depth: place.depth(),
@@ -245,16 +260,16 @@ impl SculptPanel {
 
 impl Panel for SculptPanel {
     fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
-        let Some(place) = &mut self.0 else {
+        let Some(place) = &mut self.open else {
             return;
         };
         let session = &page.work.session;
         let files = &session.project().files;
         let Some(file) = files.iter().find(|file| file.name == place.name) else {
-            self.0 = None;
+            self.open = None;
             return;
         };
-        if place.is_behind(&file.text) {
+        if place.is_behind(&file.text) && !must_wait(session, &place.name, &file.text) {
             let start = start_of(session, &place.name, &file.text);
             place.sync(&file.text, &mut |name| load(start.as_ref(), name));
         }
@@ -274,8 +289,14 @@ impl Panel for SculptPanel {
         wishes.extend(commands.into_iter().map(|command| wish(command, name)));
     }
 
+    fn tick(&mut self, page: &mut Page, _at: &Moment<'_>) {
+        if let Some(name) = self.next.take() {
+            self.open(&name, page);
+        }
+    }
+
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
-        self.0 = None;
+        *self = Self::default();
     }
 }
 
@@ -355,9 +376,13 @@ fn mesh_model(page: &mut Page, now: f64) {
         union: true,
         rig: false,
     };
-    let requests = page.parts.requests.clone();
+    let (requests, of) = (page.parts.requests.clone(), page.work.number());
     let taker = Box::new(move |result| {
-        requests.ask(Request::Wish(SculptWish::Mesh(result).into()));
+        requests.ask(Request::Late {
+            of,
+            what: String::from("The mesh to be sculpted"),
+            wish: SculptWish::Mesh(result).into(),
+        });
     });
     page.tell("The model is being meshed; then you can sculpt it.", now);
     page.parts.requests.ask(Request::Mesh(order, taker));

@@ -6,7 +6,7 @@ use limbs::{Graph, Recipe};
 use mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
 
-/// Reads a mesh from an OBJ, PLY, STL or GLB file.
+/// Reads a mesh from a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReadMesh {
     /// The file's name, whose ending says the format where the content does not.

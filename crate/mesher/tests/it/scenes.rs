@@ -433,8 +433,8 @@ fn load(path: &Path) -> Scene {
     let text = std::fs::read_to_string(path).unwrap();
     let folder = path.parent().unwrap();
     let assets = rats::asset_names(&text).into_iter().filter_map(|name| {
-        let bytes = std::fs::read(folder.join(&name)).ok()?.into();
-        Some(rats::Asset { name, bytes })
+        let bytes = std::fs::read(folder.join(&name)).ok()?;
+        Some(rats::Asset::new(name, bytes))
     });
     let assets: Vec<rats::Asset> = assets.collect();
     let project = rats::Project {

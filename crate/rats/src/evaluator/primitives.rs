@@ -620,8 +620,8 @@ pub static MESH: CommandSpec = row(
 .with(by_itself(mesh, plain![SN, MESH_FILE], MESH_OPTIONS))
 .default("robust")
 .details(
-    "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL, GLB or 3MF \
-     (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, \
+    "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL, GLB or \
+     3MF (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, \
      made by strokes of tools (Sculpt writes them). Where the mesh has colours (of vertices), or \
      is painted, they are multiplied with the material's diffuse and ambient. Soft: each triangle \
      is a skeleton. `mesh sn file.obj metaballs triangular d0 k` makes a soft surface of any \
@@ -666,9 +666,11 @@ fn mesh_of_file<'a>(
     }
     let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
-    let mesh = assets::mesh(asset).map_err(|error| Problem::new(&file.span, error.to_string()))?;
+    let mesh = asset
+        .mesh()
+        .map_err(|error| Problem::new(&file.span, error.to_string()))?;
     if let Some(metaballs) = implicit_mesh::metaballs(options)? {
-        let topology = assets::topology(asset).ok().map(|own| (*own).clone());
+        let topology = asset.topology().ok().cloned();
         return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);
     }
     add_mesh(run, command, &name, &mesh, None)

@@ -109,7 +109,7 @@ pub(super) fn add<'a>(
         let hint = "read one once, and copy it by `instance`";
         return Err(Problem::new(&file.span, message).hint(hint));
     }
-    let read = assets::skeleton(asset, &own.recipe);
+    let read = asset.skeleton(&own.recipe);
     if is_new {
         run.skeletons.push(own.clone());
     }

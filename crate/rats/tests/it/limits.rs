@@ -360,10 +360,7 @@ fn a_large_image_in_a_loop() {
             text: String::from(text),
         }],
     };
-    let asset = rats::Asset {
-        name: String::from("big.png"),
-        bytes: cut_image(4096).into(),
-    };
+    let asset = rats::Asset::new("big.png", cut_image(4096));
     let compiled = rats::compile_at(&project, &[asset], 0.0);
     let said: Vec<_> = compiled.diagnostics.iter().map(|d| &d.message).collect();
     assert!(said.iter().any(|m| m.contains("steps")), "{said:?}");

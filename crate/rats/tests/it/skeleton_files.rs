@@ -13,11 +13,10 @@ const LIMB: &str = "1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n";
 
 /// Compiles a text behind a material `s` with a file of its.
 fn compile(text: &str, name: &str, content: &str) -> Compiled {
-    let asset = Asset {
-        name: name.to_owned(),
-        bytes: content.as_bytes().into(),
-    };
-    let text = format!("verbose off\neyep 0 0 900\nsurface s, diffuse Red\nsurface t, diffuse Blue\n{text}");
+    let asset = Asset::new(name, content.as_bytes());
+    let text = format!(
+        "verbose off\neyep 0 0 900\nsurface s, diffuse Red\nsurface t, diffuse Blue\n{text}"
+    );
     compile_at(&Project::single(text), &[asset], 0.0)
 }
 
@@ -189,24 +188,24 @@ fn what_is_wrong_with_a_file_is_said_with_its_line() {
 
 #[test]
 fn skeleton_that_was_read_elsewhere_is_used() {
-    let asset = Asset {
-        name: String::from("n.swc"),
-        bytes: b"broken".as_slice().into(),
-    };
+    let asset = Asset::unread("n.swc", *b"broken");
     let project = Project::single("surface s, diffuse Red\nskeleton s, N n.swc simplify 0.1");
     let recipe = limbs::Recipe {
         simplify: Some(0.1),
         ..limbs::Recipe::default()
     };
-    let graph = recipe.make("n.swc", LIMB.as_bytes()).expect("a limb");
-    rats::keep_skeleton(&asset, recipe.clone(), Ok(graph));
     let assets = [asset];
     let compiled = compile_at(&project, &assets, 0.0);
+    let wanted = compiled.unread.first().expect("it is not read yet");
+    assert_eq!((wanted.name.as_str(), &wanted.recipe), ("n.swc", &recipe));
+    let graph = recipe.make("n.swc", LIMB.as_bytes()).expect("a limb");
+    assets[0].keep_skeleton(recipe.clone(), Ok(graph));
+    let compiled = compile_at(&project, &assets, 0.0);
+    assert!(compiled.unread.is_empty());
     assert_eq!(limbs(&compiled).len(), 1);
-    rats::keep_skeleton(&assets[0], recipe, Err(String::from("on purpose")));
+    assets[0].keep_skeleton(recipe, Err(String::from("on purpose")));
     let compiled = compile_at(&project, &assets, 0.0);
     assert!(compiled.diagnostics[0].message.ends_with("on purpose"));
-    assert!(compiled.unread.is_empty());
 }
 
 #[test]

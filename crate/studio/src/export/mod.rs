@@ -8,8 +8,8 @@ use document::mesh_export::{self, Film, MOST_EDGES, Made, MeshExport, State};
 use document::session::Session;
 use document::{asset, work};
 use egui::{
-    Align, Button, Color32, ColorImage, DragValue, Layout, ProgressBar, Response, RichText,
-    ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
+    Align, Button, Color32, ColorImage, Context, DragValue, Layout, ProgressBar, Response,
+    RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 use glam::DVec3;
 use mesh::Format;
@@ -183,6 +183,11 @@ impl Panel for MeshPanel {
         if page.dialog != Some(Dialog::Mesh) {
             self.export.stop();
         }
+    }
+
+    fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
+        self.export.forget();
+        (self.show.view, self.show.drawn) = (None, None);
     }
 }
 

@@ -23,6 +23,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
     let text = example.text.is_none().then_some(&example.path);
     let paths = text.into_iter().chain(example.files);
     let own = example.text.map(str::to_owned);
+    let of = page.work.number();
     let inbox = Rc::new(RefCell::new((paths.clone().count(), own, Vec::new())));
     for path in paths {
         let (inbox, requests) = (inbox.clone(), page.parts.requests.clone());
@@ -33,10 +34,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
                 *text = bytes.and_then(|bytes| String::from_utf8(bytes).ok());
             } else {
                 let name = path.rsplit('/').next().unwrap_or(path).to_owned();
-                assets.extend(bytes.map(|bytes| Asset {
-                    name,
-                    bytes: bytes.into(),
-                }));
+                assets.extend(bytes.map(|bytes| Asset::unread(name, bytes)));
             }
             if *missing == 0 {
                 let (text, assets) = (text.take(), std::mem::take(assets));
@@ -45,7 +43,11 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
                     text,
                     assets,
                 };
-                requests.ask(Request::Wish(wish.into()));
+                requests.ask(Request::Late {
+                    of,
+                    what: format!("The example {}", example.title),
+                    wish: wish.into(),
+                });
             }
         });
     }

@@ -69,6 +69,7 @@ impl Gallery {
     pub fn act(&mut self, wish: WorkWish, page: &mut Page, at: &Moment<'_>) {
         match wish {
             WorkWish::OpenExample(index) => {
+                self.asked = Some(index);
                 let example = examples::ALL.get(index).filter(|e| e.files.is_empty());
                 match example.and_then(|example| example.text) {
                     Some(text) => {
@@ -78,6 +79,8 @@ impl Gallery {
                     None => arrivals::fetch_example(page, index),
                 }
             }
+            // Another one was asked for since.
+            WorkWish::OpenFetched { index, .. } if self.asked != Some(index) => {}
             WorkWish::OpenFetched {
                 index,
                 text: Some(text),
@@ -131,7 +134,10 @@ impl Gallery {
             }
             WorkWish::Save => save(page, at.now),
             WorkWish::Share => share(page, at),
-            WorkWish::PickFiles => browser::pick_files(page.parts.requests.taker()),
+            WorkWish::PickFiles => {
+                let of = page.work.number();
+                browser::pick_files(page.parts.requests.taker(of));
+            }
             WorkWish::Take { files, show } => arrivals::take_in(page, files, show, at),
         }
     }
