@@ -55,7 +55,6 @@ impl Skeleton {
     /// Reads the skeleton, tells its counts and remarks, and writes it. False if a dataset has
     /// errors.
     pub fn run(&self) -> Outcome {
-        let is_length = |length: f64, least: f64| length.is_finite() && length >= least;
         if !(is_length(self.scale, 1e-9) && is_length(self.thicken, f64::MIN)) {
             return Err(String::from(
                 "--scale must be above 0, and --thicken a number",
@@ -69,7 +68,7 @@ impl Skeleton {
         if self.radius.is_some_and(|radius| !is_length(radius, 1e-12)) {
             return Err(String::from("--radius must be above 0"));
         }
-        let write = self.to.as_deref().map(writer).transpose()?;
+        let write = self.to.as_deref().map(choose_writer).transpose()?;
         let Some(graph) = self.graph()? else {
             return Ok(false);
         };
@@ -99,7 +98,7 @@ impl Skeleton {
             if !crate::report::to_stderr(&loaded) {
                 return Ok(None);
             }
-            let graph = graph_of(&loaded.compiled.scene);
+            let graph = gather(&loaded.compiled.scene);
             let mut graph = graph.map_err(|error| format!("{name}: {error}"))?;
             if let Some(within) = self.merge {
                 let merged = graph.merge(within / self.scale);
@@ -178,11 +177,16 @@ impl Skeleton {
     }
 }
 
+/// Whether a number is a length, and no less than another.
+fn is_length(length: f64, least: f64) -> bool {
+    length.is_finite() && length >= least
+}
+
 /// Returns the writer for the ending of a file, which also gets the skeleton's name.
-fn writer(to: &Path) -> Result<fn(&Graph, &str) -> limbs::Written, String> {
+fn choose_writer(to: &Path) -> Result<fn(&Graph, &str) -> limbs::Written, String> {
     let ending = to.extension().unwrap_or_default().to_string_lossy();
     match ending.to_ascii_lowercase().as_str() {
-        "rat" => Ok(text_of),
+        "rat" => Ok(write_text),
         "swc" => Ok(|graph, _| graph.write_swc()),
         "obj" => Ok(|graph, _| graph.write_obj()),
         _ => Err(format!(
@@ -193,7 +197,7 @@ fn writer(to: &Path) -> Result<fn(&Graph, &str) -> limbs::Written, String> {
 }
 
 /// Writes a dataset with a light, a material, a camera and the block form of the skeleton.
-fn text_of(graph: &Graph, name: &str) -> limbs::Written {
+fn write_text(graph: &Graph, name: &str) -> limbs::Written {
     let letters = name.chars().map(|c| match c {
         c if c.is_ascii_alphanumeric() => c,
         _ => '_',
@@ -228,7 +232,7 @@ fn text_of(graph: &Graph, name: &str) -> limbs::Written {
 }
 
 /// Returns the lines and balls of a scene; the kinds of limbs are the numbers of their materials.
-fn graph_of(scene: &Scene) -> Result<Graph, limbs::Error> {
+fn gather(scene: &Scene) -> Result<Graph, limbs::Error> {
     let mut builder = Builder::default();
     for element in &scene.elements {
         let kind = format!("material{}", element.finish);

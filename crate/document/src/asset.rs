@@ -351,7 +351,13 @@ mod tests {
 
     #[test]
     fn content_tells_skeletons_from_meshes_and_points() {
-        let is_skeleton = |name: &str, text: &str| is_skeleton(name, text.as_bytes());
+        fn is_skeleton(name: &str, text: &str) -> bool {
+            super::is_skeleton(name, text.as_bytes())
+        }
+        fn package(text: &str) -> Vec<u8> {
+            let member = ::archive::Member::new("3D/a.model", text.as_bytes());
+            ::archive::write(&[member]).unwrap()
+        }
         assert!(is_skeleton("a.swc", ""));
         assert!(is_skeleton("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"));
         assert!(!is_skeleton("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\nf 1 2 1\n"));
@@ -368,10 +374,8 @@ mod tests {
         assert!(!is_skeleton("a.xyz", "2\n\n0 0 0\n1 0 0\n"));
         assert!(!is_skeleton("a.3mf", "no archive"));
         let model = "<model><b:beamlattice/></model>";
-        let member = |text| ::archive::Member::new("3D/a.model", text);
-        let file = |text: &'static str| ::archive::write(&[member(text.as_bytes())]).unwrap();
-        assert!(super::is_skeleton("a.3mf", &file(model)));
-        assert!(!super::is_skeleton("a.3mf", &file("<model/>")));
+        assert!(super::is_skeleton("a.3mf", &package(model)));
+        assert!(!super::is_skeleton("a.3mf", &package("<model/>")));
         assert_eq!(
             describe("a.obj", b"v 0 0 0\nv 1 0 0\nl 1 2\n").unwrap(),
             "a skeleton"

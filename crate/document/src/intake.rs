@@ -182,15 +182,15 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns a text that draws skeletons among files which came without a text; `None` if there are
+/// Writes a text that draws skeletons among files which came without a text; `None` if there are
 /// none. It lights them from afar, as their size is not known before they are read.
 #[must_use]
-pub fn text_of_skeletons(assets: &[Asset]) -> Option<File> {
+pub fn write_text(assets: &[Asset]) -> Option<File> {
     let skeletons = assets
         .iter()
         .filter(|own| asset::is_skeleton(&own.name, &own.bytes));
     let mut text = String::from(
-        "light White, position -1e9 2e9 2e9\nlight Gray40, position 2e9 0 1e9\n\
+        "light White, distant, direction 1 -2 -2\nlight Gray40, distant, direction -2 0 -1\n\
          surface Flesh, diffuse SandyBrown, specular Gray40, shine 40, radius 0.5, \
          kernel compact6, blobbiness -8\n",
     );
@@ -274,7 +274,7 @@ mod tests {
         ]);
         assert_eq!(sorted.refused, Vec::<String>::new());
         assert!(sorted.measured.is_empty());
-        let file = text_of_skeletons(&sorted.assets).unwrap();
+        let file = write_text(&sorted.assets).unwrap();
         assert_eq!(rats::asset_names(&file.text), ["a-b.swc", "m.xyz"]);
         for asset in &sorted.assets {
             let recipe = rats::Recipe::default();
@@ -289,7 +289,7 @@ mod tests {
             .filter(|told| told.severity == rats::Severity::Error);
         assert_eq!(bad.count(), 0, "{:?}", compiled.diagnostics);
         assert_eq!(compiled.scene.elements.len(), 3, "limbs and two atoms");
-        assert_eq!(text_of_skeletons(&[]), None);
+        assert_eq!(write_text(&[]), None);
     }
 
     #[test]

@@ -101,8 +101,8 @@ impl MeshReading {
                 }
                 None => true,
             });
-        let is_wanted = |file: &SkeletonReading| session.unread_skeletons().any(|w| file.is_of(w));
-        self.skeletons.retain(is_wanted);
+        self.skeletons
+            .retain(|file| session.unread_skeletons().any(|wanted| file.is_of(wanted)));
         for wanted in session.unread_skeletons() {
             if !self.skeletons.iter().any(|file| file.is_of(wanted)) {
                 let (asset, recipe) = (wanted.0.clone(), wanted.1.clone());

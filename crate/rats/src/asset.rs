@@ -144,7 +144,7 @@ impl Asset {
         let mut made = made.unwrap_or_else(PoisonError::into_inner);
         made.retain(|(own, _)| *own != recipe);
         if made.len() >= KEPT {
-            made.remove(0);
+            drop(made.remove(0));
         }
         made.push((recipe, skeleton.clone()));
         skeleton

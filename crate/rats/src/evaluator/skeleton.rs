@@ -126,7 +126,7 @@ fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
         let file = values.take(|| FILE)?;
         return skeleton_file::add(run, command, &given.options, &[sn, name, file]);
     }
-    of_block(run, command, &given.options, sn, name)
+    add_block(run, command, &given.options, sn, name)
 }
 
 /// Whether a file's name, which has a dot, stands behind the names of material and skeleton.
@@ -137,7 +137,7 @@ fn is_file_next(run: &mut Evaluator<'_>, command: &Command) -> bool {
     is_word && read.file_name("").is_ok_and(|name| name.text.contains('.'))
 }
 
-fn of_block<'a>(
+fn add_block<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
     options: &Options<'a>,
@@ -188,7 +188,7 @@ fn of_block<'a>(
     };
     let part = Part {
         tapers: false,
-        limbs: weight(run, &element),
+        limbs: weigh(run, &element),
         element,
         growth: 1.0,
         moved: None,
@@ -206,7 +206,7 @@ fn of_block<'a>(
 
 /// Returns the number of shapes as which the limbs of an element count: those that taper count as
 /// [`CURVE_WEIGHT`], unless they are [cones](Shaping::is_cone).
-pub(super) fn weight(run: &Evaluator<'_>, element: &Element) -> usize {
+pub(super) fn weigh(run: &Evaluator<'_>, element: &Element) -> usize {
     let flesh = element
         .flesh
         .map(|material| &run.palette.surfaces[material as usize].flesh);

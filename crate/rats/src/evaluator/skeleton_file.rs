@@ -1,7 +1,7 @@
 //! `skeleton sn, name file …`: skeletons that people have in files.
 
 use super::model::{Group, Part};
-use super::skeleton::{SCHEMES, check_reach, weight};
+use super::skeleton::{SCHEMES, check_reach, weigh};
 use super::state::{Evaluator, Flow};
 use crate::assets;
 use crate::commands::build::{options, plain, word_of};
@@ -152,7 +152,7 @@ pub(super) fn add<'a>(
     if graph.limbs.is_empty() && graph.nodes.is_empty() {
         return Err(Problem::new(&file.span, "nothing is left of this skeleton"));
     }
-    let own = materials_of(run, &graph, material, &others)?;
+    let own = find_materials(run, &graph, material, &others)?;
     let is_flat = options.last(&ENDS) == Some("flat");
     if run.settings.soft {
         lengthen(run, &mut graph, material, is_flat);
@@ -187,7 +187,7 @@ fn tell_remarks(run: &mut Evaluator<'_>, file: &Name<'_>, remarks: &[String]) {
 }
 
 /// Returns the material of each group of a graph.
-fn materials_of<'a>(
+fn find_materials<'a>(
     run: &mut Evaluator<'a>,
     graph: &Graph,
     otherwise: usize,
@@ -236,7 +236,9 @@ fn lengthen(run: &Evaluator<'_>, graph: &mut Graph, material: usize, is_flat: bo
         influence: run.settings.influence,
         taper: None,
     };
-    let Some(reach) = reach(&shaping) else { return };
+    let Some(reach) = measure_reach(&shaping) else {
+        return;
+    };
     graph.lengthen_free_ends(|cap| match (cap, is_flat) {
         (Cap::Round, false) => 1.0 - reach,
         _ => -reach,
@@ -245,21 +247,21 @@ fn lengthen(run: &Evaluator<'_>, graph: &mut Graph, material: usize, is_flat: bo
 
 /// Returns the distance in radii that the surface reaches beyond the end of a long limb, by
 /// bisection; `None` if it is none from 0 to 4.
-fn reach(shaping: &Shaping) -> Option<f64> {
+fn measure_reach(shaping: &Shaping) -> Option<f64> {
     const LONG: f64 = 100.0;
     let skeleton = field::Skeleton::Segment {
         base: DVec3::X * -LONG,
         apex: DVec3::ZERO,
     };
     let limb = Primitive::new(skeleton, shaping, None)?;
-    let is_inside = |x: f64| limb.value::<f64>([x, 0.0, 0.0]) >= THRESHOLD;
-    let (mut low, mut high) = (0.0, 4.0);
-    if !is_inside(low) || is_inside(high) {
+    let [at_end, beyond] = [0.0, 4.0].map(|x| limb.value::<f64>([x, 0.0, 0.0]));
+    if at_end < THRESHOLD || beyond >= THRESHOLD {
         return None;
     }
+    let (mut low, mut high) = (0.0, 4.0);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
-        match is_inside(middle) {
+        match limb.value::<f64>([middle, 0.0, 0.0]) >= THRESHOLD {
             true => low = middle,
             false => high = middle,
         }
@@ -281,10 +283,9 @@ fn add_material<'a>(
         Some(_) => material,
         None => run.palette.add_soft(sn, material, BLOBBINESS)?,
     };
-    let is_own = |group: u32| own.get(group as usize) == Some(&material);
-    let part = graph.part(|limb| is_own(limb.group));
+    let part = graph.part(|limb| own.get(limb.group as usize) == Some(&material));
     if !part.limbs.is_empty() {
-        let curves = curves_of(&part, options)
+        let curves = make_curves(&part, options)
             .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
         let curves = match options.last(&FILE_LOCAL) {
             Some((reach, span)) => {
@@ -308,7 +309,7 @@ fn add_material<'a>(
         };
         let part = Part {
             tapers: false,
-            limbs: weight(run, &element),
+            limbs: weigh(run, &element),
             element,
             growth: 1.0,
             moved: None,
@@ -320,11 +321,8 @@ fn add_material<'a>(
         run.model.push(part, &command.span)?;
         run.palette.surfaces[soft].used = true;
     }
-    for ball in graph
-        .nodes
-        .iter()
-        .filter(|node| node.is_ball && is_own(node.group))
-    {
+    let balls = graph.nodes.iter().filter(|node| node.is_ball);
+    for ball in balls.filter(|ball| own.get(ball.group as usize) == Some(&material)) {
         run.add_of(
             command,
             soft,
@@ -336,7 +334,7 @@ fn add_material<'a>(
 }
 
 /// Returns the lines of a graph as curves through their nodes.
-fn curves_of(graph: &Graph, options: &Options<'_>) -> Result<Curves, skeleton::Error> {
+fn make_curves(graph: &Graph, options: &Options<'_>) -> Result<Curves, skeleton::Error> {
     let nodes = graph.nodes.iter().map(|node| Node {
         position: node.position,
         radius: node.radius,

@@ -227,7 +227,7 @@ fn words_of_a_block_do_not_count_as_operands() {
 fn skeletons_of_files_are_counted() {
     let mut text = String::new();
     for i in 0..=20 {
-        text += &format!("skeleton s, N{i} n.swc simplify 0.{i}\n");
+        text += &format!("skeleton s, N{i} n.swc simplify {i}\n");
     }
     let told = messages(&compile(&text, "n.swc", LIMB));
     assert_eq!(told.len(), 1);

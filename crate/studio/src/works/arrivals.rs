@@ -82,7 +82,7 @@ pub(super) fn take_in(page: &mut Page, taken: Vec<Incoming>, show: bool, at: &Mo
     }
     let is_own = page.work.origin == Origin::Own;
     let mut texts = texts;
-    let drawn = intake::text_of_skeletons(&assets).filter(|_| texts.is_empty() && !is_own);
+    let drawn = intake::write_text(&assets).filter(|_| texts.is_empty() && !is_own);
     let is_drawn = drawn.is_some();
     texts.extend(drawn);
     let outcome = if all.is_empty() {
