@@ -3,13 +3,9 @@
 //!
 //! Each panics where a kernel does not hold.
 
-use crate::quadrature::{Definition, define, split};
+use crate::quadrature::{Definition, define, difference, split};
 use field::Kernel;
 use trials::{Random, count};
-
-/// Coefficients of central differences of the eighth order: f′ is, but for h⁸f⁽⁹⁾/630, the sum of
-/// `cᵢ(f(x+ih) − f(x−ih))/h`.
-const DIFFERENCES: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 
 /// Checks that a kernel has the values of its definition, to 10⁻¹⁵ of themselves, and that its
 /// derivatives are differences of each other, to 10⁻¹¹; and that its kinks, its pole and its end
@@ -63,11 +59,8 @@ pub fn values_as_defined(kernel: Kernel, derivatives: &dyn Fn(f64) -> [f64; 5]) 
         }
         let here = derivatives(q);
         for order in 1..5 {
-            let terms = DIFFERENCES.into_iter().zip(1..).map(|(c, i)| {
-                let [low, high] = [-h, h].map(|h| derivatives(q + f64::from(i) * h)[order - 1]);
-                c * (high - low) / h
-            });
-            let (slope, want) = (here[order], terms.sum::<f64>());
+            let slope = here[order];
+            let want = difference(|q| derivatives(q)[order - 1], q, h);
             let most = 1e-11 * (want.abs() + here[order - 1].abs() / scale);
             assert!(
                 (slope - want).abs() <= most,

@@ -16,8 +16,14 @@ pub(crate) enum Definition {
     /// 1/u to the power of an exponent, with its pole rounded off.
     Pole(i32),
     /// Functions of q up to places u, the last at 1, and 0 beyond.
-    Pieces(&'static [(f64, fn(f64) -> f64)]),
+    Pieces(&'static [Piece]),
 }
+
+/// The place u where a piece of a kernel ends, and G on it.
+type Piece = (f64, fn(f64) -> f64);
+
+/// The place on a line, and its length per unit of the parameter, by the parameter from 0 to 1.
+type Trace<'l> = Box<dyn Fn(f64) -> (DVec3, f64) + 'l>;
 
 /// Returns a kernel's definition.
 pub(crate) fn define(kernel: Kernel) -> Definition {
@@ -110,7 +116,7 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
     let along = |base: DVec3, d: DVec3| {
         let length = d.length();
         let near = near(base, d, point);
-        // Where the kernel's pieces meet on the line.
+        // Places where the kernel's pieces meet on the line.
         let beside = (base + d * near).distance_squared(point);
         let kinks = k.kinks().flat_map(|kink| {
             let reach = (kink / s).powi(2) - beside;
@@ -222,19 +228,6 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             }
             sum
         }
-        Skeleton::Curve { control } => {
-            let c = cubic(control);
-            let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-            let breaks = breaks_along(k, &|t| s * at(t).distance(point));
-            integral(
-                &mut |t| {
-                    let speed = (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
-                    h(at(t)) * speed
-                },
-                &breaks,
-                1e-13,
-            )
-        }
         Skeleton::Plane { point: p, normal } => {
             let d = (point - p).dot(normal.normalize());
             // Rings; where the integral diverges, up to ten radii, else of radius t/(1−t)/s.
@@ -263,6 +256,20 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
                 kinks,
             )
         }
+        ref line => {
+            let Some(at) = trace(line) else {
+                return 0.0;
+            };
+            let breaks = breaks_along(k, &|t| s * at(t).0.distance(point));
+            integral(
+                &mut |t| {
+                    let (place, speed) = at(t);
+                    h(place) * speed
+                },
+                &breaks,
+                1e-13,
+            )
+        }
     }
 }
 
@@ -270,8 +277,53 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
 fn integrate_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
     let k = define(primitive.kernel);
     let skeleton = &primitive.skeleton;
-    // Place, and length per unit of t.
-    let at: Box<dyn Fn(f64) -> (DVec3, f64)> = match *skeleton {
+    let Some(at) = trace(skeleton) else {
+        return 0.0;
+    };
+    // Length up to t: exact at the ends of steps, and integrated from the one before t.
+    const STEPS: usize = 64;
+    let place = |i: usize| i as f64 / STEPS as f64;
+    let mut speed = |t: f64| at(t).1;
+    let mut lengths = vec![0.0];
+    for i in 0..STEPS {
+        let step = integral(&mut speed, &[place(i), place(i + 1)], 1e-13);
+        lengths.push(lengths[i] + step);
+    }
+    let total = lengths[STEPS];
+    let here = |t: f64| {
+        let i = ((t * STEPS as f64) as usize).min(STEPS - 1);
+        let rest = match skeleton {
+            Skeleton::Segment { .. } | Skeleton::Arc { .. } => (t - place(i)) * total,
+            // A single panel is nearly always enough, and most of the time goes here.
+            _ => {
+                let (low, high) = (place(i), t.max(place(i)));
+                of_one_panel(&mut |t| at(t).1, low, high, 1e-11)
+            }
+        };
+        shaping.at((lengths[i] + rest) / total)
+    };
+    let breaks = breaks_along(k, &|t| {
+        here(t).width().unwrap_or(0.0) * at(t).0.distance(point)
+    });
+    // Next to a pole, as narrow as 10⁻⁵, the rounding of places alone changes the integrand by more
+    // than 10⁻¹² of itself.
+    let tolerance = if k.has_pole() { 1e-11 } else { 1e-13 };
+    integral(
+        &mut |t| {
+            let (q, speed) = at(t);
+            let shaping = here(t);
+            let (s, h) = (shaping.width(), shaping.height(skeleton));
+            let s = s.unwrap_or(0.0);
+            h.unwrap_or(0.0) * k.value(s * s * q.distance_squared(point)) * speed
+        },
+        &breaks,
+        tolerance,
+    )
+}
+
+/// Traces a line; `None` for other bones.
+fn trace(skeleton: &Skeleton) -> Option<Trace<'_>> {
+    Some(match *skeleton {
         Skeleton::Segment { base, apex } => Box::new(move |t| {
             let d = apex - base;
             (base + d * t, d.length())
@@ -293,47 +345,11 @@ fn integrate_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> 
                 (c[0] + t * (c[1] + t * (c[2] + t * c[3])), tangent.length())
             })
         }
-        _ => return 0.0,
-    };
-    // Length up to t: exact at the ends of steps, and integrated from the one before t.
-    const STEPS: usize = 64;
-    let place = |i: usize| i as f64 / STEPS as f64;
-    let mut speed = |t: f64| at(t).1;
-    let mut lengths = vec![0.0];
-    for i in 0..STEPS {
-        let step = integral(&mut speed, &[place(i), place(i + 1)], 1e-13);
-        lengths.push(lengths[i] + step);
-    }
-    let total = lengths[STEPS];
-    let here = |t: f64| {
-        let i = ((t * STEPS as f64) as usize).min(STEPS - 1);
-        let rest = match skeleton {
-            // One panel is nearly always enough, and most of the time goes here.
-            Skeleton::Curve { .. } => {
-                let (low, high) = (place(i), t.max(place(i)));
-                of_one_panel(&mut |t| at(t).1, low, high, 1e-11)
-            }
-            _ => (t - place(i)) * total,
-        };
-        shaping.at((lengths[i] + rest) / total)
-    };
-    let breaks = breaks_along(k, &|t| {
-        here(t).width().unwrap_or(0.0) * at(t).0.distance(point)
-    });
-    // Next to a pole, as narrow as 10⁻⁵, the rounding of places alone changes the integrand by more
-    // than 10⁻¹² of itself.
-    let tolerance = if k.has_pole() { 1e-11 } else { 1e-13 };
-    integral(
-        &mut |t| {
-            let (q, speed) = at(t);
-            let shaping = here(t);
-            let (s, h) = (shaping.width(), shaping.height(skeleton));
-            let s = s.unwrap_or(0.0);
-            h.unwrap_or(0.0) * k.value(s * s * q.distance_squared(point)) * speed
-        },
-        &breaks,
-        tolerance,
-    )
+        ref line if line.dimension() == 1 => {
+            Box::new(move |t| (line.at(t), difference(|t| line.at(t), t, 0.01).length()))
+        }
+        _ => return None,
+    })
 }
 
 /// Returns breaks in [0, 1] for an integrand that depends on a distance, in kernel widths: around
@@ -374,6 +390,19 @@ fn breaks_along(k: Definition, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
     breaks.sort_unstable_by(f64::total_cmp);
     breaks.dedup();
     breaks
+}
+
+/// Computes a derivative from differences over steps of h: it is exact but for h⁸f⁽⁹⁾/630.
+pub(crate) fn difference<V>(f: impl Fn(f64) -> V, x: f64, h: f64) -> V
+where
+    V: core::ops::Sub<Output = V> + core::ops::Mul<f64, Output = V> + core::iter::Sum,
+{
+    let factors = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+    let terms = factors.into_iter().zip(1..).map(|(factor, i)| {
+        let step = f64::from(i) * h;
+        (f(x + step) - f(x - step)) * (factor / h)
+    });
+    terms.sum()
 }
 
 /// Returns the place between two others where a function passes a level; `None` if it is on one
@@ -435,10 +464,6 @@ fn near(base: DVec3, d: DVec3, point: DVec3) -> f64 {
 /// Computes a profile's factor, from its definition in the world.
 fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
     let (u, v) = match *skeleton {
-        Skeleton::Point { .. }
-        | Skeleton::Polygon { .. }
-        | Skeleton::Curve { .. }
-        | Skeleton::Plane { .. } => (0.0, 0.0),
         Skeleton::Segment { base, apex } => (near(base, apex - base, point), 0.0),
         Skeleton::Arc {
             center,
@@ -449,7 +474,7 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
         } => {
             let d = point - center;
             let t = libm::atan2(d.dot(v), d.dot(u)).rem_euclid(core::f64::consts::TAU);
-            // In the gap: before the start if that is nearer than the end.
+            // A point of the gap is before the start if that is nearer than the end.
             let past = t - angle;
             let before = core::f64::consts::TAU - t;
             (
@@ -467,6 +492,8 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
             let area = n.length_squared();
             (n.dot(d.cross(e2)) / area, n.dot(e1.cross(d)) / area)
         }
+        // Other bones have no parameters.
+        _ => (0.0, 0.0),
     };
     let [low, high] = profile.bounds;
     let product = wave(profile.waves[0], profile.scale[0] * u.clamp(0.0, 1.0))

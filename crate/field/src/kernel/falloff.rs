@@ -1,4 +1,4 @@
-//! Everything that the program knows of a kernel.
+//! The trait of kernels: all that the program knows of one.
 use crate::bone::Bone;
 use crate::envelope::Roughness;
 use crate::influence::Crowding;

@@ -210,14 +210,14 @@ fn segment<K: Falloff, R: Real>(bone: &Segment<R::Scalar>, p: [R; 3]) -> Jet<R> 
 fn arc<K: Falloff, R: Real>(bone: &Arc<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let [radius, side, half] = [bone.radius, bone.side, bone.half_angle].map(|x| x.lane(0));
     by_lanes(p, |[x, y, z]| {
-        // From the centre, with the arc's middle on the axis x.
+        // The point as seen from the centre, with the arc's middle on the axis x.
         let x = side * (x + radius);
         let (azimuth, rho) = (libm::atan2(y, x), (x * x + y * y).sqrt());
         let rest = (rho - radius) * (rho - radius) + z * z;
         let reach = 4.0 * rho * radius;
         let grain = 2.0 * (grain::<K>(rest) / reach).sqrt().min(0.25);
         let mut sum = [0.0; 4];
-        // Both ways round, so that the nearest place is at 0.
+        // The arc goes both ways round, so that its nearest place is at 0.
         for turn in [-TAU, 0.0, TAU] {
             let ends = [-half, half].map(|end| (end + turn - azimuth).clamp(-PI, PI));
             let part = integral::<K, 4>(
