@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 /// Largest text accepted from disk, bytes.
 const MAX_TEXT: u64 = 4 * 1024 * 1024;
-/// Largest image or mesh accepted from disk, bytes.
-const MAX_ASSET: u64 = 32 * 1024 * 1024;
+/// Largest image, mesh or skeleton accepted from disk, bytes.
+pub const MAX_ASSET: u64 = limbs::limits::MAX_BYTES as u64;
 /// Most files fetched for one project.
 const MAX_FILES: usize = 256;
 

@@ -18,6 +18,7 @@ mod report;
 mod scan;
 mod sculpt;
 mod share;
+mod skeleton;
 mod time;
 mod tools;
 mod trace;
@@ -53,6 +54,8 @@ enum Command {
     Probe(probe::Probe),
     /// Carry out the strokes of a sculpture and write its mesh
     Sculpt(sculpt::Sculpt),
+    /// Tell what is in a skeleton's file, or write it in another format
+    Skeleton(skeleton::Skeleton),
     /// Bring a mesh onto measured points and outlines
     Fit(Box<fit::Fit>),
     /// Measure a dataset's surfaces: points and outlines, with noise, gaps and outliers
@@ -104,6 +107,7 @@ fn run() -> Outcome {
         Command::Render(command) => command.run(),
         Command::Animate(command) => command.run(),
         Command::Sculpt(command) => command.run(),
+        Command::Skeleton(command) => command.run(),
         Command::Fit(command) => command.run(),
         Command::Scan(command) => command.run(),
         Command::Fmt(command) => command.run(),

@@ -1,4 +1,4 @@
-//! Images and meshes that a work refers to: accepted formats, and messages about them.
+//! Images, meshes and skeletons that a work refers to: accepted formats, and messages about them.
 //!
 //! Only their headers are read here; the language interprets them.
 
@@ -25,6 +25,8 @@ pub enum Kind {
     Image,
     /// A mesh of triangles or polygons.
     Mesh,
+    /// Limbs with radii.
+    Skeleton,
 }
 
 /// Returns the end of a file's name after the last dot, in lower case.
@@ -40,9 +42,50 @@ pub fn extension(name: &str) -> String {
 pub fn kind(name: &str) -> Option<Kind> {
     if rats::is_image(name) {
         Some(Kind::Image)
+    } else if rats::is_mesh(name) {
+        Some(Kind::Mesh)
     } else {
-        rats::is_mesh(name).then_some(Kind::Mesh)
+        rats::is_skeleton(name).then_some(Kind::Skeleton)
     }
+}
+
+/// Whether a file holds limbs: by its name, or as its content says where files of that name may
+/// hold a mesh or points, too.
+#[must_use]
+pub fn is_skeleton(name: &str, bytes: &[u8]) -> bool {
+    match extension(name).as_str() {
+        "obj" => count_lines(bytes, b"l") > 0 && count_lines(bytes, b"f") == 0,
+        "ply" => mesh::formats::ply::elements(bytes).is_ok_and(|elements| {
+            elements
+                .iter()
+                .any(|own| own.name == "edge" && own.count > 0)
+        }),
+        // A molecule counts its atoms in its first line, and names an element in each of the others.
+        "xyz" => {
+            let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
+            let mut lines = text.lines();
+            let is_count = lines
+                .next()
+                .is_some_and(|line| line.trim().parse::<u32>().is_ok());
+            let third = lines.nth(1).and_then(|line| line.split_whitespace().next());
+            is_count && third.is_some_and(|word| word.starts_with(|c: char| c.is_alphabetic()))
+        }
+        "3mf" => has_beams(bytes),
+        _ => kind(name) == Some(Kind::Skeleton),
+    }
+}
+
+/// Whether a 3MF file has a beam lattice: one of its models says so near its beginning.
+fn has_beams(bytes: &[u8]) -> bool {
+    let Ok(archive) = Archive::open(bytes, MAX_PARTS) else {
+        return false;
+    };
+    let models = archive.entries().iter();
+    let models = models.filter(|entry| entry.name.ends_with(".model"));
+    models.take(16).any(|entry| {
+        let text = archive.read(entry, 2 * MAX_ASSET).unwrap_or_default();
+        text.windows(11).any(|part| part == b"beamlattice")
+    })
 }
 
 /// Describes the file's content in a few words.
@@ -62,6 +105,8 @@ pub fn facts(asset: &Asset) -> Result<String, String> {
             }
             Ok(format!("{width} × {height} pixels"))
         }
+        _ if is_skeleton(&asset.name, &asset.bytes) => Ok(String::from("a skeleton")),
+        Some(Kind::Skeleton) => Err(String::from("no skeleton could be found in it")),
         Some(Kind::Mesh) => {
             let bytes = &asset.bytes;
             let words = match mesh::Format::of(&asset.name, bytes) {
@@ -74,7 +119,9 @@ pub fn facts(asset: &Asset) -> Result<String, String> {
             };
             words.ok_or_else(|| String::from("no mesh could be found in it"))
         }
-        None => Err(String::from("it is neither an image nor a mesh")),
+        None => Err(String::from(
+            "it is neither an image nor a mesh nor a skeleton",
+        )),
     }
 }
 
@@ -160,7 +207,9 @@ fn stl(bytes: &[u8]) -> Option<Counts> {
         0
     } else {
         let words = bytes.split(u8::is_ascii_whitespace);
-        words.filter(|word| word.eq_ignore_ascii_case(b"facet")).count() as u64
+        words
+            .filter(|word| word.eq_ignore_ascii_case(b"facet"))
+            .count() as u64
     };
     let faces = match 84 + 50 * count {
         wanted if wanted == size => count,
@@ -278,20 +327,59 @@ mod tests {
             ("a.ply", strips.into()),
             ("a.3mf", package),
             ("a.obj", obj.replace(' ', "\t").into()),
-            ("a.obj", format!("\u{feff}{obj}").replace("\n", "\n  ").into()),
+            (
+                "a.obj",
+                format!("\u{feff}{obj}").replace("\n", "\n  ").into(),
+            ),
         ];
         for (name, bytes) in files {
             let what = String::from_utf8_lossy(&bytes).into_owned();
             let read = mesh::read(name, &bytes).map(|mesh| mesh.triangles.len());
             assert_eq!(read, Ok(1), "{name}: {what}");
             let facts = describe(name, &bytes);
-            assert!(facts.is_ok_and(|facts| facts.contains('1')), "{name}: {what}");
+            assert!(
+                facts.is_ok_and(|facts| facts.contains('1')),
+                "{name}: {what}"
+            );
             let sorted = crate::intake::sort(vec![crate::intake::Incoming {
                 name: name.to_owned(),
                 bytes: Ok(bytes),
             }]);
             assert_eq!(sorted.assets.len(), 1, "{name}: {what}");
         }
+    }
+
+    #[test]
+    fn content_tells_skeletons_from_meshes_and_points() {
+        fn is_skeleton(name: &str, text: &str) -> bool {
+            super::is_skeleton(name, text.as_bytes())
+        }
+        fn package(text: &str) -> Vec<u8> {
+            let member = ::archive::Member::new("3D/a.model", text.as_bytes());
+            ::archive::write(&[member]).unwrap()
+        }
+        assert!(is_skeleton("a.swc", ""));
+        assert!(is_skeleton("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"));
+        assert!(!is_skeleton("a.obj", "v 0 0 0\nv 1 0 0\nl 1 2\nf 1 2 1\n"));
+        assert!(is_skeleton(
+            "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nelement edge 1\nend_header\n"
+        ));
+        assert!(!is_skeleton(
+            "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nend_header\n"
+        ));
+        assert!(is_skeleton("a.xyz", "2\nwater\nO 0 0 0\nH 1 0 0\n"));
+        assert!(!is_skeleton("a.xyz", "0 0 0\n1 0 0\n0 1 0\n"));
+        assert!(!is_skeleton("a.xyz", "2\n\n0 0 0\n1 0 0\n"));
+        assert!(!is_skeleton("a.3mf", "no archive"));
+        let model = "<model><b:beamlattice/></model>";
+        assert!(super::is_skeleton("a.3mf", &package(model)));
+        assert!(!super::is_skeleton("a.3mf", &package("<model/>")));
+        assert_eq!(
+            describe("a.obj", b"v 0 0 0\nv 1 0 0\nl 1 2\n").unwrap(),
+            "a skeleton"
+        );
     }
 
     #[test]

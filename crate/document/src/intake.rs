@@ -18,8 +18,8 @@ pub const MOST: usize = 32;
 #[must_use]
 pub fn kinds() -> String {
     format!(
-        "texts (.{}), images ({}), meshes ({}), points to fit to (.ply, .xyz), outlines (.json) \
-            and projects (.zip)",
+        "texts (.{}), images ({}), meshes ({}), skeletons (.swc, .3mf, .vtp, .vtk, .csv, .obj, \
+            .ply, .xyz, .pdb), points to fit to (.ply, .xyz), outlines (.json) and projects (.zip)",
         TEXTS.join(", ."),
         ::picture::Format::ENDINGS,
         mesh::Format::ENDINGS
@@ -56,7 +56,10 @@ pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
     let (most, what) = if project_file::is_project(name) {
         (project_file::MAX_BYTES, "a project")
     } else if asset::kind(name).is_some() || MEASURED.contains(&asset::extension(name).as_str()) {
-        (MAX_ASSET, "an image, a mesh or a cloud of points")
+        (
+            MAX_ASSET,
+            "an image, a mesh, a skeleton or a cloud of points",
+        )
     } else {
         (MAX_TEXT, "a text")
     };
@@ -157,7 +160,10 @@ pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
 fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     check_length(name, bytes.len() as f64)?;
     let extension = asset::extension(name);
-    if MEASURED.contains(&extension.as_str()) || (extension == "ply" && !has_faces(&bytes)) {
+    let is_skeleton = asset::is_skeleton(name, &bytes);
+    let is_measured =
+        MEASURED.contains(&extension.as_str()) || (extension == "ply" && !has_faces(&bytes));
+    if is_measured && !is_skeleton {
         sorted.measured.push((name.to_owned(), bytes));
     } else if asset::kind(name).is_some() {
         let asset = asset(name, bytes)?;
@@ -176,6 +182,27 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     Ok(())
 }
 
+/// Writes a text that draws skeletons among files which came without a text; `None` if there are
+/// none. It lights them from afar, as their size is not known before they are read.
+#[must_use]
+pub fn write_text(assets: &[Asset]) -> Option<File> {
+    let skeletons = assets
+        .iter()
+        .filter(|own| asset::is_skeleton(&own.name, &own.bytes));
+    let mut text = String::from(
+        "light White, distant, direction 1 -2 -2\nlight Gray40, distant, direction -2 0 -1\n\
+         surface Flesh, diffuse SandyBrown, specular Gray40, shine 40, radius 0.5, \
+         kernel compact6, blobbiness -8\n",
+    );
+    let mut count = 0;
+    for skeleton in skeletons {
+        count += 1;
+        text += &format!("skeleton Flesh, SKELETON{count} {}\n", skeleton.name);
+    }
+    let name = String::from("main.rat");
+    (count > 0).then_some(File { name, text })
+}
+
 /// Whether a PLY file is no cloud of points: its heading lists faces, or is damaged.
 fn has_faces(bytes: &[u8]) -> bool {
     let Ok(elements) = mesh::formats::ply::elements(bytes) else {
@@ -183,7 +210,9 @@ fn has_faces(bytes: &[u8]) -> bool {
     };
     let is_face = |name: &str| matches!(name, "face" | "tristrips");
     elements.iter().all(|element| element.name != "vertex")
-        || elements.iter().any(|element| is_face(element.name) && element.count > 0)
+        || elements
+            .iter()
+            .any(|element| is_face(element.name) && element.count > 0)
 }
 
 /// Returns a name, or a part of one between folders, with a hyphen for each character that a name
@@ -235,6 +264,32 @@ mod tests {
         assert_eq!(sorted.texts[2].text, "# ä");
         assert_eq!(sorted.texts[1].text, "sphere a 1, 0 0 0\n");
         assert_eq!(sorted.refused, Vec::<String>::new());
+    }
+
+    #[test]
+    fn skeletons_get_a_text_that_draws_them() {
+        let sorted = sort(vec![
+            file("a b.swc", b"1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n"),
+            file("m.xyz", b"2\n\nO 0 0 0\nH 1 0 0\n"),
+        ]);
+        assert_eq!(sorted.refused, Vec::<String>::new());
+        assert!(sorted.measured.is_empty());
+        let file = write_text(&sorted.assets).unwrap();
+        assert_eq!(rats::asset_names(&file.text), ["a-b.swc", "m.xyz"]);
+        for asset in &sorted.assets {
+            let recipe = rats::Recipe::default();
+            let graph = recipe.make(&asset.name, &asset.bytes);
+            asset.keep_skeleton(recipe, graph.map_err(|error| error.to_string()));
+        }
+        let project = rats::Project { files: vec![file] };
+        let compiled = rats::compile_at(&project, &sorted.assets, 0.0);
+        let bad = compiled
+            .diagnostics
+            .iter()
+            .filter(|told| told.severity == rats::Severity::Error);
+        assert_eq!(bad.count(), 0, "{:?}", compiled.diagnostics);
+        assert_eq!(compiled.scene.elements.len(), 3, "limbs and two atoms");
+        assert_eq!(write_text(&[]), None);
     }
 
     #[test]

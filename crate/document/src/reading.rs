@@ -1,15 +1,17 @@
-//! Reading the meshes of a work apart from the page's thread.
+//! Reading the meshes and skeletons of a work apart from the page's thread.
 //!
 //! A mesh file goes to a tools worker, as the page's program has no readers; its mesh, or the
 //! reader's error message, is kept by the asset ([`Asset::keep_mesh`]). Until then the session does
-//! not compile texts that name it and the last good picture stays.
+//! not compile texts that name it and the last good picture stays. So it is with skeletons, of
+//! which the compiler says how they are wanted.
 
 use crate::asset::Asset;
 use crate::session::Session;
+use limbs::{Graph, Recipe};
 use mesh::TriangleMesh;
 use pool::{Ticket, Tools};
 use std::sync::Arc;
-use tools::ReadMesh;
+use tools::{ReadMesh, ReadSkeleton};
 
 /// A file that is being read.
 struct Reading {
@@ -23,10 +25,25 @@ impl Reading {
     }
 }
 
+/// A skeleton that is being made of a file.
+struct SkeletonReading {
+    asset: Asset,
+    recipe: Recipe,
+    ticket: Ticket<Graph>,
+}
+
+impl SkeletonReading {
+    fn is_of(&self, (asset, recipe): (&Asset, &Recipe)) -> bool {
+        let is_same = Arc::ptr_eq(&self.asset.bytes, &asset.bytes);
+        is_same && self.asset.name == asset.name && self.recipe == *recipe
+    }
+}
+
 /// The files that are being read.
 pub struct MeshReading {
     tools: Tools,
     files: Vec<Reading>,
+    skeletons: Vec<SkeletonReading>,
 }
 
 impl MeshReading {
@@ -36,6 +53,7 @@ impl MeshReading {
         Self {
             tools,
             files: Vec::new(),
+            skeletons: Vec::new(),
         }
     }
 
@@ -68,14 +86,52 @@ impl MeshReading {
                 self.files.push(Reading { asset, ticket });
             }
         }
+        any_read | self.tick_skeletons(session)
+    }
+
+    /// Does the same for skeletons.
+    fn tick_skeletons(&mut self, session: &Session) -> bool {
+        let mut any_read = false;
+        self.skeletons
+            .retain_mut(|file| match file.ticket.result() {
+                Some(graph) => {
+                    file.asset.keep_skeleton(file.recipe.clone(), graph);
+                    any_read = true;
+                    false
+                }
+                None => true,
+            });
+        self.skeletons
+            .retain(|file| session.unread_skeletons().any(|wanted| file.is_of(wanted)));
+        for wanted in session.unread_skeletons() {
+            if !self.skeletons.iter().any(|file| file.is_of(wanted)) {
+                let (asset, recipe) = (wanted.0.clone(), wanted.1.clone());
+                let ticket = self.tools.submit(ReadSkeleton {
+                    name: asset.name.clone(),
+                    bytes: asset.bytes.to_vec(),
+                    recipe: recipe.clone(),
+                });
+                self.skeletons.push(SkeletonReading {
+                    asset,
+                    recipe,
+                    ticket,
+                });
+            }
+        }
         any_read
     }
 
     /// Returns the name of the file that is being read, with the fraction done, 0 … 1.
     #[must_use]
     pub fn current(&self) -> Option<(&str, f32)> {
-        let file = self.files.first()?;
-        Some((&file.asset.name, file.ticket.fraction().unwrap_or(0.0)))
+        let mesh = self
+            .files
+            .first()
+            .map(|file| (&file.asset, file.ticket.fraction()));
+        let skeleton = self.skeletons.first();
+        let skeleton = skeleton.map(|file| (&file.asset, file.ticket.fraction()));
+        let (asset, fraction) = mesh.or(skeleton)?;
+        Some((&asset.name, fraction.unwrap_or(0.0)))
     }
 }
 
@@ -167,5 +223,23 @@ mod tests {
         session.compile();
         assert!(session.is_compiled());
         assert_eq!(session.errors(), 1, "there is no such file");
+    }
+
+    #[test]
+    fn session_compiles_once_its_skeleton_is_read() {
+        let limb = b"1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n";
+        let asset = Asset::unread("n.swc", *limb);
+        let text = "eyep 0 0 90\nsurface a, diffuse Red\nskeleton a, N n.swc\n";
+        let mut session = session(text, vec![asset]);
+        session.compile();
+        let mut reading = MeshReading::new(Tools::new(|| {}));
+        assert!(!session.is_compiled() && !reading.tick(&session));
+        assert_eq!(reading.current(), Some(("n.swc", 0.0)));
+        read_all(&mut reading, &session);
+        session.compile();
+        assert!(session.is_compiled());
+        assert_eq!(session.diagnostics(), []);
+        assert_eq!(session.compilation().scene.elements.len(), 1);
+        assert_eq!(reading.current(), None);
     }
 }

@@ -470,9 +470,10 @@ mod tests {
     }
 
     fn with_assets(sizes: &[usize]) -> Kept {
-        let assets = sizes.iter().enumerate().map(|(index, size)| {
-            Asset::unread(format!("{index}.png"), vec![7; *size])
-        });
+        let assets = sizes
+            .iter()
+            .enumerate()
+            .map(|(index, size)| Asset::unread(format!("{index}.png"), vec![7; *size]));
         Kept {
             assets: assets.collect(),
             ..work("text")

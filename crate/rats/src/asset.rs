@@ -1,16 +1,23 @@
 //! The files of a project that are no texts.
 
 use crate::reads::is_mesh;
+use limbs::{Graph, Recipe};
 use mesh::{Error, Format, Topology, TriangleMesh};
 use std::fmt;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A reader of mesh files, as [`mesh::read`].
 type Reader = fn(&str, &[u8]) -> Result<TriangleMesh, Error>;
 
-/// A file that is no text: an image or a mesh. Links do not carry it.
+/// A maker of skeletons, as [`Recipe::make`].
+type Maker = fn(&Recipe, &str, &[u8]) -> Result<Graph, limbs::Error>;
+
+/// Skeletons that are kept of a file, each made otherwise.
+const KEPT: usize = 24;
+
+/// A file that is no text: an image, a mesh or a skeleton. Links do not carry it.
 ///
-/// A mesh is read once, for all copies of the asset: by the asset itself, or elsewhere, as by a
+/// A mesh or a skeleton is read once, for all copies of the asset: by the asset itself, or elsewhere, as by a
 /// worker of the page, whose program has no readers. Two assets are equal if their names and
 /// contents are.
 #[derive(Clone)]
@@ -20,12 +27,18 @@ pub struct Asset {
     /// The content.
     pub bytes: Arc<[u8]>,
     reader: Option<Reader>,
+    maker: Option<Maker>,
     read: Arc<Read>,
 }
 
-/// The mesh of a file.
+/// Skeleton of a file, or why there is none, and how it was made.
+type Made = (Recipe, Result<Arc<Graph>, Error>);
+
+/// The mesh or the skeletons of a file.
 #[derive(Default)]
 struct Read {
+    /// The last ones that were made.
+    skeletons: Mutex<Vec<Made>>,
     mesh: OnceLock<Result<Arc<TriangleMesh>, Error>>,
     topology: OnceLock<Result<Topology, Error>>,
 }
@@ -42,6 +55,7 @@ impl Asset {
     pub fn new(name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Self {
         Self {
             reader: Some(mesh::read),
+            maker: Some(Recipe::make),
             ..Self::unread(name, bytes)
         }
     }
@@ -62,6 +76,7 @@ impl Asset {
             name: name.into(),
             bytes: bytes.into(),
             reader: None,
+            maker: None,
             read: Arc::default(),
         }
     }
@@ -97,6 +112,42 @@ impl Asset {
                 Format::needed()
             })
         })
+    }
+
+    /// Returns the skeleton of a file; `None` if it is to be read elsewhere, and has not been.
+    ///
+    /// # Errors
+    /// A sentence on what is wrong with the file.
+    #[must_use]
+    pub fn skeleton(&self, recipe: &Recipe) -> Option<Result<Arc<Graph>, Error>> {
+        let made = self.read.skeletons.lock();
+        let made = made.unwrap_or_else(PoisonError::into_inner);
+        let known = made.iter().find(|(own, _)| own == recipe);
+        if let Some((_, skeleton)) = known {
+            return Some(skeleton.clone());
+        }
+        drop(made);
+        let make = self.maker?;
+        let skeleton = make(recipe, &self.name, &self.bytes);
+        Some(self.keep(recipe.clone(), skeleton.map_err(|error| error.to_string())))
+    }
+
+    /// Keeps a skeleton that was made elsewhere, or the error message of its maker, for all copies
+    /// of the asset. It must be what [`Recipe::make`] gives.
+    pub fn keep_skeleton(&self, recipe: Recipe, skeleton: Result<Graph, String>) {
+        let _ = self.keep(recipe, skeleton);
+    }
+
+    fn keep(&self, recipe: Recipe, skeleton: Result<Graph, String>) -> Result<Arc<Graph>, Error> {
+        let skeleton = skeleton.map(Arc::new).map_err(Error);
+        let made = self.read.skeletons.lock();
+        let mut made = made.unwrap_or_else(PoisonError::into_inner);
+        made.retain(|(own, _)| *own != recipe);
+        if made.len() >= KEPT {
+            drop(made.remove(0));
+        }
+        made.push((recipe, skeleton.clone()));
+        skeleton
     }
 
     /// Returns the topology of the mesh.

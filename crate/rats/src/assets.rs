@@ -1,8 +1,8 @@
 //! Height fields and images made of a project's files, kept while the files are: a text is compiled
 //! at every keystroke, a large file should be read once.
 
-use crate::limits::MAX_IMAGE_PIXELS;
 use crate::asset::Asset;
+use crate::limits::MAX_IMAGE_PIXELS;
 use glam::DVec3;
 use mesh::{Error, TriangleMesh};
 use picture::Format;

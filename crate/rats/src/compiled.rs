@@ -2,6 +2,7 @@
 
 use crate::{Diagnostic, Tool};
 use glam::{DAffine3, DVec3};
+use limbs::Recipe;
 use scene::{Origin, Scene};
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,6 +30,18 @@ pub struct Compiled {
     pub rate: Option<f64>,
     /// The deformations that were carried out, in order.
     pub deforms: Vec<Deform>,
+    /// Skeletons that have not been read, where compiling does not read them: without them the
+    /// scene is not that of the text (see [`crate::Asset::keep_skeleton`]).
+    pub unread: Vec<Unread>,
+}
+
+/// Skeleton of a file that is still to be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unread {
+    /// Name of the file among the project's assets.
+    pub name: String,
+    /// Way to make the skeleton of it.
+    pub recipe: Recipe,
 }
 
 /// A `deform` command that was carried out.

@@ -32,6 +32,7 @@ mod primitives;
 mod run;
 mod scene_commands;
 mod skeleton;
+mod skeleton_file;
 pub(crate) mod state;
 mod structure;
 mod surroundings;
@@ -46,8 +47,8 @@ mod watched;
 mod words;
 
 use crate::Project;
-use crate::compiled::{Compiled, Placement};
 use crate::asset::Asset;
+use crate::compiled::{Compiled, Placement};
 use crate::provenance::Provenance;
 use crate::scope::Scope;
 use crate::sources::Sources;
@@ -97,6 +98,7 @@ pub fn run<'a>(
         animated: state.animated || state.moving.is_any(),
         rate: state.moving.rate(),
         deforms: state.deforms,
+        unread: state.unread,
     }
 }
 

@@ -64,10 +64,11 @@ mod value;
 
 pub use asset::Asset;
 pub use compile::{compile, compile_at, provenance};
-pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement};
+pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement, Unread};
 pub use diagnostic::{Diagnostic, Related, Severity};
+pub use limbs::Recipe;
 pub use project::{File, Project};
-pub use reads::{asset_names, is_image, is_mesh, places, reads};
+pub use reads::{asset_names, is_image, is_mesh, is_skeleton, places, reads};
 pub use strokes::{is_strokes, keep_sculpted, start_file};
 pub use text_edit::TextEdit;
 pub use tool::Tool;

@@ -182,8 +182,13 @@ mod tests {
 
     #[test]
     fn mesh_of_the_library_is_that_of_its_file() {
-        let [_, gem] = assets() else { unreachable!("two of them") };
-        assert_eq!(gem.mesh().as_deref(), Ok(&mesh::read(&gem.name, &gem.bytes).unwrap()));
+        let [_, gem] = assets() else {
+            unreachable!("two of them")
+        };
+        assert_eq!(
+            gem.mesh().as_deref(),
+            Ok(&mesh::read(&gem.name, &gem.bytes).unwrap())
+        );
     }
 
     #[test]

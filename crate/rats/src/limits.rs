@@ -43,6 +43,11 @@ pub const MAX_NESTED_BLOCKS: usize = 64;
 pub const MAX_NESTED_EXPRESSIONS: usize = 64;
 /// Words, numbers and signs of one command.
 pub const MAX_OPERANDS: usize = 4096;
+/// Words, numbers and signs of a `skeleton` with its block: as many as a text can hold.
+pub const MAX_BLOCK_OPERANDS: usize = MAX_TEXT;
+/// Skeletons of files in a text, those that differ in the file or in how they are made of it: no
+/// more than are kept between two compilations.
+pub const MAX_SKELETON_FILES: usize = 20;
 /// Shapes in a scene.
 pub const MAX_ELEMENTS: usize = 200_000;
 /// Faces of the mesh that strokes in a model start from.

@@ -22,7 +22,7 @@ use crate::stage::Stage;
 use crate::text::TextPanel;
 use crate::text::keyboard::Keyboard;
 use crate::tray::Tray;
-use crate::wish::{LabWish, Wish, Wishes, WorkWish};
+use crate::wish::{LabWish, ViewWish, Wish, Wishes, WorkWish};
 use crate::works::gallery::Gallery;
 use crate::{fonts, keys, layout, screen, theme};
 use browser::Backend;
@@ -126,6 +126,7 @@ impl App {
             page: Page {
                 work,
                 reading: MeshReading::new(tools.clone()),
+                to_frame: None,
                 renderer: Renderer::new(pool),
                 settings,
                 parts,
@@ -222,6 +223,11 @@ impl App {
         page.settle(now);
         if let Some(trouble) = page.work.tick(now) {
             page.warn(trouble);
+        }
+        if page.to_frame.is_some() && page.work.session.is_compiled() {
+            let is_open = page.to_frame.take() == Some(page.work.number());
+            page.wishes
+                .extend(is_open.then_some(Wish::from(ViewWish::ShowAll)));
         }
         let panels = &mut self.panels;
         panels.mesh.film = panels.film.length();

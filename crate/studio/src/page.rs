@@ -112,6 +112,8 @@ pub struct Page {
     pub work: Work,
     /// Meshes on their way into the work.
     pub reading: MeshReading,
+    /// Number of the work whose whole model is to be brought into view once it is compiled.
+    pub to_frame: Option<u64>,
     /// The traced picture.
     pub renderer: Renderer,
     /// The user's choices.

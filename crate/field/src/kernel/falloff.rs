@@ -69,7 +69,8 @@ pub(crate) trait Falloff: Sized {
     /// Whether G has no singularity at any complex q. Of other smooth kernels none is nearer to
     /// q ≥ 0 than −1.
     const ENTIRE: bool = false;
-    /// Whether tapered segments have a closed form, a [`Cone`](crate::kernel::cubed::cone::Cone).
+    /// Whether tapered segments are evaluated at once, as a
+    /// [`Cone`](crate::kernel::cubed::cone::Cone).
     const HAS_CONES: bool = false;
 
     /// Computes G and its first four derivatives; at a kink those of the inner piece.

@@ -10,6 +10,7 @@ use crate::{Jet, Real};
 use core::f64::consts::PI;
 
 pub mod arc;
+pub mod cone;
 pub mod polygon;
 pub mod segment;
 
@@ -70,6 +71,7 @@ impl<P: Polynomial> Falloff for P {
     };
     const KINKS: &'static [f64] = &[1.0];
     const SMOOTHNESS: usize = <P as Polynomial>::SMOOTHNESS;
+    const HAS_CONES: bool = true;
     /// √y(12G″ + 8yG‴) and 12G″ + 48yG‴ at y ≤ q ≤ 1, G″ = 2c₂ + 6c₃v, G‴ = −6c₃.
     const INSIDE: [f64; 2] = {
         let [c2, c3] = P::COEFFICIENTS;
@@ -148,6 +150,7 @@ impl<P: Polynomial> Falloff for P {
             Bone::Arc(bone) => arc::jet(P::COEFFICIENTS, bone, p),
             Bone::Triangle(bone) => polygon::jet(P::COEFFICIENTS, &bone.edges, p),
             Bone::Polygon(bone) => polygon::jet(P::COEFFICIENTS, &bone.edges, p),
+            Bone::Curve(bone) if let Some(cone) = &bone.cone => cone::jet(P::COEFFICIENTS, cone, p),
             _ => numeric::jet::<Self, R>(bone, p),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::later;
 use super::state::Evaluator;
+use crate::commands::{CommandSpec, OptionSpec, Parameter};
 use crate::given::Given;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
@@ -45,9 +46,21 @@ impl<'a> Evaluator<'a> {
         let Some(spec) = command.spec else {
             return Ok(Given::default());
         };
+        self.read_given_by(command, spec, spec.parameters, spec.options)
+    }
+
+    /// Reads the operands and options of one of several forms of a command, as
+    /// [`Self::read_given`] does.
+    pub(super) fn read_given_by(
+        &mut self,
+        command: &'a Command,
+        spec: &'static CommandSpec,
+        parameters: &'static [Parameter],
+        options: &'static [OptionSpec],
+    ) -> Outcome<Given<'a>> {
         self.scope
             .step(limits::STEPS_PER_OPERANDS, &command.word_span)?;
-        let is_shape = spec.parameters.first().is_some_and(|first| first.in_chain);
+        let is_shape = parameters.first().is_some_and(|first| first.in_chain);
         let mut skipped = 0;
         if is_shape {
             let in_chain = self.model.chain.is_some();
@@ -81,7 +94,7 @@ impl<'a> Evaluator<'a> {
         let chain = self.model.chain.clone().filter(|_| is_shape);
         let mut read = self.reader(command);
         read.at = skipped;
-        let given = read.read_given(spec.parameters, spec.options, chain)?;
+        let given = read.read_given(parameters, options, chain)?;
         if is_shape {
             self.watch_shape(command, &given);
         }

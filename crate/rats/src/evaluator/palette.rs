@@ -94,6 +94,24 @@ impl<'a> Palette<'a> {
         Ok(self.surfaces.len() - 1)
     }
 
+    /// Adds a copy of a material, without a name, with a blobbiness.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub fn add_soft(
+        &mut self,
+        name: &Name<'_>,
+        material: usize,
+        blobbiness: f64,
+    ) -> Outcome<usize> {
+        self.refuse_more(name)?;
+        let mut surface = self.surfaces[material].clone();
+        surface.flesh.blobbiness = Some(blobbiness);
+        self.surfaces[material].used = true;
+        self.surfaces.push(surface);
+        Ok(self.surfaces.len() - 1)
+    }
+
     /// Returns an error at a name if there are as many materials as there can be.
     fn refuse_more(&self, name: &Name<'_>) -> Outcome<()> {
         if self.surfaces.len() < MAX_MATERIALS {

@@ -72,6 +72,7 @@ impl<'a> Evaluator<'a> {
     ) -> Outcome<Flow> {
         let flesh = &self.palette.surfaces[material].flesh;
         let part = Part {
+            limbs: 0,
             tapers: shape.bone().is_some_and(|bone| match bone.skeleton {
                 _ if bone.end_radius.is_some() => flesh.is_soft(),
                 Skeleton::Segment { .. } | Skeleton::Arc { .. } => {
@@ -665,7 +666,9 @@ fn mesh_of_file<'a>(
     }
     let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
-    let mesh = asset.mesh().map_err(|error| Problem::new(&file.span, error.to_string()))?;
+    let mesh = asset
+        .mesh()
+        .map_err(|error| Problem::new(&file.span, error.to_string()))?;
     if let Some(metaballs) = implicit_mesh::metaballs(options)? {
         let topology = asset.topology().ok().cloned();
         return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);

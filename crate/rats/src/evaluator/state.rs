@@ -8,7 +8,7 @@ use super::palette::Palette;
 use super::surroundings::Air;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
-use crate::compiled::{Deform, HotVariable, Output, Placement};
+use crate::compiled::{Deform, HotVariable, Output, Placement, Unread};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
@@ -71,6 +71,10 @@ pub struct Evaluator<'a> {
     pub(super) tool_origins: Vec<Origin>,
     pub(super) output: Output,
     pub(super) deforms: Vec<Deform>,
+    /// Skeletons of files, each once.
+    pub(super) skeletons: Vec<Unread>,
+    /// Those of them that have not been read.
+    pub(super) unread: Vec<Unread>,
     /// Vertices of all deformations so far.
     pub(super) deformed: usize,
     /// Whether a variable changes with every frame.
@@ -133,6 +137,8 @@ impl<'a> Evaluator<'a> {
             tool_origins: Vec::new(),
             output: Output::default(),
             deforms: Vec::new(),
+            skeletons: Vec::new(),
+            unread: Vec::new(),
             deformed: 0,
             animated: false,
             moving: Moving::default(),

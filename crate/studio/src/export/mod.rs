@@ -8,8 +8,8 @@ use document::mesh_export::{self, Film, MOST_EDGES, Made, MeshExport, State};
 use document::session::Session;
 use document::{asset, work};
 use egui::{
-    Align, Button, Color32, ColorImage, Context, DragValue, Layout, ProgressBar, Response, RichText,
-    ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
+    Align, Button, Color32, ColorImage, Context, DragValue, Layout, ProgressBar, Response,
+    RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 use glam::DVec3;
 use mesh::Format;

@@ -80,6 +80,11 @@ pub(super) fn take_in(page: &mut Page, taken: Vec<Incoming>, show: bool, at: &Mo
     for (name, bytes) in measured {
         page.wish(FitWish::Take { name, bytes });
     }
+    let is_own = page.work.origin == Origin::Own;
+    let mut texts = texts;
+    let drawn = intake::write_text(&assets).filter(|_| texts.is_empty() && !is_own);
+    let is_drawn = drawn.is_some();
+    texts.extend(drawn);
     let outcome = if all.is_empty() {
         Ok(String::new())
     } else if texts.is_empty() || page.work.origin == Origin::Own {
@@ -101,6 +106,9 @@ pub(super) fn take_in(page: &mut Page, taken: Vec<Incoming>, show: bool, at: &Mo
             format!("Opened {all} as a new work.")
         })
     };
+    if is_drawn && outcome.is_ok() {
+        page.to_frame = Some(page.work.number());
+    }
     page.wishes.extend(report(outcome, &refused, at.now));
 }
 

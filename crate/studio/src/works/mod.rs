@@ -137,7 +137,7 @@ impl Gallery {
             WorkWish::PickFiles => {
                 let of = page.work.number();
                 browser::pick_files(page.parts.requests.taker(of));
-            },
+            }
             WorkWish::Take { files, show } => arrivals::take_in(page, files, show, at),
         }
     }
