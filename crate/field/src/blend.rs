@@ -126,7 +126,7 @@ impl Implicit for Blend {
     }
 
     fn clearance(&self, point: DVec3) -> Option<Clearance> {
-        // Of several functions, none knows what the others add.
+        // A function does not know what others add to it.
         self.single()?.clearance(point)
     }
 

@@ -223,7 +223,7 @@ impl Implicit for Sum {
                 bounds.slope * ball.radius,
                 bounds.curvature * ball.radius * ball.radius,
             ];
-            // Not so for NaN.
+            // NaN is not within bounds, so that such a term is kept.
             if changes.iter().all(|change| *change <= each) {
                 part.rest = part.rest.plus(bounds);
             } else {

@@ -397,7 +397,7 @@ impl Piece<'_> {
         let (sine, cosine) = libm::sincos(demands.turn.min(1.5));
         let straight = tangents.iter().all(|v| {
             let along = v.dot(middle);
-            // At a cusp the direction is rounding noise.
+            // The direction is rounding noise at a cusp.
             v.length() <= 1e-6 * fastest
                 || along > 0.0 && v.cross(middle).length() * cosine <= along * sine
         });
@@ -520,7 +520,7 @@ impl Piece<'_> {
                 .iter()
                 .map(|t| self.law(*t))
                 .collect();
-            // Between the sample points it may be slightly smaller.
+            // The least may be slightly smaller between the sample points.
             slimmest = values
                 .iter()
                 .fold(slimmest, |least, v| least.min(0.8 * v[1]));
@@ -555,7 +555,7 @@ impl Piece<'_> {
             .fold(0.0, |r: f64, p| r.max(p.distance(center)));
         let (mut density, mut thinness) = (1.0, 1.0);
         if self.law.is_some() {
-            // Both are smooth and vary little on a piece; 1 % covers the values between samples.
+            // Density and thinness vary little on a piece; 1 % covers the values between samples.
             let (mut most, mut least) = (0.0_f64, f64::INFINITY);
             for i in -8..=8 {
                 let [alpha, omega] = self.law(f64::from(i) / 8.0);

@@ -65,8 +65,9 @@ impl Falloff for Cauchy {
         (g, R::splat(2.0) * g * i)
     }
 
-    fn along(u: f64) -> f64 {
-        0.5 * (u / (1.0 + u * u) + libm::atan(u))
+    fn between(a: f64, b: f64) -> f64 {
+        let [inner, outer] = [a, b].map(|u| 0.5 * (u / (1.0 + u * u) + libm::atan(u)));
+        outer - inner
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {

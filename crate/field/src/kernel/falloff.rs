@@ -1,4 +1,4 @@
-//! Everything that the program knows of a kernel.
+//! The trait of kernels: all that the program knows of one.
 use crate::bone::Bone;
 use crate::envelope::Roughness;
 use crate::influence::Crowding;
@@ -120,18 +120,18 @@ pub(crate) trait Falloff: Sized {
 
     /// Computes `∫₀ᵘ h`, along a line through the point.
     fn along(u: f64) -> f64 {
-        numeric::along::<Self>(u)
+        Self::between(0.0, u)
     }
 
     /// Computes `∫ₐᵇ h` along a line through the point, 0 ≤ a ≤ b.
     fn between(a: f64, b: f64) -> f64 {
-        Self::along(b) - Self::along(a)
+        numeric::between::<Self>(a, b)
     }
 
     /// Computes `∫ G` from p to q, 0 ≤ p ≤ q: over a ring around the point, of area π(q−p), the
     /// kernel's integral is π times this.
     fn over_ring(p: f64, q: f64) -> f64 {
-        numeric::ring::<Self>(p, q)
+        numeric::ring::<Self>(p, q - p)[0]
     }
 
     /// Computes the field of an infinite line at a distance; where that is infinite, of one of

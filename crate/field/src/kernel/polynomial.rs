@@ -102,13 +102,16 @@ impl<P: Polynomial> Falloff for P {
         (v * v * (a + b), v * (a + a + R::splat(3.0) * b))
     }
 
-    fn along(u: f64) -> f64 {
+    fn between(a: f64, b: f64) -> f64 {
         let [c2, c3] = P::COEFFICIENTS;
-        let u = u.min(1.0);
-        let q = u * u;
-        let fourth = 1.0 - q * (2.0 / 3.0 - q / 5.0);
-        let sixth = 1.0 - q * (1.0 - q * (3.0 / 5.0 - q / 7.0));
-        u * (c2 * fourth + c3 * sixth)
+        let [inner, outer] = [a, b].map(|u| {
+            let u = u.min(1.0);
+            let q = u * u;
+            let fourth = 1.0 - q * (2.0 / 3.0 - q / 5.0);
+            let sixth = 1.0 - q * (1.0 - q * (3.0 / 5.0 - q / 7.0));
+            u * (c2 * fourth + c3 * sixth)
+        });
+        outer - inner
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {

@@ -138,7 +138,7 @@ fn balls_have_small_errors_and_true_slopes() {
                 });
             let told = cell.expansion.jet(local.to_array(), f64::from).gradient;
             let told = DVec3::from_array(told) / cell.reach();
-            // By Markov's inequality a polynomial of degree 5 with this error has at most 25 times
+            // Markov's inequality: a polynomial of degree 5 with this error has at most 25 times
             // its slope.
             let most = 40.0 * cell.error / cell.reach();
             assert!(told.distance(slope) <= most, "{kernel:?} {told} {slope}");
@@ -281,7 +281,7 @@ fn edits_give_the_bits_of_a_fresh_hierarchy() {
                     all += usize::from(!own.is_empty);
                 }
             }
-            // Where the surface alone is looked for, few small cells are not empty.
+            // Few small cells are not empty if the surface alone is looked for.
             let least = if case / 3 == 1 { 20 } else { 4 };
             assert!(taken * least > all, "case {case}: {taken} of {all}");
         }

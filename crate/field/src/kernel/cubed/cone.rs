@@ -103,7 +103,7 @@ pub fn jet<R: Real>(cone: &Cone<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let (limit, square) = (reach * reach, x * x + y * y + z * z);
     let (far, near) = (limit.lt(square), square.lt(limit * R::splat(1.0 + 1e-6)));
     let zero = Jet::zero();
-    // The other of the two is not used.
+    // A lane takes one of the two, and leaves the other.
     let closed = if R::any(near) { beside(cone, p) } else { zero };
     let rule = if R::any(far) { afar(cone, p) } else { zero };
     Jet {
