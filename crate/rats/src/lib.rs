@@ -63,7 +63,9 @@ mod value;
 
 pub use assets::{is_mesh_read, keep_mesh};
 pub use compile::{compile, compile_at, provenance};
-pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement};
+pub use compiled::{
+    Act, Compiled, Control, Deform, HotValue, HotVariable, Interlude, Output, Picture, Placement,
+};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use project::{Asset, File, Project};
 pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};

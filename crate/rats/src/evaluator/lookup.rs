@@ -7,7 +7,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::{Command, Datum};
 use crate::value::Value;
-use crate::{Asset, commands, library, limits, places, suggest};
+use crate::{ASSET_ENDINGS, Asset, commands, is_image, library, limits, places, suggest};
 
 impl<'a> Evaluator<'a> {
     /// Makes the problem that there is no such command.
@@ -123,6 +123,9 @@ impl<'a> Evaluator<'a> {
     pub(super) fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
         let bare = name.text.strip_prefix("./").unwrap_or(name.text);
         self.find_asset(self.file, name.text).ok_or_else(|| {
+            if let Some(problem) = unread_kind(name) {
+                return problem;
+            }
             let known: Vec<_> = self
                 .assets
                 .iter()
@@ -141,4 +144,26 @@ impl<'a> Evaluator<'a> {
             .hint(hint)
         })
     }
+}
+
+/// Makes the problem that files of this kind are not read, if they are not: whoever keeps files
+/// does not fetch them then.
+fn unread_kind(name: &Name<'_>) -> Option<Box<Problem>> {
+    let (_, ending) = name.text.rsplit_once('.')?;
+    if ASSET_ENDINGS
+        .iter()
+        .any(|known| ending.eq_ignore_ascii_case(known))
+    {
+        return None;
+    }
+    let (images, meshes): (Vec<&str>, Vec<&str>) = ASSET_ENDINGS
+        .iter()
+        .partition(|ending| is_image(&format!("x.{ending}")));
+    let name_of = name.text;
+    let message = format!("`{name_of}` is not read: .{ending} is no kind of file known here");
+    Some(Problem::new(&name.span, message).hint(format!(
+        "images can be {}, and meshes {}: save it as one of these",
+        images.join(", "),
+        meshes.join(", ")
+    )))
 }
