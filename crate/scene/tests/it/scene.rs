@@ -7,6 +7,7 @@ use scene::{
     Body, Camera, Element, Flesh, Fragile, Frame, Light, LightKind, Quadric, Scene, Shape,
     SoftSurface,
 };
+use trials::{Random, count};
 
 fn soft(radius: f64) -> Flesh {
     Flesh {
@@ -107,7 +108,7 @@ fn a_far_eye_sees_as_parallel_rays_do() {
         let right = normal.any_orthonormal_vector();
         let up = normal.cross(right);
         let lean = 1.2 * numbers.vector(1.0);
-        let half = 10.0_f64.powf(4.0 * numbers.unit() - 2.0);
+        let half = numbers.decades(-2.0, 2.0);
         let camera = Camera {
             target: numbers.vector(3.0),
             ..Camera::default()
@@ -117,9 +118,9 @@ fn a_far_eye_sees_as_parallel_rays_do() {
         let far = camera.far([right, up, normal], direction, half);
         let projection = far.projection(200, 100);
         let [x, y, z] = [
-            numbers.signed(),
-            0.5 * numbers.signed(),
-            3.0 * numbers.signed(),
+            numbers.range(-1.0, 1.0),
+            0.5 * numbers.range(-1.0, 1.0),
+            3.0 * numbers.range(-1.0, 1.0),
         ];
         let place = camera.target + half * (right * x + up * y + normal * z);
         // Along the direction of the rays to the plane through the target.
