@@ -197,7 +197,7 @@ impl Request {
         for (index, picture) in compiled.earlier.iter_mut().enumerate() {
             interludes.play(index, said)?;
             let name = self.output.as_ref();
-            let name = name.map(|path| trace::numbered(path, index + 1));
+            let name = name.map(|path| trace::number_name(path, index + 1));
             let scene = Arc::make_mut(&mut picture.scene);
             self.draw(scene, &picture.output, name.as_deref(), folder, said)?;
         }

@@ -20,7 +20,7 @@ pub struct Interludes<'a> {
 }
 
 impl<'a> Interludes<'a> {
-    /// Begins with none of them carried out.
+    /// Begins a list of which nothing is carried out.
     pub fn new(all: Vec<Interlude>, folder: &'a Path, messages: &'a str) -> Self {
         Self {
             left: all.into_iter(),

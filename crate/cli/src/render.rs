@@ -54,7 +54,7 @@ impl Render {
         let mut loaded = files::load(&self.file)?;
         let clean = report::to_stderr(&loaded);
         for (index, earlier) in loaded.compiled.earlier.iter_mut().enumerate() {
-            let name = trace::numbered(&self.output, index + 1);
+            let name = trace::number_name(&self.output, index + 1);
             let traced = wishes.trace(Arc::make_mut(&mut earlier.scene), &|_| ())?;
             trace::write(&name, &traced.picture)?;
             eprintln!("{}: the picture of an earlier `shoot`", name.display());

@@ -100,7 +100,7 @@ pub fn check_name(path: &Path) -> Result<(), String> {
 
 /// Returns the name of the n-th of several pictures, of which the last has the name itself:
 /// `out.png`, 2 → `out-2.png`.
-pub fn numbered(path: &Path, number: usize) -> PathBuf {
+pub fn number_name(path: &Path, number: usize) -> PathBuf {
     let [stem, ending] = [path.file_stem(), path.extension()]
         .map(|part| part.unwrap_or_default().to_string_lossy().into_owned());
     path.with_file_name(format!("{stem}-{number}.{ending}"))

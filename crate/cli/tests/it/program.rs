@@ -311,7 +311,7 @@ fn several_shoots_write_several_pictures() {
     for name in ["one.png", "two.tga", "three.png"] {
         assert!(said.contains(&format!("wrote {name}, 16×12")), "{said}");
     }
-    // The first has one red ball to the left, the second two blue ones, the third one in the middle.
+    // First one red ball to the left, then two blue ones, then one in the middle.
     let lit = |(size, bytes): &([u32; 2], Vec<u8>), channel: usize| -> [usize; 2] {
         let left = |i: usize| (i % size[0] as usize) < size[0] as usize / 2;
         let rgb = bytes.chunks_exact(3).enumerate();

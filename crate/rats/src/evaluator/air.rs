@@ -37,10 +37,11 @@ pub static BACKGROUND: CommandSpec = row(
 ))
 .default("a dark slate, or the `sky`")
 .details(
-    "There is one background at a time, the last one. With `to` it goes from the first colour, above, to the last, below; they change over around \
-     the horizon. An image lies around the scene: the whole way round across, its middle towards \
-     −z, from straight up to straight down. It is seen in mirrors and through glass, but it gives \
-     no light: `sky` does. What is above is said by `vup`.",
+    "There is one background at a time, the last one. With `to` it goes from the first colour, \
+     above, to the last, below; they change over around the horizon. An image lies around the \
+     scene: the whole way round across, its middle towards −z, from straight up to straight down. \
+     It is seen in mirrors and through glass, but it gives no light: `sky` does. What is above is \
+     said by `vup`.",
 )
 .example(clay!(
     "background SteelBlue to White to SaddleBrown\n\

@@ -62,13 +62,12 @@ pub static FOV: CommandSpec = row("fov", "angle of view")
     ))
     .default("45")
     .details(
-        "Without a second angle, or if both are equal, pixels are square: the vertical angle follows \
-         from the horizontal one and `framesize`. A second angle that differs from that by more \
-         than a twentieth stretches the picture: pixels show more, or less, upwards than across.",
+        "Without a second angle, or if both are equal, pixels are square: the vertical angle \
+         follows from the horizontal one and `framesize`. A second angle that differs from that by \
+         more than a twentieth stretches the picture: pixels show more, or less, upwards than \
+         across.",
     )
-    .example(clay!(
-        "fov 30\nsphere Clay 2, 0 0 0"
-    ));
+    .example(clay!("fov 30\nsphere Clay 2, 0 0 0"));
 
 fn fov<'a>(
     run: &mut Evaluator<'a>,

@@ -70,7 +70,7 @@ impl Evaluator<'_> {
 
     /// Warns of radii and blobbiness that go together as |B|·R² ≈ const where the text does not say
     /// how blobbiness is read, or of blobbiness that makes sense only if it is absolute: so are
-    /// those of the published datasets, which read as relative make the thinnest shapes the crispest.
+    /// those of the published datasets, which read as relative make what is thin the crispest.
     fn lint_blob_scale(&mut self, scene: &Scene) {
         let soft = scene.elements.iter().filter_map(|element| element.flesh);
         let used: BTreeSet<u32> = soft.collect();

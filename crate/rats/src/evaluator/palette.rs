@@ -1,8 +1,8 @@
 //! The materials and textures that a running text has made.
 //!
 //! A material that is made anew under an old name is a new one: shapes made before keep the old. So
-//! a dataset can vary one material along a row of shapes. Between two pictures it changes the shapes
-//! that the first one shows, as a model lives on behind a `shoot`.
+//! a dataset can vary one material along a row of shapes. Between two pictures it changes the
+//! shapes that the first one shows, as a model lives on behind a `shoot`.
 
 use crate::limits::{MAX_LAYERS, MAX_MATERIALS};
 use crate::operands::Share;
@@ -266,7 +266,7 @@ impl<'a> Palette<'a> {
     }
 
     /// Returns the materials that have a name.
-    pub fn named(&self) -> impl Iterator<Item = &Surface> {
+    pub fn with_names(&self) -> impl Iterator<Item = &Surface> {
         self.by_name.values().map(|index| &self.surfaces[*index])
     }
 

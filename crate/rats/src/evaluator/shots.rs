@@ -33,13 +33,13 @@ pub struct Shot {
 /// Commands behind the last `shoot`, as far as they matter to its picture.
 #[derive(Debug, Default)]
 enum Later {
-    /// None.
+    /// Nothing follows.
     #[default]
     Nothing,
-    /// They change it; the file and place of the first one.
+    /// Changes of it; the file and place of the first command that makes one.
     Changes(usize, Range<usize>),
-    /// One of them is `reset`, so that the picture stays as it is; the file and place of the first
-    /// that may change a picture behind it.
+    /// A `reset`, so that the picture stays as it is; the file and place of the first command behind
+    /// it that may change a picture.
     Reset(Option<(usize, Range<usize>)>),
 }
 

@@ -205,7 +205,7 @@ options! {
 }
 
 /// Returns the name under which a result is saved, if it is; `own` where the text gives none.
-fn saved(options: &Options<'_>, own: &str) -> Option<String> {
+fn name_to_save(options: &Options<'_>, own: &str) -> Option<String> {
     let name = options.last(&SAVE)?;
     Some(name.map_or_else(|| own.to_owned(), |name| text_of(&name)))
 }
@@ -223,7 +223,7 @@ fn diff<'a>(
     b: Name<'a>,
 ) -> Outcome<Flow> {
     let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = saved(options, "diff.png");
+    let save = name_to_save(options, "diff.png");
     job(run, command, Tool::Diff { a, b, save })
 }
 
@@ -240,7 +240,7 @@ fn and<'a>(
     b: Name<'a>,
 ) -> Outcome<Flow> {
     let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = saved(options, "and.png");
+    let save = name_to_save(options, "and.png");
     job(run, command, Tool::And { a, b, save })
 }
 
@@ -257,7 +257,7 @@ fn xor<'a>(
     b: Name<'a>,
 ) -> Outcome<Flow> {
     let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = saved(options, "xor.png");
+    let save = name_to_save(options, "xor.png");
     job(run, command, Tool::Xor { a, b, save })
 }
 

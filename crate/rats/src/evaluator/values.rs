@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const MOST: usize = 40;
 
 /// Returns a line for each of some things, and one for the number of those left out.
-fn listed<T>(things: impl Iterator<Item = T>, line: impl Fn(T) -> String) -> Vec<String> {
+fn list<T>(things: impl Iterator<Item = T>, line: impl Fn(T) -> String) -> Vec<String> {
     let mut things = things;
     let mut lines: Vec<String> = things.by_ref().take(MOST).map(line).collect();
     let left_out = things.count();
@@ -124,15 +124,15 @@ impl Evaluator<'_> {
             lines.push(self.shapes());
         }
         if is_asked(word, &["surfaces"]) {
-            let mut named: Vec<&Surface> = self.palette.named().collect();
+            let mut named: Vec<&Surface> = self.palette.with_names().collect();
             named.sort_by(|a, b| a.finish.name.cmp(&b.finish.name));
-            lines.extend(listed(named.into_iter(), material));
+            lines.extend(list(named.into_iter(), material));
         }
         if is_asked(word, &["textures"]) {
             lines.push(format!("{} textures", self.palette.textures()));
         }
         if is_asked(word, &["lights"]) {
-            lines.extend(listed(self.lights.iter(), light));
+            lines.extend(list(self.lights.iter(), light));
         }
         if is_asked(word, &["background"]) {
             lines.push(background(&self.air.background()));
@@ -150,7 +150,7 @@ impl Evaluator<'_> {
             }
         }
         if is_asked(word, &["clouds"]) {
-            lines.extend(listed(self.air.clouds.iter(), |cloud| {
+            lines.extend(list(self.air.clouds.iter(), |cloud| {
                 let at = place(cloud.position);
                 let (radius, density) = (cloud.radius, cloud.density);
                 let colour = colour(cloud.colour);
@@ -176,7 +176,7 @@ impl Evaluator<'_> {
         }
         if is_asked(word, &["var"]) {
             let variables: BTreeMap<&str, Value> = self.scope.variables().collect();
-            lines.extend(listed(variables.into_iter(), |(name, value)| match value {
+            lines.extend(list(variables.into_iter(), |(name, value)| match value {
                 Value::Scalar(x) => format!("{name} = {x}"),
                 Value::Vector(v) => format!("{name} = {}", place(v)),
                 Value::Colour(c) => format!("{name} = rgb({}, {}, {})", c.x, c.y, c.z),
