@@ -8,9 +8,9 @@ pub use rats::Asset;
 use std::path::Path;
 
 /// Largest image or mesh, bytes.
-pub const MAX_ASSET: usize = 8 << 20;
+pub const MAX_ASSET: usize = 16 << 20;
 /// Largest sum of all images and meshes of a work, bytes.
-pub const MAX_ALL: usize = 24 << 20;
+pub const MAX_ALL: usize = 48 << 20;
 /// Most images and meshes of a work.
 pub const MAX_ASSETS: usize = 16;
 /// Longest side of an image, pixels.

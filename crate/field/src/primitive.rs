@@ -122,13 +122,13 @@ impl Primitive {
         // A profile's parameters come from the untapered form, also for tapered bones.
         let waves = profile.map(|profile| Box::new(Waves::new(&profile, &form.bone)));
         if let Some(shaping) = tapered {
-            let law = |fraction: f64| {
-                let here = shaping.at(fraction);
-                let (s, h) = (here.width(), here.height(&skeleton));
-                let thin = s.unwrap_or(width) / width;
-                [h.unwrap_or(height) / height, thin * thin]
-            };
-            let curve = curve_with_taper(&skeleton, &frame, shaping.kernel, &law, is_cone);
+            let curve =
+                curve_with_taper(&skeleton, &frame, (shaping.kernel, is_cone), &|fraction| {
+                    let here = shaping.at(fraction);
+                    let (s, h) = (here.width(), here.height(&skeleton));
+                    let thin = s.unwrap_or(width) / width;
+                    [h.unwrap_or(height) / height, thin * thin]
+                });
             form.bone = Bone::Curve(Box::new(curve));
         }
         let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);

@@ -235,9 +235,8 @@ pub(crate) fn place(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>,
 pub(crate) fn curve_with_taper(
     skeleton: &Skeleton,
     frame: &Frame<f64>,
-    kernel: Kernel,
+    (kernel, is_cone): (Kernel, bool),
     law: Law<'_>,
-    is_cone: bool,
 ) -> Curve<f64> {
     let cubics = |s: f64| -> Vec<_> {
         let cubics = skeleton.cubics(s).into_iter();
