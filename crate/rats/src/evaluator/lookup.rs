@@ -6,6 +6,7 @@ use crate::commands::{CommandSpec, OptionSpec, Parameter};
 use crate::given::Given;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
+use crate::reads::SKELETONS;
 use crate::syntax::{Command, Datum};
 use crate::value::Value;
 use crate::{Asset, commands, is_image, is_mesh, is_skeleton, library, limits, places, suggest};
