@@ -128,7 +128,7 @@ fn a_far_eye_sees_as_parallel_rays_do() {
         let ray = projection.direction(0.5 + 0.5 * shown[0], 0.5 - shown[1]);
         let from = place - far.eye;
         let apart = (from - ray * from.dot(ray)).length() / half;
-        let bound = (1.0 + z.abs()) * (z.abs() * f64::hypot(shown[0], shown[1]) + 1e-6) / 11_459.0;
+        let bound = (1.0 + z.abs()) * (z.abs() * libm::hypot(shown[0], shown[1]) + 1e-6) / 11_459.0;
         assert!(apart <= bound + 1e-9, "{apart} {bound}");
         assert!((far.eye - camera.target).dot(normal) > 11_000.0 * half);
     }
