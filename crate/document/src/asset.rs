@@ -160,7 +160,9 @@ fn stl(bytes: &[u8]) -> Option<Counts> {
         0
     } else {
         let words = bytes.split(u8::is_ascii_whitespace);
-        words.filter(|word| word.eq_ignore_ascii_case(b"facet")).count() as u64
+        words
+            .filter(|word| word.eq_ignore_ascii_case(b"facet"))
+            .count() as u64
     };
     let faces = match 84 + 50 * count {
         wanted if wanted == size => count,
@@ -213,7 +215,7 @@ mod tests {
     use super::*;
 
     fn describe(name: &str, bytes: &[u8]) -> Result<String, String> {
-        facts(&Asset::unread(name, bytes))
+        facts(&Asset::await_mesh(name, bytes))
     }
 
     #[test]
@@ -278,14 +280,20 @@ mod tests {
             ("a.ply", strips.into()),
             ("a.3mf", package),
             ("a.obj", obj.replace(' ', "\t").into()),
-            ("a.obj", format!("\u{feff}{obj}").replace("\n", "\n  ").into()),
+            (
+                "a.obj",
+                format!("\u{feff}{obj}").replace("\n", "\n  ").into(),
+            ),
         ];
         for (name, bytes) in files {
             let what = String::from_utf8_lossy(&bytes).into_owned();
             let read = mesh::read(name, &bytes).map(|mesh| mesh.triangles.len());
             assert_eq!(read, Ok(1), "{name}: {what}");
             let facts = describe(name, &bytes);
-            assert!(facts.is_ok_and(|facts| facts.contains('1')), "{name}: {what}");
+            assert!(
+                facts.is_ok_and(|facts| facts.contains('1')),
+                "{name}: {what}"
+            );
             let sorted = crate::intake::sort(vec![crate::intake::Incoming {
                 name: name.to_owned(),
                 bytes: Ok(bytes),

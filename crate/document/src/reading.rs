@@ -87,9 +87,9 @@ mod tests {
     use std::time::{Duration, Instant};
 
     /// A mesh file with a triangle.
-    fn unread(name: &str, face: &str) -> Asset {
+    fn file(name: &str, face: &str) -> Asset {
         let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}");
-        Asset::unread(name, text.into_bytes())
+        Asset::await_mesh(name, text.into_bytes())
     }
 
     fn session(text: &str, assets: Vec<Asset>) -> Session {
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn session_compiles_once_its_mesh_is_read() {
-        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![file("tri.obj", "f 1 2 3\n")]);
         session.compile();
         assert!(!session.is_compiled() && session.scene().is_none());
         let mut reading = MeshReading::new(Tools::new(|| {}));
@@ -136,7 +136,7 @@ mod tests {
         session.compile();
         let generation = session.generation();
         session
-            .put_assets(vec![unread("tri.obj", "f 1 2 9\n")])
+            .put_assets(vec![file("tri.obj", "f 1 2 9\n")])
             .unwrap();
         session.compile();
         assert!(session.is_compiled(), "the text does not name it");
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn mesh_that_is_removed_is_not_read() {
-        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![file("tri.obj", "f 1 2 3\n")]);
         let mut reading = MeshReading::new(Tools::new(|| {}));
         reading.tick(&session);
         session.remove_asset("tri.obj");

@@ -625,8 +625,7 @@ impl Session {
         self.assets.iter().filter(|asset| {
             // A text in the same folder may leave the folder out.
             let name = asset.name.rsplit('/').next().unwrap_or_default();
-            asset.is_unread()
-                && self.project.files.iter().any(|f| f.text.contains(name))
+            asset.is_unread() && self.project.files.iter().any(|f| f.text.contains(name))
         })
     }
 
@@ -848,7 +847,7 @@ mod tests {
     #[test]
     fn images_come_and_go_within_their_limits() {
         let mut session = Session::of_text(TEXT);
-        let image = |name: &str, bytes: usize| Asset::unread(name, vec![0; bytes]);
+        let image = |name: &str, bytes: usize| Asset::await_mesh(name, vec![0; bytes]);
         let revision = session.revision();
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();

@@ -1,8 +1,8 @@
 //! Height fields and images made of a project's files, kept while the files are: a text is compiled
 //! at every keystroke, a large file should be read once.
 
-use crate::limits::MAX_IMAGE_PIXELS;
 use crate::asset::Asset;
+use crate::limits::MAX_IMAGE_PIXELS;
 use glam::DVec3;
 use mesh::{Error, TriangleMesh};
 use picture::Format;
@@ -133,13 +133,17 @@ pub fn cost(asset: &Asset) -> u64 {
 mod tests {
     use super::*;
 
+    fn asset(name: &str) -> Asset {
+        Asset::new(name, *b"broken")
+    }
+
+    fn is_kept(asset: &Asset) -> bool {
+        let how = (asset.name.clone(), Some(DVec3::ONE));
+        TERRAS.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
+    }
+
     #[test]
     fn height_field_in_use_is_not_dropped_for_others() {
-        let asset = |name: &str| Asset::new(name, *b"broken");
-        let is_kept = |asset: &Asset| {
-            let how = (asset.name.clone(), Some(DVec3::ONE));
-            TERRAS.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
-        };
         let used = asset("used.png");
         assert!(!is_kept(&used));
         let _ = terra(&used, DVec3::ONE);

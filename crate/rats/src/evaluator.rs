@@ -46,8 +46,8 @@ mod watched;
 mod words;
 
 use crate::Project;
-use crate::compiled::{Compiled, Placement};
 use crate::asset::Asset;
+use crate::compiled::{Compiled, Placement};
 use crate::provenance::Provenance;
 use crate::scope::Scope;
 use crate::sources::Sources;

@@ -4,9 +4,9 @@
 //! The meshes are kept while compilations ask for them, and a text that has only grown goes on from
 //! where the last one ended, as a text is compiled after every stroke.
 
-use crate::limits::{MAX_STROKES_FACES, MAX_STROKES_WORK};
 use crate::asset::Asset;
 use crate::limits;
+use crate::limits::{MAX_STROKES_FACES, MAX_STROKES_WORK};
 use mesh::{Topology, TriangleMesh};
 use sculpt::{Beginning, Clay, Diagnostic, Script};
 use std::cell::{OnceCell, RefCell};

@@ -2,8 +2,8 @@
 
 use super::frozen::Frozen;
 use super::state::Evaluator;
-use crate::limits::{MAX_ELEMENTS, MAX_MOMENTS, MAX_STEPS};
 use crate::asset::Asset;
+use crate::limits::{MAX_ELEMENTS, MAX_MOMENTS, MAX_STEPS};
 use crate::scope::Scope;
 use crate::sources::Sources;
 use crate::symbol::Symbols;

@@ -665,7 +665,9 @@ fn mesh_of_file<'a>(
     }
     let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
-    let mesh = asset.mesh().map_err(|error| Problem::new(&file.span, error.to_string()))?;
+    let mesh = asset
+        .mesh()
+        .map_err(|error| Problem::new(&file.span, error.to_string()))?;
     if let Some(metaballs) = implicit_mesh::metaballs(options)? {
         let topology = asset.topology().ok().cloned();
         return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);
