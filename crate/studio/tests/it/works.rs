@@ -178,7 +178,7 @@ fn mesh_of_the_dialog_is_that_of_the_open_work() {
         .mesh
         .as_ref()
         .map(|mesh| mesh.shown);
-    assert_eq!(shown, Some(0), "nothing of the work before");
+    assert_eq!(shown, None, "nothing of the work before");
     until(&mut window, "the other mesh", |window| {
         triangles(window).is_some()
     });
