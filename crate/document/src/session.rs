@@ -870,7 +870,7 @@ mod tests {
     #[test]
     fn images_come_and_go_within_their_limits() {
         let mut session = Session::of_text(TEXT);
-        let image = |name: &str, bytes: usize| Asset::unread(name, vec![0; bytes]);
+        let image = |name: &str, bytes: usize| Asset::await_mesh(name, vec![0; bytes]);
         let revision = session.revision();
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();
