@@ -11,6 +11,7 @@ mod classic;
 mod files;
 mod fit;
 mod fmt;
+mod interludes;
 mod meshes;
 mod probe;
 mod render;

@@ -77,9 +77,8 @@ impl Mesh {
     /// could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
         let name = self.output.to_string_lossy();
-        let format = Format::of_name(&name).ok_or_else(|| {
-            format!("{name}: the name must end in one of {}", Format::ENDINGS)
-        })?;
+        let format = Format::of_name(&name)
+            .ok_or_else(|| format!("{name}: the name must end in one of {}", Format::ENDINGS))?;
         let is_sound = MILLIMETRES.contains(&self.size);
         if !is_sound {
             return Err(format!(

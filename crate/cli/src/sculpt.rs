@@ -161,9 +161,8 @@ struct Output<'a> {
 impl<'a> Output<'a> {
     fn new(path: &'a Path) -> Result<Self, String> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let format = Format::of_name(&name).ok_or_else(|| {
-            format!("{name}: a mesh is written to a file {}", Format::ENDINGS)
-        })?;
+        let format = Format::of_name(&name)
+            .ok_or_else(|| format!("{name}: a mesh is written to a file {}", Format::ENDINGS))?;
         Ok(Self { path, format })
     }
 

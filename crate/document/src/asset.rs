@@ -262,7 +262,7 @@ mod tests {
     use super::*;
 
     fn describe(name: &str, bytes: &[u8]) -> Result<String, String> {
-        facts(&Asset::unread(name, bytes))
+        facts(&Asset::await_mesh(name, bytes))
     }
 
     #[test]

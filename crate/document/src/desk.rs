@@ -186,7 +186,7 @@ mod tests {
     use super::*;
 
     fn desk(saved: bool) -> Desk {
-        let asset = Asset::unread("a.png", [1]);
+        let asset = Asset::await_mesh("a.png", [1]);
         Desk::new(vec![asset], (String::from("scene.mtv"), saved))
     }
 

@@ -151,7 +151,7 @@ pub fn check_name(name: &str) -> Result<(), String> {
 /// If it is too large, or not of the format that its name says.
 pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
     check_length(name, bytes.len() as f64)?;
-    let asset = Asset::unread(name, bytes);
+    let asset = Asset::await_mesh(name, bytes);
     asset::facts(&asset)?;
     Ok(asset)
 }
@@ -208,11 +208,10 @@ fn has_faces(bytes: &[u8]) -> bool {
     let Ok(elements) = mesh::formats::ply::elements(bytes) else {
         return true;
     };
-    let is_face = |name: &str| matches!(name, "face" | "tristrips");
     elements.iter().all(|element| element.name != "vertex")
         || elements
             .iter()
-            .any(|element| is_face(element.name) && element.count > 0)
+            .any(|element| element.count > 0 && matches!(element.name, "face" | "tristrips"))
 }
 
 /// Returns a name, or a part of one between folders, with a hyphen for each character that a name

@@ -243,7 +243,7 @@ mod tests {
     const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
     fn mesh(name: &str) -> Asset {
-        Asset::unread(name, OBJ)
+        Asset::await_mesh(name, OBJ)
     }
 
     fn zip(members: &[(&str, &[u8])]) -> Vec<u8> {
@@ -263,7 +263,7 @@ mod tests {
             texts: vec![file("a b.rat", "# ä\n"), file("x/y.rat", "read a b.rat\n")],
             assets: vec![
                 mesh("x/bone.obj"),
-                Asset::unread("a.png", crate::picture::png(&image).unwrap()),
+                Asset::await_mesh("a.png", crate::picture::png(&image).unwrap()),
             ],
             camera: Some(Camera {
                 fov: 33.0,

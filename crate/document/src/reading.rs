@@ -143,9 +143,9 @@ mod tests {
     use std::time::{Duration, Instant};
 
     /// A mesh file with a triangle.
-    fn unread(name: &str, face: &str) -> Asset {
+    fn file(name: &str, face: &str) -> Asset {
         let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{face}");
-        Asset::unread(name, text.into_bytes())
+        Asset::await_mesh(name, text.into_bytes())
     }
 
     fn session(text: &str, assets: Vec<Asset>) -> Session {
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn session_compiles_once_its_mesh_is_read() {
-        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![file("tri.obj", "f 1 2 3\n")]);
         session.compile();
         assert!(!session.is_compiled() && session.scene().is_none());
         let mut reading = MeshReading::new(Tools::new(|| {}));
@@ -192,7 +192,7 @@ mod tests {
         session.compile();
         let generation = session.generation();
         session
-            .put_assets(vec![unread("tri.obj", "f 1 2 9\n")])
+            .put_assets(vec![file("tri.obj", "f 1 2 9\n")])
             .unwrap();
         session.compile();
         assert!(session.is_compiled(), "the text does not name it");
@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn mesh_that_is_removed_is_not_read() {
-        let mut session = session(TEXT, vec![unread("tri.obj", "f 1 2 3\n")]);
+        let mut session = session(TEXT, vec![file("tri.obj", "f 1 2 3\n")]);
         let mut reading = MeshReading::new(Tools::new(|| {}));
         reading.tick(&session);
         session.remove_asset("tri.obj");
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn session_compiles_once_its_skeleton_is_read() {
         let limb = b"1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n";
-        let asset = Asset::unread("n.swc", *limb);
+        let asset = Asset::await_mesh("n.swc", *limb);
         let text = "eyep 0 0 90\nsurface a, diffuse Red\nskeleton a, N n.swc\n";
         let mut session = session(text, vec![asset]);
         session.compile();

@@ -18,7 +18,7 @@ use tracer::Picker;
 /// text out at every key, so the limit is far below that of links.
 pub const MAX_TEXT: usize = 256 * 1024;
 /// Most files in a project.
-pub const MAX_FILES: usize = 64;
+pub const MAX_FILES: usize = rats::limits::MAX_FILES;
 
 impl Snapshot for Project {
     fn bytes(&self) -> usize {
@@ -548,6 +548,7 @@ impl Session {
                 && camera.up.is_finite()
                 && camera.fov.is_finite()
                 && camera.shift.iter().all(|shift| shift.is_finite())
+                && camera.pixel.is_finite()
         });
         if finite && self.camera != camera {
             self.camera = camera;
@@ -869,7 +870,7 @@ mod tests {
     #[test]
     fn images_come_and_go_within_their_limits() {
         let mut session = Session::of_text(TEXT);
-        let image = |name: &str, bytes: usize| Asset::unread(name, vec![0; bytes]);
+        let image = |name: &str, bytes: usize| Asset::await_mesh(name, vec![0; bytes]);
         let revision = session.revision();
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();

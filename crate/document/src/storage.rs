@@ -173,7 +173,7 @@ impl Shelf {
         let (mut assets, mut lost) = (Vec::new(), Vec::new());
         for KeptAsset { name, bytes } in kept {
             match bytes.and_then(|text| STANDARD.decode(text).ok()) {
-                Some(bytes) => assets.push(Asset::unread(name, bytes)),
+                Some(bytes) => assets.push(Asset::await_mesh(name, bytes)),
                 None => lost.push(name),
             }
         }
@@ -473,7 +473,7 @@ mod tests {
         let assets = sizes
             .iter()
             .enumerate()
-            .map(|(index, size)| Asset::unread(format!("{index}.png"), vec![7; *size]));
+            .map(|(index, size)| Asset::await_mesh(format!("{index}.png"), vec![7; *size]));
         Kept {
             assets: assets.collect(),
             ..work("text")

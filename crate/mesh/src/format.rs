@@ -18,15 +18,23 @@ pub enum Format {
     Ply,
 }
 
+/// First bytes that tell a format.
+const BEGINNINGS: [(&[u8], Format); 4] = [
+    (b"glTF", Format::Glb),
+    (b"PK\x03\x04", Format::ThreeMf),
+    (b"ply\n", Format::Ply),
+    (b"ply\r", Format::Ply),
+];
+
 impl Format {
     /// All formats.
     pub const ALL: [Self; 5] = [Self::Glb, Self::ThreeMf, Self::Stl, Self::Obj, Self::Ply];
     /// The endings of file names, for messages.
     pub const ENDINGS: &str = ".glb, .3mf, .stl, .obj, .ply";
 
-    /// The error of a file that is of none of the formats.
+    /// Returns the error of a file that is of none of the formats.
     #[must_use]
-    pub fn needed() -> Error {
+    pub fn refuse() -> Error {
         Error(format!("meshes are read from files {}", Self::ENDINGS))
     }
 
@@ -60,13 +68,10 @@ impl Format {
     /// STL files.
     #[must_use]
     pub fn of_bytes(bytes: &[u8]) -> Option<Self> {
-        let begins = |words: &[&[u8]]| words.iter().any(|word| bytes.starts_with(word));
-        match () {
-            () if begins(&[b"glTF"]) => Some(Self::Glb),
-            () if begins(&[b"PK\x03\x04"]) => Some(Self::ThreeMf),
-            () if begins(&[b"ply\n", b"ply\r"]) => Some(Self::Ply),
-            () => None,
-        }
+        BEGINNINGS
+            .iter()
+            .find(|(beginning, _)| bytes.starts_with(beginning))
+            .map(|(_, format)| *format)
     }
 
     /// The format by which [`crate::read`] takes a file: that of its first bytes, else that of its

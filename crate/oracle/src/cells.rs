@@ -6,6 +6,7 @@
 use crate::evaluation::{Evaluation, extent, jet, peak, primitive, sensitivity, single};
 use crate::quadrature;
 use core::f64::consts::TAU;
+use field::kernel::Tail;
 use field::{Kernel, Shaping, Skeleton};
 use glam::{DQuat, DVec3};
 use trials::skeletons::{Kind, degenerate, halves, move_by, shaping};
@@ -384,7 +385,8 @@ pub fn radius_in_isolation(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>)
         };
         let primitive = primitive(skeleton, &shaping, None);
         let (value, _) = evaluate(&primitive, DVec3::Y * radius);
-        let tolerance = if kernel == Kernel::Squared {
+        // The rest of a line falls off like its length to the power 1 less the exponent.
+        let tolerance = if matches!(kernel.tail(), Tail::Power { exponent: 2, .. }) {
             1e-4
         } else {
             1e-9

@@ -70,9 +70,9 @@ pub fn values_as_defined(kernel: Kernel, derivatives: &dyn Fn(f64) -> [f64; 5]) 
     }
 }
 
-/// Checks that a kernel's integrals over lines from a to b through the point, 0 ≤ a ≤ b, are those of
-/// its definition by adaptive quadrature: to 10⁻⁹ clear of the pole, from 0.1 on, and from 0 on to
-/// 10⁻⁹ of themselves.
+/// Checks that a kernel's integrals over lines from a to b through the point, 0 ≤ a ≤ b, are those
+/// of its definition by adaptive quadrature: to 10⁻⁹ clear of the pole, from 0.1 on, and from 0 on
+/// to 10⁻⁹ of themselves.
 pub fn integrals_over_lines(kernel: Kernel, between: &dyn Fn(f64, f64) -> f64) {
     let definition = define(kernel);
     integrals_as_defined(kernel, between, definition.kinks(), 1e-5, |u| {

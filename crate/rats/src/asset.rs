@@ -56,14 +56,14 @@ impl Asset {
         Self {
             reader: Some(mesh::read),
             maker: Some(Recipe::make),
-            ..Self::unread(name, bytes)
+            ..Self::await_mesh(name, bytes)
         }
     }
 
-    /// Makes an asset whose mesh is read elsewhere, and given to [`Asset::keep_mesh`].
+    /// Makes an asset that awaits its mesh: it is read elsewhere, and given to [`Asset::keep_mesh`].
     ///
     /// ```
-    /// let asset = rats::Asset::unread("a.obj", *b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    /// let asset = rats::Asset::await_mesh("a.obj", *b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     /// let copy = asset.clone();
     /// assert!(copy.is_unread() && copy.mesh().is_err());
     /// asset.keep_mesh(mesh::read(&asset.name, &asset.bytes).map_err(|error| error.0));
@@ -71,7 +71,7 @@ impl Asset {
     /// # Ok::<(), mesh::Error>(())
     /// ```
     #[must_use]
-    pub fn unread(name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Self {
+    pub fn await_mesh(name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Self {
         Self {
             name: name.into(),
             bytes: bytes.into(),
@@ -100,8 +100,8 @@ impl Asset {
     pub fn mesh(&self) -> Result<Arc<TriangleMesh>, Error> {
         let mesh = match self.reader {
             Some(read) => {
-                let made = || read(&self.name, &self.bytes).map(Arc::new);
-                Some(self.read.mesh.get_or_init(made))
+                let mesh = &self.read.mesh;
+                Some(mesh.get_or_init(|| read(&self.name, &self.bytes).map(Arc::new)))
             }
             None => self.read.mesh.get(),
         };
@@ -109,7 +109,7 @@ impl Asset {
             Err(if is_mesh(&self.name) {
                 Error(String::from("this mesh is not read yet"))
             } else {
-                Format::needed()
+                Format::refuse()
             })
         })
     }

@@ -133,13 +133,17 @@ pub fn cost(asset: &Asset) -> u64 {
 mod tests {
     use super::*;
 
+    fn asset(name: &str) -> Asset {
+        Asset::new(name, *b"broken")
+    }
+
+    fn is_kept(asset: &Asset) -> bool {
+        let how = (asset.name.clone(), Some(DVec3::ONE));
+        TERRAS.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
+    }
+
     #[test]
     fn height_field_in_use_is_not_dropped_for_others() {
-        let asset = |name: &str| Asset::new(name, *b"broken");
-        let is_kept = |asset: &Asset| {
-            let how = (asset.name.clone(), Some(DVec3::ONE));
-            TERRAS.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
-        };
         let used = asset("used.png");
         assert!(!is_kept(&used));
         let _ = terra(&used, DVec3::ONE);

@@ -64,7 +64,10 @@ mod value;
 
 pub use asset::Asset;
 pub use compile::{compile, compile_at, provenance};
-pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement, Unread};
+pub use compiled::{
+    Act, Compiled, Control, Deform, HotValue, HotVariable, Interlude, Output, Picture, Placement,
+    Unread,
+};
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use limbs::Recipe;
 pub use project::{File, Project};

@@ -26,10 +26,10 @@ pub const FILES: &[(&str, &str)] = &[
 /// An image and a mesh, for the examples of `terra` and `mesh`.
 static ASSETS: LazyLock<[Asset; 2]> = LazyLock::new(|| {
     let text = include_str!("../library/gem.obj");
-    let gem = Asset::unread("gem.obj", text.as_bytes());
+    let gem = Asset::await_mesh("gem.obj", text.as_bytes());
     gem.keep_mesh(Ok(read_plain(text)));
     let hills: &[u8] = include_bytes!("../library/hills.png");
-    [Asset::unread("hills.png", hills), gem]
+    [Asset::await_mesh("hills.png", hills), gem]
 });
 
 /// Reads an OBJ file that has nothing but vertices, in the order of their use, and triangles: the

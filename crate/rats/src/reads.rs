@@ -53,7 +53,7 @@ fn join(folder: &str, name: &str) -> Option<String> {
 }
 
 /// Endings of files of limbs, beside those of meshes that may hold limbs, too.
-const SKELETONS: [&str; 7] = ["swc", "vtp", "vtk", "csv", "xyz", "pdb", "ent"];
+pub const SKELETONS: [&str; 7] = ["swc", "vtp", "vtk", "csv", "xyz", "pdb", "ent"];
 
 /// Returns whether a name has the ending of an image.
 #[must_use]

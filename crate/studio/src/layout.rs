@@ -2,13 +2,14 @@
 //! dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
 
 use crate::icon::{self, Icon};
-use crate::page::{Dialog, Page, Tab};
-use crate::panel::{Panel as _, Panels};
+use crate::page::{Page, Tab};
+use crate::panel::Panel as _;
+use crate::panels::Panels;
 use crate::settings::Show;
 use crate::stage::pencil;
 use crate::text::files;
 use crate::theme::{self, STRIP};
-use crate::wish::{Setting, ViewWish, Wish, Wishes};
+use crate::wish::{Dialog, Setting, ViewWish, Wish, Wishes};
 use crate::{bar, download, fit, notice, places, problems, screen, sculpt, sliders, status, tray};
 use document::{intake, size};
 use egui::{

@@ -1,11 +1,15 @@
 //! Sculpting in the page: opens and begins texts of strokes in the sculpting view (crate
 //! `modeling`), and carries out its wishes.
 
-use crate::page::{Dialog, Moment, Page};
+pub mod wish;
+
+use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::scripts::report;
 use crate::scripts::request::Request;
-use crate::wish::{FitWish, Setting, TextWish, ViewWish, Wish, Wishes, WorkWish};
+use crate::wish::{
+    Dialog, FitWish, SculptWish, Setting, TextWish, ViewWish, Wish, Wishes, WorkWish,
+};
 use crate::{places, theme};
 use document::asset::{self, Kind};
 use document::examples;
@@ -121,50 +125,6 @@ fn grow(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
     Some(text.replacen(line, &new, 1))
 }
 
-/// Wishes about sculptures.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SculptWish {
-    /// Go on with a sculpture of the work, or ask how to begin one.
-    Show,
-    /// Ask how to begin a sculpture.
-    New,
-    /// Open a text of strokes.
-    Open(String),
-    /// Begin a sculpture.
-    Begin {
-        /// The line of its text that says what it starts from.
-        start: String,
-        /// Whether it is a work of its own.
-        is_new: bool,
-    },
-    /// Mesh the model, and sculpt the mesh.
-    Model,
-    /// Sculpt the mesh of the model, a PLY file, or say why there is none.
-    Mesh(Result<Vec<u8>, String>),
-    /// Replace a text of strokes.
-    SetStrokes {
-        /// The file's name.
-        name: String,
-        /// The new text.
-        text: String,
-        /// The mesh that it makes, if it is known.
-        mesh: Option<Box<mesh::TriangleMesh>>,
-    },
-    /// Show a sculpture as a hard mesh, as flesh or as metaballs.
-    Grow {
-        /// The name of its text.
-        name: String,
-        /// The kind of flesh.
-        flesh: Flesh,
-        /// The mean length of its edges.
-        edge: f64,
-    },
-    /// Leave the sculpting view, to fit the mesh of a sculpture to measured points.
-    Fit(String),
-    /// Leave the sculpting view for the editor.
-    Close,
-}
-
 /// Whether the file that a text of strokes starts from is there and not read yet.
 fn must_wait(session: &Session, name: &str, text: &str) -> bool {
     start_of(session, name, text).is_some_and(|asset| asset.is_unread())
@@ -174,6 +134,8 @@ fn must_wait(session: &Session, name: &str, text: &str) -> bool {
 #[derive(Default)]
 pub struct SculptPanel {
     open: Option<Box<Sculpting>>,
+    /// The text in the editor. The app keeps it up to date.
+    pub on_show: Option<usize>,
     /// The text that is opened once the file that it starts from is read.
     next: Option<String>,
 }
@@ -185,18 +147,12 @@ impl SculptPanel {
         self.open.is_some()
     }
 
-    /// Carries out a wish. `on_show` is the text in the editor.
-    pub fn act(
-        &mut self,
-        wish: SculptWish,
-        on_show: Option<usize>,
-        page: &mut Page,
-        at: &Moment<'_>,
-    ) {
+    /// Carries out a wish.
+    pub fn act(&mut self, wish: SculptWish, page: &mut Page, at: &Moment<'_>) {
         match wish {
             SculptWish::Show => {
                 let files = &page.work.session.project().files;
-                let on_show = on_show.and_then(|file| files.get(file));
+                let on_show = self.on_show.and_then(|file| files.get(file));
                 let on_show = on_show.filter(|file| is_strokes(&file.name));
                 let first = files.iter().find(|file| is_strokes(&file.name));
                 match on_show.or(first).map(|file| file.name.clone()) {
@@ -290,7 +246,13 @@ impl Panel for SculptPanel {
     }
 
     fn tick(&mut self, page: &mut Page, _at: &Moment<'_>) {
-        if let Some(name) = self.next.take() {
+        let session = &page.work.session;
+        let mut files = session.project().files.iter();
+        let next = self.next.take_if(|name| {
+            let file = files.find(|file| file.name == *name);
+            file.is_none_or(|file| !must_wait(session, name, &file.text))
+        });
+        if let Some(name) = next {
             self.open(&name, page);
         }
     }

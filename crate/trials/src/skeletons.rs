@@ -279,23 +279,25 @@ pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     })
 }
 
-/// Returns skeletons of a kind that are degenerate, or nearly.
-#[must_use]
-pub fn degenerate(kind: Kind) -> Vec<Skeleton> {
-    let arc = |radius: f64, angle: f64| Skeleton::Arc {
+/// Returns an arc around the origin.
+fn arc(radius: f64, angle: f64) -> Skeleton {
+    Skeleton::Arc {
         center: DVec3::ZERO,
         u: DVec3::X,
         v: DVec3::Y,
         radius,
         angle,
-    };
-    let flat = |b: [f64; 2], c: [f64; 2]| {
-        [
-            DVec3::ZERO,
-            DVec3::new(b[0], b[1], 0.0),
-            DVec3::new(c[0], c[1], 0.0),
-        ]
-    };
+    }
+}
+
+/// Returns the corners of a triangle in the plane z = 0, the first at the origin.
+fn flat(b: [f64; 2], c: [f64; 2]) -> [DVec3; 3] {
+    [[0.0; 2], b, c].map(|[x, y]| DVec3::new(x, y, 0.0))
+}
+
+/// Returns skeletons of a kind that are degenerate, or nearly.
+#[must_use]
+pub fn degenerate(kind: Kind) -> Vec<Skeleton> {
     let triangles = [
         flat([2.0, 0.0], [0.0, 2.0]),
         flat([2.0, 0.0], [1.0, 0.0]),

@@ -87,10 +87,6 @@ impl Falloff for Cauchy {
         (R::splat(PI) * i, Self::falling(z * z).0)
     }
 
-    fn width(blobbiness: f64) -> f64 {
-        blobbiness.sqrt()
-    }
-
     #[inline(always)]
     fn jet<R: Real>(bone: &Bone<R::Scalar>, p: [R; 3]) -> Jet<R> {
         match bone {

@@ -164,10 +164,13 @@ pub(super) fn plane<K: Falloff, R: Real>(z: R) -> (R, R) {
 
 /// Computes [`Falloff::width`]: 1 with a pole, where the unit of length is the radius; else the
 /// distance at which the kernel has the logarithmic slope that a Gaussian of this blobbiness has at
-/// its radius, `−qG′/G = B`.
+/// its radius, `−qG′/G = B`; with a tail that is a power, whose slope is not so steep for all B,
+/// the Gaussian's own `√B`.
 pub(super) fn width<K: Falloff>(blobbiness: f64) -> f64 {
-    if K::TAIL.has_pole() {
-        return 1.0;
+    match K::TAIL {
+        Tail::Power { .. } if K::TAIL.has_pole() => return 1.0,
+        Tail::Power { .. } => return blobbiness.sqrt(),
+        Tail::Compact | Tail::Fast => {}
     }
     let end = if K::TAIL == Tail::Compact { 1.0 } else { 1e6 };
     let (mut low, mut high) = (0.0, end);

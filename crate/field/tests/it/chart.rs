@@ -26,8 +26,9 @@ macro_rules! chart {
 
             #[test]
             fn integrals_as_defined() {
-                kernels::integrals_over_lines(Kernel::$kernel, &|a, b| Kernel::$kernel.between(a, b));
-                kernels::integrals_over_rings(Kernel::$kernel, &|p, q| Kernel::$kernel.over_ring(p, q));
+                let kernel = Kernel::$kernel;
+                kernels::integrals_over_lines(kernel, &|a, b| kernel.between(a, b));
+                kernels::integrals_over_rings(kernel, &|p, q| kernel.over_ring(p, q));
             }
 
             chart!(@checks Kernel::$kernel;

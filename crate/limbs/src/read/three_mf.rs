@@ -25,8 +25,15 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>,
         let Some(lattice) = &object.lattice else {
             return Ok(());
         };
-        add(&package, (part, object), lattice, &place, &mut draft, &mut counts)
-            .map_err(|Error(text)| mesh::Error(text))
+        add(
+            &package,
+            (part, object),
+            lattice,
+            &place,
+            &mut draft,
+            &mut counts,
+        )
+        .map_err(|Error(text)| mesh::Error(text))
     })?;
     if draft.is_bare() {
         return Ok(None);

@@ -58,7 +58,7 @@ pub fn read_with_remarks(name: &str, bytes: &[u8]) -> Result<(TriangleMesh, Vec<
         None if name.to_ascii_lowercase().ends_with(".gltf") => {
             fail("a .gltf file needs others beside it; save it as .glb")
         }
-        None => Err(Format::needed()),
+        None => Err(Format::refuse()),
     }?;
     mesh.check()
 }

@@ -18,6 +18,7 @@ mod links;
 #[cfg(not(target_arch = "wasm32"))]
 mod looks;
 #[cfg(not(target_arch = "wasm32"))]
+#[cfg(not(target_arch = "wasm32"))]
 mod motion;
 mod platforms;
 #[cfg(not(target_arch = "wasm32"))]

@@ -188,7 +188,7 @@ fn what_is_wrong_with_a_file_is_said_with_its_line() {
 
 #[test]
 fn skeleton_that_was_read_elsewhere_is_used() {
-    let asset = Asset::unread("n.swc", *b"broken");
+    let asset = Asset::await_mesh("n.swc", *b"broken");
     let project = Project::single("surface s, diffuse Red\nskeleton s, N n.swc simplify 0.1");
     let recipe = limbs::Recipe {
         simplify: Some(0.1),

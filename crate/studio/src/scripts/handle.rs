@@ -287,8 +287,10 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     if let Some(format) = part("format")? {
         let name = format.as_string().unwrap_or_default();
         let format = mesh::Format::of_name(&format!("model.{name}"));
-        order.format = format
-            .ok_or_else(|| js_sys::TypeError::new("format is one of stl, 3mf, glb, obj, ply"))?;
+        order.format = format.ok_or_else(|| {
+            let endings = mesh::Format::ENDINGS;
+            js_sys::TypeError::new(&format!("format is one of the endings {endings}"))
+        })?;
     }
     for (name, place) in [
         ("tolerance", &mut order.tolerance),

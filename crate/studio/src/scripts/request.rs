@@ -35,7 +35,7 @@ pub enum Request {
     Late {
         /// [`document::work::Work::number`] of the work that it was begun for.
         of: u64,
-        /// What has come, as the subject of a sentence: “The mesh of the model”.
+        /// The subject of a sentence about it: “The mesh of the model”.
         what: String,
         /// The wish.
         wish: Wish,

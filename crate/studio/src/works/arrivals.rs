@@ -1,10 +1,9 @@
 //! Taking in files that were dropped on the page or opened: as new tabs if a work of the user's is
 //! open, else as a new work.
 
-use crate::notice::Notice;
 use crate::page::{Moment, Page};
 use crate::scripts::request::Request;
-use crate::wish::{FitWish, LabWish, TextWish, Wish, WorkWish};
+use crate::wish::{FitWish, LabWish, Notice, TextWish, Wish, WorkWish};
 use browser;
 use document::asset::Asset;
 use document::examples;
@@ -34,7 +33,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
                 *text = bytes.and_then(|bytes| String::from_utf8(bytes).ok());
             } else {
                 let name = path.rsplit('/').next().unwrap_or(path).to_owned();
-                assets.extend(bytes.map(|bytes| Asset::unread(name, bytes)));
+                assets.extend(bytes.map(|bytes| Asset::await_mesh(name, bytes)));
             }
             if *missing == 0 {
                 let (text, assets) = (text.take(), std::mem::take(assets));
