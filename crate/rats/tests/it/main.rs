@@ -18,7 +18,6 @@ mod links;
 #[cfg(not(target_arch = "wasm32"))]
 mod looks;
 #[cfg(not(target_arch = "wasm32"))]
-#[cfg(not(target_arch = "wasm32"))]
 mod motion;
 mod platforms;
 #[cfg(not(target_arch = "wasm32"))]
