@@ -65,11 +65,9 @@ impl<'a> Field<'a> {
                 thickness,
                 sharpness: k,
             },
-            Kind::Spherical => {
-                Metaballs::new(positions, triangles, metaballs::Kind::Spherical, k)
-                    .map(|made| Form::Balls(Box::new(made)))
-                    .map_err(|error| Error(error.to_string()))?
-            }
+            Kind::Spherical => Metaballs::new(positions, triangles, metaballs::Kind::Spherical, k)
+                .map(|made| Form::Balls(Box::new(made)))
+                .map_err(|error| Error(error.to_string()))?,
         };
         Ok(Self {
             positions,
@@ -164,12 +162,7 @@ impl<'a> Field<'a> {
         Some(found)
     }
 
-    fn distance_from_balls(
-        &self,
-        balls: &Metaballs,
-        point: DVec3,
-        gradient: &mut Gradient,
-    ) -> f64 {
+    fn distance_from_balls(&self, balls: &Metaballs, point: DVec3, gradient: &mut Gradient) -> f64 {
         let k = balls.sharpness();
         let mut sum = 0.0;
         for facet in balls.near(point) {

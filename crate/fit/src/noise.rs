@@ -85,8 +85,8 @@ mod tests {
         }
         assert_eq!(noise(&points[..9]), f64::INFINITY);
         // Points anywhere are of no surface.
-        let anywhere: Vec<DVec3> = (0..2000).map(|_| numbers.direction()).collect();
-        let spread: Vec<DVec3> = anywhere.iter().map(|p| *p * numbers.uniform()).collect();
-        assert!(noise(&spread) > 0.03);
+        let bounds = mesh::Aabb::of_points([-DVec3::ONE, DVec3::ONE]);
+        let anywhere: Vec<DVec3> = (0..2000).map(|_| numbers.within(&bounds)).collect();
+        assert!(noise(&anywhere) > 0.03);
     }
 }

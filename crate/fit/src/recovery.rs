@@ -115,7 +115,11 @@ impl Trial {
             sight.direction = rigid.turn * sight.direction;
         }
         let [near, gap] = &mut self.probes;
-        for place in near.iter_mut().chain(gap).chain(&mut self.observations.points) {
+        for place in near
+            .iter_mut()
+            .chain(gap)
+            .chain(&mut self.observations.points)
+        {
             *place = rigid.apply(*place);
         }
         self

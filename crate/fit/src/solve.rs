@@ -12,7 +12,7 @@
 //! higher over large ones: it is the mesh that is to be on the points there, and the sheet above it
 //! is fitted to points that are moved outwards by its mean height.
 
-use crate::align::{Rigid, align};
+use crate::align::{Rigid, align, nudge};
 use crate::deformation::Deformation;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
@@ -25,16 +25,17 @@ use glam::DVec3;
 use mesh::{Aabb, Bvh};
 use metaballs::nearest;
 
-/// Most iterations of a level, and of one before the last.
+/// Most iterations of a level, the last one or one on the way.
 const PER_LEVEL: usize = 12;
 const PER_COARSE_LEVEL: usize = 5;
 /// s in spreads of the distances: at the start, and at the least.
 const WIDE: f64 = 5.0;
 const NARROW: f64 = 3.0;
 /// Most levels.
-const MOST_LEVELS: usize = 12;
-/// Relative decrease of the sum below which a level is done.
+const MOST_LEVELS: usize = 16;
+/// Relative decrease of the sum below which a level is done, the last one or one on the way.
 const SETTLED: f64 = 1e-4;
+const SETTLED_COARSE: f64 = 1e-2;
 /// Steps tried from one place, each more damped.
 const MOST_TRIES: usize = 8;
 /// The damping at the start of a level, and the least.
@@ -90,30 +91,27 @@ pub struct Fitted {
 
 /// Fits a mesh. `tell` is called after each iteration, and says whether to go on.
 ///
-/// Where the result cannot be relied on, and the mesh was neither turned and moved as a whole first
-/// nor begins with moves, it is fitted again after that.
+/// A mesh that is not to be turned and moved as a whole, and does not begin with moves, still is
+/// where that brings it much nearer, or where the result cannot be relied on otherwise.
 ///
 /// # Errors
 /// If the implicit surface cannot be made.
 pub fn fit(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
-    let options = problem.options;
+    let (points, options) = (&problem.observations.points, problem.options);
+    let (positions, triangles) = (&problem.positions, &problem.triangles);
     if options.align {
-        return fit_from(problem, whole(problem), tell);
+        return fit_from(problem, align(positions, triangles, points), tell);
     }
-    let fitted = fit_from(problem, Rigid::IDENTITY, tell)?;
-    let is_moved = problem.start.iter().any(|way| *way != DVec3::ZERO);
-    if fitted.failure.is_none() || !options.saturates || is_moved {
+    if !options.saturates || problem.start.iter().any(|way| *way != DVec3::ZERO) {
+        return fit_from(problem, Rigid::IDENTITY, tell);
+    }
+    let fitted = fit_from(problem, nudge(positions, triangles, points), tell)?;
+    if fitted.failure.is_none() || points.is_empty() {
         return Ok(fitted);
     }
-    let again = fit_from(problem, whole(problem), tell)?;
+    let again = fit_from(problem, align(positions, triangles, points), tell)?;
     let is_better = again.failure.is_none() && !again.stopped;
     Ok(if is_better { again } else { fitted })
-}
-
-/// The motion of the whole mesh onto the points.
-fn whole(problem: &Problem) -> Rigid {
-    let points = &problem.observations.points;
-    align(&problem.positions, &problem.triangles, points)
 }
 
 /// Fits a mesh that is turned and moved as a whole first.
@@ -148,8 +146,11 @@ fn fit_from(problem: &Problem, rigid: Rigid, tell: &mut Tell<'_>) -> Result<Fitt
 /// Listener that is told the state after each iteration, and says whether to go on.
 type Tell<'a> = dyn FnMut(&Progress) -> bool + 'a;
 
-/// An observation for one iteration: a place, and its class.
+/// An observation for one iteration: a place, and its class: points, outlines, or [`LEFT_OUT`].
 type Place = (DVec3, usize);
+
+/// Class of the points that are passed over.
+const LEFT_OUT: usize = 2;
 
 struct Run<'a> {
     problem: &'a Problem,
@@ -159,6 +160,8 @@ struct Run<'a> {
     kind: Kind,
     /// Height of the surface's outer sheet over each vertex.
     heights: Vec<f64>,
+    /// Whether each observation is passed over; none where this is empty.
+    left_out: Vec<bool>,
     /// How far observations are moved along the normals of their facets, in heights.
     shift: f64,
     /// How far over the facets the observations are to lie, in heights.
@@ -176,8 +179,10 @@ struct Run<'a> {
     scale: f64,
     damping: f64,
     iteration: usize,
-    /// Weights of points and outlines.
-    weights: [f64; 2],
+    /// Whether there were too few iterations.
+    is_cut: bool,
+    /// Weights of points, outlines and what is left out.
+    weights: [f64; 3],
     /// Weight of the smoothness.
     smooth: f64,
 }
@@ -192,6 +197,7 @@ impl<'a> Run<'a> {
             options,
             kind: Kind::Explicit,
             heights: Vec::new(),
+            left_out: Vec::new(),
             shift: 0.0,
             rise: 0.0,
             stiffness: problem.stiffness(),
@@ -205,7 +211,8 @@ impl<'a> Run<'a> {
             scale: f64::INFINITY,
             damping: DAMPING,
             iteration: 0,
-            weights: [1.0; 2],
+            is_cut: false,
+            weights: [1.0, 1.0, 0.0],
             smooth: 0.0,
         }
     }
@@ -227,12 +234,25 @@ impl<'a> Run<'a> {
             return Ok(true);
         }
         self.heights = self.heights()?;
+        let distances = self.apart()?;
+        let mut sorted = distances.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let spread = spread(&sorted);
+        let left_out = distances.iter().map(|d| *d > NARROW * spread).collect();
         if kind == Kind::Spherical {
+            self.left_out = left_out;
             return self.stage(kind, 1.0, NARROW, tell);
         }
         self.rise = 1.0;
-        Ok(self.stage(Kind::Explicit, -1.0, NARROW, tell)?
-            && self.stage(kind, 0.0, NARROW, tell)?)
+        // A thin shell is on the points with both its sheets.
+        if self.heights.iter().any(|height| *height > spread) {
+            self.left_out = left_out;
+            if !self.stage(Kind::Explicit, -1.0, NARROW, tell)? {
+                return Ok(false);
+            }
+            self.left_out.clear();
+        }
+        self.stage(kind, 0.0, NARROW, tell)
     }
 
     /// Fits one surface, coarse to fine. Returns whether to go on.
@@ -250,17 +270,17 @@ impl<'a> Run<'a> {
             .size()
             .length();
         self.scale = (spreads * spread(&start)).clamp(1e-9 * size, size);
-        for _ in 0..MOST_LEVELS {
+        for level in 0..MOST_LEVELS {
             let least = (NARROW * spread(&self.distances()?)).max(1e-9 * size);
-            let is_last = !self.options.saturates || self.scale <= least * 1.01;
-            if !self.level(if is_last { PER_LEVEL } else { PER_COARSE_LEVEL }, tell)? {
+            let is_coarse = level == 0 || self.scale > 1.01 * least;
+            if !self.level(is_coarse, tell)? {
                 return Ok(false);
             }
-            if is_last {
+            let least = (NARROW * spread(&self.distances()?)).max(1e-9 * size);
+            if !self.options.saturates || (!is_coarse && self.scale <= 1.01 * least) {
                 break;
             }
-            let least = NARROW * spread(&self.distances()?);
-            self.scale = (0.5 * self.scale).max(least.max(1e-9 * size));
+            self.scale = (0.5 * self.scale).max(least).min(self.scale);
         }
         // A surface that leads away from where the facets were is left.
         if spreads == NARROW && mean_of_half(&self.distances()?) > 1.1 * mean_of_half(&start) {
@@ -303,7 +323,10 @@ impl<'a> Run<'a> {
                 }
             }
         }
-        Ok(sums.iter().map(|(sum, count)| sum / f64::max(*count, 1.0)).collect())
+        Ok(sums
+            .iter()
+            .map(|(sum, count)| sum / f64::max(*count, 1.0))
+            .collect())
     }
 
     /// The height over a facet at the place nearest to a point.
@@ -319,7 +342,11 @@ impl<'a> Run<'a> {
     /// The places of the observations: where lines of sight should touch the surface is found anew.
     fn places(&self, field: &Field<'_>, shift: f64) -> Result<Vec<Place>, Error> {
         let observations = &self.problem.observations;
-        let mut places: Vec<Place> = observations.points.iter().map(|p| (*p, 0)).collect();
+        let left_out = self.left_out.iter().chain(core::iter::repeat(&false));
+        let points = observations.points.iter().zip(left_out);
+        let mut places: Vec<Place> = points
+            .map(|(p, out)| (*p, if *out { LEFT_OUT } else { 0 }))
+            .collect();
         if self.options.outlines > 0.0 && !observations.sights.is_empty() {
             let corners = (0..self.problem.triangles.len() as u32).map(|i| field.corners(i));
             let boxes: Vec<Aabb> = corners.map(Aabb::of_points).collect();
@@ -421,6 +448,12 @@ impl<'a> Run<'a> {
                 100.0 * share
             )));
         }
+        if self.is_cut {
+            return Ok(Some(format!(
+                "it has not settled within {} iterations",
+                self.options.iterations
+            )));
+        }
         let noise = noise(&self.problem.observations.points);
         let limit = if noise.is_finite() {
             (ROUGHLY * noise).max(0.01 * size)
@@ -429,9 +462,9 @@ impl<'a> Run<'a> {
         };
         if spread > limit {
             return Ok(Some(format!(
-                "the measurements are {spread:.3e} away from the surface, {:.1} % of the mesh's \
-                 size, and less from each other's: the start may be too far off, the control \
-                 points too few, or too many measurements wrong",
+                "the nearer measurements are {spread:.3e} away from the surface, {:.1} % of the \
+                 mesh's size, and {noise:.3e} from planes through their neighbours: the start may \
+                 be too far off, the control points too few, or too many measurements wrong",
                 100.0 * spread / size
             )));
         }
@@ -462,16 +495,17 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Iterates with one scale. Returns whether to go on.
-    fn level(&mut self, most: usize, tell: &mut Tell<'_>) -> Result<bool, Error> {
+    /// Iterates with one scale, the last one or one on the way. Returns whether to go on.
+    fn level(&mut self, is_coarse: bool, tell: &mut Tell<'_>) -> Result<bool, Error> {
         self.damping = DAMPING;
-        let most = if self.options.saturates {
-            most
-        } else {
-            self.options.iterations
+        let (most, settled) = match (self.options.saturates, is_coarse) {
+            (false, _) => (self.options.iterations, SETTLED),
+            (true, false) => (PER_LEVEL, SETTLED),
+            (true, true) => (PER_COARSE_LEVEL, SETTLED_COARSE),
         };
         for turn in 0..most {
             if self.iteration >= self.options.iterations {
+                self.is_cut = self.options.saturates;
                 return Ok(true);
             }
             let field = self.field(&self.positions, self.kind)?;
@@ -480,12 +514,12 @@ impl<'a> Run<'a> {
                 (self.weights, self.smooth) = self.balance(&field, &places);
             }
             let (normal, before) = self.equations(&field, &places);
-            let settled = self.step(&normal, before, &places)?;
+            let decrease = self.step(&normal, before, &places)?;
             self.iteration += 1;
             if !tell(&self.progress()?) {
                 return Ok(false);
             }
-            if settled {
+            if decrease <= settled * before {
                 break;
             }
         }
@@ -494,10 +528,13 @@ impl<'a> Run<'a> {
 
     /// Weights that make the classes, and the smoothness, count as the options say: by the sums of
     /// the squares of their derivatives.
-    fn balance(&self, field: &Field<'_>, places: &[Place]) -> ([f64; 2], f64) {
-        let mut sums = [0.0; 2];
+    fn balance(&self, field: &Field<'_>, places: &[Place]) -> ([f64; 3], f64) {
+        let mut sums = [0.0; 3];
         let mut row = Row::new(self.moves.len());
         for (i, (place, class)) in places.iter().enumerate() {
+            if *class == LEFT_OUT {
+                continue;
+            }
             if let Some((_, factor)) = self.residual(field, i, *place, &mut row) {
                 let square: f64 = row
                     .entries
@@ -507,11 +544,11 @@ impl<'a> Run<'a> {
                 sums[*class] += factor * factor * square;
             }
         }
-        let [points, outlines] = sums;
+        let [points, outlines, _] = sums;
         let weights = if points > 0.0 && outlines > 0.0 {
-            [1.0, self.options.outlines * points / outlines]
+            [1.0, self.options.outlines * points / outlines, 0.0]
         } else {
-            [1.0; 2]
+            [1.0, 1.0, 0.0]
         };
         let all = weights[0] * points + weights[1] * outlines;
         let diagonal = self.stiffness.iter().filter(|(i, j, _)| i == j);
@@ -557,6 +594,9 @@ impl<'a> Run<'a> {
         let mut sum = 0.0;
         for (i, (place, class)) in places.iter().enumerate() {
             let weight = self.weights[*class];
+            if weight == 0.0 {
+                continue;
+            }
             let Some((residual, factor)) = self.residual(field, i, *place, &mut row) else {
                 sum += 0.5 * weight * self.scale * self.scale;
                 continue;
@@ -613,11 +653,12 @@ impl<'a> Run<'a> {
         ))
     }
 
-    /// Moves the controls to where the sum is less. Returns whether it has settled.
+    /// Moves the controls to where the sum is less. Returns by how much, 0 if there is no such
+    /// place.
     ///
     /// The damping falls by how well the equations foretold the new sum, and grows twice as quickly
     /// with each failure (Nielsen 1999).
-    fn step(&mut self, normal: &Normal, before: f64, places: &[Place]) -> Result<bool, Error> {
+    fn step(&mut self, normal: &Normal, before: f64, places: &[Place]) -> Result<f64, Error> {
         let mut growth = 2.0;
         for _ in 0..MOST_TRIES {
             if let Some(way) = normal.solve(self.damping) {
@@ -639,13 +680,13 @@ impl<'a> Run<'a> {
                     let miss = 2.0 * (before - after) / foretold - 1.0;
                     let fall = (1.0 - miss.powi(3)).clamp(0.1, 2.0);
                     self.damping = (self.damping * fall).max(LEAST_DAMPING);
-                    return Ok(before - after <= SETTLED * before);
+                    return Ok(before - after);
                 }
             }
             self.damping *= growth;
             growth *= 2.0;
         }
-        Ok(true)
+        Ok(0.0)
     }
 }
 
@@ -688,7 +729,9 @@ impl Row {
 
 /// Whether no two triangles pass an edge in the same direction.
 fn face_alike(triangles: &[[u32; 3]]) -> bool {
-    let ways = triangles.iter().flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let ways = triangles
+        .iter()
+        .flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]);
     let mut ways: Vec<_> = ways.collect();
     ways.sort_unstable();
     ways.windows(2).all(|pair| pair[0] != pair[1])

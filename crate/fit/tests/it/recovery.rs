@@ -55,7 +55,7 @@ fn forty_percent_of_outliers_a_gap_and_a_turned_start_are_borne() {
     for model in [shapes::ball(0.2), shapes::hand(0.08), shapes::vase(0.12)] {
         let trial = measure(&model, UNEVEN).turned(&motion(&model));
         assert!(trial.start(&model)[0] > 10.0);
-        // Without being asked to the fit turns the mesh, as it would fail otherwise.
+        // The fit turns the mesh without being asked to, as that brings it much nearer.
         let (fitted, found) = run(&trial, &model, SHELLS, POINTS);
         assert!(found.mesh < 1.5, "{found:?}");
         assert_eq!(fitted.failure, None);
@@ -77,7 +77,10 @@ fn thick_shells_have_their_own_surface_on_the_points() {
         let trial = measure(&model, disturbance);
         for thickness in [2.0 * NOISE, 8.0 * NOISE] {
             let (_, found) = run(&trial, &model, Kind::Triangular { thickness }, POINTS);
-            assert!(found.surface < 1.5 && !found.failed, "{thickness} {found:?}");
+            assert!(
+                found.surface < 1.5 && !found.failed,
+                "{thickness} {found:?}"
+            );
             assert!(found.mesh > thickness / NOISE, "{found:?}");
         }
     }
@@ -105,8 +108,14 @@ fn outlines_alone_suffice() {
 #[test]
 fn failed_fits_say_so_and_keep_the_best() {
     let model = shapes::ball(0.2);
-    for (outliers, said) in [(0.65, "are left out"), (0.97, "of the mesh's size")] {
-        let trial = measure(&model, Disturbance { outliers, ..UNEVEN });
+    for (outliers, said) in [(0.6, "are left out"), (0.97, "of the mesh's size")] {
+        let disturbance = Disturbance {
+            outliers,
+            uneven: 0.0,
+            gap: 0.0,
+            ..UNEVEN
+        };
+        let trial = measure(&model, disturbance);
         let (fitted, found) = run(&trial, &model, SHELLS, POINTS);
         assert!(found.failed);
         let failure = fitted.failure.unwrap();
