@@ -52,8 +52,8 @@ pub struct Fit {
     /// Weight of the outlines beside the points
     #[arg(long, default_value_t = 1.0, value_name = "W")]
     outlines: f64,
-    /// First turn and move the whole mesh onto the points, however far; without it this is done
-    /// where it brings the mesh much nearer, or the fit fails
+    /// First turn and move the whole mesh onto the points; without it this is tried where the fit
+    /// fails
     #[arg(long)]
     align: bool,
     /// Most iterations

@@ -47,7 +47,7 @@ impl Numbers {
 pub struct Disturbance {
     /// Standard deviation of each coordinate.
     pub noise: f64,
-    /// How much the noise differs from place to place, 0 … 1: it grows along x from
+    /// Unevenness of the noise, 0 … 1: it grows along x from
     /// `(1 − uneven)·noise` to `(1 + uneven)·noise`.
     pub uneven: f64,
     /// Share of the points, 0 … 1, that become outliers: anywhere in a box of twice the size.

@@ -38,8 +38,8 @@ pub struct Options {
     /// Whether distances count no more beyond the scale of the fit; otherwise squares of distances
     /// are summed, as if there were no outliers.
     pub saturates: bool,
-    /// Whether the mesh is first turned and moved as a whole, however far; if not, it still is where
-    /// that brings it much nearer, or the fit fails otherwise.
+    /// Whether the mesh is first turned and moved as a whole; if not, it still is where the fit
+    /// fails otherwise.
     pub align: bool,
     /// Most iterations in all.
     pub iterations: usize,

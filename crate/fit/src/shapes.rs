@@ -31,13 +31,16 @@ pub fn hand(cell: f64) -> TriangleMesh {
             let root = DVec3::new(x, 0.0, 0.1);
             value = blend(
                 value,
-                along(p, root, DVec3::new(1.9 * x, -0.08, height)) - 0.1,
+                distance_from(p, root, DVec3::new(1.9 * x, -0.08, height)) - 0.1,
             );
         }
         let thumb = [DVec3::new(0.35, 0.0, -0.35), DVec3::new(0.9, -0.1, 0.05)];
-        value = blend(value, along(p, thumb[0], thumb[1]) - 0.11);
+        value = blend(value, distance_from(p, thumb[0], thumb[1]) - 0.11);
         let wrist = DVec3::new(0.0, 0.0, -0.6);
-        blend(value, along(p, wrist, wrist - 0.3 * DVec3::Z) - 0.24)
+        blend(
+            value,
+            distance_from(p, wrist, wrist - 0.3 * DVec3::Z) - 0.24,
+        )
     })
 }
 
@@ -55,14 +58,14 @@ pub fn vase(cell: f64) -> TriangleMesh {
     })
 }
 
-/// The distance from a segment.
-fn along(p: DVec3, from: DVec3, to: DVec3) -> f64 {
+/// Returns the distance of a point from a segment.
+fn distance_from(p: DVec3, from: DVec3, to: DVec3) -> f64 {
     let way = to - from;
     let t = ((p - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
     p.distance(from + way * t)
 }
 
-/// The lesser of two values, rounded where they are alike.
+/// Returns the lesser of two values, rounded where they are alike.
 fn blend(a: f64, b: f64) -> f64 {
     const WIDTH: f64 = 0.06;
     let share = (WIDTH - (a - b).abs()).max(0.0) / WIDTH;

@@ -12,7 +12,7 @@
 //! higher over large ones: it is the mesh that is to be on the points there, and the sheet above it
 //! is fitted to points that are moved outwards by its mean height.
 
-use crate::align::{Rigid, align, nudge};
+use crate::align::{Rigid, align};
 use crate::deformation::Deformation;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
@@ -31,6 +31,8 @@ const PER_COARSE_LEVEL: usize = 5;
 /// s in spreads of the distances: at the start, and at the least.
 const WIDE: f64 = 5.0;
 const NARROW: f64 = 3.0;
+/// The least s, in diagonals of the mesh's box.
+const LEAST_SCALE: f64 = 3e-4;
 /// Most levels.
 const MOST_LEVELS: usize = 16;
 /// Relative decrease of the sum below which a level is done, the last one or one on the way.
@@ -85,14 +87,14 @@ pub struct Fitted {
     /// Numbers of the points that were left out: further than three times the residual from the
     /// surface.
     pub left_out: Vec<u32>,
-    /// Why the result cannot be relied on, a sentence; `None` if it can.
+    /// Reason why the result cannot be relied on, a sentence; `None` if it can.
     pub failure: Option<String>,
 }
 
 /// Fits a mesh. `tell` is called after each iteration, and says whether to go on.
 ///
-/// A mesh that is not to be turned and moved as a whole, and does not begin with moves, still is
-/// where that brings it much nearer, or where the result cannot be relied on otherwise.
+/// Where the result cannot be relied on, and the mesh neither was turned and moved as a whole nor
+/// began with moves, it is fitted again after that.
 ///
 /// # Errors
 /// If the implicit surface cannot be made.
@@ -102,11 +104,9 @@ pub fn fit(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
     if options.align {
         return fit_from(problem, align(positions, triangles, points), tell);
     }
-    if !options.saturates || problem.start.iter().any(|way| *way != DVec3::ZERO) {
-        return fit_from(problem, Rigid::IDENTITY, tell);
-    }
-    let fitted = fit_from(problem, nudge(positions, triangles, points), tell)?;
-    if fitted.failure.is_none() || points.is_empty() {
+    let fitted = fit_from(problem, Rigid::IDENTITY, tell)?;
+    let begins_moved = problem.start.iter().any(|way| *way != DVec3::ZERO);
+    if fitted.failure.is_none() || !options.saturates || begins_moved || points.is_empty() {
         return Ok(fitted);
     }
     let again = fit_from(problem, align(positions, triangles, points), tell)?;
@@ -162,9 +162,9 @@ struct Run<'a> {
     heights: Vec<f64>,
     /// Whether each observation is passed over; none where this is empty.
     left_out: Vec<bool>,
-    /// How far observations are moved along the normals of their facets, in heights.
+    /// Shift of observations along the normals of their facets, in heights.
     shift: f64,
-    /// How far over the facets the observations are to lie, in heights.
+    /// Height over the facets at which the observations are to lie, in heights.
     rise: f64,
     stiffness: Vec<(u32, u32, f64)>,
     moves: Vec<DVec3>,
@@ -269,14 +269,14 @@ impl<'a> Run<'a> {
         let size = Aabb::of_points(self.positions.iter().copied())
             .size()
             .length();
-        self.scale = (spreads * spread(&start)).clamp(1e-9 * size, size);
+        self.scale = (spreads * spread(&start)).clamp(LEAST_SCALE * size, size);
         for level in 0..MOST_LEVELS {
-            let least = (NARROW * spread(&self.distances()?)).max(1e-9 * size);
+            let least = (NARROW * spread(&self.distances()?)).max(LEAST_SCALE * size);
             let is_coarse = level == 0 || self.scale > 1.01 * least;
             if !self.level(is_coarse, tell)? {
                 return Ok(false);
             }
-            let least = (NARROW * spread(&self.distances()?)).max(1e-9 * size);
+            let least = (NARROW * spread(&self.distances()?)).max(LEAST_SCALE * size);
             if !self.options.saturates || (!is_coarse && self.scale <= 1.01 * least) {
                 break;
             }
@@ -329,7 +329,7 @@ impl<'a> Run<'a> {
             .collect())
     }
 
-    /// The height over a facet at the place nearest to a point.
+    /// Returns the height over a facet at the place nearest to a point.
     fn height(&self, field: &Field<'_>, facet: u32, point: DVec3) -> f64 {
         let weights = nearest(&field.corners(facet), point).weights;
         let corners = self.problem.triangles[facet as usize].into_iter();
@@ -448,7 +448,7 @@ impl<'a> Run<'a> {
                 100.0 * share
             )));
         }
-        if self.is_cut {
+        if self.is_cut && spread > 1e-3 * size {
             return Ok(Some(format!(
                 "it has not settled within {} iterations",
                 self.options.iterations

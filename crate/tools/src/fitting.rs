@@ -41,7 +41,7 @@ pub struct FitStep {
     pub outliers: f64,
     /// Numbers of the points that were left out, once the fit has ended.
     pub left_out: Vec<u32>,
-    /// Why the result cannot be relied on, if it cannot.
+    /// Reason why the result cannot be relied on, if it cannot.
     pub failure: Option<String>,
     /// The lines of a scene's text that deform the mesh like this.
     pub text: String,
