@@ -53,7 +53,7 @@ pub struct Fit {
     #[arg(long, default_value_t = 1.0, value_name = "W")]
     outlines: f64,
     /// First turn and move the whole mesh onto the points; without it this is tried where the fit
-    /// fails
+    /// fails, or comes much nearer so
     #[arg(long)]
     align: bool,
     /// Most iterations

@@ -115,6 +115,24 @@ pub(crate) fn align(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3
     best.map_or(Rigid::IDENTITY, |(_, rigid)| rigid.inverse())
 }
 
+/// Returns how to turn and move a mesh onto points that are near it: iterated closest points from
+/// where it is. No motion where that brings half of the points less than twice as near.
+pub(crate) fn nudge(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3]) -> Rigid {
+    if points.len() < 4 {
+        return Rigid::IDENTITY;
+    }
+    let step = points.len().div_ceil(POINTS);
+    let points: Vec<DVec3> = points.iter().step_by(step).copied().collect();
+    let target = Target::new(positions, triangles);
+    let (_, before) = target.pairs(&points, &Rigid::IDENTITY);
+    let (after, rigid) = target.iterate(&points, Rigid::IDENTITY, 60);
+    if after < 0.5 * before {
+        rigid.inverse()
+    } else {
+        Rigid::IDENTITY
+    }
+}
+
 /// The median of each coordinate.
 fn median(points: &[DVec3]) -> DVec3 {
     DVec3::from_array([0, 1, 2].map(|axis| {

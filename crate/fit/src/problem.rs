@@ -39,7 +39,7 @@ pub struct Options {
     /// are summed, as if there were no outliers.
     pub saturates: bool,
     /// Whether the mesh is first turned and moved as a whole; if not, it still is where the fit
-    /// fails otherwise.
+    /// fails otherwise, or comes much nearer so.
     pub align: bool,
     /// Most iterations in all.
     pub iterations: usize,

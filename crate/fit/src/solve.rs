@@ -12,7 +12,7 @@
 //! higher over large ones: it is the mesh that is to be on the points there, and the sheet above it
 //! is fitted to points that are moved outwards by its mean height.
 
-use crate::align::{Rigid, align};
+use crate::align::{Rigid, align, nudge};
 use crate::deformation::Deformation;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
@@ -93,8 +93,9 @@ pub struct Fitted {
 
 /// Fits a mesh. `tell` is called after each iteration, and says whether to go on.
 ///
-/// Where the result cannot be relied on, and the mesh neither was turned and moved as a whole nor
-/// began with moves, it is fitted again after that.
+/// A mesh that is not to be turned and moved as a whole is fitted again after that, where its
+/// result cannot be relied on, or where it is twice as near the points by that alone; the better
+/// result counts.
 ///
 /// # Errors
 /// If the implicit surface cannot be made.
@@ -106,11 +107,23 @@ pub fn fit(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
     }
     let fitted = fit_from(problem, Rigid::IDENTITY, tell)?;
     let begins_moved = problem.start.iter().any(|way| *way != DVec3::ZERO);
-    if fitted.failure.is_none() || !options.saturates || begins_moved || points.is_empty() {
+    let size = Aabb::of_points(positions.iter().copied()).size().length();
+    let has_failed = fitted.failure.is_some();
+    let is_near = !has_failed && fitted.last.residual < 1e-3 * size;
+    if fitted.stopped || !options.saturates || begins_moved || is_near {
         return Ok(fitted);
     }
-    let again = fit_from(problem, align(positions, triangles, points), tell)?;
-    let is_better = again.failure.is_none() && !again.stopped;
+    let rigid = if has_failed {
+        align(positions, triangles, points)
+    } else {
+        nudge(positions, triangles, points)
+    };
+    if rigid == Rigid::IDENTITY {
+        return Ok(fitted);
+    }
+    let again = fit_from(problem, rigid, tell)?;
+    let is_nearer = has_failed || again.last.residual < 0.8 * fitted.last.residual;
+    let is_better = again.failure.is_none() && !again.stopped && is_nearer;
     Ok(if is_better { again } else { fitted })
 }
 

@@ -55,7 +55,7 @@ fn forty_percent_of_outliers_a_gap_and_a_turned_start_are_borne() {
     for model in [shapes::ball(0.2), shapes::hand(0.08), shapes::vase(0.12)] {
         let trial = measure(&model, UNEVEN).turned(&motion(&model));
         assert!(trial.start(&model)[0] > 10.0);
-        // The fit turns the mesh without being asked to where it would fail otherwise.
+        // The fit turns the mesh without being asked to, as it comes much nearer so.
         let (fitted, found) = run(&trial, &model, SHELLS, POINTS);
         assert!(found.mesh < 1.5, "{found:?}");
         assert_eq!(fitted.failure, None);
