@@ -2,8 +2,8 @@
 //!
 //! Each subcommand is a module of its own; without one the program takes the options of RATS.
 //! Results go to the standard output, everything said to a person goes to the standard error, and
-//! the exit status is 0 when all went well, 1 when the dataset has errors or a fit failed, and 2 when
-//! the command could not be carried out at all.
+//! the exit status is 0 when all went well, 1 when the dataset has errors or a fit failed, and 2
+//! when the command could not be carried out at all.
 
 mod animate;
 mod check;

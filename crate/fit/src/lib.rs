@@ -4,8 +4,8 @@
 //!   points that lie anywhere; [`Deformation`] moves the vertices of a mesh with them: Dirichlet
 //!   free-form deformation, after Moccozet and Magnenat-Thalmann.
 //! - [`fit()`] finds the moves of control points that bring a mesh, or the implicit surface around
-//!   it, onto [`Observations`]: points, and lines of sight that graze it. After Ilić and Fua. Nearly
-//!   half of the points may be wrong; a fit that fails says why ([`Fitted::failure`]).
+//!   it, onto [`Observations`]: points, and lines of sight that graze it. After Ilić and Fua.
+//!   Nearly half of the points may be wrong; a fit that fails says why ([`Fitted::failure`]).
 //! - [`cloud()`] and [`outlines()`] read those from files; [`Disturbance`] makes measurements of
 //!   perfect ones; [`trial`] has a head to try all this on, [`shapes`] has others.
 //!

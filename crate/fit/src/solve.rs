@@ -302,8 +302,8 @@ impl<'a> Run<'a> {
         Ok(true)
     }
 
-    /// Returns the mean height of the surface's outer sheet over the facets around each vertex; 0 if
-    /// they do not agree on what is outside.
+    /// Returns the mean height of the surface's outer sheet over the facets around each vertex; 0
+    /// if they do not agree on what is outside.
     fn heights(&self) -> Result<Vec<f64>, Error> {
         let facets = &self.problem.triangles;
         if !face_alike(facets) {
