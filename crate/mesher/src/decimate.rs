@@ -49,13 +49,13 @@ const ROUNDS: usize = 3;
 /// Sine of the angles below which a vertex is moved.
 const NARROW: f64 = 0.45;
 
-/// How a mesh is decimated.
+/// A mesh that is being decimated.
 pub struct Decimation<'a> {
     space: &'a Space<'a>,
     raw: &'a Raw,
     threads: usize,
     tolerance: f64,
-    /// For each fine vertex the share of the tolerance that it is given; 0 keeps it.
+    /// Share of the tolerance that each fine vertex is given; 0 keeps it.
     shares: &'a [f64],
     mesh: HalfEdgeMesh,
     normals: Vec<DVec3>,
@@ -65,7 +65,7 @@ pub struct Decimation<'a> {
     is_lid: Vec<bool>,
     /// Vertices that are not where they were in the fine mesh.
     is_moved: Vec<bool>,
-    /// For each face the fine vertices that it stands for.
+    /// Fine vertices that each face stands for.
     kept: Vec<Vec<u32>>,
     quadrics: Vec<Quadric>,
     /// Number of the edit that is next; for each vertex that of the last one around it; and when
@@ -80,7 +80,7 @@ pub struct Decimation<'a> {
 pub struct Decimated {
     /// The mesh, with normals.
     pub mesh: TriangleMesh,
-    /// For each vertex the number that it has in the fine mesh.
+    /// Number of each vertex in the fine mesh.
     pub sources: Vec<u32>,
 }
 
@@ -129,7 +129,9 @@ impl<'a> Decimation<'a> {
                 (is_fixed[i], is_lid[i]) = (true, false);
             }
         }
-        let quadric = |i: usize| Quadric::new(raw.vertices[i].position, normals[i], areas[i]);
+        let quadrics = raw.vertices.iter().zip(&normals).zip(&areas);
+        let quadrics = quadrics.map(|((v, normal), area)| Quadric::new(v.position, *normal, *area));
+        let quadrics = quadrics.collect();
         Ok(Self {
             space,
             raw,
@@ -137,7 +139,7 @@ impl<'a> Decimation<'a> {
             is_moved: vec![false; count],
             tolerance,
             shares,
-            quadrics: (0..count).map(quadric).collect(),
+            quadrics,
             now: 1,
             changed: vec![0; count],
             refused: vec![(0, 0); count],
@@ -417,15 +419,7 @@ impl<'a> Decimation<'a> {
     /// Moves vertices with narrow triangles to the middle of their neighbours, on the surface.
     fn relax(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
         let mesh = &self.mesh;
-        let is_narrow = |v: &VertexId| {
-            let i = v.index();
-            let is_free = !self.is_fixed[i] && !self.is_lid[i] && self.shares[i] > 0.0;
-            is_free
-                && mesh
-                    .vertex_faces(*v)
-                    .any(|f| sine(self.positions(self.corners(f))) < NARROW)
-        };
-        let narrow: Vec<VertexId> = mesh.vertices().filter(is_narrow).collect();
+        let narrow: Vec<VertexId> = mesh.vertices().filter(|v| self.is_narrow(*v)).collect();
         let goals = narrow.iter().map(|v| {
             let (mut sum, mut count) = (DVec3::ZERO, 0.0);
             for n in mesh.neighbors(*v) {
@@ -436,13 +430,7 @@ impl<'a> Decimation<'a> {
             own + (way - normal * way.dot(normal))
         });
         let goals: Vec<DVec3> = goals.collect();
-        let part = |place: DVec3| {
-            self.space.part_for(Ball {
-                center: place,
-                radius: 0.0,
-            })
-        };
-        let mut goals: Vec<(u32, DVec3)> = goals.into_iter().map(|p| (part(p), p)).collect();
+        let mut goals: Vec<(u32, DVec3)> = goals.into_iter().map(|p| (self.part(p), p)).collect();
         let (mut jets, limit) = (Vec::new(), 4.0 * self.tolerance);
         for step in 0..3 {
             jets = self
@@ -452,7 +440,7 @@ impl<'a> Decimation<'a> {
                 let vertex = Vertex::new(*place, jet);
                 let way = vertex.gradient * (-vertex.value / vertex.gradient.length_squared());
                 let next = *place + way.clamp_length_max(limit);
-                *number = part(next);
+                *number = self.part(next);
                 *place = next;
             }
         }
@@ -466,22 +454,43 @@ impl<'a> Decimation<'a> {
         Ok(())
     }
 
+    /// Whether a vertex may move and has a narrow triangle.
+    fn is_narrow(&self, v: VertexId) -> bool {
+        let i = v.index();
+        let is_free = !self.is_fixed[i] && !self.is_lid[i] && self.shares[i] > 0.0;
+        let mut faces = self.mesh.vertex_faces(v);
+        is_free && faces.any(|f| sine(self.positions(self.corners(f))) < NARROW)
+    }
+
+    /// The part of the function that serves at a place.
+    fn part(&self, place: DVec3) -> u32 {
+        self.space.part_for(Ball {
+            center: place,
+            radius: 0.0,
+        })
+    }
+
     /// Moves a vertex if that makes better triangles which are as near to the surface.
     fn move_one(&mut self, v: VertexId, to: &Vertex) -> Option<()> {
         let mesh = &self.mesh;
         let faces: Vec<FaceId> = mesh.vertex_faces(v).collect();
         let corners: Vec<[VertexId; 3]> = faces.iter().map(|f| self.corners(*f)).collect();
-        let place = |w: VertexId| {
-            if w == v {
-                to.position
-            } else {
-                mesh.position(w)
-            }
-        };
-        let triangles: Vec<[DVec3; 3]> = corners.iter().map(|t| t.map(place)).collect();
-        let worst = |sines: &mut dyn Iterator<Item = f64>| sines.fold(1.0, f64::min);
-        let before = worst(&mut corners.iter().map(|t| sine(self.positions(*t))));
-        let after = worst(&mut triangles.iter().map(|t| sine(*t)));
+        let new = corners.iter().map(|t| {
+            t.map(|w| Corner {
+                number: w.0,
+                position: if w == v {
+                    to.position
+                } else {
+                    mesh.position(w)
+                },
+            })
+        });
+        let new: Vec<[Corner; 3]> = new.collect();
+        let triangles = new.iter().map(|t| t.map(|corner| corner.position));
+        let triangles: Vec<[DVec3; 3]> = triangles.collect();
+        let before = corners.iter().map(|t| sine(self.positions(*t)));
+        let before = before.fold(1.0, f64::min);
+        let after = triangles.iter().map(|t| sine(*t)).fold(1.0, f64::min);
         if after <= 1.02 * before {
             return None;
         }
@@ -496,20 +505,13 @@ impl<'a> Decimation<'a> {
             return None;
         }
         let is_guarded = self.is_guarded_around(v);
-        if is_guarded {
-            let corner = |w: VertexId| Corner {
-                number: w.0,
-                position: place(w),
-            };
-            let new: Vec<[Corner; 3]> = corners.iter().map(|t| t.map(corner)).collect();
-            if !self.guard.is_free(mesh, &new, &faces) {
-                return None;
-            }
+        if is_guarded && !self.guard.is_free(mesh, &new, &faces) {
+            return None;
         }
         self.normals[v.index()] = to.normal();
         self.mesh.set_position(v, to.position).ok()?;
         let is_sound = corners.iter().zip(&triangles).all(|(t, [a, b, c])| {
-            let area = (*b - *a).cross(*c - *a);
+            let area = area(&[*a, *b, *c]);
             area != DVec3::ZERO && self.faces_out(*t, area)
         });
         let is_sound = is_sound && self.mesh.neighbors(v).all(|n| self.is_low(v, n));
@@ -557,14 +559,13 @@ impl<'a> Decimation<'a> {
         let new = [[s, r, p], [r, s, q]];
         let old = [[p, q, r], [q, p, s]].map(|t| self.positions(t));
         let triangles = new.map(|t| self.positions(t));
-        let worst = |pair: [[DVec3; 3]; 2]| sine(pair[0]).min(sine(pair[1]));
-        if worst(triangles) < 1.1 * worst(old) || !self.is_low(r, s) {
+        let [after, before] = [triangles, old].map(|[t, u]| sine(t).min(sine(u)));
+        if after < 1.1 * before || !self.is_low(r, s) {
             return None;
         }
-        let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
-        let was = area(old[0]).normalize_or_zero() + area(old[1]).normalize_or_zero();
+        let was = area(&old[0]).normalize_or_zero() + area(&old[1]).normalize_or_zero();
         for (corners, triangle) in new.iter().zip(&triangles) {
-            let own = area(*triangle);
+            let own = area(triangle);
             let is_turned = own.dot(was) <= TURN * own.length() * was.length();
             if is_turned || !self.faces_out(*corners, own) {
                 return None;
@@ -606,6 +607,11 @@ impl<'a> Decimation<'a> {
     }
 }
 
+/// Twice the area of a triangle, along its normal.
+fn area([a, b, c]: &[DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
 /// The triangles around a vertex, and those that take their place when it is merged into another
 /// one.
 #[derive(Default)]
@@ -613,7 +619,7 @@ struct Fan {
     /// The faces that stay, with their new corners.
     faces: Vec<FaceId>,
     triangles: Vec<[DVec3; 3]>,
-    /// The two that go.
+    /// Faces that go.
     beside: Vec<FaceId>,
     /// The fine vertices that all of them stand for, and for each the nearest new triangle.
     places: Vec<u32>,

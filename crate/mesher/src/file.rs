@@ -8,8 +8,8 @@
 
 use crate::certify::{Vertex, at, project_exactly};
 use crate::decimate::{Decimated, Decimation};
-use crate::forest::{Forest, NONE};
-use crate::grow::{FINEST, LEVELS, grow};
+use crate::forest::{Forest, NONE, Side};
+use crate::grow::{FINEST, HIDING, LEVELS, grow};
 use crate::lattice::Lattice;
 use crate::march::{Raw, march};
 use crate::measure::{Measured, along_ray, root_of, spread};
@@ -24,8 +24,8 @@ use mesh::{Aabb, Bvh, TriangleMesh, closest_point, self_intersections};
 
 /// Attempts to decimate a fine mesh.
 const ATTEMPTS: usize = 4;
-/// Where the work on each of the fine meshes begins, as a share of the progress.
-const FINE_MESHES: [f32; 3] = [0.0, 0.7, 0.9];
+/// Shares of the progress at which the work on each of the fine meshes begins.
+const FINE_MESHES: [f32; 3] = [0.3, 0.7, 0.9];
 /// Share of the tolerance that is left to a place in the next attempt.
 const LESS: f64 = 0.4;
 /// Shares below which a vertex is kept.
@@ -70,23 +70,50 @@ pub fn approximate(
     }
     let size = domain.size().max_element();
     let tolerance = tolerance.min(LARGEST * size);
-    let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
-    let mut space = Space::new(function, forest, tolerance / size);
     let most = max_triangles.saturating_mul(2).max(LEAST_CELLS);
-    let mut lattice = Lattice::default();
+    let mut grown = None;
+    for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
+        let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
+        let mut space = Space::new(function, forest, tolerance / size);
+        let mut lattice = Lattice::default();
+        let sizes = [tolerance, hiding];
+        let mut progress = progress.part(start, start + 0.1).in_phase(Phase::Cells);
+        match grow(
+            &mut space,
+            &mut lattice,
+            sizes,
+            most,
+            threads,
+            &mut progress,
+        ) {
+            Err(MeshError::TooMany { .. }) => {}
+            result => {
+                result?;
+                grown = Some((space, lattice, sizes));
+                break;
+            }
+        }
+    }
+    let (mut space, mut lattice, sizes) = grown.ok_or_else(too_rough)?;
+    if crossing(&space.forest).is_empty() {
+        let mut cells = space.forest.cells.iter();
+        let is_inside = cells.any(|cell| cell.child == NONE && cell.side == Side::Inside);
+        return Err(if is_inside {
+            MeshError::AllInside
+        } else {
+            MeshError::Nothing
+        });
+    }
     for (i, start) in FINE_MESHES.into_iter().enumerate() {
         let end = FINE_MESHES.get(i + 1).copied().unwrap_or(1.0);
         let mut progress = progress.part(start, end);
-        let mut cells = progress.part(0.0, 0.5).in_phase(Phase::Cells);
-        grow(
-            &mut space,
-            &mut lattice,
-            tolerance,
-            most,
-            threads,
-            &mut cells,
-        )
-        .map_err(too_rough)?;
+        if i > 0 {
+            let progress = &mut progress.part(0.0, 0.5).in_phase(Phase::Cells);
+            match grow(&mut space, &mut lattice, sizes, most, threads, progress) {
+                Err(MeshError::TooMany { .. }) => break,
+                result => result?,
+            }
+        }
         let mut progress = progress.part(0.5, 1.0).in_phase(Phase::Triangles);
         progress.at(0.0)?;
         let raw = march(&space, &lattice, Some(tolerance), threads, &mut progress)?;
@@ -100,7 +127,7 @@ pub fn approximate(
             tolerance,
             threads,
         };
-        match fine.coarsened(&mut progress)? {
+        match fine.coarsen(&mut progress)? {
             Ok((mesh, measured)) => {
                 if mesh.triangles.len() > max_triangles {
                     return Err(MeshError::TooMany {
@@ -128,17 +155,12 @@ pub fn approximate(
             Err(places) => refine(&mut space, &places),
         }
     }
-    Err(too_rough(MeshError::Failed(String::new())))
+    Err(too_rough())
 }
 
 /// Why no mesh of a measured error was made.
-fn too_rough(error: MeshError) -> MeshError {
-    match error {
-        MeshError::TooMany { .. } | MeshError::Failed(_) => MeshError::Failed(
-            "the surface is too rough for a mesh whose error is only measured".into(),
-        ),
-        other => other,
-    }
+fn too_rough() -> MeshError {
+    MeshError::Failed("the surface is too rough for a mesh whose error is only measured".into())
 }
 
 /// Splits the leaves at some places.
@@ -157,6 +179,14 @@ fn refine(space: &mut Space<'_>, places: &[DVec3]) {
     }
 }
 
+/// A cube by its centre and half its side.
+fn cube(center: DVec3, half: f64) -> Aabb {
+    Aabb {
+        min: center - half,
+        max: center + half,
+    }
+}
+
 /// A fine mesh that is to become a coarser one.
 struct Fine<'a> {
     space: &'a Space<'a>,
@@ -166,7 +196,7 @@ struct Fine<'a> {
     threads: usize,
 }
 
-/// What a measurement found.
+/// Result of a measurement.
 struct Found {
     measured: Measured,
     /// Places that are too far, and how far around them the mesh is to blame.
@@ -176,7 +206,7 @@ struct Found {
 impl Fine<'_> {
     /// A coarser mesh with its measured error, which is within the tolerance; or the places where
     /// the fine mesh itself is too far from the surface.
-    fn coarsened(
+    fn coarsen(
         &self,
         progress: &mut Progress<'_>,
     ) -> Result<Result<(TriangleMesh, Measured), Vec<DVec3>>, MeshError> {
@@ -189,12 +219,6 @@ impl Fine<'_> {
             .iter()
             .map(|v| Aabb::of_points([v.position]));
         let points = Bvh::new(&points.collect::<Vec<Aabb>>());
-        let around = |place: DVec3, reach: f64| {
-            points.overlapping(&Aabb {
-                min: place - reach,
-                max: place + reach,
-            })
-        };
         let mut left = Vec::new();
         for attempt in 0..ATTEMPTS {
             let [start, end] = [0, 1].map(|i| (attempt + i) as f32 / ATTEMPTS as f32);
@@ -217,7 +241,7 @@ impl Fine<'_> {
                     let corners = mesh.corners(*i as usize);
                     let bounds = Aabb::of_points(corners);
                     let reach = 0.5 * bounds.size().max_element();
-                    for i in around(bounds.center(), reach) {
+                    for i in points.overlapping(&cube(bounds.center(), reach)) {
                         is_guarded[i as usize] = true;
                     }
                     for corner in mesh.triangles[*i as usize] {
@@ -234,7 +258,7 @@ impl Fine<'_> {
                 return Ok(Ok((mesh, measured)));
             }
             for (place, reach) in &far {
-                for i in around(*place, *reach) {
+                for i in points.overlapping(&cube(*place, *reach)) {
                     let share = &mut shares[i as usize];
                     *share = if *share * LESS < KEPT {
                         0.0
@@ -283,14 +307,9 @@ impl Fine<'_> {
 
         // From the surface.
         let bvh = Bvh::new(&mesh.triangle_boxes());
-        let is_on = |v: &&Vertex| v.value.abs() <= 0.1 * tolerance * v.gradient.length();
-        let mut places: Vec<DVec3> = self
-            .raw
-            .vertices
-            .iter()
-            .filter(is_on)
-            .map(|v| v.position)
-            .collect();
+        let vertices = self.raw.vertices.iter();
+        let on = vertices.filter(|v| v.value.abs() <= 0.1 * tolerance * v.gradient.length());
+        let mut places: Vec<DVec3> = on.map(|v| v.position).collect();
         let fine = (0..self.raw.triangles.len()).filter(|i| !self.raw.is_lid[*i]);
         let fine = spread(fine.collect(), PLACES);
         let others = map_by(LARGE, threads, &fine, progress, |i| {
@@ -303,8 +322,9 @@ impl Fine<'_> {
         })?;
         places.extend(others.into_iter().flatten());
         let back = map_told(threads, &places, progress, |p| {
-            let square = |i: u32| closest_point(&mesh.corners(i as usize), *p).distance_squared(*p);
-            root_of(bvh.nearest(*p, f64::INFINITY, square))
+            root_of(bvh.nearest(*p, f64::INFINITY, |i| {
+                closest_point(&mesh.corners(i as usize), *p).distance_squared(*p)
+            }))
         })?;
         measured.add(1, &back);
         let missed = places.iter().zip(&back).filter(|(_, d)| **d > tolerance);
@@ -329,10 +349,9 @@ impl Fine<'_> {
             let place = a * u + b * v + c * w;
             (place, self.distance(place, normal))
         });
-        let worst = |one: (DVec3, f64), other: (DVec3, f64)| {
-            if other.1 <= one.1 { one } else { other }
-        };
-        samples.into_iter().reduce(worst)
+        samples
+            .into_iter()
+            .reduce(|one, other| if other.1 <= one.1 { one } else { other })
     }
 
     /// The distance of a point from the surface; infinite if it is more than the tolerance.

@@ -15,9 +15,10 @@ use crate::space::Space;
 use field::{Jet, Part, THRESHOLD};
 use glam::DVec3;
 
-/// Cells are small enough to hide nothing if the second derivative's bound times the square of
-/// their size is at most so many thresholds.
-const HIDING: f64 = 6.0;
+/// Cells are taken to hide nothing if the second derivative's bound times the square of their size
+/// is at most so many thresholds: first the least, then more where that asks for too many cells, as
+/// where bounds are far from the truth.
+pub const HIDING: [f64; 3] = [6.0, 60.0, 600.0];
 /// Largest height of the surface's arc between centre and corner of a cell, in tolerances.
 const SAG: f64 = 0.7;
 /// Least cosine of the angle between the normals at the centre and at a corner.
@@ -29,7 +30,7 @@ pub const LEVELS: u32 = 6;
 /// Cells that are looked at between two reports.
 const BATCH: usize = 20_000;
 
-/// What was found in a cell.
+/// Result of a look at a cell.
 struct Look {
     side: Side,
     split: bool,
@@ -37,36 +38,26 @@ struct Look {
 }
 
 /// Looks at a cell; `is_crossed` if the surface is known to be in it.
-fn look(space: &Space<'_>, cell: &Cell, tolerance: f64, is_crossed: bool) -> Look {
+fn look(space: &Space<'_>, cell: &Cell, [tolerance, hiding]: [f64; 2], is_crossed: bool) -> Look {
     let forest = &space.forest;
     let (center, size) = (forest.center(cell), forest.size(cell.level));
     let longest = size.max_element();
-    let known = |side| Look {
-        side,
-        split: false,
-        part: None,
-    };
     let variation = around(space, cell.part, center, size);
     let off = error(space, cell.part, size);
     let sure = side(coarse_range(&variation, off));
     if !is_crossed && sure != Side::Crossing && variation.jump == 0.0 {
-        return known(sure);
+        return Look::leaf(sure);
     }
     let jet = space.jet(cell.part, center);
     let sure = side(fine_range(&variation, &jet, size, off));
     if !is_crossed && sure != Side::Crossing {
-        return known(sure);
+        return Look::leaf(sure);
     }
     // Not so for NaN.
-    let hides_nothing = variation.curvature * longest * longest <= HIDING * THRESHOLD;
+    let hides_nothing = variation.curvature * longest * longest <= hiding * THRESHOLD;
     let is_last = cell.level >= forest.deepest;
-    let crossing = |split: bool| Look {
-        side: Side::Crossing,
-        split,
-        part: if split { space.narrow(cell) } else { None },
-    };
     if !hides_nothing && !is_last {
-        return crossing(true);
+        return Look::split(space, cell);
     }
     let Seen {
         is_near,
@@ -74,14 +65,36 @@ fn look(space: &Space<'_>, cell: &Cell, tolerance: f64, is_crossed: bool) -> Loo
         cosine,
     } = Seen::new(space, cell, &jet, tolerance);
     if !is_near && !is_crossed {
-        return known(if jet.value > THRESHOLD {
+        return Look::leaf(if jet.value > THRESHOLD {
             Side::Inside
         } else {
             Side::Outside
         });
     }
     let is_fine = sag <= SAG * tolerance && cosine >= EVEN;
-    crossing(!is_fine && cell.level < forest.usual)
+    if is_fine || cell.level >= forest.usual {
+        Look::leaf(Side::Crossing)
+    } else {
+        Look::split(space, cell)
+    }
+}
+
+impl Look {
+    fn leaf(side: Side) -> Self {
+        Self {
+            side,
+            split: false,
+            part: None,
+        }
+    }
+
+    fn split(space: &Space<'_>, cell: &Cell) -> Self {
+        Self {
+            side: Side::Crossing,
+            split: true,
+            part: space.narrow(cell),
+        }
+    }
 }
 
 /// The surface in a cell by samples.
@@ -99,8 +112,8 @@ impl Seen {
         let forest = &space.forest;
         let (center, half) = (forest.center(cell), 0.5 * forest.size(cell.level));
         let ways: [DVec3; 8] = core::array::from_fn(|i| {
-            let sign = |bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
-            DVec3::new(sign(1), sign(2), sign(4)) * half
+            let signs = [1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 });
+            DVec3::from_array(signs) * half
         });
         let jets = space.jets(cell.part, &ways.map(|way| center + way), tolerance);
         let own = middle.value - THRESHOLD;
@@ -132,19 +145,19 @@ impl Seen {
     }
 }
 
-/// How many times as far the function may be from its interpolant in a cell as along the edges from
+/// Largest distance of the function from its interpolant in a cell, over that along the edges from
 /// its centre.
 const BEND: f64 = 3.0;
 
-/// Divides the cells that are not known yet, and follows the surface through them. The lattice gets
-/// the values at the vertices of all cells that it crosses.
+/// Divides the cells that are not known yet, for a tolerance and one of [`HIDING`], and follows the
+/// surface through them. The lattice gets the values at the vertices of all cells that it crosses.
 ///
 /// # Errors
 /// If there are more cells than `most`, or if the caller cancels.
 pub fn grow(
     space: &mut Space<'_>,
     lattice: &mut Lattice,
-    tolerance: f64,
+    [tolerance, hiding]: [f64; 2],
     most: usize,
     threads: usize,
     progress: &mut Progress<'_>,
@@ -152,12 +165,12 @@ pub fn grow(
     let mut left = Vec::new();
     let mut fraction = 0.0;
     loop {
-        divide(space, &left, tolerance, most, threads, progress)?;
+        divide(space, &left, [tolerance, hiding], most, threads, progress)?;
         fraction += 0.3 * (1.0 - fraction);
         progress.at(fraction)?;
         let cells = crossing(&space.forest);
         lattice.extend(space, &cells, false, tolerance, threads, progress)?;
-        left = followed(space, lattice, &cells, threads, progress)?;
+        left = follow(space, lattice, &cells, threads, progress)?;
         if left.is_empty() {
             return Ok(());
         }
@@ -169,7 +182,7 @@ pub fn grow(
 fn divide(
     space: &mut Space<'_>,
     crossed: &[u32],
-    tolerance: f64,
+    sizes: [f64; 2],
     most: usize,
     threads: usize,
     progress: &mut Progress<'_>,
@@ -185,7 +198,7 @@ fn divide(
                 .map(|i| space.forest.cells[*i as usize])
                 .collect();
             let looks = map_told(threads, &leaves, progress, |cell| {
-                look(space, cell, tolerance, is_crossed)
+                look(space, cell, sizes, is_crossed)
             })?;
             for (node, look) in batch.iter().zip(looks) {
                 if space.forest.cells[*node as usize].child != NONE {
@@ -212,11 +225,9 @@ fn divide(
         }
         is_crossed = false;
         let cells = &space.forest.cells;
-        let is_open = |i: &u32| {
-            let cell = &cells[*i as usize];
-            cell.child == NONE && cell.side == Side::Unknown
-        };
-        open = (fresh..cells.len() as u32).filter(is_open).collect();
+        let all = (fresh..cells.len() as u32).zip(&cells[fresh as usize..]);
+        let new = all.filter(|(_, cell)| cell.child == NONE && cell.side == Side::Unknown);
+        open = new.map(|(i, _)| i).collect();
         fresh = cells.len() as u32;
         if open.is_empty() {
             return Ok(());
@@ -225,7 +236,7 @@ fn divide(
 }
 
 /// The cells beside some that the surface crosses, which it crosses too, but are not known to be.
-fn followed(
+fn follow(
     space: &Space<'_>,
     lattice: &Lattice,
     cells: &[u32],
@@ -235,11 +246,16 @@ fn followed(
     let found = map_told(threads, cells, progress, |node| {
         let mut found = Vec::new();
         tetrahedra(&space.forest, *node, &mut |keys, owners| {
-            let is_new = |i: &u32| space.forest.cells[*i as usize].side != Side::Crossing;
-            if owners.iter().any(is_new) {
+            let cells = owners.map(|i| (i, space.forest.cells[i as usize].side));
+            let new = cells
+                .into_iter()
+                .filter(|(_, side)| *side != Side::Crossing);
+            let before = found.len();
+            found.extend(new.map(|(i, _)| i));
+            if found.len() > before {
                 let inside = keys.map(|key| lattice.value(lattice.index(key)) > 0.0);
-                if inside.contains(&true) && inside.contains(&false) {
-                    found.extend(owners.into_iter().filter(is_new));
+                if !inside.contains(&true) || !inside.contains(&false) {
+                    found.truncate(before);
                 }
             }
         });

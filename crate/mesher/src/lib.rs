@@ -1,5 +1,5 @@
-//! Closed triangle meshes of implicit surfaces and scenes: for files, with an error that is measured,
-//! or within a proven tolerance, which takes about ten times as long.
+//! Closed triangle meshes of implicit surfaces and scenes: for files, with an error that is
+//! measured, or within a proven tolerance, which takes about ten times as long.
 //!
 //! ```
 //! use core::ops::ControlFlow;
@@ -47,7 +47,7 @@
 //!   `certify.rs` proves what can be proved of them;
 //! - `measure.rs` measures distances by samples;
 //! - `surface.rs` does all that for one function ([`polygonize`]),
-//!   `model.rs` either for a scene ([`mesh_scene`]) with the help of `solids.rs` (hard shapes), `level.rs`
+//!   `model.rs` for a scene ([`mesh_scene`]) with the help of `solids.rs` (hard shapes), `level.rs`
 //!   (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
 //!
 //! Limits of the proofs: that a triangle is near the surface is not always proved at kinks

@@ -48,6 +48,11 @@ fn place(a: u32, b: u32) -> Place {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
 }
 
+/// The ends of the edge of a place.
+fn ends(place: Place) -> [u32; 2] {
+    [(place >> 32) as u32, place as u32]
+}
+
 /// The triangles of the level set in a tetrahedron: none, one or two, outward for a positive one.
 fn in_tetrahedron(corners: [u32; 4], inside: [bool; 4], mut each: impl FnMut([Place; 3])) {
     let count = inside.iter().filter(|i| **i).count();
@@ -187,12 +192,11 @@ pub fn march(
         };
         forest.position(unpack(key))
     };
-    let ends = |place: &Place| [(place >> 32) as u32, *place as u32];
     let found = match tolerance {
         None => vec![None; places.len()],
         Some(tolerance) => {
             let edges = places.iter().map(|place| {
-                let [a, b] = ends(place);
+                let [a, b] = ends(*place);
                 (a != b).then(|| Edge::new(lattice, [a, b], [at(a), at(b)]))
             });
             Edge::roots(edges.collect(), space, tolerance, threads, progress)?
@@ -203,7 +207,7 @@ pub fn march(
         if let Some(vertex) = found {
             return *vertex;
         }
-        let [a, b] = ends(place);
+        let [a, b] = ends(*place);
         if a == b {
             return Vertex::new(at(a), &space.jet_at(at(a)));
         }
@@ -234,7 +238,7 @@ struct Edge {
     /// Values at its ends, less the threshold, and their changes along it.
     values: [f64; 2],
     slopes: [f64; 2],
-    /// Where the surface is, as a share of the way.
+    /// Share of the way at which the surface is.
     share: f64,
 }
 

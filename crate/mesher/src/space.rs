@@ -126,13 +126,12 @@ impl<'a> Space<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<Vec<Jet<f64>>, MeshError> {
         let mut order: Vec<u32> = (0..places.len() as u32).collect();
-        let part = |i: u32| places[i as usize].0;
-        order.sort_by_key(|i| part(*i));
-        let same = order.chunk_by(|i, j| part(*i) == part(*j));
+        order.sort_by_key(|i| places[*i as usize].0);
+        let same = order.chunk_by(|i, j| places[*i as usize].0 == places[*j as usize].0);
         let eights: Vec<&[u32]> = same.flat_map(|same| same.chunks(8)).collect();
         let found = map_told(threads, &eights, progress, |eight| {
             let points = core::array::from_fn(|k| places[eight[k.min(eight.len() - 1)] as usize].1);
-            self.jets(part(eight[0]), &points, tolerance)
+            self.jets(places[eight[0] as usize].0, &points, tolerance)
         })?;
         let mut jets = vec![Jet::zero(); places.len()];
         for (eight, found) in eights.iter().zip(found) {

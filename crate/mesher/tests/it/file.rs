@@ -3,7 +3,7 @@
 use crate::judges::{Distances, assert_embedded, assert_manifold, crossings, of_mesh, on_surface};
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
 use glam::DVec3;
-use mesh::Topology;
+use mesh::{Aabb, Topology};
 use mesher::{MeshError, Options, Progress, SurfaceMesh, approximate, box_of};
 use std::ops::ControlFlow;
 use trials::{Random, count};
@@ -33,10 +33,40 @@ fn tail(kernel: Kernel) -> Sum {
     parts.into_iter().collect()
 }
 
-fn meshed(sum: &Sum, options: &Options) -> Result<SurfaceMesh, MeshError> {
-    let domain = box_of(sum.support().expect("it is no plane"));
-    let mut report = |_| ControlFlow::Continue(());
-    approximate(sum, &domain, options, &mut Progress::new(&mut report))
+fn build(sum: &Sum, options: &Options) -> Result<SurfaceMesh, MeshError> {
+    build_in(
+        sum,
+        &box_of(sum.support().expect("it is no plane")),
+        options,
+    )
+}
+
+fn build_in(sum: &Sum, domain: &Aabb, options: &Options) -> Result<SurfaceMesh, MeshError> {
+    build_for(sum, domain, options, usize::MAX).0
+}
+
+/// The mesh, unless it is cancelled after so many steps, and how many there were.
+fn build_for(
+    sum: &Sum,
+    domain: &Aabb,
+    options: &Options,
+    steps: usize,
+) -> (Result<SurfaceMesh, MeshError>, usize) {
+    let mut step = 0;
+    let result = approximate(
+        sum,
+        domain,
+        options,
+        &mut Progress::new(&mut |_| {
+            step += 1;
+            if step > steps {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        }),
+    );
+    (result, step)
 }
 
 #[test]
@@ -46,7 +76,7 @@ fn thin_tail_is_unbroken_at_any_tolerance() {
         let sum = tail(kernel);
         for tolerance in [0.1, 0.03, 0.005] {
             let name = format!("{kernel:?} {tolerance}");
-            let surface = meshed(&sum, &Options::new(tolerance)).unwrap();
+            let surface = build(&sum, &Options::new(tolerance)).unwrap();
             let mesh = &surface.mesh;
             assert_manifold(&name, mesh);
             assert_embedded(&name, mesh);
@@ -83,8 +113,8 @@ fn thin_tail_is_unbroken_at_any_tolerance() {
 fn threads_change_no_bit() {
     let sum = tail(Kernel::Cauchy);
     let options = Options::new(0.03);
-    let one = meshed(&sum, &options).unwrap();
-    let three = meshed(
+    let one = build(&sum, &options).unwrap();
+    let three = build(
         &sum,
         &Options {
             threads: 3,
@@ -102,9 +132,7 @@ fn what_the_box_cuts_off_is_closed() {
     let mut domain = box_of(sum.support().unwrap());
     domain.min.x = 0.5;
     domain.max.y = 0.7;
-    let mut report = |_| ControlFlow::Continue(());
-    let progress = &mut Progress::new(&mut report);
-    let surface = approximate(&sum, &domain, &Options::new(0.02), progress).unwrap();
+    let surface = build_in(&sum, &domain, &Options::new(0.02)).unwrap();
     assert!(surface.is_cut);
     assert_manifold("cut", &surface.mesh);
     assert_embedded("cut", &surface.mesh);
@@ -117,30 +145,11 @@ fn what_the_box_cuts_off_is_closed() {
 fn a_break_cancels_at_any_step() {
     let sum = tail(Kernel::Gauss);
     let domain = box_of(sum.support().unwrap());
-    let mut steps = 0;
-    let mut report = |_| {
-        steps += 1;
-        ControlFlow::Continue(())
-    };
-    approximate(
-        &sum,
-        &domain,
-        &Options::new(0.1),
-        &mut Progress::new(&mut report),
-    )
-    .unwrap();
+    let options = Options::new(0.1);
+    let (_, steps) = build_for(&sum, &domain, &options, usize::MAX);
     assert!(steps > 10);
     for last in (0..steps).step_by(1 + steps / count(8)) {
-        let mut step = 0;
-        let mut report = |_| {
-            step += 1;
-            match step > last {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
-        };
-        let progress = &mut Progress::new(&mut report);
-        let result = approximate(&sum, &domain, &Options::new(0.1), progress);
+        let (result, _) = build_for(&sum, &domain, &options, last);
         assert_eq!(result.unwrap_err(), MeshError::Cancelled);
     }
 }
@@ -153,11 +162,11 @@ fn limits_hold() {
         ..Options::new(0.01)
     };
     assert!(matches!(
-        meshed(&sum, &options),
+        build(&sum, &options),
         Err(MeshError::TooMany { limit: 100, fitting: Some(fitting) }) if fitting > 0.01
     ));
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let result = meshed(&sum, &Options::new(tolerance));
+        let result = build(&sum, &Options::new(tolerance));
         assert!(matches!(result, Err(MeshError::NotFinite(_))));
     }
 }

@@ -85,7 +85,11 @@ fn mesh_with(scene: &Scene, relative: f64, care: Care) -> Result<Model, MeshErro
         .map(|(phase, s)| format!("{} {s:.1} s", phase.name()));
     let begun = begun.collect::<Vec<String>>().join(", ");
     match &result {
-        Ok(model) => println!("  {} evaluations; {begun}", model.evaluations),
+        Ok(model) => println!(
+            "  {} evaluations; {begun}; {}",
+            model.evaluations,
+            model.notes.join("; ")
+        ),
         Err(why) => println!("  {why}; {begun}"),
     }
     result
