@@ -6,7 +6,7 @@
 //! or is too far from the surface it is decimated once more with more care, at last with finer
 //! cells.
 
-use crate::certify::{Vertex, at, project_exactly};
+use crate::certify::{at, project_exactly};
 use crate::decimate::{Decimated, Decimation};
 use crate::forest::{Forest, NONE, Side};
 use crate::grow::{FINEST, HIDING, LEVELS, grow};
