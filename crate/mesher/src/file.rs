@@ -18,7 +18,7 @@ use crate::parallel::{LARGE, map_by, map_told};
 use crate::refine::crossing;
 use crate::space::Space;
 use crate::surface::{LARGEST, LEAST_CELLS, MOST_CROSSINGS, SurfaceMesh, check};
-use field::Implicit;
+use field::{Implicit, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, Bvh, TriangleMesh, closest_point, self_intersections};
 
@@ -120,6 +120,9 @@ pub fn approximate(
         if raw.triangles.is_empty() {
             return Err(MeshError::Nothing);
         }
+        if is_flat(&raw, tolerance) {
+            break;
+        }
         let fine = Fine {
             space: &space,
             raw: &raw,
@@ -161,6 +164,18 @@ pub fn approximate(
 /// Why no mesh of a measured error was made.
 fn too_rough() -> MeshError {
     MeshError::Failed("the surface is too rough for a mesh whose error is only measured".into())
+}
+
+/// Change of the function over the tolerance, in thresholds, below which it is flat.
+const FLAT: f64 = 1e-10;
+
+/// Whether the function is flat at many places where it is the threshold, as where bodies lie on
+/// each other: then its signs are those of roundings.
+fn is_flat(raw: &Raw, tolerance: f64) -> bool {
+    let steep = raw.vertices.iter();
+    // Not so for NaN.
+    let steep = steep.filter(|v| v.gradient.length() * tolerance >= FLAT * THRESHOLD);
+    20 * steep.count() < 19 * raw.vertices.len()
 }
 
 /// Splits the leaves at some places.

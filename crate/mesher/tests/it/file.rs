@@ -4,7 +4,9 @@ use crate::judges::{Distances, assert_embedded, assert_manifold, crossings, of_m
 use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
 use glam::DVec3;
 use mesh::{Aabb, Topology};
-use mesher::{MeshError, Options, Progress, SurfaceMesh, approximate, box_of};
+use mesher::{
+    MeshError, Options, Progress, SurfaceMesh, Tolerance, Wishes, approximate, box_of, mesh_scene,
+};
 use std::ops::ControlFlow;
 use trials::{Random, count};
 
@@ -169,4 +171,32 @@ fn limits_hold() {
         let result = build(&sum, &Options::new(tolerance));
         assert!(matches!(result, Err(MeshError::NotFinite(_))));
     }
+}
+
+#[test]
+fn bodies_on_each_other_end_with_words() {
+    let ball = "sphere s 1 0 0 0\n";
+    let text = format!(
+        "surface s diffuse White blob -2\nbody A\n{ball}close\nbody B\n{ball}close\ncontact A B\n"
+    );
+    let project = rats::Project {
+        files: vec![rats::File {
+            name: "same.rat".into(),
+            text,
+        }],
+    };
+    let scene = rats::compile_at(&project, &[], 0.0).scene;
+    assert_eq!(scene.surfaces().len(), 2);
+    let wishes = Wishes {
+        tolerance: Tolerance::Relative(1e-2),
+        prove: false,
+        ..Wishes::default()
+    };
+    let progress = &mut |_| ControlFlow::Continue(());
+    let result = mesh_scene(&scene, &wishes, &mut Progress::new(progress));
+    // As the one takes away what the other has, nothing is left of either.
+    assert!(
+        matches!(result, Err(MeshError::Nothing | MeshError::Flat { .. })),
+        "{result:?}"
+    );
 }
