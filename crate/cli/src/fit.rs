@@ -53,11 +53,12 @@ pub struct Fit {
     /// Weight of the outlines beside the points
     #[arg(long, default_value_t = 1.0, value_name = "W")]
     outlines: f64,
-    /// First turn and move the whole mesh onto the points
+    /// First turn and move the whole mesh onto the points; without it this is tried where the fit
+    /// fails, or comes much nearer so
     #[arg(long)]
     align: bool,
     /// Most iterations
-    #[arg(long, default_value_t = 60, value_name = "N")]
+    #[arg(long, default_value_t = 100, value_name = "N")]
     iterations: usize,
     /// The files to write
     #[arg(short, long, required = true, value_name = "OUT", help = format!(
@@ -154,6 +155,8 @@ impl Fit {
                 "iterations": fitted.last.iteration,
                 "residual": fitted.last.residual,
                 "outliers": fitted.last.outliers,
+                "left_out": fitted.left_out,
+                "failure": fitted.failure,
                 "turn": { "axis": axis.to_array(), "angle": angle },
                 "shift": fitted.rigid.shift.to_array(),
                 "moves": fitted.moves.iter().map(|m| m.to_array()).collect::<Vec<_>>(),
@@ -171,7 +174,10 @@ impl Fit {
                 100.0 * fitted.last.outliers
             );
         }
-        Ok(true)
+        if let Some(failure) = &fitted.failure {
+            eprintln!("the fit failed: {failure}; the best that was found is written all the same");
+        }
+        Ok(fitted.failure.is_none())
     }
 
     /// The dataset: a camera, the mesh, and the lines that deform it.

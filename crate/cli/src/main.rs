@@ -2,8 +2,8 @@
 //!
 //! Each subcommand is a module of its own; without one the program takes the options of RATS.
 //! Results go to the standard output, everything said to a person goes to the standard error, and
-//! the exit status is 0 when all went well, 1 when the dataset has errors, and 2 when the command
-//! could not be carried out at all.
+//! the exit status is 0 when all went well, 1 when the dataset has errors or a fit failed, and 2
+//! when the command could not be carried out at all.
 
 mod animate;
 mod check;
@@ -74,8 +74,8 @@ enum Command {
     Time(time::Time),
 }
 
-/// Result of a subcommand: `Ok(true)` all well, `Ok(false)` the dataset has errors, `Err` a
-/// sentence that says why it could not be carried out and what to do.
+/// Result of a subcommand: `Ok(true)` all well, `Ok(false)` the dataset has errors or a fit failed,
+/// `Err` a sentence that says why it could not be carried out and what to do.
 type Outcome = Result<bool, String>;
 
 fn main() -> ExitCode {

@@ -434,6 +434,19 @@ fn sums_are_as_exact_as_is_asked() {
         let off = (told.value - want.value).abs();
         assert!(off <= part.error()[0] + 1e-9);
         largest = largest.max(off);
+        let lanes = point.to_array().map(|x| wide::f32x8::splat(x as f32));
+        let eight = sum.jet8_of(&part, lanes);
+        for lane in [0, 7] {
+            let off = f64::from(eight.value.to_array()[lane]) - told.value;
+            assert!(off.abs() <= 1e-4, "{off}");
+            for (slope, eight) in told.gradient.iter().zip(eight.gradient) {
+                let off = f64::from(eight.to_array()[lane]) - slope;
+                assert!(
+                    off.abs() <= 1e-3 * (1.0 + DVec3::from_array(told.gradient).length()),
+                    "{off}"
+                );
+            }
+        }
         let bounds = sum.variation(Some(&part), ball).range;
         assert!(bounds.value[0] <= want.value && want.value <= bounds.value[1]);
         assert!(DVec3::from_array(want.gradient).length() <= bounds.slope);

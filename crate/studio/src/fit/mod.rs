@@ -304,6 +304,10 @@ fn progress(fitting: &Fitting, ui: &mut Ui) {
             last.residual,
             100.0 * last.outliers
         ));
+        let count = last.left_out.len();
+        if count > 0 {
+            words.push(format!("{count} points left out, drawn in orange"));
+        }
     } else if fitting.is_running() {
         words.push(String::from("Preparing"));
     }

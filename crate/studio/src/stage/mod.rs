@@ -65,8 +65,9 @@ pub struct Stage {
     pub pencil: Pencil,
     /// The file and byte of the editor's caret. The layout keeps it up to date.
     pub caret: Option<(usize, usize)>,
-    /// Measured points to draw over the picture. The layout keeps them up to date.
-    pub points: Vec<DVec3>,
+    /// Measured points to draw over the picture, and whether a fit left them out. The layout keeps
+    /// them up to date.
+    pub points: Vec<(DVec3, bool)>,
     /// The picture's place in device pixels.
     pub place: [f32; 2],
 }
@@ -273,11 +274,16 @@ fn rests(page: &Page) -> bool {
 }
 
 /// Draws measured points over the picture.
-fn points(points: &[DVec3], painter: &Painter, sight: &Sight, rect: Rect) {
-    for point in points {
+fn points(points: &[(DVec3, bool)], painter: &Painter, sight: &Sight, rect: Rect) {
+    for (point, left_out) in points {
         if let Some(at) = sight.screen(*point).filter(|at| rect.contains(*at)) {
             let square = Rect::from_center_size(at, Vec2::splat(2.2));
-            painter.rect_filled(square, 0.0, Color32::from_rgb(90, 200, 255));
+            let colour = if *left_out {
+                Color32::from_rgb(255, 150, 60)
+            } else {
+                Color32::from_rgb(90, 200, 255)
+            };
+            painter.rect_filled(square, 0.0, colour);
         }
     }
 }
