@@ -20,7 +20,7 @@ use glam::DVec3;
 /// where bounds are far from the truth.
 pub const HIDING: [f64; 3] = [6.0, 60.0, 600.0];
 /// Largest height of the surface's arc between centre and corner of a cell, in tolerances.
-const SAG: f64 = 0.7;
+const SAG: f64 = 0.3;
 /// Least cosine of the angle between the normals at the centre and at a corner.
 const EVEN: f64 = 0.6;
 /// Cells are not divided below so many tolerances where only normals ask for it, as at creases.
