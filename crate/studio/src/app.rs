@@ -362,7 +362,8 @@ impl App {
                 page.dialog = Some(Dialog::Help);
             }
             Wish::Close => {
-                if page.dialog.take().is_none() {
+                let closed = page.dialog.take();
+                if closed.is_none() {
                     page.notice = None;
                 }
             }

@@ -1,6 +1,6 @@
 //! Refined curves against the closed forms of their limits, and graphs of every shape.
 use glam::{DVec3, DVec4};
-use skeleton::{Error, MOST_CURVES, MOST_NODES, MOST_SEGMENTS, Node, Polyline, Scheme, Skeleton};
+use skeleton::{Error, MOST_CURVES, MOST_SEGMENTS, Node, Polyline, Scheme, Skeleton};
 use trials::{Random, count};
 
 const SCHEMES: [Scheme; 3] = [Scheme::Cubic, Scheme::Chaikin, Scheme::FourPoint];
