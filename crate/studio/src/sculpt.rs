@@ -336,7 +336,7 @@ fn mesh_model(page: &mut Page, now: f64) {
         // As large as the shapes to begin with.
         size: 2.0,
         union: true,
-        rig: false,
+        ..Order::default()
     };
     let (requests, of) = (page.parts.requests.clone(), page.work.number());
     let taker = Box::new(move |result| {

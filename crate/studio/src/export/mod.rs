@@ -329,6 +329,13 @@ impl MeshPanel {
             .checkbox(&mut self.export.order.union, "Join bodies that overlap")
             .on_hover_text("One shell instead of several that go through each other");
         places::note(ui.ctx(), "mesh union", union.rect);
+        let prove = ui
+            .checkbox(&mut self.export.order.prove, "Prove it")
+            .on_hover_text(
+                "Bounds of the field prove the distance from the surface and the topology, where \
+                that is possible. It takes about ten times as long",
+            );
+        places::note(ui.ctx(), "mesh prove", prove.rect);
         let scene = &session.compilation().scene;
         if self.export.order.format == Format::Glb && rig::has_skeleton(scene) {
             let title = if session.is_animated() {
@@ -421,7 +428,9 @@ fn lines(facts: &MeshFacts, growth: f64, written: &Written, film: Film) -> Vec<S
         places => format!(", except in {} places", thousands(places)),
     };
     let error = millimetres(facts.error * growth);
-    lines.push(format!("proved: at most {error} off{unsure}"));
+    if !facts.is_measured {
+        lines.push(format!("proved: at most {error} off{unsure}"));
+    }
     if facts.samples > 0 {
         lines.push(format!(
             "measured at {} points: at most {} off",
