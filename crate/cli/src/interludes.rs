@@ -1,5 +1,5 @@
-//! What a dataset asks of the program besides its pictures: to wait for a key, to keep a log, to
-//! tell the time.
+//! Requests of a dataset to the program besides its pictures: to wait for a key, to keep a log,
+//! to tell the time.
 
 use crate::classic::Said;
 use crate::tools;

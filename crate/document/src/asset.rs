@@ -60,7 +60,7 @@ pub fn is_skeleton(name: &str, bytes: &[u8]) -> bool {
                 .iter()
                 .any(|own| own.name == "edge" && own.count > 0)
         }),
-        // A molecule counts its atoms in its first line, and names an element in each of the others.
+        // A molecule counts its atoms in its first line, and names an element in each other one.
         "xyz" => {
             let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
             let mut lines = text.lines();

@@ -255,7 +255,7 @@ impl Fitting {
         let found = self.files.iter().filter_map(|file| file.found.as_ref());
         let all = found.flat_map(|found| found.points.iter().copied());
         let step = all.clone().count().div_ceil(MOST_POINTS).max(1);
-        let left_out = self.left_out();
+        let left_out = self.outliers();
         let numbered = all.zip(0..).step_by(step);
         numbered
             .map(|(point, i)| (point, left_out.binary_search(&i).is_ok()))
@@ -264,7 +264,7 @@ impl Fitting {
 
     /// The numbers of the points that the fit that has ended left out.
     #[must_use]
-    pub fn left_out(&self) -> &[u32] {
+    pub fn outliers(&self) -> &[u32] {
         self.last.as_ref().map_or(&[], |last| &last.left_out)
     }
 

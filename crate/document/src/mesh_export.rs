@@ -38,7 +38,8 @@ pub struct Order {
     pub size: f64,
     /// Whether bodies that overlap become one.
     pub union: bool,
-    /// Whether what can be proved of the mesh is; else its error is measured, in a tenth of the time.
+    /// Whether what can be proved of the mesh is; else its error is measured, in a tenth of the
+    /// time.
     pub prove: bool,
     /// Whether skeletons become joints, and their motion an animation: in GLB files.
     pub rig: bool,

@@ -643,9 +643,9 @@ impl Session {
         })
     }
 
-    /// Compiles the present text if it changed since the last call and all meshes and skeletons that
-    /// it names are read. Call it after the text was stored, so that no text is lost if the compiler
-    /// stops the program.
+    /// Compiles the present text if it changed since the last call and all meshes and skeletons
+    /// that it names are read. Call it after the text was stored, so that no text is lost if the
+    /// compiler stops the program.
     pub fn compile(&mut self) {
         let is_waiting =
             self.unread_meshes().next().is_some() || self.unread_skeletons().next().is_some();

@@ -172,7 +172,7 @@ fn survey() -> Result<Vec<Value>, fit::Error> {
                     DVec3::new(cosine, sine, 0.0),
                     DVec3::new(-sine, cosine, 0.0),
                 ];
-                trial = trial.turned(&Rigid {
+                trial = trial.turn(&Rigid {
                     turn: DMat3::from_cols(x, y, DVec3::Z),
                     shift: 0.1 * size * DVec3::new(2.0, -1.0, 2.0) / 3.0,
                 });

@@ -109,7 +109,7 @@ impl Trial {
 
     /// Returns the trial with all that was measured turned and moved, and the truth with it.
     #[must_use]
-    pub fn turned(mut self, rigid: &Rigid) -> Self {
+    pub fn turn(mut self, rigid: &Rigid) -> Self {
         for sight in &mut self.observations.sights {
             sight.origin = rigid.apply(sight.origin);
             sight.direction = rigid.turn * sight.direction;
@@ -160,12 +160,12 @@ impl Trial {
             saturates: way.saturates,
             ..Options::default()
         };
-        let observations = self.observed(true, way.outlines);
+        let observations = self.observe(true, way.outlines);
         Problem::new(model, &self.cage, observations, options)
     }
 
     /// The points, or the outlines, or both.
-    fn observed(&self, points: bool, outlines: bool) -> Observations {
+    fn observe(&self, points: bool, outlines: bool) -> Observations {
         let mut observations = self.observations.clone();
         if !points {
             observations.points.clear();
@@ -197,7 +197,7 @@ impl Trial {
         options: Options,
         [points, outlines]: [bool; 2],
     ) -> Result<(Fitted, Outcome), Error> {
-        let observations = self.observed(points, outlines);
+        let observations = self.observe(points, outlines);
         let problem = Problem::new(model, &self.cage, observations, options)?;
         let fitted = fit(&problem, &mut |_| true)?;
         let slope = options.slope.unwrap_or(20.0 / problem.mean_edge());

@@ -427,7 +427,7 @@ impl<'a> Run<'a> {
         Ok(distances)
     }
 
-    /// The same distances, the least first.
+    /// Returns the same distances, the least first.
     fn distances(&mut self) -> Result<Vec<f64>, Error> {
         let mut distances = self.apart()?.to_vec();
         distances.sort_by(f64::total_cmp);

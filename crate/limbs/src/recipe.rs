@@ -5,7 +5,7 @@ use crate::graph::Graph;
 use crate::read::{Reading, read};
 use serde::{Deserialize, Serialize};
 
-/// All that makes a skeleton of a file and takes long. What a text says besides, such as a scale,
+/// Steps that make a skeleton of a file and take long. What a text says besides, such as a scale,
 /// is done to the result. Whoever reads the same bytes by the same recipe gets the same graph.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {

@@ -27,7 +27,7 @@ const BEGINNINGS: [(&[u8], Format); 4] = [
 ];
 
 impl Format {
-    /// All formats.
+    /// Formats, each once.
     pub const ALL: [Self; 5] = [Self::Glb, Self::ThreeMf, Self::Stl, Self::Obj, Self::Ply];
     /// The endings of file names, for messages.
     pub const ENDINGS: &str = ".glb, .3mf, .stl, .obj, .ply";

@@ -17,9 +17,9 @@ const KEPT: usize = 24;
 
 /// A file that is no text: an image, a mesh or a skeleton. Links do not carry it.
 ///
-/// A mesh or a skeleton is read once, for all copies of the asset: by the asset itself, or elsewhere, as by a
-/// worker of the page, whose program has no readers. Two assets are equal if their names and
-/// contents are.
+/// A mesh or a skeleton is read once, for all copies of the asset: by the asset itself, or
+/// elsewhere, as by a worker of the page, whose program has no readers. Two assets are equal if
+/// their names and contents are.
 #[derive(Clone)]
 pub struct Asset {
     /// The name, by which commands find it.
@@ -60,7 +60,8 @@ impl Asset {
         }
     }
 
-    /// Makes an asset that awaits its mesh: it is read elsewhere, and given to [`Asset::keep_mesh`].
+    /// Makes an asset that awaits its mesh or skeleton: it is read elsewhere, and given to
+    /// [`Asset::keep_mesh`] or [`Asset::keep_skeleton`].
     ///
     /// ```
     /// let asset = rats::Asset::await_mesh("a.obj", *b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -87,8 +88,8 @@ impl Asset {
         self.reader.is_none() && is_mesh(&self.name) && self.read.mesh.get().is_none()
     }
 
-    /// Keeps the mesh that was read elsewhere, or the error message of its reader, for all copies of
-    /// the asset. It must be what [`mesh::read`] gives. The first one stays.
+    /// Keeps the mesh that was read elsewhere, or the error message of its reader, for all copies
+    /// of the asset. It must be what [`mesh::read`] gives. The first one stays.
     pub fn keep_mesh(&self, mesh: Result<TriangleMesh, String>) {
         let _ = self.read.mesh.set(mesh.map(Arc::new).map_err(Error));
     }

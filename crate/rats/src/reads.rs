@@ -67,7 +67,8 @@ pub fn is_mesh(name: &str) -> bool {
     mesh::Format::of_name(name).is_some()
 }
 
-/// Returns whether a name has the ending of a file that holds nothing but limbs, or limbs or points.
+/// Returns whether a name has the ending of a file that holds nothing but limbs, or limbs or
+/// points.
 #[must_use]
 pub fn is_skeleton(name: &str) -> bool {
     let (_, ending) = name.rsplit_once('.').unwrap_or_default();

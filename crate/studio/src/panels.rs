@@ -43,7 +43,7 @@ macro_rules! panels {
                 $(self.$name.forget(page, ctx);)+
             }
 
-            /// Has a wish carried out by its panel. Returns it if it belongs to none.
+            /// Lets the wish's panel carry it out. Returns it if it belongs to none.
             pub fn act(&mut self, wish: Wish, page: &mut Page, at: &Moment<'_>) -> Option<Wish> {
                 match wish {
                     $($(Wish::$group(wish) => self.$name.act(wish, page, at),)?)+

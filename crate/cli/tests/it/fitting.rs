@@ -190,7 +190,7 @@ fn a_turned_cloud_is_met_by_an_alignment() {
 }
 
 #[test]
-fn failed_fit_is_told_and_its_best_is_written() {
+fn fit_that_fails_is_told_and_its_best_is_written() {
     let folder = prepare("failed");
     // Points anywhere around the head.
     let mut cloud = String::new();

@@ -296,7 +296,7 @@ fn pixels(path: &str) -> ([u32; 2], Vec<u8>) {
     (picture.size(), picture.rgb())
 }
 
-/// Each `shoot` is a picture of its own under its own name; `-o` numbers those before the last.
+/// Pictures of several `shoot`s have names of their own; `-o` numbers those before the last.
 #[test]
 fn several_shoots_write_several_pictures() {
     let folder = Folder::new("shoots");
@@ -312,14 +312,14 @@ fn several_shoots_write_several_pictures() {
         assert!(said.contains(&format!("wrote {name}, 16×12")), "{said}");
     }
     // First one red ball to the left, then two blue ones, then one in the middle.
-    let lit = |(size, bytes): &([u32; 2], Vec<u8>), channel: usize| -> [usize; 2] {
-        let left = |i: usize| (i % size[0] as usize) < size[0] as usize / 2;
+    fn lit((size, bytes): &([u32; 2], Vec<u8>), channel: usize) -> [usize; 2] {
+        let width = size[0] as usize;
         let rgb = bytes.chunks_exact(3).enumerate();
         let bright = rgb.filter(|(_, rgb)| rgb[channel] > 60 && rgb[2 - channel] < 60);
-        let sides: Vec<bool> = bright.map(|(i, _)| left(i)).collect();
+        let sides: Vec<bool> = bright.map(|(i, _)| i % width < width / 2).collect();
         let first = sides.iter().filter(|is_left| **is_left).count();
         [first, sides.len() - first]
-    };
+    }
     let one = pixels(&folder.path("one.png"));
     assert!(
         lit(&one, 0)[0] > 3 && lit(&one, 0)[1] == 0,
@@ -404,32 +404,32 @@ fn parallel_rays_are_those_of_an_eye_far_away() {
         sphere h 1 1.5 1 -5\nsphere h 1 1.5 -1.5 5\n";
     let camera = "cp 0 0 1 0\nwindow -4 4 -4 4\n";
     let near = "eyep 0 0 22918.3\nfov 0.02\n";
-    let show = |name: &str, text: String| {
+    fn show(folder: &Folder, name: &str, text: String) -> Vec<u8> {
         let file = folder.write(&format!("{name}.rat"), &text);
         let picture = folder.path(&format!("{name}.png"));
         let output = sinew(&["render", &file, "-o", &picture, "--threads", "1"], "");
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         pixels(&picture).1
-    };
-    let parallel = show("parallel", format!("{camera}{model}"));
-    let far = show("far", format!("{near}{model}"));
-    let differ = |a: &[u8], b: &[u8]| {
+    }
+    let parallel = show(&folder, "parallel", format!("{camera}{model}"));
+    let far = show(&folder, "far", format!("{near}{model}"));
+    fn differ(a: &[u8], b: &[u8]) -> usize {
         let pairs = a.chunks_exact(3).zip(b.chunks_exact(3));
-        let far = |(a, b): (&[u8], &[u8])| (0..3).any(|i| a[i].abs_diff(b[i]) > 24);
-        pairs.filter(|pair| far(*pair)).count()
-    };
+        let pairs = pairs.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 24));
+        pairs.count()
+    }
     assert!(differ(&parallel, &far) < 12, "{}", differ(&parallel, &far));
-    let close = show("close", format!("eyep 0 0 12\nfov 36.87\n{model}"));
+    let close = show(&folder, "close", format!("eyep 0 0 12\nfov 36.87\n{model}"));
     assert!(differ(&parallel, &close) > 200);
     // The two hard balls are equally large, though one is three times as far from a near eye.
-    let red = |pixels: &[u8], rows: std::ops::Range<usize>| {
+    fn red(pixels: &[u8], rows: std::ops::Range<usize>) -> usize {
         let rows = pixels
             .chunks_exact(3 * 64)
             .enumerate()
             .filter(|(y, _)| rows.contains(y));
         let rgb = rows.flat_map(|(_, row)| row.chunks_exact(3));
         rgb.filter(|rgb| rgb[0] > 2 * rgb[1].max(20)).count()
-    };
+    }
     let [above, below] = [red(&close, 0..32), red(&close, 32..64)];
     assert!(below > 2 * above, "{above} {below}");
 }
@@ -438,8 +438,8 @@ fn parallel_rays_are_those_of_an_eye_far_away() {
 #[test]
 fn fewer_rays_than_pixels_make_blocks() {
     let folder = Folder::new("blocks");
-    let picture = folder.path("ball.png");
-    let render = |sample: &str, size: [&str; 2]| {
+    fn render(folder: &Folder, sample: &str, size: [&str; 2]) -> (Option<u64>, Vec<u8>) {
+        let picture = folder.path("ball.png");
         let file = folder.write("ball.rat", &format!("sample {sample}\n{BALL}"));
         let [w, h] = size;
         let arguments = ["render", &file, "-o", &picture, "--json", "-r", w, h];
@@ -447,25 +447,24 @@ fn fewer_rays_than_pixels_make_blocks() {
         assert!(output.status.success(), "{output:?}");
         let summary: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
         (summary["rays"]["primary"].as_u64(), pixels(&picture).1)
-    };
+    }
     for (sample, side) in [("0.5", 2), ("0.25", 4), ("0.125", 8), ("0.0625", 16)] {
-        let (rays, shown) = render(sample, ["150", "90"]);
+        let (rays, shown) = render(&folder, sample, ["150", "90"]);
         let wanted = 150_u64.div_ceil(side) * 90_u64.div_ceil(side);
         assert_eq!(rays, Some(wanted), "{sample}");
-        let at = |x: usize, y: usize| &shown[3 * (150 * y + x)..][..3];
         let side = side as usize;
         for (y, x) in (0..90).flat_map(|y| (0..150).map(move |x| (y, x))) {
             assert_eq!(
-                at(x, y),
-                at(x - x % side, y - y % side),
+                shown[3 * (150 * y + x)..][..3],
+                shown[3 * (150 * (y - y % side) + x - x % side)..][..3],
                 "{sample}: {x} {y}"
             );
         }
     }
     // A block shows what its middle does: blocks of 2 are the picture of half the size.
-    assert_eq!(render("0.5", ["128", "96"]).1.len(), 3 * 128 * 96);
-    let (_, blocks) = render("0.5", ["128", "96"]);
-    let (_, half) = render("1", ["64", "48"]);
+    assert_eq!(render(&folder, "0.5", ["128", "96"]).1.len(), 3 * 128 * 96);
+    let (_, blocks) = render(&folder, "0.5", ["128", "96"]);
+    let (_, half) = render(&folder, "1", ["64", "48"]);
     let small: Vec<u8> = (0..48)
         .flat_map(|y| (0..64).flat_map(move |x| (0..3).map(move |k| 3 * (256 * y + 2 * x) + k)))
         .map(|index| blocks[index])

@@ -53,7 +53,7 @@ fn run(trial: &Trial, model: &TriangleMesh, kind: Kind, data: [bool; 2]) -> (Fit
 #[test]
 fn forty_percent_of_outliers_a_gap_and_a_turned_start_are_borne() {
     for model in [shapes::ball(0.2), shapes::hand(0.08), shapes::vase(0.12)] {
-        let trial = measure(&model, UNEVEN).turned(&motion(&model));
+        let trial = measure(&model, UNEVEN).turn(&motion(&model));
         assert!(trial.start(&model)[0] > 10.0);
         // The fit turns the mesh without being asked to, as it comes much nearer so.
         let (fitted, found) = run(&trial, &model, SHELLS, POINTS);
@@ -106,7 +106,7 @@ fn outlines_alone_suffice() {
 }
 
 #[test]
-fn failed_fits_say_so_and_keep_the_best() {
+fn fits_that_fail_say_so_and_keep_the_best() {
     let model = shapes::ball(0.2);
     for (outliers, said) in [(0.6, "are left out"), (0.97, "of the mesh's size")] {
         let disturbance = Disturbance {
@@ -122,7 +122,7 @@ fn failed_fits_say_so_and_keep_the_best() {
         assert!(failure.contains(said), "{failure}");
     }
     // Few iterations with a mesh that is far away.
-    let trial = measure(&model, UNEVEN).turned(&Rigid {
+    let trial = measure(&model, UNEVEN).turn(&Rigid {
         turn: DMat3::IDENTITY,
         shift: DVec3::X * 9.0,
     });

@@ -360,7 +360,8 @@ fn told(name: &str, result: &Result<Row, String>) -> bool {
         Ok(row) if row.empty => println!("{name}: nothing there"),
         Ok(row) if row.late => println!("{name}: LATE: given up after {} s", limit()),
         Ok(row) => println!(
-            "{name}: {} triangles of {}, {} made with proofs, {} undecided, {} unproved ({:.2} {:.2}), off {:.2} {:.2}, {} unknown, {:.2} s{}",
+            "{name}: {} triangles of {}, {} made with proofs, {} undecided, {} unproved \
+             ({:.2} {:.2}), off {:.2} {:.2}, {} unknown, {:.2} s{}",
             row.triangles,
             row.raw,
             row.proved,

@@ -38,8 +38,8 @@ enum Later {
     Nothing,
     /// Changes of it; the file and place of the first command that makes one.
     Changes(usize, Range<usize>),
-    /// A `reset`, so that the picture stays as it is; the file and place of the first command behind
-    /// it that may change a picture.
+    /// A `reset`, so that the picture stays as it is; the file and place of the first command
+    /// behind it that may change a picture.
     Reset(Option<(usize, Range<usize>)>),
 }
 

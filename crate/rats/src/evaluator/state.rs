@@ -77,7 +77,7 @@ pub struct Evaluator<'a> {
     pub(super) deforms: Vec<Deform>,
     /// Skeletons of files, each once.
     pub(super) skeletons: Vec<Unread>,
-    /// Those of them that have not been read.
+    /// Skeletons of files that have not been read.
     pub(super) unread: Vec<Unread>,
     /// Vertices of all deformations so far.
     pub(super) deformed: usize,

@@ -247,11 +247,11 @@ fn pixels_that_are_not_square() {
     }
 }
 
-/// With the weight 0 the rays of the picture are as good as parallel: what is near is drawn as
-/// large as what is far away, straight or aslant.
+/// Rays of a picture with the weight 0 are as good as parallel: what is near is drawn as large as
+/// what is far away, straight or aslant.
 #[test]
 fn a_weight_of_0_makes_rays_parallel() {
-    let shown = |text: &str, place: DVec3| {
+    fn project(text: &str, place: DVec3) -> [f64; 2] {
         let scene = scene(text);
         let projection = scene.camera.projection(200, 100);
         let view = projection.world_from_view.transpose() * (place - projection.eye);
@@ -261,25 +261,25 @@ fn a_weight_of_0_makes_rays_parallel() {
             (x - left) / projection.half_width,
             (y - up) / projection.half_height,
         ]
-    };
+    }
     let straight = "framesize 200 100\nvrp 1 2 3\nvpn 0 0 1\ncp 0 0 1 0\nwindow -4 4 -2 2";
     let slanted = "framesize 200 100\nvrp 1 2 3\nvpn 0 0 1\ncp 0.5 -0.25 1 0\nwindow -4 4 -2 2";
     let moved = "framesize 200 100\nvrp 1 2 3\nvpn 0 0 1\ncp 0 0 3 0\nwindow 0 8 -1 3";
     for depth in [-8.0, 0.0, 8.0] {
         for [x, y] in [[0.0, 0.0], [2.0, 1.0], [-3.0, -2.0]] {
             let place = v(1.0 + x, 2.0 + y, 3.0 + depth);
-            let [a, b] = shown(straight, place);
+            let [a, b] = project(straight, place);
             assert!(
                 (a - x / 4.0).abs() < 1e-3 && (b - y / 2.0).abs() < 1e-3,
                 "{a} {b}"
             );
-            let [a, b] = shown(moved, place);
+            let [a, b] = project(moved, place);
             let wanted = [(x - 4.0) / 4.0, (y - 1.0) / 2.0];
             assert!(
                 (a - wanted[0]).abs() < 2e-3 && (b - wanted[1]).abs() < 2e-3,
                 "{a} {b}"
             );
-            let [a, b] = shown(slanted, place);
+            let [a, b] = project(slanted, place);
             let wanted = [(x - 0.5 * depth) / 4.0, (y + 0.25 * depth) / 2.0];
             assert!(
                 (a - wanted[0]).abs() < 4e-3 && (b - wanted[1]).abs() < 4e-3,
@@ -289,7 +289,7 @@ fn a_weight_of_0_makes_rays_parallel() {
     }
     // Without a window it is as wide as the angle of view makes it at the reference point.
     let angle = "eyep 0 0 10\nfov 90\nframesize 200 100\ncp 0 0 1 0";
-    assert!((shown(angle, v(10.0, 0.0, -3.0))[0] - 1.0).abs() < 1e-3);
+    assert!((project(angle, v(10.0, 0.0, -3.0))[0] - 1.0).abs() < 1e-3);
     let leaning = run("cp 3 0 1 0");
     assert!(leaning.diagnostics[0].message.contains("lean"));
 }
@@ -335,7 +335,7 @@ fn fewer_rays_than_pixels() {
 /// `report` with a word tells values.
 #[test]
 fn report_tells_values() {
-    let said = |what: &str| {
+    fn report(what: &str) -> String {
         let text = format!(
             "var r = 0.5\nvar C = Red\nsurface s diff Red, radius r, blob -2, kernel gauss\n\
              surface t diff Blue, shine 7\nlight White, position 1 2 3\neyep 0 0 7\n\
@@ -344,7 +344,7 @@ fn report_tells_values() {
         let compiled = run(&text);
         let notes = compiled.diagnostics.into_iter().find(|d| d.line == 9);
         notes.map(|d| d.message).unwrap_or_default()
-    };
+    }
     for (word, wanted) in [
         (
             "surfaces",
@@ -360,11 +360,11 @@ fn report_tells_values() {
         ("all", "r = 0.5"),
         ("", "there are here: 2 shapes, 2 materials"),
     ] {
-        assert!(said(word).contains(wanted), "{word}: {}", said(word));
+        assert!(report(word).contains(wanted), "{word}: {}", report(word));
     }
 }
 
-/// What the program does between pictures stands where the text has it.
+/// Acts of the program between pictures stand where the text has them.
 #[test]
 fn pauses_logs_and_stopwatches_are_handed_on() {
     let compiled = run(
@@ -393,14 +393,13 @@ fn pauses_logs_and_stopwatches_are_handed_on() {
 /// Results are saved under the command's own name where the text gives none.
 #[test]
 fn results_have_names_of_their_own() {
-    let saved = |text: &str| run(text).tools[0].writes().map(str::to_owned);
-    assert_eq!(saved("diff a.png b.png save").as_deref(), Some("diff.png"));
-    assert_eq!(saved("and a.png b.png save").as_deref(), Some("and.png"));
-    assert_eq!(
-        saved("xor a.png b.png save c.tga").as_deref(),
-        Some("c.tga")
-    );
-    assert_eq!(saved("diff a.png b.png"), None);
+    fn save(text: &str) -> Option<String> {
+        run(text).tools[0].writes().map(str::to_owned)
+    }
+    assert_eq!(save("diff a.png b.png save").as_deref(), Some("diff.png"));
+    assert_eq!(save("and a.png b.png save").as_deref(), Some("and.png"));
+    assert_eq!(save("xor a.png b.png save c.tga").as_deref(), Some("c.tga"));
+    assert_eq!(save("diff a.png b.png"), None);
 }
 
 // ---- MATERIALS
@@ -600,18 +599,20 @@ fn instances_and_removal() {
     assert_eq!(found, [v(1.0, 0.0, 1.0), v(1.0, 0.0, 1.0)]);
 }
 
-/// Three numbers alone are angles about x, then y, then z.
+/// Angles about x, then y, then z are three numbers alone.
 #[test]
 fn rotate_takes_three_angles() {
-    let turned = |how: &str| centers(&format!("object A\nsphere s 1 1 2 3\nclose\n{how}"))[0];
+    fn turn(how: &str) -> DVec3 {
+        centers(&format!("object A\nsphere s 1 1 2 3\nclose\n{how}"))[0]
+    }
     for [x, y, z] in [[0.0, 0.0, 45.0], [30.0, 0.0, 0.0], [10.0, -70.0, 200.0]] {
         let steps = format!("rotate 1 0 0 {x}\nrotate 0 1 0 {y} A\nrotate 0 0 1 {z}");
-        near(turned(&format!("rotate {x} {y} {z} A")), turned(&steps));
-        near(turned(&format!("rotate {x}, {y}, {z}")), turned(&steps));
+        near(turn(&format!("rotate {x} {y} {z} A")), turn(&steps));
+        near(turn(&format!("rotate {x}, {y}, {z}")), turn(&steps));
     }
-    near(turned("rotate 0 0 90 A"), v(-2.0, 1.0, 3.0));
-    near(turned("var A = 90\nrotate 0 0 1 A"), v(-2.0, 1.0, 3.0));
-    near(turned("rotate 0 0 0"), v(1.0, 2.0, 3.0));
+    near(turn("rotate 0 0 90 A"), v(-2.0, 1.0, 3.0));
+    near(turn("var A = 90\nrotate 0 0 1 A"), v(-2.0, 1.0, 3.0));
+    near(turn("rotate 0 0 0"), v(1.0, 2.0, 3.0));
 }
 
 /// The transforms of `instance` are those of the commands, for the copy alone.
@@ -787,7 +788,7 @@ fn what_follows_the_last_shoot_is_in_its_picture() {
     assert!(lost.diagnostics[0].message.contains("in no picture"));
 }
 
-/// Each `shoot` takes what stands before it, under the name that stands then.
+/// Pictures of several `shoot`s show what stands before each, under the name that stands then.
 #[test]
 fn several_shoots_take_several_pictures() {
     let compiled = run(
@@ -833,11 +834,12 @@ fn a_material_made_again_behind_a_picture_changes_its_shapes() {
         "surface s diff Red\nsphere s 1 0 0 0\nfilename a\nshoot\nfilename b\n\
          surface s diff Blue\nsphere s 1 2 0 0\nsurface s diff White\nsphere s 1 4 0 0",
     );
-    let finishes = |scene: &Scene| {
+    fn finishes(scene: &Scene) -> Vec<[f32; 3]> {
         let elements = scene.elements.iter();
-        let finish = |e: &scene::Element| scene.finishes[e.finish as usize].diffuse;
-        elements.map(finish).collect::<Vec<_>>()
-    };
+        elements
+            .map(|e| scene.finishes[e.finish as usize].diffuse)
+            .collect()
+    }
     assert_eq!(finishes(&compiled.scene).len(), 3);
     let [red, blue, white] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]];
     assert_eq!(finishes(&compiled.scene), [blue, blue, white]);
@@ -867,7 +869,7 @@ fn a_variable_set_again_behind_a_picture_is_noted() {
     assert_eq!(notes("reset data\nvar r = 2\nsphere s r 3 0 0\n"), 0);
 }
 
-/// With an open shutter each picture has its own moments.
+/// Pictures with an open shutter have moments of their own.
 #[test]
 fn each_picture_has_its_moments() {
     let compiled = run(
@@ -893,7 +895,9 @@ fn each_picture_has_its_moments() {
                 .all(|moment| moment.elements.len() == count)
         );
     }
-    let last = |scene: &Scene| scene.moments.last().map(|m| m.elements[0].shape.middle().x);
+    fn last(scene: &Scene) -> Option<f64> {
+        scene.moments.last().map(|m| m.elements[0].shape.middle().x)
+    }
     assert!(last(scenes[0]) > Some(0.8) && last(scenes[2]) < Some(0.5));
 }
 

@@ -51,7 +51,7 @@ fn no_complaints() {
     }
 }
 
-/// Of all examples, only those that are read as absolute would be asked how their blobbiness is
+/// Examples that are read as absolute, and no others, would be asked how their blobbiness is
 /// meant, and the change that the message proposes makes of them what they are.
 #[test]
 fn radii_that_go_with_blobbiness_are_asked_about() {

@@ -1,4 +1,4 @@
-//! What comes late, for a work that is not open any more, is left out.
+//! Results that come late, for a work that is not open any more, are left out.
 
 use crate::driver::Window;
 use browser::{choose_files, hold_back, let_come};
@@ -155,10 +155,10 @@ fn mesh_of_the_dialog_is_that_of_the_open_work() {
     let mut window = Window::with_text(TEXT);
     window.steps(3);
     ask(&mut window, Wish::Open(Dialog::Mesh));
-    let triangles = |window: &Window| {
+    fn triangles(window: &Window) -> Option<usize> {
         let outbox = window.parts.outbox.borrow();
         outbox.report.mesh.as_ref().and_then(|mesh| mesh.triangles)
-    };
+    }
     until(&mut window, "a mesh", |window| triangles(window).is_some());
     window.load(OTHER);
     assert!(
@@ -210,10 +210,10 @@ fn fit_ends_with_its_work() {
         points == Some(60) && outbox.report.elements == 4
     });
     ask(&mut window, FitWish::Start);
-    let is_running = |window: &Window| {
+    fn is_running(window: &Window) -> bool {
         let outbox = window.parts.outbox.borrow();
         outbox.report.fit.as_ref().is_some_and(|fit| fit.running)
-    };
+    }
     assert!(
         is_running(&window),
         "{:?}",

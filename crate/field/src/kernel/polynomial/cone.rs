@@ -1,19 +1,19 @@
 //! Polynomial kernels along a line segment whose support varies evenly along it.
 //!
-//! The segment lies on the x axis, |t| ≤ c; the support's radius at its point t is `r(t) = r₁ + kt`,
-//! in units of the smaller of those at its ends, |k| < 1. The factor on the kernel is that of a
-//! uniform line of that width. At u from the foot of the perpendicular, whose length is ρ, and
+//! The segment lies on the x axis, |t| ≤ c; the support's radius at its point t is `r(t) = r₁ +
+//! kt`, in units of the smaller of those at its ends, |k| < 1. The factor on the kernel is that of
+//! a uniform line of that width. At u from the foot of the perpendicular, whose length is ρ, and
 //! with `a = r(x)`,
 //!
 //! `f = r(−c)·∫ g(v)/r du`, `v = ((a+ku)² − u² − ρ²)/r²`, `r = a+ku`,
 //!
 //! `∂f/∂x = r(−c)·∫ 2u·g′/r³ du`, `∂f/∂(y,z) = −2(y,z)·r(−c)·∫ g′/r³ du`, `g′ = 2c₂v + 3c₃v²`.
 //!
-//! With `β = 1−k²` and w = u − m measured from `m = ak/β`, `vr² = β(s² − w²)`, `s² = (a²/β − ρ²)/β`:
-//! the support is left at ±s, as it is by a uniform segment. On the part within, the integrand is a
-//! polynomial over a power of r, whose zero, the cone's tip, is `a/|k|` away from the foot: a
-//! Gauss–Legendre rule is right to 10⁻⁶ of the value with 10 nodes for |k| ≤ [`STEEPEST`], to
-//! 10⁻¹² with 16.
+//! With `β = 1−k²` and w = u − m measured from `m = ak/β`, `vr² = β(s² − w²)`, `s² = (a²/β −
+//! ρ²)/β`: the support is left at ±s, as it is by a uniform segment. On the part within, the
+//! integrand is a polynomial over a power of r, whose zero, the cone's tip, is `a/|k|` away from
+//! the foot: a Gauss–Legendre rule is right to 10⁻⁶ of the value with 10 nodes for |k| ≤
+//! [`STEEPEST`], to 10⁻¹² with 16.
 use crate::kernel::cubed::cone::Cone;
 use crate::legendre;
 use crate::{Jet, Real};
