@@ -142,8 +142,10 @@ fn surface<'a>(
     surface.origin = (run.file, name.span.clone());
     set_flesh(options, &mut surface.flesh)?;
     set_finish(options, &mut surface.finish, &mut surface.colours);
+    // A skeleton is soft without a blobbiness; it needs a radius.
     if let Some(chosen) = options.find(&KERNEL)
         && !surface.flesh.is_soft()
+        && surface.flesh.radius <= 0.0
     {
         let message = "without a blobbiness this material is hard, and its kernel does nothing";
         run.note(&chosen.span, message, "add a `blobbiness`, such as -1");
