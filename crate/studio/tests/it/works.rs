@@ -188,8 +188,10 @@ fn mesh_of_the_dialog_is_that_of_the_open_work() {
 fn fit_ends_with_its_work() {
     let mesh = "surface s, diffuse Red\nmesh s a.obj\n";
     let mut window = Window::with_text(mesh);
-    let points: String = (0..60)
-        .map(|i| f64::from(i) * 0.37)
+    // So many that the fit takes longer than a few frames.
+    let count = 20_000;
+    let points: String = (0..count)
+        .map(|i| i as f64 * 0.37)
         .map(|t| {
             format!(
                 "{} {} {}\n",
@@ -207,7 +209,7 @@ fn fit_ends_with_its_work() {
     until(&mut window, "points and mesh", |window| {
         let outbox = window.parts.outbox.borrow();
         let points = outbox.report.fit.as_ref().map(|fit| fit.points);
-        points == Some(60) && outbox.report.elements == 4
+        points == Some(count) && outbox.report.elements == 4
     });
     ask(&mut window, FitWish::Start);
     fn is_running(window: &Window) -> bool {
