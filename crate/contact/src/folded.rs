@@ -2,21 +2,20 @@
 use crate::Bulge;
 use crate::squashed::product;
 use field::local::{Bounds, Two};
-use field::{Ball, Enclosure, Implicit, Jet, Local, Part, THRESHOLD, Variation};
+use field::{Ball, Enclosure, Implicit, Jet, Local, Part, Real, THRESHOLD, Variation};
 use glam::DVec3;
-use std::sync::Arc;
 use wide::f32x8;
 
-/// The function `f₁ + g(f₂)`: f₁ is the largest stretch of a skeleton at a point, f₂ the largest
-/// one more than 2D away from it along the skeleton ([`Local::two`]), and g the deformation of
-/// [`Bulge::jet`].
+/// The function `f₁ + g(f₂)`: f₁ is the local convolution of a skeleton at a point, f₂ that of what
+/// is far from there along the skeleton ([`Local::two`]) or f₁ if that is less, and g the
+/// deformation of [`Bulge::jet`].
 ///
 /// Where both are above T this is `T + f₁ − f₂`, which is T on the sheet f₁ = f₂ between two folds.
 /// As that is no surface, but the inside of one body, the value there is `(f₁+T)/2` where that is
 /// more.
 #[derive(Clone, Debug)]
 pub struct Folded {
-    local: Arc<Local>,
+    local: Local,
     bulge: Bulge,
     height: f64,
 }
@@ -24,32 +23,72 @@ pub struct Folded {
 impl Folded {
     /// Makes the function of a skeleton with a bulge beside its folds.
     #[must_use]
-    pub fn new(local: Arc<Local>, bulge: Bulge) -> Self {
+    pub fn new(local: Local, bulge: Bulge) -> Self {
         Self {
-            local,
+            // Below its start the bulge is 0.
+            local: local.with_folds(bulge.start()),
             height: bulge.height(),
             bulge,
         }
     }
 
-    /// Bounds in a ball, not narrowed by the value at its centre.
-    fn bounds(&self, ball: Ball) -> Bounds {
-        let Two { first, second } = self.local.enclose_two(ball, Some(self.bulge.start()));
+    /// Computes value and gradient from those of both fields.
+    fn combine<R: Real>(&self, (first, second): (Jet<R>, Option<Jet<R>>)) -> Jet<R> {
         let Some(second) = second else { return first };
+        let pick = |mask: R::Mask, yes: Jet<R>, no: Jet<R>| Jet {
+            value: R::select(mask, yes.value, no.value),
+            gradient: core::array::from_fn(|i| {
+                R::select(mask, yes.gradient[i], no.gradient[i])
+            }),
+        };
+        let second = pick(first.value.lt(second.value), first, second);
+        let (deformed, slope) = self.bulge.jet(second.value);
+        let pressed = first.plus(Jet {
+            value: deformed,
+            gradient: second.gradient.map(|g| slope * g),
+        });
+        let [half, threshold] = [0.5, THRESHOLD].map(R::splat);
+        let least = Jet {
+            value: half * (first.value + threshold),
+            gradient: first.gradient.map(|g| half * g),
+        };
+        let inside = R::both(threshold.lt(second.value), pressed.value.lt(least.value));
+        pick(inside, least, pressed)
+    }
+
+    /// Bounds in a ball, not narrowed by the value at its centre, and both fields there.
+    fn bounds(&self, ball: Ball) -> (Bounds, Option<Jet<f64>>) {
+        let Two {
+            first,
+            second,
+            at_center,
+        } = self.local.enclose_two(ball);
+        let at_center = at_center.map(|two| self.combine(two));
+        let Some(mut second) = second else {
+            return (first, at_center);
+        };
+        let [low, high] = first.value;
+        let crossing = second.value[1] > low;
+        second.value = [second.value[0].min(low), second.value[1].min(high)];
+        if crossing {
+            // The gradient of the lesser one is either's.
+            second.jump = second.jump.max(first.slope + second.slope);
+            second.slope = second.slope.max(first.slope);
+            second.curvature = second.curvature.max(first.curvature);
+        }
         let spread = self.bulge.spread(second.value);
         // f₂ ≤ f₁, so that g lowers nothing but what is inside.
-        let inside = second.value[1] > THRESHOLD && first.value[1] > THRESHOLD;
-        let low = first.value[0];
+        let inside = second.value[1] > THRESHOLD;
         let lowest = if inside && low > THRESHOLD {
             0.5 * (low + THRESHOLD)
         } else {
             low
         };
         let slope = first.slope + product(spread.slope, second.slope);
-        Bounds {
+        let bounds = Bounds {
             value: [
                 (low + spread.value[0]).max(lowest),
-                first.value[1] + spread.value[1].max(0.0),
+                high + spread.value[1].max(0.0),
             ],
             slope,
             curvature: first.curvature
@@ -60,47 +99,39 @@ impl Folded {
                 true => 2.0 * slope,
                 false => first.jump + product(spread.slope, second.jump),
             },
-        }
+        };
+        (bounds, at_center)
     }
 }
 
 impl Implicit for Folded {
     fn jet(&self, point: DVec3) -> Jet<f64> {
-        // Below its start the bulge is 0.
-        let (first, second) = self.local.two_above(point, self.bulge.start());
-        let Some(second) = second else { return first };
-        let (deformed, slope) = self.bulge.jet(second.value);
-        if first.value > THRESHOLD && second.value > THRESHOLD {
-            let half = 0.5 * (first.value - THRESHOLD);
-            let apart = first.value - second.value;
-            if apart < half {
-                return Jet {
-                    value: THRESHOLD + half,
-                    gradient: first.gradient.map(|g| 0.5 * g),
-                };
-            }
-        }
-        first.plus(Jet {
-            value: deformed,
-            gradient: second.gradient.map(|g| slope * g),
-        })
+        self.combine(self.local.two(point.to_array()))
     }
 
     fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
-        field::local::narrow(self.jet(DVec3::from_array(point.map(f64::from))))
+        self.combine(self.local.two(point))
     }
 
     fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
-        field::local::lanes(points, |point| self.jet32(point))
+        self.combine(self.local.two(points))
     }
 
     fn enclose(&self, ball: Ball) -> Enclosure {
-        let bounds = self.bounds(ball).enclosure();
-        bounds.about(&self.jet(ball.center), ball.radius)
+        let (bounds, at_center) = self.bounds(ball);
+        match at_center {
+            Some(jet) => bounds.enclosure().about(&jet, ball.radius),
+            None => bounds.enclosure(),
+        }
     }
 
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
-        self.bounds(ball).variation()
+        self.bounds(ball).0.variation()
+    }
+
+    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        let (bounds, at_center) = self.bounds(ball);
+        (bounds.variation(), at_center)
     }
 
     fn most(&self, ball: Ball) -> f64 {

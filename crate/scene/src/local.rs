@@ -4,7 +4,7 @@ use crate::{Element, Function, Scene, limbs};
 use field::local::{Limb, LocalError};
 use field::{Local, Primitive};
 use glam::DVec3;
-use skeleton::{Polyline, Segment};
+use skeleton::Polyline;
 
 /// Pieces of a skeleton within the reach of local convolution, at least, and the most pieces of a
 /// segment.
@@ -38,17 +38,16 @@ impl Scene {
         let points = (polyline.vertices.iter())
             .map(|v| function.to_world.transform_point3(v.position))
             .collect();
-        let joints = Joints::of(polyline);
+        let ends = joints(polyline);
         let segments = self.segments_of(element, function, &flesh);
-        let limbs = segments.enumerate().map(|(index, (skeleton, shaping))| {
+        let limbs = segments.zip(ends).map(|((skeleton, shaping), ends)| {
             let pieces = limbs::cut_short(&skeleton, shaping, reach / PIECES, MOST_PIECES);
             let pieces = pieces.into_iter().filter_map(|(skeleton, shaping)| {
                 let length = skeleton.measure();
                 Primitive::new(skeleton, &shaping, None).map(|primitive| (primitive, length))
             });
             Limb {
-                ends: joints.segments[index].0.map(|end| end as u32),
-                next: [0, 1].map(|end| joints.next(index, end)),
+                ends,
                 pieces: pieces.collect(),
             }
         });
@@ -72,49 +71,17 @@ pub struct Limbs {
     pub reach: f64,
 }
 
-/// The segments of a polyline that have a length, and where they meet. Vertices between which there
+/// Returns the ends of the segments of a polyline that have a length. Vertices between which there
 /// is no length are one.
-struct Joints<'a> {
-    segments: Vec<([usize; 2], &'a Segment)>,
-    around: Vec<Vec<usize>>,
-}
-
-impl<'a> Joints<'a> {
-    fn of(polyline: &'a Polyline) -> Self {
-        let mut same: Vec<usize> = (0..polyline.vertices.len()).collect();
-        for segment in polyline.segments.iter().filter(|s| s.length <= 0.0) {
-            let [a, b] = segment.ends.map(|end| same[end]);
-            let (first, other) = (a.min(b), a.max(b));
-            same.iter_mut()
-                .filter(|own| **own == other)
-                .for_each(|own| *own = first);
-        }
-        let mut around = vec![Vec::new(); same.len()];
-        let mut segments = Vec::new();
-        for segment in polyline.segments.iter().filter(|s| s.length > 0.0) {
-            let ends = segment.ends.map(|end| same[end]);
-            for end in ends {
-                around[end].push(segments.len());
-            }
-            segments.push((ends, segment));
-        }
-        Self { segments, around }
+fn joints(polyline: &Polyline) -> Vec<[u32; 2]> {
+    let mut same: Vec<u32> = (0..polyline.vertices.len() as u32).collect();
+    for segment in polyline.segments.iter().filter(|s| s.length <= 0.0) {
+        let [a, b] = segment.ends.map(|end| same[end]);
+        let (first, other) = (a.min(b), a.max(b));
+        same.iter_mut()
+            .filter(|own| **own == other)
+            .for_each(|own| *own = first);
     }
-
-    /// The segment that goes on from an end of another: the only other one there, or at a branch
-    /// the next one of its curve.
-    fn next(&self, index: usize, end: usize) -> Option<u32> {
-        let (ends, segment) = &self.segments[index];
-        let around = &self.around[ends[end]];
-        if let [a, b] = around[..] {
-            let other = if a == index { b } else { a };
-            return (other != index).then_some(other as u32);
-        }
-        let other = match end {
-            0 => index.checked_sub(1)?,
-            _ => index + 1,
-        };
-        let (others, next) = self.segments.get(other)?;
-        (next.curve == segment.curve && others[1 - end] == ends[end]).then_some(other as u32)
-    }
+    let long = polyline.segments.iter().filter(|s| s.length > 0.0);
+    long.map(|s| s.ends.map(|end| same[end])).collect()
 }

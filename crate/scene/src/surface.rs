@@ -131,10 +131,10 @@ impl Scene {
         if function.curves().is_none() {
             return function.implicit();
         }
-        let local = Arc::new(self.local(element, function)?.ok()?);
+        let local = self.local(element, function)?.ok()?;
         Some(match self.fold(element.body) {
             Some(bulge) => Arc::new(contact::Folded::new(local, bulge)),
-            None => local,
+            None => Arc::new(local),
         })
     }
 }

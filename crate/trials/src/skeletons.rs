@@ -228,7 +228,6 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
         let piece = Primitive::new(Skeleton::Segment { base, apex }, &shaping, None);
         Limb {
             ends: [i, i + 1],
-            next: [i.checked_sub(1), (i + 1 < count).then_some(i + 1)],
             pieces: vec![(piece.expect("it is a segment"), base.distance(apex))],
         }
     });
