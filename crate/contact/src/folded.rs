@@ -37,9 +37,7 @@ impl Folded {
         let Some(second) = second else { return first };
         let pick = |mask: R::Mask, yes: Jet<R>, no: Jet<R>| Jet {
             value: R::select(mask, yes.value, no.value),
-            gradient: core::array::from_fn(|i| {
-                R::select(mask, yes.gradient[i], no.gradient[i])
-            }),
+            gradient: core::array::from_fn(|i| R::select(mask, yes.gradient[i], no.gradient[i])),
         };
         let second = pick(first.value.lt(second.value), first, second);
         let (deformed, slope) = self.bulge.jet(second.value);

@@ -16,10 +16,10 @@
 //! Of folds that touch there is a second field, of what is far along the skeleton from the pieces
 //! that count at a point, see [`Local::two`]:
 //!
-//! `F₂ = Σⱼ ω̂ⱼF₂ⱼ`, `F₂ⱼ = Σₖ vⱼₖωₖ·vⱼₖWₖ / Σₖ vⱼₖωₖ`,
+//! `F₂ = Σⱼ ω̂ⱼ·r(F₂ⱼ)`, `F₂ⱼ = Σₖ vⱼₖωₖ·vⱼₖWₖ / Σₖ vⱼₖωₖ`,
 //!
 //! where vⱼₖ rises from 0 to 1 as the distance of the two pieces along the skeleton does from 2D
-//! to 3D.
+//! to 3D, and r(x) is x from the level on below which F₂ is of no interest, and 0 up to half of it.
 //!
 //! Weights below 2⁻⁴⁰ of the largest count as 0. So in a small part of space few pieces matter.
 //!
@@ -117,13 +117,13 @@ impl Local {
         self.two_of(&self.terms_in(&ball), point)
     }
 
-    /// The runs of the stretch around a piece.
+    /// Returns the runs of the stretch around a piece.
     fn links(&self, piece: u32) -> &[Run] {
         let Range { start, end } = self.pieces[piece as usize].links;
         &self.runs[start as usize..end as usize]
     }
 
-    /// The weights of a run's pieces.
+    /// Returns the weights of a run's pieces.
     fn weights(&self, run: &Run) -> &[f64] {
         &self.weights[run.weights as usize..][..run.count as usize]
     }

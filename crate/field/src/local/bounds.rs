@@ -8,12 +8,12 @@
 //! `|Cov(g, W)| ≤ E|a||b| + |E a||E b|`, and so on. Here b is the difference from the mean of all
 //! stretches by their shares at the ball's centre, and a that from the mean of g there: at the
 //! centre both have the mean 0.
-use super::cells::{Far, Slots, Terms};
-use super::mean::{CUT, POWER, power, shares};
+use super::cells::{Far, Rows, Slots};
+use super::mean::{CUT, POWER, power, ramp, shares};
 use super::{Local, Piece};
 use crate::bound::Nearness;
 use crate::ripple::times;
-use crate::{Ball, Enclosure, Jet, Variation};
+use crate::{Ball, Enclosure, Jet, THRESHOLD, Variation};
 use glam::DVec3;
 
 /// Bounds on a function in a ball: those of [`crate::Enclosure`], and how much its gradient jumps.
@@ -141,7 +141,7 @@ impl<'a> Nearby<'a> {
     }
 
     /// Looks closely at a piece.
-    fn look(&mut self, number: u32, slot: usize) {
+    fn look(&mut self, number: u32, slot: usize, leads: bool) {
         let most = self.most_at(number, slot);
         if self.known[slot] == 1 {
             let Ball { center, radius } = self.ball;
@@ -154,9 +154,12 @@ impl<'a> Nearby<'a> {
             let steep = DVec3::from_array(jet.gradient).length();
             let change = steep * radius + 0.5 * curvature * radius * radius;
             let change = change.min(slope * radius) + 1e-12 * jet.value;
-            let low = (jet.value * bound.remains(center, radius)).max(jet.value - change);
+            let mut low = (jet.value - change).max(bound.least(center, radius));
+            if leads && low < 0.5 * jet.value {
+                low = low.max(jet.value * bound.remains(center, radius));
+            }
             self.close[slot] = Close {
-                low: low.max(bound.least(center, radius)).max(0.0),
+                low: low.max(0.0),
                 most: most.min(jet.value + change),
                 slope,
                 curvature,
@@ -173,7 +176,7 @@ impl<'a> Nearby<'a> {
             .iter()
             .map(|&piece| {
                 let slot = self.slots.of(piece);
-                self.look(piece, slot);
+                self.look(piece, slot, true);
                 let Close { low, most, .. } = self.close[slot];
                 let length = self.piece(piece).length;
                 densest = densest.max(most / length);
@@ -181,12 +184,14 @@ impl<'a> Nearby<'a> {
             })
             .collect();
         let scale = if densest > 0.0 { densest.recip() } else { 0.0 };
-        let of = |(length, densities): (f64, [f64; 2])| {
-            // Rounding in single precision may make either a little more or less.
-            let [low, most] = densities.map(|density| length * power(density * scale));
-            [low * 0.99, most * 1.01]
-        };
-        ranges.into_iter().map(of).collect()
+        ranges
+            .into_iter()
+            .map(|(length, densities)| {
+                // Rounding in single precision may make either a little more or less.
+                let [low, most] = densities.map(|density| length * power(density * scale));
+                [low * 0.99, most * 1.01]
+            })
+            .collect()
     }
 
     /// Returns an upper bound on the field of a piece's stretch.
@@ -201,13 +206,23 @@ impl<'a> Nearby<'a> {
         sum
     }
 
+    /// Returns an upper bound on the field of a stretch whose pieces have been looked at.
+    fn known_most_of(&self, piece: u32) -> f64 {
+        let runs = self.local.links(piece).iter();
+        let most = runs.flat_map(|run| {
+            let near = &self.near[self.slots.of(run.first)..];
+            (self.local.weights(run).iter().zip(near)).map(|(weight, (_, most))| weight * most)
+        });
+        most.sum()
+    }
+
     /// Looks closely at all pieces of a stretch; returns a lower bound on its field.
     fn least_of(&mut self, piece: u32) -> f64 {
         let mut sum = 0.0;
         for run in self.local.links(piece) {
             let first = self.slots.of(run.first);
             for (i, weight) in self.local.weights(run).iter().enumerate() {
-                self.look(run.first + i as u32, first + i);
+                self.look(run.first + i as u32, first + i, false);
                 sum += weight * self.close[first + i].low;
             }
         }
@@ -216,7 +231,10 @@ impl<'a> Nearby<'a> {
 
     /// Returns bounds on the shares of some pieces with parts of their weights.
     fn shared(&self, items: &[(u32, f64)]) -> Vec<Share> {
-        let slots: Vec<usize> = items.iter().map(|(piece, _)| self.slots.of(*piece)).collect();
+        let slots: Vec<usize> = items
+            .iter()
+            .map(|(piece, _)| self.slots.of(*piece))
+            .collect();
         let parts = items.iter().zip(&slots).map(|((piece, part), slot)| {
             let length = self.piece(*piece).length;
             (self.jets[*slot].value / length, length * part)
@@ -234,7 +252,10 @@ impl<'a> Nearby<'a> {
         let mean: DVec3 = (at_center.iter().zip(&slots))
             .map(|(share, slot)| rise(*slot) * *share)
             .sum();
-        let densest = items.iter().zip(&slots).filter(|((_, part), _)| *part > 0.0);
+        let densest = items
+            .iter()
+            .zip(&slots)
+            .filter(|((_, part), _)| *part > 0.0);
         let densest = densest
             .map(|((piece, _), slot)| self.close[*slot].most / self.piece(*piece).length)
             .fold(0.0, f64::max);
@@ -260,8 +281,7 @@ impl<'a> Nearby<'a> {
                 .map(|over| if over.is_nan() { f64::INFINITY } else { over });
             let once = once.min(most / close.low);
             let twice = twice.min(most / (close.low * close.low));
-            let bend = POWER
-                * (close.curvature / close.low + (close.slope / close.low).powi(2));
+            let bend = POWER * (close.curvature / close.low + (close.slope / close.low).powi(2));
             let differs = rise(*slot).distance(mean) + radius * bend;
             let steep = POWER * once * close.slope;
             let steeper = 2.0 * POWER * POWER * twice * close.slope * close.slope;
@@ -317,6 +337,27 @@ impl<'a> Nearby<'a> {
         });
         let changes = changes.collect();
         (mean, changes)
+    }
+
+    /// Returns value and gradient at the centre of the mean of functions by their shares.
+    fn mean_of(
+        &self,
+        (mean, changes): (&Change, &[Change]),
+        items: &[(u32, f64)],
+        shares: &[Share],
+    ) -> Jet<f64> {
+        let mut gradient = mean.gradient;
+        for (((piece, _), share), change) in items.iter().zip(shares).zip(changes) {
+            if share.center > 0.0 {
+                let jet = &self.jets[self.slots.of(*piece)];
+                let sharp = POWER * share.center / jet.value * change.value;
+                gradient += sharp * DVec3::from_array(jet.gradient);
+            }
+        }
+        Jet {
+            value: mean.value,
+            gradient: gradient.to_array(),
+        }
     }
 }
 
@@ -407,20 +448,25 @@ fn bound(
 impl Local {
     /// Returns an upper bound on F in a ball.
     pub(super) fn most_in(&self, ball: Ball) -> f64 {
-        let all = self.tree.most(&self.pieces, &ball);
-        if all < FAINT || ball.radius > COARSE * self.reach() {
+        let is_coarse = ball.radius > COARSE * self.reach();
+        let enough = if is_coarse { f64::INFINITY } else { THRESHOLD };
+        let all = self.tree.most(&self.pieces, &ball, enough);
+        if is_coarse || all < enough {
             return all;
         }
         let terms = self.terms_in(&ball);
         let mut near = Nearby::new(self, ball, &terms.slots);
-        all.min(largest(&mut near, &terms.lead))
+        let stretches = terms.lead.iter().map(|piece| near.most_of(*piece));
+        stretches.fold(0.0, f64::max)
     }
 
     /// Returns bounds on F and F₂ in a ball.
     #[must_use]
     pub fn enclose_two(&self, ball: Ball) -> Two {
-        let all = self.tree.most(&self.pieces, &ball);
-        if all < FAINT || ball.radius > COARSE * self.reach() {
+        let is_coarse = ball.radius > COARSE * self.reach();
+        let enough = if is_coarse { f64::INFINITY } else { FAINT };
+        let all = self.tree.most(&self.pieces, &ball, enough);
+        if is_coarse || all < enough {
             let loose = Bounds::loose([0.0, all]);
             return Two {
                 first: loose,
@@ -432,62 +478,77 @@ impl Local {
         let mut near = Nearby::new(self, ball, &terms.slots);
         let weights = near.weights(&terms.lead);
         let floor = weights.iter().map(|[low, _]| *low).fold(0.0, f64::max) * CUT;
-        let counted = terms.lead.iter().zip(weights);
         // The others count as 0 everywhere in the ball.
+        let counted = terms.lead.iter().zip(weights);
         let items: Vec<(u32, f64)> = counted
-            .map(|(piece, [_, most])| (*piece, f64::from(u8::from(most >= floor))))
+            .filter(|(_, [_, most])| *most >= floor)
+            .map(|(piece, _)| (*piece, 1.0))
             .collect();
         let mut range = [f64::INFINITY, 0.0];
-        for (piece, _) in items.iter().filter(|(_, part)| *part > 0.0) {
+        for (piece, _) in &items {
             range[0] = range[0].min(near.least_of(*piece));
             range[1] = range[1].max(near.most_of(*piece));
         }
         range[0] = if range[0].is_finite() { range[0] } else { 0.0 };
-        let far = terms.far.as_ref();
-        for piece in far.iter().flat_map(|far| &far.pieces) {
-            near.least_of(*piece);
-        }
-        let at_center = self.two_from(&terms, &near.jets);
         let shares = near.shared(&items);
         let (mean, changes) = near.compare(&items, &shares);
-        let mut first = bound((&mean, &changes), &shares, &at_center.0, ball.radius);
+        let jet = near.mean_of((&mean, &changes), &items, &shares);
+        let mut first = bound((&mean, &changes), &shares, &jet, ball.radius);
         let margin = LEFT_OUT * range[1];
         first.value = [
             first.value[0].max(range[0] - margin),
-            first.value[1].min(range[1].min(all) + margin),
+            first.value[1].min(range[1] + margin),
         ];
-        let second = far.zip(at_center.1.as_ref());
-        let second = second.map(|(far, jet)| self.bound_second(&terms, far, &mut near, (&shares, jet)));
+        let second = (terms.far.as_ref()).map(|far| {
+            for piece in &far.pieces {
+                near.least_of(*piece);
+            }
+            let rows = far.rows(self, &terms.lead);
+            self.bound_second((far, rows), &terms.lead, &near, (&items, &shares))
+        });
         let level = self.level.unwrap_or(f64::INFINITY);
         Two {
             first,
-            second: second.filter(|second| second.value[1] >= level),
-            at_center: Some(at_center),
+            at_center: Some((jet, second.map(|(_, jet)| jet))),
+            second: second
+                .map(|(bounds, _)| bounds)
+                .filter(|bounds| bounds.value[1] >= level),
         }
     }
 
-    /// Computes bounds on F₂ from those on the shares of the pieces that lead.
+    /// Computes bounds on F₂, and its value and gradient at the centre, from the shares of those
+    /// that lead and count.
     fn bound_second(
         &self,
-        terms: &Terms,
-        far: &Far,
-        near: &mut Nearby,
-        (shares, at_center): (&[Share], &Jet<f64>),
-    ) -> Bounds {
+        (far, rows): (&Far, &Rows),
+        lead: &[u32],
+        near: &Nearby,
+        (items, shares): (&[(u32, f64)], &[Share]),
+    ) -> (Bounds, Jet<f64>) {
         let radius = near.ball.radius;
-        let rows = far.rows(self, &terms.lead);
-        let mut totals = vec![(0.0, 0.0); rows.count()];
-        for (class, share) in rows.classes.iter().zip(shares) {
-            let (center, most) = &mut totals[*class as usize];
+        let mut leading = lead.iter().zip(&rows.classes);
+        let classes = items.iter().map(|(piece, _)| {
+            let found = leading.find(|(lead, _)| *lead == piece);
+            found.map_or(rows.count(), |(_, class)| rows.number(*class))
+        });
+        let classes: Vec<usize> = classes.collect();
+        let mut totals = vec![(0.0, 0.0); rows.count() + 1];
+        let level = self.level.unwrap_or(THRESHOLD);
+        for (class, share) in classes.iter().zip(shares) {
+            let (center, most) = &mut totals[*class];
             *center += share.center;
             *most += share.most;
         }
-        let most: Vec<f64> = far.pieces.iter().map(|piece| near.most_of(*piece)).collect();
+        let most: Vec<f64> = far
+            .pieces
+            .iter()
+            .map(|piece| near.known_most_of(*piece))
+            .collect();
         let mut high = 0.0f64;
         // The mean by the shares at the centre of the means of all classes.
         let mut mean = Change::default();
-        let classes = totals.iter().enumerate().map(|(number, (center, total))| {
-            if *total == 0.0 {
+        let means = totals.iter().enumerate().map(|(number, (center, total))| {
+            if *total == 0.0 || number == rows.count() {
                 return Change::default();
             }
             let pairs = far.pieces.iter().zip(rows.row(number));
@@ -496,37 +557,36 @@ impl Local {
             high = counted.fold(high, |high, ((_, apart), most)| high.max(apart * most));
             let shares = near.shared(&items);
             let (own, changes) = near.compare(&items, &shares);
-            let mut gradient = own.gradient;
-            for (((piece, _), share), change) in items.iter().zip(&shares).zip(&changes) {
-                let jet = &near.jets[near.slots.of(*piece)];
-                if share.center > 0.0 {
-                    let sharp = POWER * share.center / jet.value * change.value;
-                    gradient += sharp * DVec3::from_array(jet.gradient);
-                }
-            }
-            let jet = Jet {
-                value: own.value,
-                gradient: gradient.to_array(),
-            };
+            let jet = near.mean_of((&own, &changes), &items, &shares);
             let Bounds {
-                slope, curvature, ..
-            } = bound((&own, &changes), &shares, &jet, radius);
-            let own = Change {
-                value: own.value,
-                gradient,
+                value: [low, most],
                 slope,
                 curvature,
+                ..
+            } = bound((&own, &changes), &shares, &jet, radius);
+            // Bounds on the derivatives of the ramp.
+            let [once, twice] = match level {
+                level if low >= level => [1.0, 0.0],
+                level if most <= 0.5 * level => [0.0; 2],
+                level => [4.0, 30.0 / level],
+            };
+            let (value, steep) = ramp(jet.value, level);
+            let own = Change {
+                value,
+                gradient: steep * DVec3::from_array(jet.gradient),
+                slope: times(once, slope),
+                curvature: times(once, curvature) + times(twice, slope * slope),
             };
             mean.value += center * own.value;
-            mean.gradient += center * own.gradient;
+            mean.gradient += *center * own.gradient;
             mean.slope += times(*center, own.slope);
             mean.curvature += times(*center, own.curvature);
             own
         });
-        let classes: Vec<Change> = classes.collect();
+        let means: Vec<Change> = means.collect();
         let is_one = totals.iter().filter(|(_, total)| *total > 0.0).count() < 2;
-        let changes = rows.classes.iter().map(|class| {
-            let own = &classes[*class as usize];
+        let changes = classes.iter().map(|class| {
+            let own = &means[*class];
             if is_one {
                 return Change::default();
             }
@@ -538,18 +598,10 @@ impl Local {
             }
         });
         let changes: Vec<Change> = changes.collect();
-        let mut bounds = bound((&mean, &changes), shares, at_center, radius);
+        let jet = near.mean_of((&mean, &changes), items, shares);
+        let mut bounds = bound((&mean, &changes), shares, &jet, radius);
         let margin = LEFT_OUT * high;
-        bounds.value = [
-            bounds.value[0].max(0.0),
-            bounds.value[1].min(high) + margin,
-        ];
-        bounds
+        bounds.value = [bounds.value[0].max(0.0), bounds.value[1].min(high) + margin];
+        (bounds, jet)
     }
-}
-
-/// Returns an upper bound on the fields of some stretches.
-fn largest(near: &mut Nearby, pieces: &[u32]) -> f64 {
-    let all = pieces.iter().map(|piece| near.most_of(*piece));
-    all.fold(0.0, f64::max)
 }

@@ -46,6 +46,8 @@ pub(super) struct Terms {
 #[derive(Clone, Debug)]
 pub(super) struct Far {
     pub pieces: Vec<u32>,
+    /// Those of the pieces that lead from which another fold may be above half of the level.
+    from: Vec<u32>,
     rows: OnceLock<Rows>,
 }
 
@@ -54,7 +56,7 @@ pub(super) struct Far {
 pub(super) struct Rows {
     width: usize,
     values: Vec<f64>,
-    /// The number of the row of each.
+    /// The number of the row of each that leads; more than any if it has none.
     pub classes: Vec<u32>,
 }
 
@@ -62,6 +64,11 @@ impl Rows {
     /// Returns the number of different rows.
     pub fn count(&self) -> usize {
         self.values.len() / self.width
+    }
+
+    /// Returns the number of a class, which for those without a row is the number of rows.
+    pub fn number(&self, class: u32) -> usize {
+        (class as usize).min(self.count())
     }
 
     pub fn row(&self, number: usize) -> &[f64] {
@@ -78,6 +85,10 @@ impl Far {
                 ..Rows::default()
             };
             for piece in lead {
+                if self.from.binary_search(piece).is_err() {
+                    rows.classes.push(u32::MAX);
+                    continue;
+                }
                 let row: Vec<f64> = local.apart(*piece, &self.pieces).collect();
                 let known = (0..rows.count()).find(|i| rows.row(*i) == row);
                 rows.classes
@@ -215,61 +226,69 @@ impl Local {
             .collect();
         let far = self
             .level
-            .and_then(|level| match among {
-                Some(terms) => terms.far.as_ref().map(|far| far.pieces.clone()),
-                None => Some(before.clone()),
-            }
-            .map(|pieces| self.choose_far(pieces, &lead, &mut near, level)))
-            .filter(|pieces| !pieces.is_empty());
+            .and_then(|level| {
+                match among {
+                    Some(terms) => terms.far.as_ref().map(|far| far.pieces.clone()),
+                    None => Some(before.clone()),
+                }
+                .map(|pieces| self.choose_far(pieces, &lead, &mut near, level))
+            })
+            .filter(|(pieces, _)| !pieces.is_empty());
         if let Some(terms) = among
             && lead.len() == terms.lead.len()
-            && far.as_ref().map(Vec::len) == terms.far.as_ref().map(|far| far.pieces.len())
+            && far
+                .as_ref()
+                .map(|(pieces, from)| [pieces.len(), from.len()])
+                == (terms.far.as_ref()).map(|far| [far.pieces.len(), far.from.len()])
         {
             return Arc::clone(terms);
         }
-        let of = |piece: &u32| {
-            let runs = self.links(*piece).iter();
-            runs.map(|Run { first, count, .. }| [*first, first + count])
-        };
-        let counted = lead.iter().chain(far.iter().flatten());
+        let runs = (lead.iter().chain(far.iter().flat_map(|far| &far.0)))
+            .flat_map(|piece| self.links(*piece))
+            .map(|Run { first, count, .. }| [*first, first + count]);
         Arc::new(Terms {
-            slots: Slots::new(counted.flat_map(of).collect()),
+            slots: Slots::new(runs.collect()),
             lead,
-            far: far.map(|pieces| Far {
+            far: far.map(|(pieces, from)| Far {
                 pieces,
+                from,
                 rows: OnceLock::new(),
             }),
         })
     }
 
-    /// Returns those of some pieces that have a weight in F₂; none if it is below its level.
+    /// Returns those of some pieces that have a weight in F₂, and those of the leading ones from
+    /// which F₂ⱼ may be above half of its level; none if none is.
     fn choose_far(
         &self,
         mut pieces: Vec<u32>,
         lead: &[u32],
         near: &mut Nearby,
         level: f64,
-    ) -> Vec<u32> {
-        if lead.len() * pieces.len() <= MOST_PAIRS {
-            let weights = near.weights(&pieces);
-            let mut matters = vec![false; pieces.len()];
-            for own in lead {
-                let parts = || self.apart(*own, &pieces).zip(&weights);
-                let floor = parts().map(|(apart, [low, _])| apart * low);
-                let floor = floor.fold(0.0, f64::max) * CUT;
-                for (matters, (apart, [_, most])) in matters.iter_mut().zip(parts()) {
-                    *matters |= apart > 0.0 && apart * most >= floor;
-                }
+    ) -> (Vec<u32>, Vec<u32>) {
+        if lead.len() * pieces.len() > MOST_PAIRS {
+            return (pieces, lead.to_vec());
+        }
+        let most: Vec<f64> = pieces.iter().map(|piece| near.most_of(*piece)).collect();
+        let weights = near.weights(&pieces);
+        let mut from = Vec::new();
+        let mut matters = vec![false; pieces.len()];
+        for own in lead {
+            let parts = || self.apart(*own, &pieces);
+            let mut fields = parts().zip(&most).map(|(apart, most)| apart * most);
+            if fields.all(|field| field < 0.49 * level) {
+                continue;
             }
-            let mut matters = matters.into_iter();
-            pieces.retain(|_| matters.next().unwrap_or(true));
+            from.push(*own);
+            let floor = parts().zip(&weights).map(|(apart, [low, _])| apart * low);
+            let floor = floor.fold(0.0, f64::max) * CUT;
+            for (matters, (apart, [_, most])) in matters.iter_mut().zip(parts().zip(&weights)) {
+                *matters |= apart > 0.0 && apart * most >= floor;
+            }
         }
-        let mut fields = pieces.iter().map(|piece| near.most_of(*piece));
-        if fields.any(|field| field >= level) {
-            pieces
-        } else {
-            Vec::new()
-        }
+        let mut matters = matters.into_iter();
+        pieces.retain(|_| matters.next().unwrap_or(true));
+        (pieces, from)
     }
 
     /// Returns how much some pieces, in ascending order, count as another fold beside a piece.

@@ -2,7 +2,7 @@
 use super::Local;
 use super::cells::{Far, Slots, Terms};
 use crate::term::Evaluate;
-use crate::{Jet, Real};
+use crate::{Jet, Real, THRESHOLD};
 
 /// The power of a piece's density in its weight: three squarings.
 pub(super) const POWER: f64 = 8.0;
@@ -44,8 +44,7 @@ pub(super) fn shares<R: Real>(all: &[(R, f64)]) -> Vec<R> {
     weights
 }
 
-/// Values of the stretches of some terms at a point, and factors on the gradients of all pieces in
-/// the gradient of their mean.
+/// The mean of stretches at a point, and factors on the gradients of all pieces in its gradient.
 struct Mean<R> {
     value: R,
     factors: Vec<R>,
@@ -64,6 +63,17 @@ impl<R: Real> Mean<R> {
             ..sum
         }
     }
+}
+
+/// Computes a far field without what is of no interest, and its slope: 0 up to half of a level,
+/// x from the level on, and `x·(3t² − 2t³)`, t = 2x/level − 1, between.
+pub(super) fn ramp<R: Real>(x: R, level: f64) -> (R, R) {
+    let [zero, one] = [0.0, 1.0].map(R::splat);
+    let rate = 2.0 / level;
+    let t = (R::splat(rate) * x - one).max(zero).min(one);
+    let part = t * t * (R::splat(3.0) - t - t);
+    let slope = R::splat(6.0 * rate) * t * (one - t);
+    (x * part, part + x * slope)
 }
 
 /// Computes `8·share/f`, 0 where nothing is shared.
@@ -107,12 +117,12 @@ impl Local {
         slots: &Slots,
         jets: &[Jet<R>],
     ) -> Vec<(R, f64)> {
-        let density = |&piece: &u32| {
-            let length = self.pieces[piece as usize].length;
+        let all = pieces.iter().map(|piece| {
+            let length = self.pieces[*piece as usize].length;
             let inverse = R::splat(length.recip());
-            (jets[slots.of(piece)].value * inverse, length)
-        };
-        pieces.iter().map(density).collect()
+            (jets[slots.of(*piece)].value * inverse, length)
+        });
+        all.collect()
     }
 
     /// Computes F and F₂ from some terms.
@@ -125,19 +135,10 @@ impl Local {
         let jets: Vec<Jet<R>> = pieces
             .map(|piece| self.pieces[piece as usize].primitive.jet(point))
             .collect();
-        self.two_from(terms, &jets)
-    }
-
-    /// Computes F and F₂ from the fields of all pieces that matter.
-    pub(super) fn two_from<R: Real>(
-        &self,
-        terms: &Terms,
-        jets: &[Jet<R>],
-    ) -> (Jet<R>, Option<Jet<R>>) {
-        let shares = shares(&self.densities(&terms.lead, &terms.slots, jets));
-        let first = self.first(terms, &shares, jets).jet(jets);
+        let shares = shares(&self.densities(&terms.lead, &terms.slots, &jets));
+        let first = self.first(terms, &shares, &jets).jet(&jets);
         let far = terms.far.as_ref();
-        let second = far.map(|far| self.second(terms, far, &shares, jets).jet(jets));
+        let second = far.map(|far| self.second(terms, far, &shares, &jets).jet(&jets));
         (first, second)
     }
 
@@ -174,14 +175,15 @@ impl Local {
         let rows = far.rows(self, &terms.lead);
         let mut stretches: Vec<Option<R>> = vec![None; far.pieces.len()];
         // The mean of each class, and the sum of the shares of those that are of it.
-        let mut classes: Vec<(R, R)> = vec![(zero, zero); rows.count()];
+        let mut classes: Vec<(R, R)> = vec![(zero, zero); rows.count() + 1];
         for (class, share) in rows.classes.iter().zip(shares_of_lead) {
-            let sum = &mut classes[*class as usize].1;
+            let sum = &mut classes[rows.number(*class)].1;
             *sum = *sum + *share;
         }
         let mut value = zero;
         let mut factors = vec![zero; jets.len()];
-        for (number, (mean, total)) in classes.iter_mut().enumerate() {
+        let level = self.level.unwrap_or(THRESHOLD);
+        for (number, (ramped, total)) in classes.iter_mut().enumerate().take(rows.count()) {
             if !R::any(zero.lt(*total)) {
                 continue;
             }
@@ -193,28 +195,32 @@ impl Local {
                 .collect();
             let shares = shares(&parts);
             let counts = |share: &R| R::any(zero.lt(*share));
+            let mut mean = zero;
             let all = far.pieces.iter().zip(&shares).zip(&mut stretches).zip(row);
             for (((piece, share), stretch), apart) in all.filter(|(((_, s), _), _)| counts(s)) {
                 let own = *stretch.get_or_insert_with(|| self.stretch(*piece, slots, jets));
-                *mean = *mean + *share * (R::splat(*apart) * own);
+                mean = mean + *share * (R::splat(*apart) * own);
             }
-            value = value + *total * *mean;
+            let (own, slope) = ramp(mean, level);
+            *ramped = own;
+            value = value + *total * own;
+            let times = *total * slope;
             let all = far.pieces.iter().zip(&shares).zip(&stretches).zip(row);
             for (((piece, share), stretch), apart) in all {
                 let Some(stretch) = stretch.filter(|_| counts(share)) else {
                     continue;
                 };
                 let (own, apart) = (slots.of(*piece), R::splat(*apart));
-                self.add_stretch((*piece, *total * *share * apart), slots, &mut factors);
+                self.add_stretch((*piece, times * *share * apart), slots, &mut factors);
                 let sharp = sharpness(*share, jets[own].value);
-                factors[own] = factors[own] + *total * (sharp * (apart * stretch - *mean));
+                factors[own] = factors[own] + times * (sharp * (apart * stretch - mean));
             }
         }
         let all = terms.lead.iter().zip(shares_of_lead).zip(&rows.classes);
         for ((piece, share), class) in all {
             let own = slots.of(*piece);
             let sharp = sharpness(*share, jets[own].value);
-            factors[own] = factors[own] + sharp * (classes[*class as usize].0 - value);
+            factors[own] = factors[own] + sharp * (classes[rows.number(*class)].0 - value);
         }
         Mean { value, factors }
     }

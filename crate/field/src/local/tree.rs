@@ -77,11 +77,15 @@ impl Tree {
         Some(number as u32)
     }
 
-    /// Returns a bound on the sum of all pieces' fields in a ball.
-    pub fn most(&self, pieces: &[Piece], ball: &Ball) -> f64 {
+    /// Returns a bound on the sum of all pieces' fields in a ball; any number that is no less than
+    /// `enough`, if the bound is.
+    pub fn most(&self, pieces: &[Piece], ball: &Ball, enough: f64) -> f64 {
         let mut sum = 0.0;
         let mut waiting = vec![0u32];
         while let Some(number) = waiting.pop() {
+            if sum >= enough {
+                break;
+            }
             let Some((group, node)) = self.0.get(number as usize) else {
                 continue;
             };

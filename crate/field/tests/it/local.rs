@@ -164,8 +164,8 @@ impl Figure {
         sum
     }
 
-    /// F, F₂ and the largest W, by their definition.
-    fn fields(&self, point: DVec3) -> [f64; 3] {
+    /// Computes F, F₂ and the largest W, by their definition.
+    fn fields(&self, point: DVec3, level: f64) -> [f64; 3] {
         let between = self.distances();
         let pieces = self.pieces();
         let middle = |p: &Piece| (p.segment, 0.5 * (p.from + p.to));
@@ -188,12 +188,14 @@ impl Figure {
             if total > 0.0 { sum / total } else { 0.0 }
         };
         let second = |j: usize| {
-            mean(&|k| {
+            let far = mean(&|k| {
                 let distance = self.distance(&between, middle(&pieces[j]), middle(&pieces[k]));
                 let t = (distance / self.reach - 2.0).clamp(0.0, 1.0);
                 let apart = t * t * (3.0 - 2.0 * t);
                 [apart * weights[k], apart * stretches[k]]
-            })
+            });
+            let t = (2.0 * far / level - 1.0).clamp(0.0, 1.0);
+            far * t * t * (3.0 - 2.0 * t)
         };
         [
             mean(&|j| [weights[j], stretches[j]]),
@@ -275,7 +277,7 @@ fn the_fields_are_the_means_of_stretches() {
             let local = figure.local().with_folds(0.01);
             for _ in 0..count(4) {
                 let point = near(&figure, &mut random, 0.8);
-                let [want, second, most] = figure.fields(point);
+                let [want, second, most] = figure.fields(point, 0.01);
                 let (own, other) = local.two(point.to_array());
                 assert!((own.value - want).abs() <= 1e-6 * want, "{own:?} {want}");
                 assert!(own.value <= most * (1.0 + 1e-6), "{own:?} {most}");
@@ -291,7 +293,10 @@ fn the_fields_are_the_means_of_stretches() {
             }
         }
     }
-    assert!(compared > count(40) && 5 * seconds > compared, "{compared} {seconds}");
+    assert!(
+        compared > count(40) && 5 * seconds > compared,
+        "{compared} {seconds}"
+    );
 }
 
 #[test]
@@ -374,7 +379,10 @@ fn gradients_are_derivatives() {
                         continue;
                     }
                     let size = 1.0 + own.length() + jet.value.powi(2);
-                    assert!(own.distance(gradient) < 1e-5 * size, "{which}: {own} {gradient}");
+                    assert!(
+                        own.distance(gradient) < 1e-5 * size,
+                        "{which}: {own} {gradient}"
+                    );
                 }
             }
         }
@@ -478,7 +486,10 @@ fn normals_do_not_jump() {
             }
         }
         println!("{kernel:?}: {worst:.4}° of {found}");
-        assert!(worst < 1.0 && found > count(3000), "{kernel:?} {worst} {found}");
+        assert!(
+            worst < 1.0 && found > count(3000),
+            "{kernel:?} {worst} {found}"
+        );
     }
 }
 

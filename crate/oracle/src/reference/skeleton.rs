@@ -51,7 +51,12 @@ fn mean(distance: impl Fn(f64) -> f64, reach: f64, length: f64) -> f64 {
     let (start, end) = (distance(0.0), distance(length));
     let mut kinks = vec![0.0, length, 0.5 * (end - start + length), start.min(length)];
     for level in [2.0 / 3.0 * reach, reach] {
-        kinks.extend([level - start, start - level, start + level, length + end - level]);
+        kinks.extend([
+            level - start,
+            start - level,
+            start + level,
+            length + end - level,
+        ]);
     }
     kinks.retain(|x| (0.0..=length).contains(x));
     kinks.sort_unstable_by(f64::total_cmp);
@@ -169,7 +174,10 @@ impl SkeletonTerms {
         let first = average(weights.iter().copied().zip(stretches.iter().copied()));
         let (mut value, mut gradient) = (first.value, first.gradient);
         if let Some(fold) = &self.fold {
-            let largest = weights.iter().map(|weight| weight.value).fold(0.0, f64::max);
+            let largest = weights
+                .iter()
+                .map(|weight| weight.value)
+                .fold(0.0, f64::max);
             let seconds = weights.iter().zip(&self.pieces).map(|(weight, piece)| {
                 if weight.value < SMALLEST * largest {
                     return (*weight, NOTHING);
@@ -192,7 +200,13 @@ impl SkeletonTerms {
                     };
                     (weight, *stretch)
                 }));
-                (*weight, second)
+                let t = (2.0 * second.value / fold.start - 1.0).clamp(0.0, 1.0);
+                let slope = step(t) + second.value * 6.0 * t * (1.0 - t) * 2.0 / fold.start;
+                let ramped = Field {
+                    value: second.value * step(t),
+                    gradient: slope * second.gradient,
+                };
+                (*weight, ramped)
             });
             let seconds: Vec<_> = seconds.collect();
             let mut second = average(seconds.into_iter());
@@ -275,7 +289,10 @@ impl SkeletonTerms {
                 });
                 (weight, stretch)
             });
-            (*weight, spread(parted.collect()))
+            let far = spread(parted.collect());
+            // The ramp rises.
+            let [low, high] = [far.low, far.high].map(|x| x * step(2.0 * x / fold.start - 1.0));
+            (*weight, Range { low, high })
         });
         let second = slack(spread(seconds.collect()));
         let second = Range {

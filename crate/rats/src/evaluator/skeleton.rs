@@ -114,6 +114,17 @@ fn skeleton<'a>(
     let names = read.nodes.iter().map(|(name, _)| name.text.to_owned());
     let names = names.collect();
     let curves = read.refine(command, options)?;
+    if let Some((reach, span)) = options.last(&LOCAL) {
+        let thickest = curves.points().fold(0.0, |most: f64, (_, r)| most.max(r));
+        if reach < thickest {
+            let message = format_args!(
+                "flesh as thick as {thickest} blends along {reach} of its curves only, and is \
+                 thinner than that"
+            );
+            let enough = SUITABLE_REACH * thickest;
+            run.warn(&span, message, format_args!("write `local {enough}`"));
+        }
+    }
     let segments = curves.polyline().map_or(0, |p| p.segments.len());
     run.scope
         .step((segments / SEGMENTS_PER_STEP) as u64, &command.word_span)?;
@@ -150,6 +161,8 @@ fn skeleton<'a>(
     Ok(Flow::Next)
 }
 
+/// Length along its curves within which flesh blends as if all of it counted, in its largest radii.
+const SUITABLE_REACH: f64 = 4.0;
 /// Least length along its curves within which flesh may blend, in its largest radii.
 const LEAST_REACH: f64 = 0.2;
 
