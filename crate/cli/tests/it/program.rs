@@ -601,8 +601,50 @@ fn animate_follows_the_variables() {
         assert_eq!(frames.len(), 3);
         assert!(frames[0] != frames[1] && frames[1] != frames[2]);
     }
+    // Parts that were traced apart are merged to the same bytes; a GIF from the same pictures.
+    let parts = [["0..1", "one.png"], ["1..3", "two.png"]].map(|[frames, name]| {
+        let part = folder.path(name);
+        let output = sinew(
+            &[
+                "animate", &file, "-o", &part, "--frames", frames, "--fps", "10",
+            ],
+            "",
+        );
+        assert!(output.status.success(), "{frames}");
+        part
+    });
+    for ending in ["png", "gif"] {
+        let merged = folder.path(&format!("merged.{ending}"));
+        let output = sinew(
+            &["animate", "--merge", &parts[0], &parts[1], "-o", &merged],
+            "",
+        );
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let bytes = |path: &str| std::fs::read(path).expect("written");
+        let film = folder.path(&format!("film.{ending}"));
+        assert!(bytes(&merged) == bytes(&film), "{ending}");
+    }
     let still = folder.write("still.rat", BALL);
     let film = folder.path("still.png");
+    for arguments in [
+        vec!["animate", &file, "-o", &film, "--frames", "3..3"],
+        vec![
+            "animate", &file, "-o", &film, "--frames", "3", "--merge", &parts[0],
+        ],
+        vec!["animate", "-o", &film],
+        vec!["animate", "-o", &film, "--merge", &file],
+        vec!["animate", "-o", &film, "--merge", "absent.png"],
+    ] {
+        assert_eq!(
+            sinew(&arguments, "").status.code(),
+            Some(2),
+            "{arguments:?}"
+        );
+    }
     for (arguments, why) in [
         (["animate", &still, "-o", &film, "--frames", "3"], "changes"),
         (
