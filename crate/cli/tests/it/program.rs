@@ -665,6 +665,40 @@ fn animate_follows_the_variables() {
 }
 
 #[test]
+fn a_skeleton_is_drawn_without_a_dataset() {
+    let folder = Folder::new("skeleton");
+    // In millimetres, far from the origin, as data are.
+    let limb = folder.write(
+        "a limb.swc",
+        "1 3 5000 0 0 2 -1\n2 3 5040 0 0 2 1\n3 3 5060 30 0 1 2\n",
+    );
+    let picture = folder.path("limb.png");
+    let arguments = ["render", &limb, "-o", &picture, "-r", "80", "60"];
+    let output = sinew(&arguments, "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let bytes = std::fs::read(&picture).expect("written");
+    let format = picture::Format::of(picture.as_ref()).expect("a format");
+    let picture = picture::file::decode(&bytes, format).expect("a picture");
+    // Flesh is seen, framed: in the middle of the picture, and not at its edge.
+    let corner = picture.pixel(0, 0);
+    let differ = |x: u32, y: u32| picture.pixel(x, y) != corner;
+    let seen = (0..80).flat_map(|x| (0..60).map(move |y| (x, y)));
+    let seen: Vec<(u32, u32)> = seen.filter(|&(x, y)| differ(x, y)).collect();
+    assert!(seen.len() > 150, "{} pixels", seen.len());
+    assert!(
+        seen.iter()
+            .all(|&(x, y)| (1..79).contains(&x) && (1..59).contains(&y))
+    );
+
+    let mesh = folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let output = sinew(&["check", &mesh], "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("no limbs"), "{said}");
+}
+
+#[test]
 fn fmt_lays_out_and_checks() {
     let folder = Folder::new("fmt");
     let untidy = "for i=1 to 3 {\nsphere flesh 1   i 0 0\n}\n";
