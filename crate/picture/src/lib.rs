@@ -24,6 +24,7 @@
 pub mod animation;
 mod collage;
 pub mod combine;
+pub mod contour;
 pub mod file;
 #[cfg(feature = "formats")]
 mod formats;
