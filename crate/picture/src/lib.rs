@@ -14,7 +14,7 @@
 //!
 //! A [`Picture`] is a width, a height and four bytes a pixel. [`combine`] and [`resize()`] make new
 //! ones of old ones, [`collage()`] puts several on a sheet, [`plot()`] and [`swatches()`] draw
-//! simple ones. [`file`] turns pictures into the bytes of PNG, TGA, TIFF, GIF and MTV files and
+//! simple ones, [`contour`] finds lines of equal value. [`file`] turns pictures into the bytes of PNG, TGA, TIFF, GIF and MTV files and
 //! back, [`animation`] does so with animations in PNG and GIF.
 //!
 //! Without the feature `formats` only PNG and MTV are known. Bytes of files are never trusted: what

@@ -702,6 +702,55 @@ fn a_skeleton_is_drawn_without_a_dataset() {
 }
 
 #[test]
+fn plots_are_numbers_and_drawings() {
+    let folder = Folder::new("plot");
+    let ball = folder.write("ball.rat", BALL);
+    fn plot(arguments: &[&str]) -> Option<String> {
+        let output = sinew(&[&["plot"], arguments].concat(), "");
+        let path = arguments.last().expect("the output");
+        (output.status.code() == Some(0)).then(|| std::fs::read_to_string(path).expect("written"))
+    }
+    fn rows(text: &str) -> Vec<Vec<f64>> {
+        let rows = text.lines().skip(1);
+        rows.map(|row| row.split(',').map(|n| n.parse().expect("a number")).collect())
+            .collect()
+    }
+    let table = folder.path("plot.csv");
+    let text = plot(&["--kernels", "gauss", "-o", &table]).expect("a kernel");
+    assert!(text.starts_with("u,gauss\n"), "{text}");
+    for row in rows(&text) {
+        assert!((row[1] - (-row[0] * row[0]).exp()).abs() < 1e-12, "{row:?}");
+    }
+    // Along a line from the middle of a ball outwards the field falls below 1 at its radius, 1.
+    let line = ["--line", "0", "0", "0", "2", "0", "0"];
+    let text = plot(&[&[ball.as_str()], &line[..], &["-o", &table]].concat()).expect("a line");
+    for row in rows(&text) {
+        assert!((row[0] - 1.0).abs() < 1e-9 || (row[1] > 1.0) == (row[0] < 1.0), "{row:?}");
+    }
+    // So it is on a plane.
+    let window = ["--plane", "z=0", "--window", "-2", "-2", "2", "2"];
+    let text = plot(&[&[ball.as_str()], &window[..], &["-o", &table]].concat()).expect("a plane");
+    for row in rows(&text) {
+        let distance = row[0].hypot(row[1]);
+        assert!((distance - 1.0).abs() < 1e-5 || (row[2] > 1.0) == (distance < 1.0), "{row:?}");
+    }
+    let drawing = folder.path("plot.svg");
+    let text = plot(&["--kernels", "-o", &drawing]).expect("a drawing");
+    assert!(text.contains("<path") && text.contains("cauchy") && text.ends_with("</svg>\n"));
+    let text = plot(&[ball.as_str(), "--plane", "y=0.25", "-o", &drawing]).expect("a drawing");
+    assert!(text.contains("1 T</text>"), "{text}");
+    for wrong in [
+        vec!["--kernels", "nosuch", "-o", &drawing],
+        vec![&ball, "-o", &drawing],
+        vec![&ball, "--plane", "w=0", "-o", &drawing],
+        vec![&ball, "--plane", "z=0", "--window", "1", "0", "0", "1", "-o", &drawing],
+        vec!["--kernels", "-o", "plot.txt"],
+    ] {
+        assert_eq!(plot(&wrong), None, "{wrong:?}");
+    }
+}
+
+#[test]
 fn fmt_lays_out_and_checks() {
     let folder = Folder::new("fmt");
     let untidy = "for i=1 to 3 {\nsphere flesh 1   i 0 0\n}\n";
