@@ -289,6 +289,197 @@ fn links_carry_all_texts_there_and_back() {
     );
 }
 
+/// Pixels of a picture file, three bytes each, with its size.
+fn pixels(path: &str) -> ([u32; 2], Vec<u8>) {
+    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let picture = picture::file::decode(&bytes, picture::Format::Png).expect("a picture");
+    (picture.size(), picture.rgb())
+}
+
+/// Pictures of several `shoot`s have names of their own; `-o` numbers those before the last.
+#[test]
+fn several_shoots_write_several_pictures() {
+    let folder = Folder::new("shoots");
+    let text = "eyep 0 0 5\nfov 40\nframesize 16 12\nlight White, pos 3 4 5\n\
+        surface s diffuse Red\nsphere s 0.5 -1 0 0\nfilename one\nshoot\n\
+        surface s diffuse Blue\nsphere s 0.5 1 0 0\nfilename two.tga\nshoot\n\
+        reset data\nfilename three\nformat png\nsphere s 0.5 0 0 0\nshoot\n";
+    let file = folder.write("film.rat", text);
+    let output = sinew(&[&file], "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    for name in ["one.png", "two.tga", "three.png"] {
+        assert!(said.contains(&format!("wrote {name}, 16×12")), "{said}");
+    }
+    // First one red ball to the left, then two blue ones, then one in the middle.
+    fn lit((size, bytes): &([u32; 2], Vec<u8>), channel: usize) -> [usize; 2] {
+        let width = size[0] as usize;
+        let rgb = bytes.chunks_exact(3).enumerate();
+        let bright = rgb.filter(|(_, rgb)| rgb[channel] > 60 && rgb[2 - channel] < 60);
+        let sides: Vec<bool> = bright.map(|(i, _)| i % width < width / 2).collect();
+        let first = sides.iter().filter(|is_left| **is_left).count();
+        [first, sides.len() - first]
+    }
+    let one = pixels(&folder.path("one.png"));
+    assert!(
+        lit(&one, 0)[0] > 3 && lit(&one, 0)[1] == 0,
+        "{:?}",
+        lit(&one, 0)
+    );
+    assert_eq!(lit(&one, 2), [0, 0]);
+    let three = pixels(&folder.path("three.png"));
+    assert!(lit(&three, 2).into_iter().all(|count| count > 3));
+
+    let picture = folder.path("out.png");
+    for arguments in [
+        &["render", &file, "-o", &picture][..],
+        &["-o", &picture, &file],
+    ] {
+        let output = sinew(arguments, "");
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let names = ["out-1.png", "out-2.png", "out.png"].map(|name| folder.path(name));
+        let [first, second, last] = names.each_ref().map(|name| pixels(name));
+        assert_eq!((&first, &last), (&one, &three));
+        let both = lit(&second, 2);
+        assert!(both[0] > 3 && both[1] > 3, "{both:?}");
+        for name in names {
+            std::fs::remove_file(name).expect("removed");
+        }
+    }
+}
+
+/// `-` is a dataset that comes from the standard input.
+#[test]
+fn datasets_come_from_the_standard_input() {
+    let folder = Folder::new("input");
+    let picture = folder.path("ball.png");
+    let output = sinew(&["-o", &picture, "-"], BALL);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(pixels(&picture).0, [32, 24]);
+    let output = sinew(&["check", "-"], "wibble\n");
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("input.rat:1:1"), "{said}");
+    let output = sinew(&["scene", "-"], BALL);
+    assert!(stdout(&output).contains("\"elements\""));
+}
+
+/// `log` and `stopwatch` do what they say; `pause` waits for nobody where nobody sits.
+#[test]
+fn logs_pauses_and_stopwatches() {
+    let folder = Folder::new("interludes");
+    let text = BALL.replace(
+        "shoot",
+        "log said.txt\nstopwatch start\nfilename a\nshoot\n\
+        stopwatch stop\npause look\nlog\nfilename b\nshoot",
+    );
+    let file = folder.write("ball.rat", &text);
+    let output = sinew(&["-r", "8", "6", &file], "");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let log = std::fs::read_to_string(folder.path("said.txt")).expect("the log");
+    assert!(
+        log.contains("wrote a.png") && log.contains("stopwatch: "),
+        "{log}"
+    );
+    assert!(
+        log.contains("look") && !log.contains("wrote b.png"),
+        "{log}"
+    );
+    // A stranger's log stays in the folder, and is none but a log.
+    for name in ["../said.txt", "/tmp/said.txt"] {
+        let file = folder.write("odd.rat", &format!("log {name}\n{BALL}"));
+        let output = sinew(&[&file], "");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("leads out of"), "{said}");
+    }
+}
+
+/// `cp x y z 0` is what an eye twice as near shows, but for a pixel here and there.
+#[test]
+fn parallel_rays_are_those_of_an_eye_far_away() {
+    let folder = Folder::new("parallel");
+    let model = "framesize 64 64\nlight White, pos 3 4 5\nsurface s diffuse White, rad 1, blob -2\n\
+        surface h diffuse Red\nsphere s 1 -1.5 0 0\ncylinder s 1 <-1 1 -6> <2 -1 6>\n\
+        sphere h 1 1.5 1 -5\nsphere h 1 1.5 -1.5 5\n";
+    let camera = "cp 0 0 1 0\nwindow -4 4 -4 4\n";
+    let near = "eyep 0 0 22918.3\nfov 0.02\n";
+    fn show(folder: &Folder, name: &str, text: String) -> Vec<u8> {
+        let file = folder.write(&format!("{name}.rat"), &text);
+        let picture = folder.path(&format!("{name}.png"));
+        let output = sinew(&["render", &file, "-o", &picture, "--threads", "1"], "");
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        pixels(&picture).1
+    }
+    let parallel = show(&folder, "parallel", format!("{camera}{model}"));
+    let far = show(&folder, "far", format!("{near}{model}"));
+    fn differ(a: &[u8], b: &[u8]) -> usize {
+        let pairs = a.chunks_exact(3).zip(b.chunks_exact(3));
+        let pairs = pairs.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 24));
+        pairs.count()
+    }
+    assert!(differ(&parallel, &far) < 12, "{}", differ(&parallel, &far));
+    let close = show(&folder, "close", format!("eyep 0 0 12\nfov 36.87\n{model}"));
+    assert!(differ(&parallel, &close) > 200);
+    // The two hard balls are equally large, though one is three times as far from a near eye.
+    fn red(pixels: &[u8], rows: std::ops::Range<usize>) -> usize {
+        let rows = pixels
+            .chunks_exact(3 * 64)
+            .enumerate()
+            .filter(|(y, _)| rows.contains(y));
+        let rgb = rows.flat_map(|(_, row)| row.chunks_exact(3));
+        // Also where it is in shadow.
+        rgb.filter(|rgb| rgb[0] > 24 && rgb[0] / 2 > rgb[1]).count()
+    }
+    let [above, below] = [red(&parallel, 0..32), red(&parallel, 32..64)];
+    assert!(above.abs_diff(below) < above / 3, "{above} {below}");
+    let [above, below] = [red(&close, 0..32), red(&close, 32..64)];
+    assert!(below > 2 * above, "{above} {below}");
+}
+
+/// `sample 0.5` sends one ray for four pixels, which all show it.
+#[test]
+fn fewer_rays_than_pixels_make_blocks() {
+    let folder = Folder::new("blocks");
+    fn render(folder: &Folder, sample: &str, size: [&str; 2]) -> (Option<u64>, Vec<u8>) {
+        let picture = folder.path("ball.png");
+        let file = folder.write("ball.rat", &format!("sample {sample}\n{BALL}"));
+        let [w, h] = size;
+        let arguments = ["render", &file, "-o", &picture, "--json", "-r", w, h];
+        let output = sinew(&arguments, "");
+        assert!(output.status.success(), "{output:?}");
+        let summary: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+        (summary["rays"]["primary"].as_u64(), pixels(&picture).1)
+    }
+    for (sample, side) in [("0.5", 2), ("0.25", 4), ("0.125", 8), ("0.0625", 16)] {
+        let (rays, shown) = render(&folder, sample, ["150", "90"]);
+        let wanted = 150_u64.div_ceil(side) * 90_u64.div_ceil(side);
+        assert_eq!(rays, Some(wanted), "{sample}");
+        let side = side as usize;
+        for (y, x) in (0..90).flat_map(|y| (0..150).map(move |x| (y, x))) {
+            assert_eq!(
+                shown[3 * (150 * y + x)..][..3],
+                shown[3 * (150 * (y - y % side) + x - x % side)..][..3],
+                "{sample}: {x} {y}"
+            );
+        }
+    }
+    // A block shows what its middle does: blocks of 2 are the picture of half the size.
+    assert_eq!(render(&folder, "0.5", ["128", "96"]).1.len(), 3 * 128 * 96);
+    let (_, blocks) = render(&folder, "0.5", ["128", "96"]);
+    let (_, half) = render(&folder, "1", ["64", "48"]);
+    let small: Vec<u8> = (0..48)
+        .flat_map(|y| (0..64).flat_map(move |x| (0..3).map(move |k| 3 * (256 * y + 2 * x) + k)))
+        .map(|index| blocks[index])
+        .collect();
+    let apart = small
+        .iter()
+        .zip(&half)
+        .filter(|(a, b)| a.abs_diff(**b) > 2)
+        .count();
+    assert!(apart < 30, "{apart}");
+}
+
 #[test]
 fn the_options_of_rats() {
     let folder = Folder::new("classic");
@@ -413,8 +604,50 @@ fn animate_follows_the_variables() {
         assert_eq!(frames.len(), 3);
         assert!(frames[0] != frames[1] && frames[1] != frames[2]);
     }
+    // Parts that were traced apart are merged to the same bytes; a GIF from the same pictures.
+    let parts = [["0..1", "one.png"], ["1..3", "two.png"]].map(|[frames, name]| {
+        let part = folder.path(name);
+        let output = sinew(
+            &[
+                "animate", &file, "-o", &part, "--frames", frames, "--fps", "10",
+            ],
+            "",
+        );
+        assert!(output.status.success(), "{frames}");
+        part
+    });
+    for ending in ["png", "gif"] {
+        let merged = folder.path(&format!("merged.{ending}"));
+        let output = sinew(
+            &["animate", "--merge", &parts[0], &parts[1], "-o", &merged],
+            "",
+        );
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let bytes = |path: &str| std::fs::read(path).expect("written");
+        let film = folder.path(&format!("film.{ending}"));
+        assert!(bytes(&merged) == bytes(&film), "{ending}");
+    }
     let still = folder.write("still.rat", BALL);
     let film = folder.path("still.png");
+    for arguments in [
+        vec!["animate", &file, "-o", &film, "--frames", "3..3"],
+        vec![
+            "animate", &file, "-o", &film, "--frames", "3", "--merge", &parts[0],
+        ],
+        vec!["animate", "-o", &film],
+        vec!["animate", "-o", &film, "--merge", &file],
+        vec!["animate", "-o", &film, "--merge", "absent.png"],
+    ] {
+        assert_eq!(
+            sinew(&arguments, "").status.code(),
+            Some(2),
+            "{arguments:?}"
+        );
+    }
     for (arguments, why) in [
         (["animate", &still, "-o", &film, "--frames", "3"], "changes"),
         (
@@ -432,6 +665,89 @@ fn animate_follows_the_variables() {
         assert!(said.contains(why), "{said}");
     }
     assert!(!folder.0.join("still.png").exists());
+}
+
+#[test]
+fn a_skeleton_is_drawn_without_a_dataset() {
+    let folder = Folder::new("skeleton");
+    // In millimetres, far from the origin, as data are.
+    let limb = folder.write(
+        "a limb.swc",
+        "1 3 5000 0 0 2 -1\n2 3 5040 0 0 2 1\n3 3 5060 30 0 1 2\n",
+    );
+    let picture = folder.path("limb.png");
+    let arguments = ["render", &limb, "-o", &picture, "-r", "80", "60"];
+    let output = sinew(&arguments, "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let bytes = std::fs::read(&picture).expect("written");
+    let format = picture::Format::of(picture.as_ref()).expect("a format");
+    let picture = picture::file::decode(&bytes, format).expect("a picture");
+    // Flesh is seen, framed: in the middle of the picture, and not at its edge.
+    let corner = picture.pixel(0, 0);
+    let differ = |x: u32, y: u32| picture.pixel(x, y) != corner;
+    let seen = (0..80).flat_map(|x| (0..60).map(move |y| (x, y)));
+    let seen: Vec<(u32, u32)> = seen.filter(|&(x, y)| differ(x, y)).collect();
+    assert!(seen.len() > 150, "{} pixels", seen.len());
+    assert!(
+        seen.iter()
+            .all(|&(x, y)| (1..79).contains(&x) && (1..59).contains(&y))
+    );
+
+    let mesh = folder.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let output = sinew(&["check", &mesh], "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("no limbs"), "{said}");
+}
+
+#[test]
+fn plots_are_numbers_and_drawings() {
+    let folder = Folder::new("plot");
+    let ball = folder.write("ball.rat", BALL);
+    fn plot(arguments: &[&str]) -> Option<String> {
+        let output = sinew(&[&["plot"], arguments].concat(), "");
+        let path = arguments.last().expect("the output");
+        (output.status.code() == Some(0)).then(|| std::fs::read_to_string(path).expect("written"))
+    }
+    fn rows(text: &str) -> Vec<Vec<f64>> {
+        let rows = text.lines().skip(1);
+        rows.map(|row| row.split(',').map(|n| n.parse().expect("a number")).collect())
+            .collect()
+    }
+    let table = folder.path("plot.csv");
+    let text = plot(&["--kernels", "gauss", "-o", &table]).expect("a kernel");
+    assert!(text.starts_with("u,gauss\n"), "{text}");
+    for row in rows(&text) {
+        assert!((row[1] - (-row[0] * row[0]).exp()).abs() < 1e-12, "{row:?}");
+    }
+    // Along a line from the middle of a ball outwards the field falls below 1 at its radius, 1.
+    let line = ["--line", "0", "0", "0", "2", "0", "0"];
+    let text = plot(&[&[ball.as_str()], &line[..], &["-o", &table]].concat()).expect("a line");
+    for row in rows(&text) {
+        assert!((row[0] - 1.0).abs() < 1e-9 || (row[1] > 1.0) == (row[0] < 1.0), "{row:?}");
+    }
+    // So it is on a plane.
+    let window = ["--plane", "z=0", "--window", "-2", "-2", "2", "2"];
+    let text = plot(&[&[ball.as_str()], &window[..], &["-o", &table]].concat()).expect("a plane");
+    for row in rows(&text) {
+        let distance = row[0].hypot(row[1]);
+        assert!((distance - 1.0).abs() < 1e-5 || (row[2] > 1.0) == (distance < 1.0), "{row:?}");
+    }
+    let drawing = folder.path("plot.svg");
+    let text = plot(&["--kernels", "-o", &drawing]).expect("a drawing");
+    assert!(text.contains("<path") && text.contains("cauchy") && text.ends_with("</svg>\n"));
+    let text = plot(&[ball.as_str(), "--plane", "y=0.25", "-o", &drawing]).expect("a drawing");
+    assert!(text.contains("1 T</text>"), "{text}");
+    for wrong in [
+        vec!["--kernels", "nosuch", "-o", &drawing],
+        vec![&ball, "-o", &drawing],
+        vec![&ball, "--plane", "w=0", "-o", &drawing],
+        vec![&ball, "--plane", "z=0", "--window", "1", "0", "0", "1", "-o", &drawing],
+        vec!["--kernels", "-o", "plot.txt"],
+    ] {
+        assert_eq!(plot(&wrong), None, "{wrong:?}");
+    }
 }
 
 #[test]

@@ -3,7 +3,6 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::contour::Grid;
 use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot, grip, number};
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
@@ -13,6 +12,7 @@ use fit::{Observations, Options, Problem};
 use glam::{DVec2, DVec3};
 use mesh::TriangleMesh;
 use metaballs::Metaballs;
+use picture::contour::Grid;
 use widgets::theme;
 
 /// Half the side of the part of the plane that is shown.
@@ -82,8 +82,8 @@ pub static WORDS: Words = Words {
     sentences: "One coarse mesh, here in a section, becomes a soft surface in two ways: with a \
                 ball around each facet, or with a thin shell. Both surfaces are fitted to the \
                 same measured points, and the mesh moves with its surface. A ball is as thick as \
-                its facet is large, so its mesh ends up away from the points; a shell is as thin \
-                as you like.",
+                its facet is large: its mesh comes near the points, but its surface stays away \
+                from them; a shell is as thin as you like.",
 };
 
 /// The lesson's state.

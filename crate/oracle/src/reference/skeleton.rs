@@ -248,7 +248,7 @@ impl SkeletonTerms {
                 if apart + half + about > far {
                     second.high = second.high.max(cluster.range.high);
                 }
-                // The only cluster of a chain is there wherever it is lasting.
+                // A cluster alone in its chain is there wherever it is lasting.
                 let alone = clusters.iter().filter(|c| c.chain == cluster.chain).count() == 1;
                 if apart - half - about > far && cluster.lasting && alone {
                     least = least.max(cluster.range.low);
