@@ -2,6 +2,7 @@
 
 use super::model::{Group, Part};
 use super::skeleton::{SCHEMES, check_reach, weigh};
+use super::skeleton_radii;
 use super::state::{Evaluator, Flow};
 use crate::assets;
 use crate::commands::build::{options, plain, word_of};
@@ -156,6 +157,11 @@ pub(super) fn add<'a>(
     let is_flat = options.last(&ENDS) == Some("flat");
     if run.settings.soft {
         lengthen(run, &mut graph, material, is_flat);
+        // Where limbs are rounded or do not blend, others than these are drawn.
+        if options.last(&FILE_SUBDIVIDE).unwrap_or(0) == 0 && !options.has(&FILE_LOCAL) {
+            let shapings: Vec<Shaping> = own.iter().map(|own| shaping(run, *own)).collect();
+            skeleton_radii::tell(run, &graph, &shapings, file);
+        }
     }
     run.model.open(run.file, name, Group::Object)?;
     run.repeating += 1;
@@ -221,22 +227,26 @@ fn find_materials<'a>(
     Ok(own)
 }
 
+/// Returns the shaping of limbs of a material that have the radius 1.
+fn shaping(run: &Evaluator<'_>, material: usize) -> Shaping {
+    let flesh = &run.palette.surfaces[material].flesh;
+    Shaping {
+        kernel: flesh.kernel.unwrap_or(KERNEL),
+        radius: 1.0,
+        blobbiness: flesh.blobbiness.unwrap_or(BLOBBINESS),
+        blob_scale: run.settings.blob_scale,
+        strength: flesh.strength,
+        influence: run.settings.influence,
+        taper: None,
+    }
+}
+
 /// Moves free ends such that the surface ends a radius beyond them, or at them where they are flat.
 fn lengthen(run: &Evaluator<'_>, graph: &mut Graph, material: usize, is_flat: bool) {
     if run.settings.blob_scale != BlobScale::Relative {
         return;
     }
-    let flesh = &run.palette.surfaces[material].flesh;
-    let shaping = Shaping {
-        kernel: flesh.kernel.unwrap_or(KERNEL),
-        radius: 1.0,
-        blobbiness: flesh.blobbiness.unwrap_or(BLOBBINESS),
-        blob_scale: BlobScale::Relative,
-        strength: 1.0,
-        influence: run.settings.influence,
-        taper: None,
-    };
-    let Some(reach) = measure_reach(&shaping) else {
+    let Some(reach) = measure_reach(&shaping(run, material)) else {
         return;
     };
     graph.lengthen_free_ends(|cap| match (cap, is_flat) {
