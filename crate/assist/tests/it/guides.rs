@@ -52,7 +52,12 @@ fn spellings_of_elements_in_the_table_are_commands() {
              surface Clay, diffuse Coral, blobbiness -1.5\n{form}\n"
         );
         let compiled = compile_at(&Project::single(text.as_str()), &[], 0.0);
-        assert_eq!(compiled.scene.elements.len(), 1, "{form}: {:?}", compiled.diagnostics);
+        assert_eq!(
+            compiled.scene.elements.len(),
+            1,
+            "{form}: {:?}",
+            compiled.diagnostics
+        );
     }
     assert_eq!(count, 5);
 }

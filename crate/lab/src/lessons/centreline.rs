@@ -83,7 +83,11 @@ struct Surfaces {
 impl Figure for Centreline {
     fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let key = self.key;
-        if self.computed.as_ref().is_none_or(|(known, _)| *known != key) {
+        if self
+            .computed
+            .as_ref()
+            .is_none_or(|(known, _)| *known != key)
+        {
             self.computed = Some((key, key.compute()));
         }
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.8);
@@ -108,13 +112,24 @@ impl Figure for Centreline {
             self.key.kernel = kernel;
         }
         if let Some((_, surfaces)) = &self.computed {
-            heading(controls, "Radius at the middle of a limb ÷ that of the file");
+            heading(
+                controls,
+                "Radius at the middle of a limb ÷ that of the file",
+            );
             for (name, ratio) in ["Trunk", "Left", "Right"].into_iter().zip(surfaces.middles) {
                 reading(controls, name, &format!("{ratio:.3}"), palette.note);
             }
             heading(controls, "Thickness at the fork ÷ that of the capsules");
-            reading(controls, "Fork", &format!("{:.3}", surfaces.fork), palette.accent);
-            remark(controls, "Drag the nodes. Dashes: the capsules that the file means.");
+            reading(
+                controls,
+                "Fork",
+                &format!("{:.3}", surfaces.fork),
+                palette.accent,
+            );
+            remark(
+                controls,
+                "Drag the nodes. Dashes: the capsules that the file means.",
+            );
             let readings = &mut bench.readings;
             readings.insert("middle", surfaces.middles[0]);
             readings.insert("fork", surfaces.fork);

@@ -107,7 +107,10 @@ fn rows(text: &str, draft: &mut Draft) -> Result<BTreeMap<i64, Row>, Error> {
             continue;
         }
         if rows.is_empty() && words.iter().all(|word| word.parse::<f64>().is_err()) {
-            draft.remark(Some(line), "this line has no numbers and is taken for a heading");
+            draft.remark(
+                Some(line),
+                "this line has no numbers and is taken for a heading",
+            );
             continue;
         }
         let mut words = words.into_iter();
@@ -203,7 +206,10 @@ fn number<'a>(
         _ => {
             let is_comma = word.replacen(',', ".", 1).parse::<f64>().is_ok();
             let hint = if is_comma { ": it needs a point" } else { "" };
-            let text = format!("`{column}` is `{}`, which is no number{hint}", shorten(word));
+            let text = format!(
+                "`{column}` is `{}`, which is no number{hint}",
+                shorten(word)
+            );
             fail_at(line, text)
         }
     }

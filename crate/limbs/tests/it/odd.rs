@@ -78,7 +78,10 @@ fn texts_mean_the_same_in_any_encoding_and_with_any_ends_of_lines() {
             ("Latin-1", text.replace('µ', "\u{1}").into_bytes()),
         ] {
             let bytes: Vec<u8> = match way {
-                "Latin-1" => bytes.iter().map(|b| if *b == 1 { 0xB5 } else { *b }).collect(),
+                "Latin-1" => bytes
+                    .iter()
+                    .map(|b| if *b == 1 { 0xB5 } else { *b })
+                    .collect(),
                 _ => bytes,
             };
             assert_eq!(read(name, &bytes), plain, "{name}: {way}");

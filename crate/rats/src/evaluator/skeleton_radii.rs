@@ -29,12 +29,7 @@ enum Verdict {
 
 /// Says so where the surface does not stand at the radii of long limbs at their middles: by which
 /// factor it misses them, or how many lie within others.
-pub(super) fn tell(
-    run: &mut Evaluator<'_>,
-    graph: &Graph,
-    shapings: &[Shaping],
-    file: &Name<'_>,
-) {
+pub(super) fn tell(run: &mut Evaluator<'_>, graph: &Graph, shapings: &[Shaping], file: &Name<'_>) {
     let long: Vec<usize> = (0..graph.limbs.len())
         .filter(|i| graph.length(*i) >= LONG * thickness(&graph.limbs[*i]))
         .collect();
@@ -86,7 +81,11 @@ fn measure(graph: &Graph, shapings: &[Shaping], limb: usize) -> Verdict {
         if distance(middle, [base, apex]).0 > NEAR * radius.max(thickness(own)) {
             continue;
         }
-        field.extend(primitive([base, apex], own.radii, &shapings[own.group as usize]));
+        field.extend(primitive(
+            [base, apex],
+            own.radii,
+            &shapings[own.group as usize],
+        ));
         if i != limb {
             others.push(own);
         }
@@ -110,16 +109,20 @@ fn measure(graph: &Graph, shapings: &[Shaping], limb: usize) -> Verdict {
     }
     let is_inside = |way: DVec3, share: f64| {
         let place = (middle + way * (radius * share)).to_array();
-        let parts = field.iter().map(|part: &Primitive| part.value::<f64>(place));
+        let parts = field
+            .iter()
+            .map(|part: &Primitive| part.value::<f64>(place));
         parts.sum::<f64>() >= THRESHOLD
     };
     let mut ratios = Vec::new();
     for way in free {
-        ratios.push(match [1.0 - CLOSE, 1.0 + CLOSE].map(|share| is_inside(way, share)) {
-            [true, false] => 1.0,
-            [false, _] => bisect([0.0, 1.0 - CLOSE], |share| is_inside(way, share)),
-            [true, true] => bisect([1.0 + CLOSE, FARTHEST], |share| is_inside(way, share)),
-        });
+        ratios.push(
+            match [1.0 - CLOSE, 1.0 + CLOSE].map(|share| is_inside(way, share)) {
+                [true, false] => 1.0,
+                [false, _] => bisect([0.0, 1.0 - CLOSE], |share| is_inside(way, share)),
+                [true, true] => bisect([1.0 + CLOSE, FARTHEST], |share| is_inside(way, share)),
+            },
+        );
     }
     ratios.sort_by(f64::total_cmp);
     let ratio = ratios[ratios.len() / 2];

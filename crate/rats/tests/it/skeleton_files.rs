@@ -263,15 +263,23 @@ fn write_limbs(limbs: &[([DVec3; 2], f64)]) -> String {
 fn radii_that_cannot_be_kept_are_told() {
     let straight = write_limbs(&[([DVec3::ZERO, DVec3::X * 20.0], 1.0)]);
     let text = |kernel: &str| format!("surface u, diffuse Red {kernel}\nskeleton u, N n.obj");
-    for kernel in ["", "kernel gauss, blobbiness -1", "kernel cauchy, blobbiness -4"] {
-        assert!(notes(&compile(&text(kernel), "n.obj", &straight)).is_empty(), "{kernel}");
+    for kernel in [
+        "",
+        "kernel gauss, blobbiness -1",
+        "kernel cauchy, blobbiness -4",
+    ] {
+        assert!(
+            notes(&compile(&text(kernel), "n.obj", &straight)).is_empty(),
+            "{kernel}"
+        );
     }
     // A limb of six radii is too short for a kernel that reaches far, which thins it.
     let short = write_limbs(&[([DVec3::ZERO, DVec3::X * 7.0], 1.0)]);
     let compiled = compile(&text("kernel cauchy, blobbiness -0.2"), "n.obj", &short);
     let found = reach(&compiled, DVec3::X * 3.5, DVec3::Y, 4.0);
     let told = notes(&compiled);
-    let wanted = format!("n.obj: at the middles of 1 of 1 long limbs the surface stands at {found:.2} of");
+    let wanted =
+        format!("n.obj: at the middles of 1 of 1 long limbs the surface stands at {found:.2} of");
     assert!(told[0].starts_with(&wanted), "{told:?} {found}");
     assert!((found - 1.0).abs() > 0.05);
     // Another one beside it, whose flesh is thick there on one side only.
@@ -334,9 +342,9 @@ fn lattices_stand_at_their_radii_and_where_limbs_overlap_at_those_of_their_capsu
                             !drawn.iter().any(|limb| is_within(*limb, place))
                         })
                         .unwrap_or(4.0);
-                    let soft = (1..400).map(|i| f64::from(i) * 0.01).find(|t| {
-                        function.jet(middle + way * (radius * t)).value < THRESHOLD
-                    });
+                    let soft = (1..400)
+                        .map(|i| f64::from(i) * 0.01)
+                        .find(|t| function.jet(middle + way * (radius * t)).value < THRESHOLD);
                     soft.unwrap_or(4.0) / exact
                 })
                 .collect();
@@ -345,7 +353,10 @@ fn lattices_stand_at_their_radii_and_where_limbs_overlap_at_those_of_their_capsu
             close += i32::from((ratios[6] - 1.0).abs() < 0.05);
         }
         assert!(count > 20, "{count}");
-        assert!(f64::from(close) >= 0.95 * f64::from(count), "{close} of {count}");
+        assert!(
+            f64::from(close) >= 0.95 * f64::from(count),
+            "{close} of {count}"
+        );
     }
 }
 
@@ -368,7 +379,10 @@ fn every_format_is_drawn_at_its_radius() {
         ("n.vtp", vtp),
         ("n.vtk", vtk),
         ("n.csv", csv),
-        ("n.obj", "# vt: radius\nv 0 0 0\nv 20 0 0\nvt 1\nl 1/1 2/1\n"),
+        (
+            "n.obj",
+            "# vt: radius\nv 0 0 0\nv 20 0 0\nvt 1\nl 1/1 2/1\n",
+        ),
         ("n.ply", ply),
     ] {
         let compiled = compile(&format!("skeleton s, N {name}"), name, content);
@@ -405,11 +419,21 @@ fn odd_limbs_are_no_matter() {
         "1 3 0 0 0 1 -1\n2 3 9 0 0 0 1\n3 3 9 9 0 -4 2\n",
         "1 3 0 0 0 1 -1\n2 3 9 0 0 1 3\n3 3 9 9 0 1 2\n",
     ] {
-        for text in ["", "subdivide 3", "ends flat", "local 3", "thicken -0.5", "scale 1e9"] {
+        for text in [
+            "",
+            "subdivide 3",
+            "ends flat",
+            "local 3",
+            "thicken -0.5",
+            "scale 1e9",
+        ] {
             let compiled = compile(&format!("skeleton s, N n.swc {text}"), "n.swc", content);
             // It is drawn, or it is said why not.
             let elements = compiled.scene.elements.len();
-            assert!(elements > 0 || !messages(&compiled).is_empty(), "{text}: {content}");
+            assert!(
+                elements > 0 || !messages(&compiled).is_empty(),
+                "{text}: {content}"
+            );
             let surfaces = compiled.scene.surfaces();
             for surface in &surfaces {
                 assert!(!surface.function().jet(DVec3::ONE).value.is_infinite());
@@ -429,4 +453,91 @@ fn what_a_mesh_leaves_out_is_told() {
     assert_eq!(*severity, Severity::Warning);
     assert!(message.contains("without an area"), "{message}");
     assert!(message.contains("that are there twice"), "{message}");
+}
+
+#[test]
+fn flat_ends_are_planes() {
+    // A bent line with a branch: three free ends.
+    let bent = "1 3 0 0 0 1 -1\n2 3 10 0 0 1 1\n3 3 18 6 0 .8 2\n4 3 10 -9 0 .6 2\n";
+    for kernel in [
+        "",
+        "kernel gauss, blobbiness -4",
+        "kernel cauchy, blobbiness -2",
+    ] {
+        let text = format!("surface u, diffuse Red {kernel}\nskeleton u, N n.swc ends");
+        let flat = compile(&format!("{text} flat"), "n.swc", bent);
+        let round = compile(&format!("{text} round"), "n.swc", bent);
+        assert_eq!(messages(&flat), [], "{kernel}");
+        let [flat, round] = [&flat, &round].map(|own| own.scene.surfaces().swap_remove(0));
+        let value = |surface: &scene::Surface, place: DVec3| surface.function().jet(place).value;
+        let ends = [
+            (DVec3::ZERO, DVec3::NEG_X, 1.0),
+            (DVec3::new(18.0, 6.0, 0.0), DVec3::new(0.8, 0.6, 0.0), 0.8),
+            (DVec3::new(10.0, -9.0, 0.0), DVec3::NEG_Y, 0.6),
+        ];
+        for (at, outward, radius) in ends {
+            let (u, v) = outward.any_orthonormal_pair();
+            for i in 0..24 {
+                let (sine, cosine) = libm::sincos(f64::from(i) * 1.7);
+                let across = (u * cosine + v * sine) * (radius * f64::from(i) / 24.0);
+                let place = at + across;
+                // Inside up to the plane over the whole disk, and nothing behind it.
+                if across.length() < 0.93 * radius {
+                    assert!(
+                        value(&flat, place - outward * (0.02 * radius)) > THRESHOLD,
+                        "{i}"
+                    );
+                }
+                for step in [0.02, 0.5, 1.2, 3.0] {
+                    let behind = value(&flat, place + outward * (step * radius));
+                    assert!(behind < THRESHOLD, "{kernel} {i} {step}: {behind}");
+                }
+            }
+        }
+        // Elsewhere both are the same.
+        for place in [
+            DVec3::new(5.0, 0.9, 0.1),
+            DVec3::new(10.0, 0.2, 0.9),
+            DVec3::new(13.0, 2.0, 0.8),
+        ] {
+            let [a, b] = [&flat, &round].map(|surface| value(surface, place));
+            assert!(
+                (a - b).abs() < 2e-3 * b.max(1.0),
+                "{kernel} {place}: {a} {b}"
+            );
+        }
+    }
+    // A single limb is cut at both ends, and each of its pieces counts once.
+    let compiled = compile("skeleton s, N n.swc ends flat", "n.swc", LIMB);
+    let surface = compiled.scene.surfaces().swap_remove(0);
+    assert!(matches!(surface, scene::Surface::Composed(_)));
+    for (x, is_inside) in [
+        (-0.02, false),
+        (0.02, true),
+        (10.0, true),
+        (19.98, true),
+        (20.02, false),
+    ] {
+        let inside = surface.function().jet(DVec3::X * x).value > THRESHOLD;
+        assert_eq!(inside, is_inside, "{x}");
+    }
+    let side = reach(&compiled, DVec3::X * 10.0, DVec3::Y, 4.0);
+    assert!((side - 1.0).abs() < 1e-3, "{side}");
+    // Too many are round, in words.
+    let many: String = (0..300)
+        .map(|i| {
+            format!(
+                "{} 3 {i} 0 0 .2 -1\n{} 3 {i} 3 0 .2 {}\n",
+                2 * i + 1,
+                2 * i + 2,
+                2 * i + 1
+            )
+        })
+        .collect();
+    let compiled = compile("skeleton s, N n.swc ends flat", "n.swc", &many);
+    assert!(
+        notes(&compiled)[0].contains("600 flat ends are round"),
+        "{:?}",
+        notes(&compiled)
+    );
 }
