@@ -33,9 +33,8 @@ pub fn measure() -> Result<Report> {
         let dataset = sinew.path(&format!("{name}.rat"));
         fs::write(&dataset, text)?;
         let cost = sinew.time(&[&dataset, "--size", SIDE, SIDE])?;
-        let memory = |unit: f64| cost.memory.map(|bytes| Short(bytes / unit));
-        let size = or_dash(memory(f64::from(1 << 20)));
-        let each = or_dash(memory(count as f64));
+        let [size, each] = [f64::from(1 << 20), count as f64]
+            .map(|unit| or_dash(cost.memory.map(|bytes| Short(bytes / unit))));
         let (seconds, prepare) = (Short(cost.seconds), Short(cost.prepare));
         let bytes = Short(file.len() as f64 / f64::from(1 << 20));
         report.row(
@@ -46,6 +45,17 @@ pub fn measure() -> Result<Report> {
     Ok(report)
 }
 
+/// Numbers from 0 to 1 that look random: fractional parts of squares of multiples of the golden
+/// ratio.
+struct Numbers(f64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 += 0.618_033_988_749_895;
+        libm::fmod(self.0 * self.0, 1.0)
+    }
+}
+
 /// Writes limbs between neighbours of a cubic grid whose nodes are shifted, each with a radius of
 /// its own at either end, as an OBJ file; returns it with the grid's side.
 fn write(count: usize) -> (String, f64) {
@@ -53,15 +63,10 @@ fn write(count: usize) -> (String, f64) {
         .find(|n| 3 * n * n * (n - 1) >= count)
         .unwrap_or_default();
     let mut text = String::from("# vt: radius\n");
-    // Numbers that look random: fractional parts of multiples of the golden ratio.
-    let mut step = 0.0;
-    let mut next = || {
-        step += 0.618_033_988_749_895;
-        libm::fmod(step * step, 1.0)
-    };
+    let mut numbers = Numbers(0.0);
     for i in 0..side * side * side {
         let cell = [i % side, i / side % side, i / side / side];
-        let place = cell.map(|x| APART * (x as f64 + 0.5 * (next() - 0.5)));
+        let place = cell.map(|x| APART * (x as f64 + 0.5 * (numbers.next() - 0.5)));
         // Writing to a string does not fail.
         let _ = writeln!(text, "v {:.4} {:.4} {:.4}", place[0], place[1], place[2]);
     }
@@ -70,7 +75,7 @@ fn write(count: usize) -> (String, f64) {
         for i in 0..side * side * side {
             if i / axis % side + 1 < side && limbs < count {
                 limbs += 1;
-                let radii = [0.05 + 0.06 * next(), 0.05 + 0.06 * next()];
+                let radii = [0.05 + 0.06 * numbers.next(), 0.05 + 0.06 * numbers.next()];
                 let _ = writeln!(
                     text,
                     "vt {:.4}\nvt {:.4}\nl {}/-2 {}/-1",

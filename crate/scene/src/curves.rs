@@ -3,7 +3,7 @@
 use crate::Shape;
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
-use skeleton::{Polyline, Scheme, Skeleton, Vertex};
+use skeleton::{Polyline, Scheme, Skeleton};
 use std::sync::OnceLock;
 
 /// The blobbiness of curves whose material has none.
@@ -121,19 +121,18 @@ impl Curves {
         })
     }
 
+    /// Whether a node is a free end that is flat.
+    fn is_flat(&self, node: Option<usize>) -> bool {
+        node.is_some_and(|node| self.flat.contains(&(node as u32)))
+    }
+
     /// The shapes that stand for the curves in drafts: cones, and balls between them.
     pub(crate) fn draft(&self, to_world: &DAffine3, growth: f64) -> Vec<Shape> {
         let vertices = self.polyline().map_or(&[][..], |p| &p.vertices);
-        let is_flat = |v: &&Vertex| {
-            v.node
-                .is_some_and(|node| self.flat.contains(&(node as u32)))
-        };
-        let balls = vertices.iter().filter(|v| v.radius > 0.0 && !is_flat(v));
-        let balls = balls
-            .map(|v| (v.position, v.radius))
-            .map(|(center, radius)| {
-                Shape::sphere(to_world.transform_point3(center), radius * growth)
-            });
+        let balls = vertices
+            .iter()
+            .filter(|v| v.radius > 0.0 && !self.is_flat(v.node))
+            .map(|v| Shape::sphere(to_world.transform_point3(v.position), v.radius * growth));
         let cones = self.pieces().map(|[(base, start), (apex, end)]| {
             let [base, apex] = [base, apex].map(|p| to_world.transform_point3(p));
             Shape::cone(base, start * growth, apex, end * growth)

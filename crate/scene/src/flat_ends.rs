@@ -32,7 +32,7 @@ pub struct FlatEnd {
 pub(crate) struct Stump {
     /// Indices of its segments among those that have a length.
     segments: Vec<usize>,
-    /// Its flat ends: place, direction outwards and radius.
+    /// Flat ends: place, direction outwards and radius of each.
     ends: Vec<(DVec3, DVec3, f64)>,
 }
 

@@ -189,11 +189,12 @@ impl Key {
             height,
             values: depths.collect(),
         };
-        let is_soft = |place| sample::one(&[&field], place) > THRESHOLD;
         let middles = LIMBS.map(|(ends, share)| {
             let [base, apex] = ends.map(|node| self.place(node));
             // Out of the plane, where no other limb is.
-            reach(0.5 * (base + apex), DVec3::Z, is_soft) / (self.radius * share)
+            reach(0.5 * (base + apex), DVec3::Z, |place| {
+                is_inside(&field, place)
+            }) / (self.radius * share)
         });
         let fork = self.place(FORK);
         let exact = reach(fork, DVec3::Z, |place| self.depth(place) > 0.0);
@@ -203,20 +204,25 @@ impl Key {
             smooth: smooth.line(level),
             capsules: capsules.line(0.0),
             middles,
-            fork: reach(fork, DVec3::Z, is_soft) / exact.max(1e-9),
+            fork: reach(fork, DVec3::Z, |place| is_inside(&field, place)) / exact.max(1e-9),
         }
     }
 }
 
+/// Whether a place is within a field's surface.
+fn is_inside(field: &Sum, place: DVec3) -> bool {
+    sample::one(&[field], place) > THRESHOLD
+}
+
 /// Finds the distance from a place at which one leaves a solid, by bisection; 0 outside.
-fn reach(from: DVec3, way: DVec3, is_inside: impl Fn(DVec3) -> bool) -> f64 {
-    if !is_inside(from) {
+fn reach(from: DVec3, way: DVec3, holds: impl Fn(DVec3) -> bool) -> f64 {
+    if !holds(from) {
         return 0.0;
     }
     let (mut low, mut high) = (0.0, 20.0);
     for _ in 0..50 {
         let middle = 0.5 * (low + high);
-        match is_inside(from + way * middle) {
+        match holds(from + way * middle) {
             true => low = middle,
             false => high = middle,
         }

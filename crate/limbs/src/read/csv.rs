@@ -49,7 +49,7 @@ struct Columns {
     start: [usize; 3],
     end: Option<[usize; 3]>,
     axis: Option<([usize; 3], usize)>,
-    /// With the factor that makes a radius of a value: a half for diameters.
+    /// Column, and the factor that makes radii of its values: a half for diameters.
     radius: (usize, f64),
     id: Option<usize>,
     parent: Option<usize>,

@@ -21,9 +21,9 @@ const FARTHEST: f64 = 4.0;
 enum Verdict {
     /// The surface stands at the radius.
     Kept,
-    /// It stands at this share of the radius.
+    /// Share of the radius at which it stands.
     Missed(f64),
-    /// Other limbs are there on all sides.
+    /// Limbs that lie around it on all sides.
     Crowded,
 }
 
@@ -107,23 +107,10 @@ fn measure(graph: &Graph, shapings: &[Shaping], limb: usize) -> Verdict {
     if free.is_empty() {
         return Verdict::Crowded;
     }
-    let is_inside = |way: DVec3, share: f64| {
-        let place = (middle + way * (radius * share)).to_array();
-        let parts = field
-            .iter()
-            .map(|part: &Primitive| part.value::<f64>(place));
-        parts.sum::<f64>() >= THRESHOLD
-    };
-    let mut ratios = Vec::new();
-    for way in free {
-        ratios.push(
-            match [1.0 - CLOSE, 1.0 + CLOSE].map(|share| is_inside(way, share)) {
-                [true, false] => 1.0,
-                [false, _] => bisect([0.0, 1.0 - CLOSE], |share| is_inside(way, share)),
-                [true, true] => bisect([1.0 + CLOSE, FARTHEST], |share| is_inside(way, share)),
-            },
-        );
-    }
+    let mut ratios: Vec<f64> = free
+        .into_iter()
+        .map(|way| find_surface(&field, middle, way * radius))
+        .collect();
     ratios.sort_by(f64::total_cmp);
     let ratio = ratios[ratios.len() / 2];
     match (ratio - 1.0).abs() < CLOSE {
@@ -132,11 +119,24 @@ fn measure(graph: &Graph, shapings: &[Shaping], limb: usize) -> Verdict {
     }
 }
 
-/// Finds where a condition ends to hold, in a range whose end it does not hold at, or the end.
-fn bisect([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
+/// Whether a place is within the surface of a field.
+fn is_inside(field: &[Primitive], place: DVec3) -> bool {
+    let parts = field.iter().map(|part| part.value::<f64>(place.to_array()));
+    parts.sum::<f64>() >= THRESHOLD
+}
+
+/// Finds the share of a step at which one leaves the surface, by bisection; 1 if it is close to it.
+fn find_surface(field: &[Primitive], from: DVec3, step: DVec3) -> f64 {
+    let [before, behind] =
+        [1.0 - CLOSE, 1.0 + CLOSE].map(|share| is_inside(field, from + step * share));
+    let (mut low, mut high) = match (before, behind) {
+        (true, false) => return 1.0,
+        (false, _) => (0.0, 1.0 - CLOSE),
+        (true, true) => (1.0 + CLOSE, FARTHEST),
+    };
     for _ in 0..20 {
         let middle = 0.5 * (low + high);
-        match holds(middle) {
+        match is_inside(field, from + step * middle) {
             true => low = middle,
             false => high = middle,
         }

@@ -259,23 +259,38 @@ fn write_limbs(limbs: &[([DVec3; 2], f64)]) -> String {
     text
 }
 
+/// Returns a text that draws limbs with a kernel of their material.
+fn with_kernel(kernel: &str) -> String {
+    format!("surface u, diffuse Red {kernel}\nskeleton u, N n.obj")
+}
+
+/// Returns a limb, and a thicker one beside it at a distance.
+fn write_beside(gap: f64) -> String {
+    let shift = DVec3::Y * gap + DVec3::X;
+    let limb = [DVec3::ZERO, DVec3::X * 20.0];
+    write_limbs(&[(limb, 1.0), (limb.map(|p| p + shift), 3.0)])
+}
+
 #[test]
 fn radii_that_cannot_be_kept_are_told() {
     let straight = write_limbs(&[([DVec3::ZERO, DVec3::X * 20.0], 1.0)]);
-    let text = |kernel: &str| format!("surface u, diffuse Red {kernel}\nskeleton u, N n.obj");
     for kernel in [
         "",
         "kernel gauss, blobbiness -1",
         "kernel cauchy, blobbiness -4",
     ] {
         assert!(
-            notes(&compile(&text(kernel), "n.obj", &straight)).is_empty(),
+            notes(&compile(&with_kernel(kernel), "n.obj", &straight)).is_empty(),
             "{kernel}"
         );
     }
     // A limb of six radii is too short for a kernel that reaches far, which thins it.
     let short = write_limbs(&[([DVec3::ZERO, DVec3::X * 7.0], 1.0)]);
-    let compiled = compile(&text("kernel cauchy, blobbiness -0.2"), "n.obj", &short);
+    let compiled = compile(
+        &with_kernel("kernel cauchy, blobbiness -0.2"),
+        "n.obj",
+        &short,
+    );
     let found = reach(&compiled, DVec3::X * 3.5, DVec3::Y, 4.0);
     let told = notes(&compiled);
     let wanted =
@@ -283,14 +298,9 @@ fn radii_that_cannot_be_kept_are_told() {
     assert!(told[0].starts_with(&wanted), "{told:?} {found}");
     assert!((found - 1.0).abs() > 0.05);
     // Another one beside it, whose flesh is thick there on one side only.
-    let beside = |gap: f64| {
-        let shift = DVec3::Y * gap;
-        let limb = [DVec3::ZERO, DVec3::X * 20.0];
-        write_limbs(&[(limb, 1.0), (limb.map(|p| p + shift + DVec3::X), 3.0)])
-    };
-    assert!(notes(&compile(&text(""), "n.obj", &beside(4.5))).is_empty());
+    assert!(notes(&compile(&with_kernel(""), "n.obj", &write_beside(4.5))).is_empty());
     // Within it.
-    let told = notes(&compile(&text(""), "n.obj", &beside(0.5)));
+    let told = notes(&compile(&with_kernel(""), "n.obj", &write_beside(0.5)));
     let wanted = "n.obj: 1 of 2 long limbs lie within others at their middles";
     assert!(told[0].starts_with(wanted), "{told:?}");
 }
@@ -366,7 +376,8 @@ fn every_format_is_drawn_at_its_radius() {
         <DataArray type=\"Float32\" Name=\"Radius\">1 1</DataArray></PointData><Points>\
         <DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0 20 0 0</DataArray></Points>\
         <Lines><DataArray type=\"Int64\" Name=\"connectivity\">0 1</DataArray>\
-        <DataArray type=\"Int64\" Name=\"offsets\">2</DataArray></Lines></Piece></PolyData></VTKFile>";
+        <DataArray type=\"Int64\" Name=\"offsets\">2</DataArray></Lines></Piece></PolyData>\
+        </VTKFile>";
     let vtk = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n\
         0 0 0 20 0 0\nLINES 1 3\n2 0 1\nPOINT_DATA 2\nSCALARS radius float 1\n\
         LOOKUP_TABLE default\n1 1\n";
@@ -455,6 +466,11 @@ fn what_a_mesh_leaves_out_is_told() {
     assert!(message.contains("that are there twice"), "{message}");
 }
 
+/// Returns the value of a surface's function at a place.
+fn value(surface: &scene::Surface, place: DVec3) -> f64 {
+    surface.function().jet(place).value
+}
+
 #[test]
 fn flat_ends_are_planes() {
     // A bent line with a branch: three free ends.
@@ -469,7 +485,6 @@ fn flat_ends_are_planes() {
         let round = compile(&format!("{text} round"), "n.swc", bent);
         assert_eq!(messages(&flat), [], "{kernel}");
         let [flat, round] = [&flat, &round].map(|own| own.scene.surfaces().swap_remove(0));
-        let value = |surface: &scene::Surface, place: DVec3| surface.function().jet(place).value;
         let ends = [
             (DVec3::ZERO, DVec3::NEG_X, 1.0),
             (DVec3::new(18.0, 6.0, 0.0), DVec3::new(0.8, 0.6, 0.0), 0.8),
