@@ -240,10 +240,11 @@ fn skeletons_of_files_are_counted() {
     assert_eq!(compiled.scene.elements.len(), 30);
 }
 
-/// The notes of a compilation.
+/// The notes of a compilation about its file.
 fn notes(compiled: &Compiled) -> Vec<String> {
     let told = messages(compiled).into_iter();
-    let notes = told.filter(|(severity, _)| *severity == Severity::Note);
+    let notes =
+        told.filter(|(severity, message)| *severity == Severity::Note && message.starts_with("n."));
     notes.map(|(_, message)| message).collect()
 }
 
@@ -261,7 +262,7 @@ fn write_limbs(limbs: &[([DVec3; 2], f64)]) -> String {
 
 /// Returns a text that draws limbs with a kernel of their material.
 fn with_kernel(kernel: &str) -> String {
-    format!("surface u, diffuse Red {kernel}\nskeleton u, N n.obj")
+    format!("verbose on\nsurface u, diffuse Red {kernel}\nskeleton u, N n.obj")
 }
 
 /// Returns a limb, and a thicker one beside it at a distance.
@@ -549,7 +550,7 @@ fn flat_ends_are_planes() {
             )
         })
         .collect();
-    let compiled = compile("skeleton s, N n.swc ends flat", "n.swc", &many);
+    let compiled = compile("verbose on\nskeleton s, N n.swc ends flat", "n.swc", &many);
     assert!(
         notes(&compiled)[0].contains("600 flat ends are round"),
         "{:?}",
