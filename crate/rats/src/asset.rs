@@ -34,12 +34,15 @@ pub struct Asset {
 /// Skeleton of a file, or why there is none, and how it was made.
 type Made = (Recipe, Result<Arc<Graph>, Error>);
 
+/// Mesh of a file, with sentences about what was left out.
+type Kept = (Arc<TriangleMesh>, Vec<String>);
+
 /// The mesh or the skeletons of a file.
 #[derive(Default)]
 struct Read {
     /// The last ones that were made.
     skeletons: Mutex<Vec<Made>>,
-    mesh: OnceLock<Result<(Arc<TriangleMesh>, Vec<String>), Error>>,
+    mesh: OnceLock<Result<Kept, Error>>,
     topology: OnceLock<Result<Topology, Error>>,
 }
 
