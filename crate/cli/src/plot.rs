@@ -18,6 +18,8 @@ const SAMPLES: usize = 400;
 const SIDE: usize = 240;
 /// Levels of the lines on a plane, in thresholds; the surface is at 1.
 const LEVELS: [f32; 7] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
+/// Most that is drawn of kernels, some of which are endless at 0, and of a field, in thresholds.
+const TOPS: [f64; 2] = [1.2, 8.0];
 /// Colours of curves.
 const COLOURS: [&str; 9] = [
     "#c97a00", "#2288c4", "#007f5c", "#8f8200", "#3b47b8", "#c2410c", "#a33e7a", "#3a424c",
@@ -77,7 +79,7 @@ impl Plot {
             let table = tabulate_kernels(names)?;
             let text = match is_table {
                 true => table.write(),
-                false => table.draw("distance ÷ width", "kernel", None),
+                false => table.draw("distance ÷ width", "kernel", TOPS[0], None),
             };
             return self.save(&text, true);
         }
@@ -94,7 +96,10 @@ impl Plot {
                 let table = tabulate_line(&loaded, &surfaces, ends);
                 match is_table {
                     true => table.write(),
-                    false => table.draw("distance along the line", "field", Some(THRESHOLD)),
+                    false => {
+                        let top = TOPS[1] * THRESHOLD;
+                        table.draw("distance along the line", "field", top, Some(THRESHOLD))
+                    }
                 }
             }
             (None, Some(plane)) => {
@@ -187,12 +192,12 @@ impl Table {
         text + "\n"
     }
 
-    /// Returns a drawing of all columns over the first, with a dashed line at a height.
-    fn draw(&self, across: &str, up: &str, line: Option<f64>) -> String {
+    /// Returns a drawing of all columns over the first, up to `top`, with a dashed line at a height.
+    fn draw(&self, across: &str, up: &str, top: f64, line: Option<f64>) -> String {
         let values = self.rows.iter().flat_map(|row| &row[1..]).copied();
         let finite = values.filter(|value| value.is_finite());
-        let most = finite.clone().chain(line).fold(0.0, f64::max);
-        let least = finite.fold(0.0, f64::min);
+        let most = finite.clone().chain(line).fold(0.0, f64::max).min(top);
+        let least = finite.fold(0.0, f64::min).max(-top);
         let last = self.rows.last().map_or(1.0, |row| row[0]);
         let chart = Chart {
             x: [0.0, last],
@@ -387,7 +392,12 @@ impl Chart {
         let mut text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"sans-serif\" font-size=\"13\">\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n"
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
+             <clipPath id=\"chart\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+            MARGINS[0],
+            MARGINS[1],
+            width - MARGINS[0] - MARGINS[2],
+            height - MARGINS[1] - MARGINS[3]
         );
         for at in round_numbers(self.x) {
             let [[x, low], [_, high]] = self.y.map(|y| self.pixel([at, y]));

@@ -712,8 +712,12 @@ fn plots_are_numbers_and_drawings() {
     }
     fn rows(text: &str) -> Vec<Vec<f64>> {
         let rows = text.lines().skip(1);
-        rows.map(|row| row.split(',').map(|n| n.parse().expect("a number")).collect())
-            .collect()
+        rows.map(|row| {
+            row.split(',')
+                .map(|n| n.parse().expect("a number"))
+                .collect()
+        })
+        .collect()
     }
     let table = folder.path("plot.csv");
     let text = plot(&["--kernels", "gauss", "-o", &table]).expect("a kernel");
@@ -725,14 +729,20 @@ fn plots_are_numbers_and_drawings() {
     let line = ["--line", "0", "0", "0", "2", "0", "0"];
     let text = plot(&[&[ball.as_str()], &line[..], &["-o", &table]].concat()).expect("a line");
     for row in rows(&text) {
-        assert!((row[0] - 1.0).abs() < 1e-9 || (row[1] > 1.0) == (row[0] < 1.0), "{row:?}");
+        assert!(
+            (row[0] - 1.0).abs() < 1e-9 || (row[1] > 1.0) == (row[0] < 1.0),
+            "{row:?}"
+        );
     }
     // So it is on a plane.
     let window = ["--plane", "z=0", "--window", "-2", "-2", "2", "2"];
     let text = plot(&[&[ball.as_str()], &window[..], &["-o", &table]].concat()).expect("a plane");
     for row in rows(&text) {
         let distance = row[0].hypot(row[1]);
-        assert!((distance - 1.0).abs() < 1e-5 || (row[2] > 1.0) == (distance < 1.0), "{row:?}");
+        assert!(
+            (distance - 1.0).abs() < 1e-5 || (row[2] > 1.0) == (distance < 1.0),
+            "{row:?}"
+        );
     }
     let drawing = folder.path("plot.svg");
     let text = plot(&["--kernels", "-o", &drawing]).expect("a drawing");
@@ -743,7 +753,9 @@ fn plots_are_numbers_and_drawings() {
         vec!["--kernels", "nosuch", "-o", &drawing],
         vec![&ball, "-o", &drawing],
         vec![&ball, "--plane", "w=0", "-o", &drawing],
-        vec![&ball, "--plane", "z=0", "--window", "1", "0", "0", "1", "-o", &drawing],
+        vec![
+            &ball, "--plane", "z=0", "--window", "1", "0", "0", "1", "-o", &drawing,
+        ],
         vec!["--kernels", "-o", "plot.txt"],
     ] {
         assert_eq!(plot(&wrong), None, "{wrong:?}");
