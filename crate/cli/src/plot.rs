@@ -133,14 +133,12 @@ impl Plot {
 /// # Errors
 /// If there is no kernel of a name.
 fn tabulate_kernels(names: &[String]) -> Result<Table, String> {
-    let named = |name: &String| {
-        let all = Kernel::ALL.map(Kernel::name).join(", ");
-        let unknown = || format!("there is no kernel `{name}`; the kernels are {all}");
-        Kernel::named(name).ok_or_else(unknown)
-    };
     let kernels = match names {
         [] => Kernel::ALL.to_vec(),
-        _ => names.iter().map(named).collect::<Result<_, _>>()?,
+        _ => names
+            .iter()
+            .map(|name| find_kernel(name))
+            .collect::<Result<_, _>>()?,
     };
     let rows = (0..=SAMPLES).map(|i| {
         let u = 3.0 * i as f64 / SAMPLES as f64;
@@ -151,6 +149,17 @@ fn tabulate_kernels(names: &[String]) -> Result<Table, String> {
     Ok(Table {
         names: std::iter::once(String::from("u")).chain(names).collect(),
         rows: rows.collect(),
+    })
+}
+
+/// Returns the kernel of a name.
+///
+/// # Errors
+/// If there is none.
+fn find_kernel(name: &str) -> Result<Kernel, String> {
+    Kernel::named(name).ok_or_else(|| {
+        let all = Kernel::ALL.map(Kernel::name).join(", ");
+        format!("there is no kernel `{name}`; the kernels are {all}")
     })
 }
 
@@ -443,7 +452,8 @@ impl Chart {
             is_drawn = y.is_finite();
         }
         format!(
-            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" {more}/>\n"
+            "<path clip-path=\"url(#chart)\" d=\"{path}\" fill=\"none\" stroke=\"{colour}\" \
+             stroke-width=\"2\" {more}/>\n"
         )
     }
 }

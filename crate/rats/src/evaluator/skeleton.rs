@@ -11,8 +11,8 @@ use crate::limits::{CURVE_WEIGHT, MAX_BLOCK_OPERANDS};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
-use crate::{is_mesh, is_skeleton};
 use crate::syntax::Command;
+use crate::{is_mesh, is_skeleton};
 use field::{Kernel, Shaping, Taper};
 use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Form, Function, Shape};
@@ -130,7 +130,7 @@ fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
     add_block(run, command, &given.options, sn, name)
 }
 
-/// Returns whether a file's name, which has a dot, stands behind the names of material and skeleton.
+/// Returns whether a file's name, which has a dot, stands behind those of material and skeleton.
 ///
 /// # Errors
 /// If it stands in the place of the skeleton's name, or in quotes.
