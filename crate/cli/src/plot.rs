@@ -201,7 +201,7 @@ impl Table {
         text + "\n"
     }
 
-    /// Returns a drawing of all columns over the first, up to `top`, with a dashed line at a height.
+    /// Returns a drawing of all columns over the first, up to `top`, with a dashed line at `line`.
     fn draw(&self, across: &str, up: &str, top: f64, line: Option<f64>) -> String {
         let values = self.rows.iter().flat_map(|row| &row[1..]).copied();
         let finite = values.filter(|value| value.is_finite());
@@ -350,7 +350,8 @@ impl Plane {
             let y = MARGINS[1] + 16.0 * f64::from(level.log2() + 5.0);
             let _ = writeln!(
                 text,
-                "<text x=\"{}\" y=\"{y:.1}\" fill=\"{colour}\" text-anchor=\"end\">{level} T</text>",
+                "<text x=\"{}\" y=\"{y:.1}\" fill=\"{colour}\" \
+                 text-anchor=\"end\">{level} T</text>",
                 SIZE[0] - 4.0
             );
         }
@@ -402,7 +403,8 @@ impl Chart {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"sans-serif\" font-size=\"13\">\n\
              <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
-             <clipPath id=\"chart\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+             <clipPath id=\"chart\">\
+             <rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
             MARGINS[0],
             MARGINS[1],
             width - MARGINS[0] - MARGINS[2],
