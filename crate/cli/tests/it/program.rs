@@ -685,9 +685,10 @@ fn a_skeleton_is_drawn_without_a_dataset() {
     let picture = picture::file::decode(&bytes, format).expect("a picture");
     // Flesh is seen, framed: in the middle of the picture, and not at its edge.
     let corner = picture.pixel(0, 0);
-    let differ = |x: u32, y: u32| picture.pixel(x, y) != corner;
     let seen = (0..80).flat_map(|x| (0..60).map(move |y| (x, y)));
-    let seen: Vec<(u32, u32)> = seen.filter(|&(x, y)| differ(x, y)).collect();
+    let seen: Vec<(u32, u32)> = seen
+        .filter(|&(x, y)| picture.pixel(x, y) != corner)
+        .collect();
     assert!(seen.len() > 150, "{} pixels", seen.len());
     assert!(
         seen.iter()
