@@ -103,8 +103,9 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
          with radii (.obj .ply) and molecules (.xyz .pdb). Its limbs are straight, `subdivide 0`, \
          unless the text says otherwise; `subdivide` rounds them through their nodes. Radii are \
          those of the file, times `scale`; `radius NAME` names the array or column that has \
-         them. The surface stands at these radii for the kernel `compact6` and the blobbiness 8, \
-         which a material has here that names neither.",
+         them. With `ends flat` free ends are planes, which meshes have as groups: `inlet`, the \
+         widest, `outlet-1` and so on. The surface stands at the radii for the kernel `compact6` \
+         and the blobbiness 8, which a material has here that names neither.",
     )
     .example(
         "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
