@@ -1,4 +1,4 @@
-// A large mesh is read by the tools worker: its wasm is fetched then and not before, the page stays responsive, a
+// A mesh is read by the tools worker: its wasm is fetched then and not before, the page stays responsive, a
 // broken file is a diagnostic, and the last good picture stays until then.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';

@@ -54,6 +54,24 @@ fn recovery(report: &mut Report) -> Result<()> {
             format!("{mesh} | {kind} | {to} | {numbers} | {iterations}"),
         );
     }
+    let robust = found["robust"].as_array().cloned().unwrap_or_default();
+    let robust: Vec<Figures> = robust.into_iter().map(Figures).collect();
+    let mut worst = 0.0_f64;
+    for row in &robust {
+        let numbers = ["start", "error", "surface"].map(|name| or_dash(row.short(name).ok()));
+        let iterations = or_dash(row.0["iterations"].as_u64());
+        let (shape, measured) = (row.text("shape"), row.text("measured"));
+        let numbers = numbers.join(" | ");
+        report.row(
+            "robust",
+            format!("{shape} | {measured} | {numbers} | {iterations}"),
+        );
+        if measured == "40 % outliers" {
+            worst = worst.max(row.number("error")?);
+        }
+    }
+    let goal = "40 % of outliers: the worst error of four shapes | the noise σ | ≤ 1.5 σ";
+    report.goal(goal, Ok(Short(worst)))?;
     let error = |mesh: &str, kind: &str| {
         let mut rows = rows.iter().filter(|row| row.text("mesh").starts_with(mesh));
         let row = rows.find(|row| row.text("kind") == kind && row.0["outlines"] == true);

@@ -12,6 +12,7 @@ use video::{Codec, Colours, Packet};
 thread_local! {
     static HASH: RefCell<String> = const { RefCell::new(String::new()) };
     static PICKED: Cell<bool> = const { Cell::new(false) };
+    static CHOSEN: RefCell<Vec<Incoming>> = const { RefCell::new(Vec::new()) };
     static DOWNLOAD: RefCell<Option<(String, Vec<u8>)>> = const { RefCell::new(None) };
 }
 
@@ -77,6 +78,35 @@ pub fn download(name: &str, _mime: &str, bytes: &[u8]) {
     DOWNLOAD.set(Some((name.to_owned(), bytes.to_vec())));
 }
 
+/// Calls of functions that wait for [`let_come`].
+type Held = Vec<Box<dyn FnOnce()>>;
+
+thread_local! {
+    static HELD: RefCell<Option<Held>> = const { RefCell::new(None) };
+}
+
+/// Holds back all that is read and fetched from now on, until [`let_come`], for tests.
+pub fn hold_back() {
+    HELD.set(Some(Held::new()));
+}
+
+/// Lets all come that was held back, in the order in which it was asked for, for tests.
+pub fn let_come() {
+    for come in HELD.take().into_iter().flatten() {
+        come();
+    }
+}
+
+/// Calls a function, at once or when what is held back may come.
+fn come(call: impl FnOnce() + 'static) {
+    let held = HELD.with_borrow(Option::is_some);
+    if held {
+        HELD.with_borrow_mut(|held| held.get_or_insert_default().push(Box::new(call)));
+    } else {
+        call();
+    }
+}
+
 /// Reads files that were dropped on the window, and gives them to a function.
 pub fn read_dropped(
     files: Vec<egui::DroppedFileHandle>,
@@ -86,12 +116,22 @@ pub fn read_dropped(
         name: file.path().display().to_string(),
         bytes: file.bytes(),
     });
-    take(files.collect());
+    let files = files.collect();
+    come(move || take(files));
 }
 
-/// Lets the user choose files. Tests take them in themselves.
-pub fn pick_files(_take: impl FnOnce(Vec<Incoming>) + 'static) {
+/// Lets the user choose files: the last ones of [`choose_files`].
+pub fn pick_files(take: impl FnOnce(Vec<Incoming>) + 'static) {
     PICKED.set(true);
+    let chosen = CHOSEN.take();
+    if !chosen.is_empty() {
+        come(move || take(chosen));
+    }
+}
+
+/// Sets the files that the user chooses when asked the next time, for tests.
+pub fn choose_files(files: Vec<Incoming>) {
+    CHOSEN.set(files);
 }
 
 /// Whether the user was asked to choose files since the last call, for tests.
@@ -141,8 +181,8 @@ pub fn read(path: &str) -> Option<Vec<u8>> {
 }
 
 /// Fetches a file of the page.
-pub fn fetch(path: &str, done: impl FnOnce(Option<Vec<u8>>) + 'static) {
-    done(read(path));
+pub fn fetch(path: &'static str, done: impl FnOnce(Option<Vec<u8>>) + 'static) {
+    come(move || done(read(path)));
 }
 
 /// Returns the formats of [`VideoEncoder`].

@@ -4,9 +4,12 @@
 //! Each dataset is run by itself. Where RATS would go on reading commands from the keyboard, we
 //! stop.
 
+use crate::interludes::Interludes;
 use crate::trace::{self, Wishes};
 use crate::{Outcome, files, report, tools};
-use rats::Severity;
+use darkroom::Target;
+use rats::{Output, Severity};
+use scene::Scene;
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs::File;
@@ -17,14 +20,16 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Text that `-?` prints.
 const HELP: &str = "\
-sinew [-/+options] FILE.rat …     runs datasets as RATS did; + turns an option on, - off
+sinew [-/+options] FILE.rat …     runs datasets as RATS did; + turns an option on, - off;
+                                  the file - is the standard input
   -?           print this
   -d +d        tell how far the picture is (off)
   -e +e        echo the lines of the dataset (off)
   -i           print the version
   -j +j        jitter of rays
   -l FILE      log: write all that is said into a file as well
-  -o FILE.fmt  name and format of the picture: png, tga, tif, gif or mtv
+  -o FILE.fmt  name and format of the picture: png, tga, tif, gif or mtv;
+               of several, those before the last are FILE-1.fmt, FILE-2.fmt, …
   -q           quit after the files, which is always done
   -r W H       width and height of the picture, pixels
   -s N         at most N×N rays a pixel
@@ -80,7 +85,8 @@ pub fn run(arguments: &[String]) -> Outcome {
             Ok(true)
         } else {
             Err(String::from(
-                "there is no dataset to run; name one, or see sinew -?",
+                "there is no dataset to run; name one, - to read one from the standard input, or \
+                 see sinew -?",
             ))
         };
     }
@@ -110,7 +116,10 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
         let on = word.starts_with('+');
-        let Some(letter) = word.strip_prefix(['-', '+']) else {
+        let option = word
+            .strip_prefix(['-', '+'])
+            .filter(|_| word != files::INPUT);
+        let Some(letter) = option else {
             request.files.push(PathBuf::from(word));
             continue;
         };
@@ -178,36 +187,60 @@ impl Request {
             (false, true) => Severity::Warning,
             (false, false) => Severity::Note,
         };
-        said.say(report::text(&loaded, least).trim_end());
+        let messages = report::text(&loaded, least);
+        said.say(messages.trim_end());
         let mut clean = report::is_clean(&loaded);
         let folder = file.parent().unwrap_or(Path::new(""));
         let compiled = &mut loaded.compiled;
-        // A text that only works on pictures has none of its own.
-        let has_picture = !compiled.scene.elements.is_empty() || compiled.tools.is_empty();
-        if has_picture && !compiled.output.saved && self.output.is_none() {
-            said.say(
-                "nosave is on: the picture is neither traced nor written (-o NAME asks for it)",
-            );
-        } else if has_picture {
-            let traced = self
-                .wishes
-                .trace(Arc::make_mut(&mut compiled.scene), &self.progress())?;
-            let [width, height] = traced.picture.size();
-            let wrote = match &self.output {
-                Some(path) => trace::write(path, &traced.picture)
-                    .map(|()| format!("wrote {}, {width}×{height}", path.display()))?,
-                None => {
-                    let name = compiled.output.file();
-                    tools::save(folder, &name, &traced.picture)?
-                }
-            };
-            said.say(&format!("{wrote}, in {:.2} s", traced.seconds));
+        let interludes = std::mem::take(&mut compiled.interludes);
+        let mut interludes = Interludes::new(interludes, folder, messages.trim_end());
+        for (index, picture) in compiled.earlier.iter_mut().enumerate() {
+            interludes.play(index, said)?;
+            let name = self.output.as_ref();
+            let name = name.map(|path| trace::number_name(path, index + 1));
+            let scene = Arc::make_mut(&mut picture.scene);
+            self.draw(scene, &picture.output, name.as_deref(), folder, said)?;
         }
+        interludes.play(compiled.earlier.len(), said)?;
+        // A text that only works on pictures has none of its own.
+        if !compiled.scene.elements.is_empty() || compiled.tools.is_empty() {
+            let scene = Arc::make_mut(&mut compiled.scene);
+            let name = self.output.as_deref();
+            self.draw(scene, &compiled.output, name, folder, said)?;
+        }
+        interludes.play(usize::MAX, said)?;
         for done in tools::carry_out(&compiled.tools, folder) {
             clean &= done.is_ok();
             said.say(&done.unwrap_or_else(|sentence| format!("sinew: {sentence}")));
         }
+        said.close_log()?;
         Ok(clean)
+    }
+
+    /// Traces and writes a picture: under `name`, or in the dataset's folder as its text says.
+    fn draw(
+        &self,
+        scene: &mut Scene,
+        output: &Output,
+        name: Option<&Path>,
+        folder: &Path,
+        said: &mut Said,
+    ) -> Result<(), String> {
+        if !output.saved && name.is_none() {
+            said.say(
+                "nosave is on: the picture is neither traced nor written (-o NAME asks for it)",
+            );
+            return Ok(());
+        }
+        let traced = self.wishes.trace(scene, &self.progress())?;
+        let [width, height] = traced.picture.size();
+        let wrote = match name {
+            Some(path) => trace::write(path, &traced.picture)
+                .map(|()| format!("wrote {}, {width}×{height}", path.display()))?,
+            None => tools::save(folder, &output.file(), &traced.picture)?,
+        };
+        said.say(&format!("{wrote}, in {:.2} s", traced.seconds));
+        Ok(())
     }
 
     /// Tells every tenth of the picture, if that was asked for.
@@ -244,8 +277,10 @@ fn echo(text: &str) -> String {
 }
 
 /// The destination of everything said to a person.
-struct Said {
+pub struct Said {
     log: Option<(PathBuf, File)>,
+    /// The log that the dataset itself keeps: its name and the file.
+    own_log: Option<(String, Box<dyn Target>)>,
 }
 
 impl Said {
@@ -256,14 +291,42 @@ impl Said {
                 Err(error) => Err(format!("cannot write {}: {error}", path.display())),
             })
             .transpose()?;
-        Ok(Self { log })
+        Ok(Self { log, own_log: None })
     }
 
-    fn say(&mut self, text: &str) {
+    /// Begins a log of the dataset's own.
+    pub fn open_log(&mut self, name: String, target: Box<dyn Target>) {
+        self.own_log = Some((name, target));
+    }
+
+    /// Ends the dataset's own log, if there is one.
+    ///
+    /// # Errors
+    /// If it cannot be kept.
+    pub fn close_log(&mut self) -> Result<(), String> {
+        self.own_log
+            .take()
+            .map_or(Ok(()), |(_, target)| target.keep())
+    }
+
+    /// Writes a text into the dataset's own log alone.
+    pub fn note(&mut self, text: &str) {
+        if let Some((name, target)) = &mut self.own_log
+            && !text.is_empty()
+            && let Err(error) = writeln!(target, "{text}")
+        {
+            eprintln!("the log ends here, cannot write {name}: {error}");
+            self.own_log = None;
+        }
+    }
+
+    /// Says a text on the standard error, and in the logs.
+    pub fn say(&mut self, text: &str) {
         if text.is_empty() {
             return;
         }
         eprintln!("{text}");
+        self.note(text);
         if let Some((path, file)) = &mut self.log
             && let Err(error) = writeln!(file, "{text}")
         {
@@ -291,6 +354,7 @@ mod tests {
             ("MODEL.DAT", true),
             ("-q model.rat", true),
             ("+v", true),
+            ("-", true),
             ("-? ", true),
             ("check model.rat", false),
             ("--help", false),
@@ -331,7 +395,6 @@ mod tests {
             ("-o", "needs the name"),
             ("-z", "not an option"),
             ("-json", "not an option"),
-            ("-", "not an option"),
         ] {
             let sentence = parse(&words(line)).map(|_| ()).expect_err(line);
             assert!(sentence.contains(why), "{line}: {sentence}");

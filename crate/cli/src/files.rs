@@ -5,12 +5,13 @@
 
 use crate::Outcome;
 use rats::{Asset, Compiled, File, Project};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Largest text accepted from disk, bytes.
 const MAX_TEXT: u64 = 4 * 1024 * 1024;
-/// Largest image or mesh accepted from disk, bytes.
-const MAX_ASSET: u64 = 32 * 1024 * 1024;
+/// Largest image, mesh or skeleton accepted from disk, bytes.
+pub const MAX_ASSET: u64 = limbs::limits::MAX_BYTES as u64;
 /// Most files fetched for one project.
 const MAX_FILES: usize = 256;
 
@@ -44,20 +45,26 @@ pub fn each(files: &[PathBuf], mut run: impl FnMut(&Path) -> Outcome) -> Outcome
     }
 }
 
-/// Loads a dataset and all that it reads.
+/// Path that stands for the standard input.
+pub const INPUT: &str = "-";
+
+/// Loads a dataset and all that it reads. Of the path `-` the text comes from the standard input,
+/// and what it reads from the present folder.
 ///
 /// # Errors
 /// If the first file cannot be read. A missing file further down is a diagnostic of the compiler.
 pub fn load(path: &Path) -> Result<Loaded, String> {
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-    let name = path.file_name().map_or_else(
-        || path.display().to_string(),
-        |name| name.to_string_lossy().into_owned(),
-    );
+    let is_input = path == Path::new(INPUT);
+    let name = match path.file_name() {
+        _ if is_input => String::from("input.rat"),
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => path.display().to_string(),
+    };
     let mut project = Project {
         files: vec![File {
             name,
-            text: read(path)?,
+            text: if is_input { input()? } else { read(path)? },
         }],
     };
     // Every text is looked at once for the names it reads.
@@ -92,8 +99,7 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
                 break;
             }
             if let Some(bytes) = inside(&folder, &name).and_then(|path| bytes(&path)) {
-                let bytes = bytes.into();
-                assets.push(Asset { name, bytes });
+                assets.push(Asset::new(name, bytes));
                 break;
             }
         }
@@ -140,6 +146,25 @@ pub fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
 }
 
+/// The text of the standard input, up to its end.
+///
+/// # Errors
+/// If it cannot be read, is too large or no UTF-8.
+fn input() -> Result<String, String> {
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .lock()
+        .take(MAX_TEXT + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| format!("cannot read the standard input: {error}"))?;
+    if bytes.len() as u64 > MAX_TEXT {
+        return Err(format!(
+            "the standard input has more than {MAX_TEXT} bytes, the limit for one text"
+        ));
+    }
+    text_of(bytes, "the standard input")
+}
+
 /// A text from disk.
 ///
 /// # Errors
@@ -156,13 +181,18 @@ pub fn read(path: &Path) -> Result<String, String> {
     }
     let bytes =
         std::fs::read(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    text_of(bytes, &path.display().to_string())
+}
+
+/// The text of the bytes of a file.
+///
+/// # Errors
+/// If they are no UTF-8.
+fn text_of(bytes: Vec<u8>, name: &str) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let sound = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + sound.iter().filter(|byte| **byte == b'\n').count();
-        format!(
-            "{}:{line}: this line is not UTF-8 text; save the file as UTF-8",
-            path.display()
-        )
+        format!("{name}:{line}: this line is not UTF-8 text; save the file as UTF-8")
     })
 }
 

@@ -26,7 +26,8 @@ enum Seen {
 /// `sinew fit MESH --control CAGE --points CLOUD -o OUT`.
 #[derive(Args)]
 pub struct Fit {
-    /// The mesh: .obj, .ply, .stl, .glb or .3mf
+    /// The mesh
+    #[arg(help = format!("The mesh: {}", Format::ENDINGS))]
     mesh: PathBuf,
     /// A mesh around it whose vertices are the control points
     #[arg(long, value_name = "CAGE")]
@@ -52,15 +53,19 @@ pub struct Fit {
     /// Weight of the outlines beside the points
     #[arg(long, default_value_t = 1.0, value_name = "W")]
     outlines: f64,
-    /// First turn and move the whole mesh onto the points
+    /// First turn and move the whole mesh onto the points; without it this is tried where the fit
+    /// fails, or comes much nearer so
     #[arg(long)]
     align: bool,
     /// Most iterations
-    #[arg(long, default_value_t = 60, value_name = "N")]
+    #[arg(long, default_value_t = 100, value_name = "N")]
     iterations: usize,
-    /// The file to write: a dataset with `deform` lines (.rat) or the deformed mesh (.ply, .obj,
-    /// .stl, .glb, .3mf); may be given for each
-    #[arg(short, long, required = true, value_name = "OUT")]
+    /// The files to write
+    #[arg(short, long, required = true, value_name = "OUT", help = format!(
+        "The file to write: a dataset with `deform` lines (.rat) or the deformed mesh ({}); \
+         may be given for each",
+        Format::ENDINGS
+    ))]
     output: Vec<PathBuf>,
     /// Print numbers of the fit as JSON on the standard output
     #[arg(long)]
@@ -150,6 +155,8 @@ impl Fit {
                 "iterations": fitted.last.iteration,
                 "residual": fitted.last.residual,
                 "outliers": fitted.last.outliers,
+                "left_out": fitted.left_out,
+                "failure": fitted.failure,
                 "turn": { "axis": axis.to_array(), "angle": angle },
                 "shift": fitted.rigid.shift.to_array(),
                 "moves": fitted.moves.iter().map(|m| m.to_array()).collect::<Vec<_>>(),
@@ -167,7 +174,10 @@ impl Fit {
                 100.0 * fitted.last.outliers
             );
         }
-        Ok(true)
+        if let Some(failure) = &fitted.failure {
+            eprintln!("the fit failed: {failure}; the best that was found is written all the same");
+        }
+        Ok(fitted.failure.is_none())
     }
 
     /// The dataset: a camera, the mesh, and the lines that deform it.
@@ -218,8 +228,8 @@ impl<'a> Target<'a> {
             .map(|format| Self::Mesh(path, format))
             .ok_or_else(|| {
                 format!(
-                    "{name}: the result is a dataset (.rat) or a mesh \
-                     (.ply, .obj, .stl, .glb, .3mf)"
+                    "{name}: the result is a dataset (.rat) or a mesh ({})",
+                    Format::ENDINGS
                 )
             })
     }

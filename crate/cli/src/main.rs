@@ -2,8 +2,8 @@
 //!
 //! Each subcommand is a module of its own; without one the program takes the options of RATS.
 //! Results go to the standard output, everything said to a person goes to the standard error, and
-//! the exit status is 0 when all went well, 1 when the dataset has errors, and 2 when the command
-//! could not be carried out at all.
+//! the exit status is 0 when all went well, 1 when the dataset has errors or a fit failed, and 2
+//! when the command could not be carried out at all.
 
 mod animate;
 mod check;
@@ -11,6 +11,7 @@ mod classic;
 mod files;
 mod fit;
 mod fmt;
+mod interludes;
 mod meshes;
 mod probe;
 mod render;
@@ -18,6 +19,7 @@ mod report;
 mod scan;
 mod sculpt;
 mod share;
+mod skeleton;
 mod time;
 mod tools;
 mod trace;
@@ -53,6 +55,8 @@ enum Command {
     Probe(probe::Probe),
     /// Carry out the strokes of a sculpture and write its mesh
     Sculpt(sculpt::Sculpt),
+    /// Tell what is in a skeleton's file, or write it in another format
+    Skeleton(skeleton::Skeleton),
     /// Bring a mesh onto measured points and outlines
     Fit(Box<fit::Fit>),
     /// Measure a dataset's surfaces: points and outlines, with noise, gaps and outliers
@@ -70,8 +74,8 @@ enum Command {
     Time(time::Time),
 }
 
-/// Result of a subcommand: `Ok(true)` all well, `Ok(false)` the dataset has errors, `Err` a
-/// sentence that says why it could not be carried out and what to do.
+/// Result of a subcommand: `Ok(true)` all well, `Ok(false)` the dataset has errors or a fit failed,
+/// `Err` a sentence that says why it could not be carried out and what to do.
 type Outcome = Result<bool, String>;
 
 fn main() -> ExitCode {
@@ -104,6 +108,7 @@ fn run() -> Outcome {
         Command::Render(command) => command.run(),
         Command::Animate(command) => command.run(),
         Command::Sculpt(command) => command.run(),
+        Command::Skeleton(command) => command.run(),
         Command::Fit(command) => command.run(),
         Command::Scan(command) => command.run(),
         Command::Fmt(command) => command.run(),

@@ -41,6 +41,10 @@ pub struct Mesh {
     /// Leave out cavities, which nobody sees from outside
     #[arg(long)]
     outer: bool,
+    /// Prove what can be proved of topology and error, which takes about ten times as long; without
+    /// it the error is measured
+    #[arg(long)]
+    prove: bool,
     /// Name of the body that is meshed alone
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
@@ -54,7 +58,7 @@ pub struct Mesh {
     #[arg(
         long,
         value_name = "B",
-        conflicts_with_all = ["tolerance", "relative", "union", "outer", "body", "lod"]
+        conflicts_with_all = ["tolerance", "relative", "union", "outer", "prove", "body", "lod"]
     )]
     coat: Option<f64>,
     /// Write the skeletons as joints, each vertex's shares in them as weights, and what moves as an
@@ -77,9 +81,8 @@ impl Mesh {
     /// could be understood, and the result is false.
     pub fn run(&self) -> Outcome {
         let name = self.output.to_string_lossy();
-        let format = Format::of_name(&name).ok_or_else(|| {
-            format!("{name}: the name must end in .glb, .3mf, .stl, .obj or .ply")
-        })?;
+        let format = Format::of_name(&name)
+            .ok_or_else(|| format!("{name}: the name must end in one of {}", Format::ENDINGS))?;
         let is_sound = MILLIMETRES.contains(&self.size);
         if !is_sound {
             return Err(format!(
@@ -118,6 +121,7 @@ impl Mesh {
             body: self.body.clone(),
             union: self.union,
             outer: self.outer,
+            prove: self.prove,
             threads: threads.clamp(1, 256),
             ..Wishes::default()
         };
@@ -183,14 +187,9 @@ impl Mesh {
             println!("{summary}");
         } else {
             eprintln!(
-                "{}: {} triangles within {:.2e}, {:.2} s on {} threads",
+                "{}: {} ({:.2} s on {} threads)",
                 self.output.display(),
-                count(&levels[0].0),
-                model
-                    .parts
-                    .iter()
-                    .map(|part| part.error)
-                    .fold(0.0, f64::max),
+                words(&model, self.size / longest),
                 mesh_seconds,
                 wishes.threads,
             );
@@ -402,6 +401,50 @@ fn write(
     Ok(written)
 }
 
+/// A sentence on a model whose unit of length is `millimetres` long in the file.
+fn words(model: &Model, millimetres: f64) -> String {
+    let open = model.parts.iter().filter(|part| !part.is_closed).count();
+    let closed = match open {
+        0 => "Watertight".into(),
+        _ => format!("{open} of {} meshes open", model.parts.len()),
+    };
+    let shells = model
+        .parts
+        .iter()
+        .map(|part| match Topology::of(&part.mesh) {
+            Ok(topology) if part.is_closed => topology.genera.len(),
+            _ => 1,
+        });
+    let shells: usize = shells.sum();
+    let error = model.parts.iter().map(|part| part.error);
+    let error = error.fold(0.0, f64::max) * millimetres;
+    // Two digits that say something.
+    let (mut digits, mut scaled) = (1, error);
+    while scaled < 1.0 && digits < 9 {
+        (digits, scaled) = (digits + 1, 10.0 * scaled);
+    }
+    let triangles = model.parts.iter().map(|part| part.mesh.triangles.len());
+    format!(
+        "{closed}. {} part{}. {error:.digits$} mm. {} triangles",
+        thousands(shells),
+        if shells == 1 { "" } else { "s" },
+        thousands(triangles.sum()),
+    )
+}
+
+/// A number with commas between thousands.
+fn thousands(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// Figures of a part.
 fn summary(part: &ModelPart) -> Value {
     let mesh = &part.mesh;
@@ -410,6 +453,7 @@ fn summary(part: &ModelPart) -> Value {
     let volume = part.is_closed.then(|| mesh.signed_volume());
     json!({
         "name": part.name,
+        "level": if part.is_measured { "file" } else { "proof" },
         "closed": part.is_closed,
         "vertices": mesh.positions.len(),
         "triangles": mesh.triangles.len(),

@@ -38,6 +38,13 @@ impl Probe {
     /// Prints one JSON line for each line read. A line that cannot be read gives
     /// `{"error": …, "line": …}`, and the result is false.
     pub fn run(&self) -> Outcome {
+        let sources = [&self.points, &self.rays].map(|source| source.as_deref());
+        let input = Path::new(files::INPUT);
+        if self.file == input && sources.contains(&Some(input)) {
+            return Err(String::from(
+                "the dataset and the places cannot both come from the standard input",
+            ));
+        }
         let loaded = files::load(&self.file)?;
         let mut good = report::to_stderr(&loaded);
         if let Some(source) = &self.points {

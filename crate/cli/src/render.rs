@@ -19,7 +19,8 @@ enum Switch {
 pub struct Render {
     /// The dataset
     file: PathBuf,
-    /// The picture to write; its ending tells the format: png, tga, tif, gif or mtv
+    /// The picture to write; its ending tells the format: png, tga, tif, gif or mtv. Of several
+    /// `shoot`s, the last has this name, those before it OUT-1.png, OUT-2.png, …
     #[arg(short, long)]
     output: PathBuf,
     /// Width and height in pixels, instead of the dataset's `framesize`
@@ -52,6 +53,12 @@ impl Render {
         };
         let mut loaded = files::load(&self.file)?;
         let clean = report::to_stderr(&loaded);
+        for (index, earlier) in loaded.compiled.earlier.iter_mut().enumerate() {
+            let name = trace::number_name(&self.output, index + 1);
+            let traced = wishes.trace(Arc::make_mut(&mut earlier.scene), &|_| ())?;
+            trace::write(&name, &traced.picture)?;
+            eprintln!("{}: the picture of an earlier `shoot`", name.display());
+        }
         let scene = Arc::make_mut(&mut loaded.compiled.scene);
         let traced = wishes.trace(scene, &|_| ())?;
         let start = Instant::now();

@@ -66,6 +66,7 @@ impl Scan {
             outliers: self.outliers,
             gap: self.gap,
             seed: self.seed,
+            ..Disturbance::default()
         };
         if let Some(path) = &self.output {
             let points = sample(&picker, middle, radius, self.points, self.seed)?;

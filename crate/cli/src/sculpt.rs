@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 pub struct Sculpt {
     /// The strokes
     file: PathBuf,
-    /// File for the mesh: .ply, .obj, .stl, .glb or .3mf
-    #[arg(short, long)]
+    /// File for the mesh
+    #[arg(short, long, help = format!("File for the mesh: {}", Format::ENDINGS))]
     output: Option<PathBuf>,
     /// Write a mesh for each stage, too: OUT-1.ply, OUT-2.ply …
     #[arg(long, requires = "output")]
@@ -161,9 +161,8 @@ struct Output<'a> {
 impl<'a> Output<'a> {
     fn new(path: &'a Path) -> Result<Self, String> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let format = Format::of_name(&name).ok_or_else(|| {
-            format!("{name}: a mesh is written to a .ply, .obj, .stl, .glb or .3mf file")
-        })?;
+        let format = Format::of_name(&name)
+            .ok_or_else(|| format!("{name}: a mesh is written to a file {}", Format::ENDINGS))?;
         Ok(Self { path, format })
     }
 

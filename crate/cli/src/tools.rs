@@ -38,6 +38,17 @@ pub fn save(folder: &Path, name: &str, picture: &Picture) -> Result<String, Stri
     darkroom::write(&Folder(folder.to_path_buf()), name, picture)
 }
 
+/// Begins a file that a text names, such as a log, in the dataset's folder.
+///
+/// # Errors
+/// If the name leads out of the folder or is that of a dataset, or if writing fails.
+pub fn begin(folder: &Path, name: &str) -> Result<Box<dyn Target>, String> {
+    if name::is_dataset(name) {
+        return Err(format!("{name} is a dataset and is not written over"));
+    }
+    Folder(folder.to_path_buf()).create(name)
+}
+
 /// The folder of a dataset.
 struct Folder(PathBuf);
 

@@ -4,7 +4,7 @@ use crate::whole;
 use picture::{Format, Picture, file};
 use scene::{Scene, Settings};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Options of the command line that override the dataset.
@@ -40,7 +40,9 @@ impl Wishes {
     pub fn apply(&self, scene: &mut Scene) -> Result<(), String> {
         let settings = &mut scene.settings;
         settings.frame = self.size.unwrap_or(settings.frame);
-        settings.samples = self.samples.unwrap_or(settings.samples);
+        if let Some(samples) = self.samples {
+            (settings.samples, settings.block) = (samples, 1);
+        }
         settings.soft = self.soft.unwrap_or(settings.soft);
         let [width, height] = settings.frame;
         let largest = Settings::MAX_FRAME;
@@ -94,6 +96,14 @@ impl Wishes {
 /// If the name's ending is not that of a known format.
 pub fn check_name(path: &Path) -> Result<(), String> {
     Format::of(path).map_or_else(|problem| Err(problem.to_string()), |_| Ok(()))
+}
+
+/// Returns the name of the n-th of several pictures, of which the last has the name itself:
+/// `out.png`, 2 → `out-2.png`.
+pub fn number_name(path: &Path, number: usize) -> PathBuf {
+    let [stem, ending] = [path.file_stem(), path.extension()]
+        .map(|part| part.unwrap_or_default().to_string_lossy().into_owned());
+    path.with_file_name(format!("{stem}-{number}.{ending}"))
 }
 
 /// Writes a picture in the format of the name's ending.

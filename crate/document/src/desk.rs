@@ -186,10 +186,7 @@ mod tests {
     use super::*;
 
     fn desk(saved: bool) -> Desk {
-        let asset = Asset {
-            name: String::from("a.png"),
-            bytes: vec![1].into(),
-        };
+        let asset = Asset::await_mesh("a.png", [1]);
         Desk::new(vec![asset], (String::from("scene.mtv"), saved))
     }
 

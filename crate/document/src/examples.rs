@@ -247,9 +247,9 @@ mod tests {
             let assets: Vec<rats::Asset> = example
                 .files
                 .iter()
-                .map(|path| rats::Asset {
-                    name: path.rsplit('/').next().unwrap_or(path).to_owned(),
-                    bytes: read(path).expect(path).into(),
+                .map(|path| {
+                    let name = path.rsplit('/').next().unwrap_or(path);
+                    rats::Asset::new(name, read(path).expect(path))
                 })
                 .collect();
             let text = read(example.path).expect(example.path);

@@ -205,6 +205,7 @@ impl Fitting {
     pub fn add(&mut self, name: String, bytes: Vec<u8>) {
         self.open = true;
         self.message = None;
+        self.forget_left_out();
         self.files.retain(|file| file.name != name);
         if self.files.len() >= MOST_FILES {
             self.files.remove(0);
@@ -223,6 +224,7 @@ impl Fitting {
     /// Removes a measured file.
     pub fn remove(&mut self, index: usize) {
         if index < self.files.len() {
+            self.forget_left_out();
             self.files.remove(index);
         }
     }
@@ -246,13 +248,31 @@ impl Fitting {
         found.any(|found| !found.sights.is_empty())
     }
 
-    /// Returns points to draw over the picture, at most [`MOST_POINTS`].
+    /// Returns points to draw over the picture, at most [`MOST_POINTS`], and whether the fit that
+    /// has ended left them out.
     #[must_use]
-    pub fn points(&self) -> Vec<DVec3> {
+    pub fn points(&self) -> Vec<(DVec3, bool)> {
         let found = self.files.iter().filter_map(|file| file.found.as_ref());
         let all = found.flat_map(|found| found.points.iter().copied());
         let step = all.clone().count().div_ceil(MOST_POINTS).max(1);
-        all.step_by(step).collect()
+        let left_out = self.outliers();
+        let numbered = all.zip(0..).step_by(step);
+        numbered
+            .map(|(point, i)| (point, left_out.binary_search(&i).is_ok()))
+            .collect()
+    }
+
+    /// The numbers of the points that the fit that has ended left out.
+    #[must_use]
+    pub fn outliers(&self) -> &[u32] {
+        self.last.as_ref().map_or(&[], |last| &last.left_out)
+    }
+
+    /// Forgets which points were left out, as there are others now.
+    fn forget_left_out(&mut self) {
+        if let Some(last) = &mut self.last {
+            last.left_out.clear();
+        }
     }
 
     /// Returns the meshes in the text that can be fitted, with a label each.
@@ -484,6 +504,7 @@ impl Fitting {
             return false;
         };
         let text = run.format(&step.text);
+        let failure = step.failure.clone();
         self.last = Some(step);
         let Some(range) = run.place(session) else {
             self.message = Some((
@@ -507,7 +528,11 @@ impl Fitting {
             self.message = Some((refused.to_string(), true));
             self.finish(session);
         } else if done {
-            self.message = Some((String::from("Done."), false));
+            let is_bad = failure.is_some();
+            let words = failure.map_or(String::from("Done."), |why| {
+                format!("The fit failed: {why}. The best that was found stays in the text.")
+            });
+            self.message = Some((words, is_bad));
             self.finish(session);
         }
         true
@@ -681,10 +706,7 @@ mod tests {
                     text: text.to_owned(),
                 }],
             },
-            assets: vec![Asset {
-                name: String::from("head.obj"),
-                bytes: obj.into_bytes().into(),
-            }],
+            assets: vec![Asset::new("head.obj", obj.into_bytes())],
             ..Kept::default()
         };
         let mut session = Session::new(kept, true);

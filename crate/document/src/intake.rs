@@ -11,12 +11,20 @@ use rats::link::MAX_NAME;
 const TEXTS: [&str; 6] = ["rat", "art", "ice", "dat", "txt", "strokes"];
 /// Extensions of measured points and outlines, beside PLY files without faces.
 const MEASURED: [&str; 2] = ["xyz", "json"];
-/// The kinds of files that are accepted, in words.
-pub const KINDS: &str = "texts (.rat .art .ice .dat .txt .strokes), images (.png .gif .tga .tif \
-    .mtv), meshes (.obj .ply .stl .glb), points to fit to (.ply .xyz), outlines (.json) and \
-    projects (.zip)";
 /// Most files that are read at once.
 pub const MOST: usize = 32;
+
+/// Returns the kinds of files that are accepted, in words.
+#[must_use]
+pub fn kinds() -> String {
+    format!(
+        "texts (.{}), images ({}), meshes ({}), skeletons (.swc, .3mf, .vtp, .vtk, .csv, .obj, \
+            .ply, .xyz, .pdb), points to fit to (.ply, .xyz), outlines (.json) and projects (.zip)",
+        TEXTS.join(", ."),
+        ::picture::Format::ENDINGS,
+        mesh::Format::ENDINGS
+    )
+}
 
 /// A file from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +56,10 @@ pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
     let (most, what) = if project_file::is_project(name) {
         (project_file::MAX_BYTES, "a project")
     } else if asset::kind(name).is_some() || MEASURED.contains(&asset::extension(name).as_str()) {
-        (MAX_ASSET, "an image, a mesh or a cloud of points")
+        (
+            MAX_ASSET,
+            "an image, a mesh, a skeleton or a cloud of points",
+        )
     } else {
         (MAX_TEXT, "a text")
     };
@@ -140,10 +151,7 @@ pub fn check_name(name: &str) -> Result<(), String> {
 /// If it is too large, or not of the format that its name says.
 pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
     check_length(name, bytes.len() as f64)?;
-    let asset = Asset {
-        name: name.to_owned(),
-        bytes: bytes.into(),
-    };
+    let asset = Asset::await_mesh(name, bytes);
     asset::facts(&asset)?;
     Ok(asset)
 }
@@ -152,7 +160,10 @@ pub fn asset(name: &str, bytes: Vec<u8>) -> Result<Asset, String> {
 fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
     check_length(name, bytes.len() as f64)?;
     let extension = asset::extension(name);
-    if MEASURED.contains(&extension.as_str()) || (extension == "ply" && !has_faces(&bytes)) {
+    let is_skeleton = asset::is_skeleton(name, &bytes);
+    let is_measured =
+        MEASURED.contains(&extension.as_str()) || (extension == "ply" && !has_faces(&bytes));
+    if is_measured && !is_skeleton {
         sorted.measured.push((name.to_owned(), bytes));
     } else if asset::kind(name).is_some() {
         let asset = asset(name, bytes)?;
@@ -166,20 +177,41 @@ fn take(sorted: &mut Sorted, name: &str, bytes: Vec<u8>) -> Result<(), String> {
             text,
         });
     } else {
-        return Err(format!("Sinew takes {KINDS}"));
+        return Err(format!("Sinew takes {}", kinds()));
     }
     Ok(())
 }
 
-/// Whether a file is no cloud of points: the header of a PLY file lists faces, or is damaged.
+/// Writes a text that draws skeletons among files which came without a text; `None` if there are
+/// none. It lights them from afar, as their size is not known before they are read.
+#[must_use]
+pub fn write_text(assets: &[Asset]) -> Option<File> {
+    let skeletons = assets
+        .iter()
+        .filter(|own| asset::is_skeleton(&own.name, &own.bytes));
+    let mut text = String::from(
+        "light White, distant, direction 1 -2 -2\nlight Gray40, distant, direction -2 0 -1\n\
+         surface Flesh, diffuse SandyBrown, specular Gray40, shine 40, radius 0.5, \
+         kernel compact6, blobbiness -8\n",
+    );
+    let mut count = 0;
+    for skeleton in skeletons {
+        count += 1;
+        text += &format!("skeleton Flesh, SKELETON{count} {}\n", skeleton.name);
+    }
+    let name = String::from("main.rat");
+    (count > 0).then_some(File { name, text })
+}
+
+/// Whether a PLY file is no cloud of points: its heading lists faces, or is damaged.
 fn has_faces(bytes: &[u8]) -> bool {
-    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
-    let header = start.split("end_header").next().unwrap_or_default();
-    let mut lines = header.lines();
-    let is_ply = lines.next().is_some_and(|line| line.trim() == "ply");
-    let has_vertices = header.contains("element vertex");
-    let faces = lines.find_map(|line| line.trim().strip_prefix("element face"));
-    !is_ply || !has_vertices || faces.is_some_and(|count| count.trim() != "0")
+    let Ok(elements) = mesh::formats::ply::elements(bytes) else {
+        return true;
+    };
+    elements.iter().all(|element| element.name != "vertex")
+        || elements
+            .iter()
+            .any(|element| element.count > 0 && matches!(element.name, "face" | "tristrips"))
 }
 
 /// Returns a name, or a part of one between folders, with a hyphen for each character that a name
@@ -231,6 +263,32 @@ mod tests {
         assert_eq!(sorted.texts[2].text, "# ä");
         assert_eq!(sorted.texts[1].text, "sphere a 1, 0 0 0\n");
         assert_eq!(sorted.refused, Vec::<String>::new());
+    }
+
+    #[test]
+    fn skeletons_get_a_text_that_draws_them() {
+        let sorted = sort(vec![
+            file("a b.swc", b"1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n"),
+            file("m.xyz", b"2\n\nO 0 0 0\nH 1 0 0\n"),
+        ]);
+        assert_eq!(sorted.refused, Vec::<String>::new());
+        assert!(sorted.measured.is_empty());
+        let file = write_text(&sorted.assets).unwrap();
+        assert_eq!(rats::asset_names(&file.text), ["a-b.swc", "m.xyz"]);
+        for asset in &sorted.assets {
+            let recipe = rats::Recipe::default();
+            let graph = recipe.make(&asset.name, &asset.bytes);
+            asset.keep_skeleton(recipe, graph.map_err(|error| error.to_string()));
+        }
+        let project = rats::Project { files: vec![file] };
+        let compiled = rats::compile_at(&project, &sorted.assets, 0.0);
+        let bad = compiled
+            .diagnostics
+            .iter()
+            .filter(|told| told.severity == rats::Severity::Error);
+        assert_eq!(bad.count(), 0, "{:?}", compiled.diagnostics);
+        assert_eq!(compiled.scene.elements.len(), 3, "limbs and two atoms");
+        assert_eq!(write_text(&[]), None);
     }
 
     #[test]

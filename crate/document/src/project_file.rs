@@ -243,10 +243,7 @@ mod tests {
     const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
     fn mesh(name: &str) -> Asset {
-        Asset {
-            name: name.to_owned(),
-            bytes: OBJ.into(),
-        }
+        Asset::await_mesh(name, OBJ)
     }
 
     fn zip(members: &[(&str, &[u8])]) -> Vec<u8> {
@@ -266,10 +263,7 @@ mod tests {
             texts: vec![file("a b.rat", "# ä\n"), file("x/y.rat", "read a b.rat\n")],
             assets: vec![
                 mesh("x/bone.obj"),
-                Asset {
-                    name: String::from("a.png"),
-                    bytes: crate::picture::png(&image).unwrap().into(),
-                },
+                Asset::await_mesh("a.png", crate::picture::png(&image).unwrap()),
             ],
             camera: Some(Camera {
                 fov: 33.0,

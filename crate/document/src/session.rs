@@ -7,7 +7,7 @@
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
-use rats::{Compiled, Diagnostic, Project, Severity, TextEdit};
+use rats::{Compiled, Diagnostic, Project, Recipe, Severity, TextEdit, Unread};
 use scene::{Camera, Scene};
 use serde::{Deserialize, Serialize};
 use std::cell::OnceCell;
@@ -18,7 +18,7 @@ use tracer::Picker;
 /// text out at every key, so the limit is far below that of links.
 pub const MAX_TEXT: usize = 256 * 1024;
 /// Most files in a project.
-pub const MAX_FILES: usize = 64;
+pub const MAX_FILES: usize = rats::limits::MAX_FILES;
 
 impl Snapshot for Project {
     fn bytes(&self) -> usize {
@@ -139,6 +139,8 @@ pub struct Session {
     shape: u64,
     enabled: bool,
     stale: bool,
+    /// Skeletons that the present text waits for.
+    unread: Vec<Unread>,
     compile_seconds: f64,
     film_frame: u32,
 }
@@ -161,6 +163,7 @@ impl Session {
             shape: 0,
             enabled: compile,
             stale: false,
+            unread: Vec::new(),
             compile_seconds: 0.0,
             film_frame: 0,
         };
@@ -545,6 +548,7 @@ impl Session {
                 && camera.up.is_finite()
                 && camera.fov.is_finite()
                 && camera.shift.iter().all(|shift| shift.is_finite())
+                && camera.pixel.is_finite()
         });
         if finite && self.camera != camera {
             self.camera = camera;
@@ -619,28 +623,44 @@ impl Session {
         self.enabled = true;
     }
 
-    /// Returns large meshes that the text names and that are not read yet. [`Session::compile`]
-    /// waits until [`rats::keep_mesh`] was called for each.
+    /// Returns meshes that the text names and that are not read yet. [`Session::compile`] waits
+    /// until [`Asset::keep_mesh`] was called for each.
     pub fn unread_meshes(&self) -> impl Iterator<Item = &Asset> {
         self.assets.iter().filter(|asset| {
             // A text in the same folder may leave the folder out.
             let name = asset.name.rsplit('/').next().unwrap_or_default();
-            asset::is_large_mesh(asset)
-                && self.project.files.iter().any(|f| f.text.contains(name))
-                && !rats::is_mesh_read(asset)
+            asset.is_unread() && self.project.files.iter().any(|f| f.text.contains(name))
         })
     }
 
-    /// Compiles the present text if it changed since the last call and all large meshes that it
-    /// names are read. Call it after the text was stored, so that no text is lost if the compiler
-    /// stops the program.
+    /// Returns the files whose skeletons the text asks for, and how they are made, which are not
+    /// read yet. [`Session::compile`] waits until [`Asset::keep_skeleton`] was called for each.
+    pub fn unread_skeletons(&self) -> impl Iterator<Item = (&Asset, &Recipe)> {
+        self.unread.iter().filter_map(|wanted| {
+            let asset = self.assets.iter().find(|asset| asset.name == wanted.name)?;
+            let is_read = asset.skeleton(&wanted.recipe).is_some();
+            (!is_read).then_some((asset, &wanted.recipe))
+        })
+    }
+
+    /// Compiles the present text if it changed since the last call and all meshes and skeletons
+    /// that it names are read. Call it after the text was stored, so that no text is lost if the
+    /// compiler stops the program.
     pub fn compile(&mut self) {
-        if !self.enabled || !self.stale || self.unread_meshes().next().is_some() {
+        let is_waiting =
+            self.unread_meshes().next().is_some() || self.unread_skeletons().next().is_some();
+        if !self.enabled || !self.stale || is_waiting {
+            return;
+        }
+        let start = pool::clock::stopwatch();
+        let mut compiled =
+            rats::compile_at(&self.project, &self.assets, f64::from(self.film_frame));
+        self.unread = std::mem::take(&mut compiled.unread);
+        if !self.unread.is_empty() {
             return;
         }
         self.stale = false;
-        let start = pool::clock::stopwatch();
-        self.compiled = rats::compile_at(&self.project, &self.assets, f64::from(self.film_frame));
+        self.compiled = compiled;
         self.compile_seconds = pool::clock::stopwatch() - start;
         if self.errors() == 0 || self.good.is_none() {
             let scene = &self.compiled.scene;
@@ -665,6 +685,7 @@ impl Session {
     fn note_change(&mut self) {
         self.revision += 1;
         self.stale = true;
+        self.unread.clear();
     }
 }
 
@@ -849,10 +870,7 @@ mod tests {
     #[test]
     fn images_come_and_go_within_their_limits() {
         let mut session = Session::of_text(TEXT);
-        let image = |name: &str, bytes: usize| Asset {
-            name: name.to_owned(),
-            bytes: vec![0; bytes].into(),
-        };
+        let image = |name: &str, bytes: usize| Asset::await_mesh(name, vec![0; bytes]);
         let revision = session.revision();
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();

@@ -173,10 +173,7 @@ impl Shelf {
         let (mut assets, mut lost) = (Vec::new(), Vec::new());
         for KeptAsset { name, bytes } in kept {
             match bytes.and_then(|text| STANDARD.decode(text).ok()) {
-                Some(bytes) => assets.push(Asset {
-                    name,
-                    bytes: bytes.into(),
-                }),
+                Some(bytes) => assets.push(Asset::await_mesh(name, bytes)),
                 None => lost.push(name),
             }
         }
@@ -210,7 +207,7 @@ impl Shelf {
         let mut left = MAX_KEPT;
         let mut lost = Vec::new();
         let mut kept: Vec<KeptAsset> = Vec::new();
-        for Asset { name, bytes } in assets {
+        for Asset { name, bytes, .. } in assets {
             let fits = bytes.len() <= left;
             if fits {
                 left -= bytes.len();
@@ -473,10 +470,10 @@ mod tests {
     }
 
     fn with_assets(sizes: &[usize]) -> Kept {
-        let assets = sizes.iter().enumerate().map(|(index, size)| Asset {
-            name: format!("{index}.png"),
-            bytes: vec![7; *size].into(),
-        });
+        let assets = sizes
+            .iter()
+            .enumerate()
+            .map(|(index, size)| Asset::await_mesh(format!("{index}.png"), vec![7; *size]));
         Kept {
             assets: assets.collect(),
             ..work("text")

@@ -36,7 +36,7 @@ struct Reduced<R> {
 fn reduce<R: Real>(y: R, x: R) -> Reduced<R> {
     let octant = R::splat(OCTANT);
     let (low, high) = (y.min(x), y.max(x));
-    // Three ranges: z = low/high; or, nearer to the diagonal, z = (low−high)/(low+high).
+    // z is low/high or, nearer to the diagonal, (low−high)/(low+high).
     let diagonal = (high * octant).lt(low);
     let numerator = R::select(diagonal, low - high, low);
     let denominator = R::select(diagonal, low + high, high);

@@ -99,6 +99,12 @@ impl Implicit for Blend {
         functions.fold(sum, Jet::plus)
     }
 
+    fn jet8_of(&self, part: &implicit::Part, points: [f32x8; 3]) -> Jet<f32x8> {
+        let sum = self.sum.jet8_of(part, points);
+        let functions = self.parts.iter().map(|part| part.function.jet8(points));
+        functions.fold(sum, Jet::plus)
+    }
+
     fn variation(&self, part: Option<&implicit::Part>, ball: Ball) -> Variation {
         let sum = self.sum.variation(part, ball);
         let functions = self
@@ -126,7 +132,7 @@ impl Implicit for Blend {
     }
 
     fn clearance(&self, point: DVec3) -> Option<Clearance> {
-        // Of several functions, none knows what the others add.
+        // A function does not know what others add to it.
         self.single()?.clearance(point)
     }
 

@@ -355,7 +355,7 @@ impl<S: Scalar> Blob<S> {
         let [ox, oy, oz] = middle;
         let [dx, dy, dz] = direction;
         if let Some(segment) = &self.segment {
-            // In the segment's frame; t = 0 at the ray's origin.
+            // The ray in the segment's frame; t = 0 at its origin.
             let [(x, rate), (y, vy), (z, vz)] = segment.axes.map(|axis| {
                 let [ax, ay, az] = axis.map(R::lift);
                 (-(ax * ox + ay * oy + az * oz), ax * dx + ay * dy + az * dz)
@@ -480,8 +480,8 @@ impl<R: Real> BlobOnRay<R> {
                 let most = beside * share;
                 let rate = self.rate.abs();
                 let furthest = (from - self.center).abs().max((to - self.center).abs());
-                // Two bounds, of which the smaller counts: each of the segment's points separately,
-                // with the full rate of change of its distance; or the product rule for the factor
+                // The smaller of two bounds: on each of the segment's points separately, with the
+                // full rate of change of its distance; and by the product rule for the factor
                 // e^(−q) and the fraction on the segment.
                 let points = most * (twice + R::splat(2.0) * rate * rate);
                 let two = R::splat(2.0);
@@ -555,7 +555,7 @@ impl<R: Real> BlobOnRay<R> {
         let half = R::select(miss, R::splat(f64::NEG_INFINITY), half);
         let [mut near, mut far] = [self.center - half, self.center + half];
         if let Some(segment) = &self.segment {
-            // Where |x| ≤ half + √square, unless the ray is perpendicular to the segment.
+            // The rest has |x| > half + √square, unless the ray is perpendicular to the segment.
             let rate = self.rate.abs().max(R::splat(1e-12));
             let middle = -(self.rate.sign_to(self.place)) / rate;
             let reach = (R::lift(segment.half) + square.max(zero).sqrt()) / rate;
@@ -573,7 +573,7 @@ impl<R: Real> BlobOnRay<R> {
         let side = x.abs();
         let near = side - half;
         if !R::any(R::splat(-LONG).lt(near)) {
-            // No lane is near an end.
+            // All lanes are far from the ends.
             return (R::splat(2.0), R::splat(0.0));
         }
         let bell = (near * near).decay();

@@ -101,7 +101,7 @@ impl Primitive {
     ) -> Option<Vec<ChainBlob>> {
         let amplitude = self.prepared.double.amplitude;
         let length = measure * self.width;
-        // With a large amplitude, T is a small fraction of it, and the error counts against T.
+        // The error counts against T, which is a small fraction of a large amplitude.
         let left = MOST_LEFT_OUT / amplitude.max(1.0);
         let pieces = (length / LONGEST_PIECE)
             .max(angle / WIDEST_PIECE)

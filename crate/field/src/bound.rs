@@ -227,8 +227,8 @@ impl Bound {
         let rough = if let Some((point, rough)) = kernel.value_and_roughness(u)
             && self.size <= 1.0 + u * u
         {
-            // Further away than its size: the bound for an infinite line or plane would hardly be
-            // smaller.
+            // The bone is further away than its size: the bound for an infinite line or plane would
+            // hardly be smaller.
             magnitude = self.whole * point;
             self.whole * rough
         } else if self.dimension == 0 {
@@ -264,7 +264,7 @@ impl Bound {
             return self.estimate_with_profile(ripple, near, magnitude, rough, length);
         }
         let mut error = rough * length.0[order - 2];
-        // Beyond a compact kernel's support all derivatives are 0.
+        // Derivatives are 0 beyond a compact kernel's support.
         let mut fourth = if order == 4 || rough == 0.0 {
             rough
         } else {
@@ -489,7 +489,7 @@ impl Bound {
     #[must_use]
     pub fn least(&self, center: DVec3, radius: f64) -> f64 {
         let is_plain = self.width == self.finest && self.ripple.is_none() && !self.negative;
-        // Of these the distance is known exactly.
+        // The distance is known exactly from points, segments and arcs.
         let is_line = matches!(
             self.place,
             Place::Point(_) | Place::Segment { .. } | Place::Arc(_)
@@ -502,7 +502,7 @@ impl Bound {
         if self.dimension == 0 {
             return self.whole * at(0.0);
         }
-        // One way from the nearest point there is half of the curve at least.
+        // At least half of the curve lies on one side of the nearest point.
         let half = 0.5 * self.size.sqrt() / self.finest;
         let density = self.whole / (2.0 * half);
         let (mut from, mut sum) = (0.0, 0.0);

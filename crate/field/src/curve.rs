@@ -256,7 +256,7 @@ impl<R: Real> Slope<R> {
         let (mut below, mut above) = (sign * first, sign * last);
         let crosses = R::both(below.lt(zero), zero.lt(above));
         let mut t = zero;
-        // Which end was moved in the step before: 1 the upper, −1 the lower one.
+        // The end that was moved in the step before: 1 the upper, −1 the lower one.
         let mut before = zero;
         for _ in 0..if R::DOUBLE { 10 } else { 5 } {
             t = (low * above - high * below) / nonzero(above - below);
@@ -409,7 +409,7 @@ impl<R: Real> Side<R> {
     fn inside(&self, around: &Around<'_, R>, level: R) -> [R; 2] {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (first, last) = (self.start - level, self.stop - level);
-        // With the sign that makes it rise: the parabola tangent to it at the start.
+        // The parabola tangent to it at the start, with the sign that makes it rise.
         let rising = self.start.lt(self.stop);
         let sign = R::select(rising, one, -one);
         let bend = self.bend;

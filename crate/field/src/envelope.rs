@@ -163,7 +163,7 @@ fn integrate(places: &[f64], rough: &[f64], start: usize, plane_diverges: bool) 
     let (mut line, mut plane, mut outward) = (0.0, 0.0, 0.0);
     let mut before = 0.0;
     for i in start..last {
-        // Beyond the kernel's support, or where it underflows.
+        // The kernel's support ends here, or it underflows.
         if rough[i] == 0.0 {
             break;
         }
@@ -174,7 +174,7 @@ fn integrate(places: &[f64], rough: &[f64], start: usize, plane_diverges: bool) 
         outward += rough[i] * (places[i + 1] - places[i]);
         before = t;
     }
-    // Beyond the last place derivatives fall as r⁻⁴ or faster (slopes of the inverse kernel as
+    // Derivatives fall beyond the last place as r⁻⁴ or faster (slopes of the inverse kernel as
     // r⁻², whose integral over a plane diverges).
     line += 2.0 * rough[last] * places[last];
     plane += TAU * rough[last] * places[last] * places[last];
@@ -231,7 +231,7 @@ mod tests {
             let order = order(kernel);
             let mut tightest = 0.0f64;
             for i in 0..300 {
-                // From 0.05 on: nearer to a pole differences say nothing.
+                // Differences say nothing nearer to a pole than 0.05.
                 let u = 0.05 + 0.01 * f64::from(i);
                 let h = 2e-3 * u.min(0.3);
                 let bound = roughness(kernel, u - 3.0 * h).point;

@@ -98,7 +98,7 @@ impl Implicit for Exponentials {
     }
 
     fn support_at(&self, level: f64) -> Option<Ball> {
-        // Beyond this distance from each ball none has more than its share of the level.
+        // The distance from a ball at which it has its share of the level.
         let count = self.balls.len() as f64;
         let beyond = libm::log(count / level).max(0.0) / self.hardness;
         let balls = self.balls.iter().map(|&(center, radius)| Ball {

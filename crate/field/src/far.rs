@@ -154,7 +154,7 @@ mod tests {
                 let (y, x) = libm::sincos(f64::from(i) * 0.7);
                 let (height, flat) = libm::sincos(f64::from(i) * 1.3);
                 let p = [x * flat, y * flat, height].map(|x| x * ratio * reach);
-                // In double precision the closed forms are used up to 18 times the reach.
+                // Double precision uses the closed forms up to 18 times the reach.
                 for kernel in [Kernel::Inverse, Kernel::Squared, Kernel::Cubed] {
                     let want = kernel.jet(&Bone::Triangle(Box::new(bone)), p);
                     let value = triangle(kernel, &bone, p);
@@ -173,7 +173,7 @@ mod tests {
     fn agrees_with_the_closed_forms() {
         let close = error(3.5);
         assert!(close[0] < 1e-7 && close[1] < 2e-6, "{close:?}");
-        // Here the closed forms' own rounding shows.
+        // The closed forms' own rounding shows so far away.
         let far = error(17.0);
         assert!(far[0] < 1e-10 && far[1] < 1e-10, "{far:?}");
     }

@@ -276,6 +276,11 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         self.jet(point)
     }
 
+    /// Value and gradient of the terms of a part at eight points of its ball, in single precision.
+    fn jet8_of(&self, _part: &Part, points: [f32x8; 3]) -> Jet<f32x8> {
+        self.jet8(points)
+    }
+
     /// Bounds on the whole function in a ball, which must be within that of the part, if there is
     /// one: then only the terms of the part are looked at.
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {

@@ -92,13 +92,13 @@ pub fn of(primitive: &Primitive) -> Vec<Kink> {
                     ..Kink::new(*center, y * cosine - x * sine, jumps)
                 });
             };
-            // In the middle of the gap the parameter jumps from end to end.
+            // The parameter jumps from end to end in the middle of the gap.
             at(0.5 * angle + core::f64::consts::PI, true);
             for u in breaks(profile.waves[0], profile.scale[0]) {
                 at(u * angle, jumps(0));
             }
         }
-        // No parameters, or none that matters.
+        // Profiles of other bones have no kinks.
         _ => (),
     }
     kinks

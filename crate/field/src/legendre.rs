@@ -17,7 +17,7 @@ pub const fn pairs<const HALF: usize>() -> [(f64, f64); HALF] {
         let mut x = cosine(PI * (i as f64 + 0.75) / (n as f64 + 0.5));
         let mut step = 0;
         let mut slope = 0.0;
-        // Each step doubles the digits, of which the estimate has three or more.
+        // A step doubles the digits, of which the estimate has three or more.
         while step < 5 {
             let (value, derivative) = legendre(n, x);
             slope = derivative;

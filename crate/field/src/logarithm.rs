@@ -138,7 +138,7 @@ impl<'a> Logarithm<'a> {
         let (middle, half) = match primitive.skeleton {
             Skeleton::Segment { base, apex } => (0.5 * (base + apex), 0.5 * base.distance(apex)),
             Skeleton::Point { center } => (center, 0.0),
-            // There are no others.
+            // Sums of other bones have no logarithm.
             _ => (center, f64::INFINITY),
         };
         let most = libm::log(bound.magnitude(bound.nearness(center, radius)));
@@ -201,7 +201,7 @@ fn bounds(terms: &[Term], radius: f64) -> Bounds {
     }
     let mut value = [0.0; 2];
     let mut steepest = 0.0_f64;
-    // At the centre: the sum, and the gradient times it, over the largest term.
+    // The sum at the centre, and the gradient times it, over the largest term.
     let (mut whole, mut gradient) = (0.0, DVec3::ZERO);
     // Bounds on the means of |v|, |v|², |v|³, |H| and |v|·|H|, less those of the largest term, and
     // on the greatest |v|.

@@ -76,7 +76,7 @@ pub struct Primitive {
 const LARGEST_SIZE: f64 = 1e8;
 
 /// Largest size, in kernel widths, of curves and bones that taper, which are integrated
-/// numerically.
+/// numerically ([cones](Shaping::is_cone) are not).
 pub const LONGEST: f64 = 1e4;
 
 /// Returns the largest width parameter along a tapered bone: at an end, unless radius and
@@ -102,7 +102,8 @@ impl Primitive {
         let peak = profile.map_or(1.0, |p| p.largest());
         let usable = skeleton.is_finite() && peak.is_finite() && height != 0.0;
         let size = skeleton.size();
-        let numeric = tapered.is_some() || skeleton.is_numeric();
+        let is_cone = shaping.is_cone(&skeleton);
+        let numeric = tapered.is_some() && !is_cone || skeleton.is_numeric();
         if numeric && shaping.widths_along(skeleton.measure()) > LONGEST {
             return None;
         }
@@ -121,12 +122,13 @@ impl Primitive {
         // A profile's parameters come from the untapered form, also for tapered bones.
         let waves = profile.map(|profile| Box::new(Waves::new(&profile, &form.bone)));
         if let Some(shaping) = tapered {
-            let curve = curve_with_taper(&skeleton, &frame, shaping.kernel, &|fraction| {
-                let here = shaping.at(fraction);
-                let (s, h) = (here.width(), here.height(&skeleton));
-                let thin = s.unwrap_or(width) / width;
-                [h.unwrap_or(height) / height, thin * thin]
-            });
+            let curve =
+                curve_with_taper(&skeleton, &frame, (shaping.kernel, is_cone), &|fraction| {
+                    let here = shaping.at(fraction);
+                    let (s, h) = (here.width(), here.height(&skeleton));
+                    let thin = s.unwrap_or(width) / width;
+                    [h.unwrap_or(height) / height, thin * thin]
+                });
             form.bone = Bone::Curve(Box::new(curve));
         }
         let level = THRESHOLD * shaping.influence.max(f64::MIN_POSITIVE);

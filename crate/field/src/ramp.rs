@@ -92,7 +92,7 @@ impl<S: Copy> Ramp<S> {
         let highest = R::select(climbs, last, first).max(zero).min(top);
         let steep = (rise * rate).abs();
         let meets = R::both(zero.lt(last), first.lt(top));
-        // Only at the kink at the largest factor does the derivative fall.
+        // The derivative falls at one kink, that of the largest factor.
         let kink = R::select(climbs, top, zero);
         let bends = R::both(first.lt(kink), kink.lt(last));
         [

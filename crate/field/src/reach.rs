@@ -81,6 +81,7 @@ pub(crate) fn interval(
             }
             hull
         }
+        Bone::Curve(curve) if let Some(half) = curve.capsule => ray.capsule(half, d),
         Bone::Curve(curve) => {
             let mut hull = NONE;
             for piece in &curve.piece_bounds {

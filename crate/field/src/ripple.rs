@@ -90,7 +90,7 @@ impl Ripple {
                 };
                 (by, Some([radius.max(f64::MIN_POSITIVE), rise]))
             }
-            // These have no parameters.
+            // Other bones have no parameters that a profile could follow.
             _ => return None,
         };
         let changes = arc.map_or(by != [0.0; 4], |[_, rise]| rise > 0.0);

@@ -64,6 +64,23 @@ impl Shaping {
         differs && skeleton.dimension() == 1
     }
 
+    /// Whether a tapered bone is one term that is evaluated at once, however long it is: a segment
+    /// of a compact polynomial kernel, whose support is a slender cone.
+    #[must_use]
+    pub fn is_cone(&self, skeleton: &Skeleton) -> bool {
+        let (Some(end), Skeleton::Segment { base, apex }) = (self.taper, skeleton) else {
+            return false;
+        };
+        let is_even = self.blob_scale == BlobScale::Relative && end.blobbiness == self.blobbiness;
+        let is_compact = self.kernel.is_compact() && self.kernel.has_cones();
+        let [first, last] = [0.0, 1.0].map(|at| self.at(at).width().map(|width| 1.0 / width));
+        let (Some(first), Some(last)) = (first, last) else {
+            return false;
+        };
+        let steepest = crate::kernel::polynomial::cone::STEEPEST * base.distance(*apex);
+        is_even && is_compact && (last - first).abs() <= steepest
+    }
+
     /// Returns the shaping at a fraction of a tapered bone's length.
     #[must_use]
     pub fn at(&self, fraction: f64) -> Self {

@@ -9,13 +9,14 @@ mod triangle;
 
 pub(crate) use arc::orthonormal;
 pub use curve::{cubic, halves};
+use curve::{length, nearest_along};
 pub use polygon::{area_vector, ring_vector};
 pub(crate) use segment::nearest as nearest_on_segment;
 
 use crate::Kernel;
-use crate::bone::Bone;
-use crate::term::Frame;
-use glam::{DAffine3, DVec3};
+use crate::bone::{self, Bone};
+use crate::term::{Frame, frame};
+use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// Bone: a piece of skeleton.
@@ -127,12 +128,6 @@ geometry! {
         /// Returns 0 for points, 1 for segments, arcs and curves, 2 for triangles, polygons and
         /// planes.
         pub fn dimension(&self) -> u8;
-        /// Computes length or area; 1 for a point, infinite for a plane.
-        pub fn measure(&self) -> f64;
-        /// Computes the point nearest to `point` (one of them, where there are several).
-        pub fn nearest(&self, point: DVec3) -> DVec3;
-        /// Returns a sphere (centre, radius) that holds the bone; `None` for a plane.
-        pub fn bounding_sphere(&self) -> Option<(DVec3, f64)>;
         /// Returns a place in the bone's middle.
         pub fn middle(&self) -> DVec3;
         /// Returns the points by which it is given, or by which a person knows it, with their
@@ -140,11 +135,24 @@ geometry! {
         pub fn landmarks(&self) -> Vec<(DVec3, &'static str)>;
         /// Maps the bone.
         pub fn transform(&self, map: &dyn Map) -> Skeleton;
-        /// Computes the local frame and the bone in it, for a kernel and its width parameter s.
-        pub(crate) fn place(&self, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>);
     }
 
     most {
+        /// Computes length or area; 1 for a point, infinite for a plane.
+        pub fn measure(&self) -> f64 {
+            self.cubics(0.0).into_iter().map(length).sum()
+        }
+
+        /// Computes the point nearest to `point` (one of them, where there are several).
+        pub fn nearest(&self, point: DVec3) -> DVec3 {
+            nearest_along(|share| self.at(share), point)
+        }
+
+        /// Returns a sphere (centre, radius) that holds the bone; `None` for a plane.
+        pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
+            Some(ball_around(self.cubics(0.0).iter().flatten()))
+        }
+
         /// Computes a length that is not less than [`Skeleton::measure`], and fast: that of a
         /// curve's control polygon.
         pub fn most_length(&self) -> f64 {
@@ -160,7 +168,12 @@ geometry! {
         /// bone; `None` for a plane. NaN if a coordinate is NaN.
         pub fn bounds(&self, radius: f64) -> Option<(DVec3, DVec3)> {
             let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-            for (p, _) in self.landmarks() {
+            let points: Vec<DVec3> = if self.is_numeric() {
+                self.cubics(0.0).into_iter().flatten().collect()
+            } else {
+                self.landmarks().into_iter().map(|(p, _)| p).collect()
+            };
+            for p in points {
                 if p.is_nan() {
                     return Some((DVec3::NAN, DVec3::NAN));
                 }
@@ -227,6 +240,18 @@ geometry! {
         pub fn part(&self, from: f64, to: f64) -> Option<Skeleton> {
             let _ = (from, to);
             None
+        }
+
+        /// Computes the local frame and the bone in it, for a kernel and its width parameter s.
+        pub(crate) fn place(&self, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>) {
+            let origin = self.middle();
+            let [fine, coarse] = [0.0, s].map(|accuracy| -> Vec<_> {
+                let cubics = self.cubics(accuracy).into_iter();
+                let local = cubics.map(|control| cubic(control.map(|p| (p - origin) * s)));
+                local.collect()
+            });
+            let curve = bone::Curve::new(kernel, &fine, &coarse, None);
+            (frame(origin, DMat3::IDENTITY, s), Bone::Curve(Box::new(curve)))
         }
 
         /// Returns cubic Bézier curves that together are a line: as close to it as double precision

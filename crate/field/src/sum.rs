@@ -140,9 +140,8 @@ impl Sum {
     }
 
     /// Computes the sum of some terms.
-    fn sum_of(&self, terms: &[u32], point: DVec3) -> Jet<f64> {
-        let terms = terms.iter().map(|i| &self.primitives[*i as usize]);
-        sum(terms, point.to_array())
+    fn sum_of<R: Evaluate>(&self, terms: &[u32], point: [R; 3]) -> Jet<R> {
+        sum(terms.iter().map(|i| &self.primitives[*i as usize]), point)
     }
 
     fn bounds(&self) -> &[TermBounds] {
@@ -223,7 +222,7 @@ impl Implicit for Sum {
                 bounds.slope * ball.radius,
                 bounds.curvature * ball.radius * ball.radius,
             ];
-            // Not so for NaN.
+            // NaN is not within bounds, so that such a term is kept.
             if changes.iter().all(|change| *change <= each) {
                 part.rest = part.rest.plus(bounds);
             } else {
@@ -239,9 +238,17 @@ impl Implicit for Sum {
     }
 
     fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
-        let jet = self.sum_of(&part.terms, point);
+        let jet = self.sum_of(&part.terms, point.to_array());
         match &part.far {
             Some(cell) => jet.plus(cell.jet(point)),
+            None => jet,
+        }
+    }
+
+    fn jet8_of(&self, part: &Part, points: [f32x8; 3]) -> Jet<f32x8> {
+        let jet = self.sum_of(&part.terms, points);
+        match &part.far {
+            Some(cell) => jet.plus(cell.jet8(points)),
             None => jet,
         }
     }

@@ -231,11 +231,11 @@ pub(crate) fn place(skeleton: &Skeleton, kernel: Kernel, s: f64) -> (Frame<f64>,
 }
 
 /// Prepares a segment, an arc or a curve in its local frame, with a width and a height that vary
-/// along it.
+/// along it. `is_cone`: see [`crate::Shaping::is_cone`].
 pub(crate) fn curve_with_taper(
     skeleton: &Skeleton,
     frame: &Frame<f64>,
-    kernel: Kernel,
+    (kernel, is_cone): (Kernel, bool),
     law: Law<'_>,
 ) -> Curve<f64> {
     let cubics = |s: f64| -> Vec<_> {
@@ -244,10 +244,15 @@ pub(crate) fn curve_with_taper(
         local.collect()
     };
     let fine = cubics(0.0);
-    if let (true, Skeleton::Segment { base, apex }) = (kernel.has_cones(), skeleton) {
+    if let (true, Skeleton::Segment { base, apex }) = (kernel.has_cones(), skeleton)
+        && (is_cone || !kernel.is_compact())
+    {
         let half = 0.5 * frame.local_vector(*apex - *base).length();
         // A kernel's width parameter is 1/R.
         let radii = [0.0, 1.0].map(|end| 1.0 / law(end)[1].sqrt());
+        if is_cone {
+            return Curve::cone(Cone::of_support(half, radii));
+        }
         if let Some(cone) = Cone::new(half, radii) {
             return Curve::straight(kernel, cone, fine[0], law);
         }

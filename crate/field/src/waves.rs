@@ -177,8 +177,8 @@ impl<S: Copy> Waves<S> {
                 rate,
                 mean,
             } => {
-                // From the circle's centre, x towards the arc's middle: the jump of the angle is
-                // then in the middle of the gap.
+                // Coordinates from the circle's centre, x towards the arc's middle: the jump of the
+                // angle is then in the middle of the gap.
                 let (side, rate) = (R::lift(*side), R::lift(*rate));
                 let radius = R::lift(*radius);
                 let x = side * (radius + p[0]);

@@ -8,7 +8,7 @@ use metaballs::nearest;
 /// Points of the cloud that an alignment uses.
 const POINTS: usize = 600;
 /// Share of the points, the nearest ones, that count: the rest may be outliers.
-const TRUSTED: f64 = 0.8;
+const TRUSTED: f64 = 0.5;
 
 /// Rigid motion: a rotation about the origin, then a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,8 +82,8 @@ impl Rigid {
 }
 
 /// Returns how to turn and move a mesh onto points: iterated closest points, from where it is and
-/// from the 24 turns of a cube about the middles, the best of all by the mean distance of four
-/// fifths of the points.
+/// from the 24 turns of a cube about the middles, the best of all by the mean distance of half of
+/// the points, the nearest.
 pub(crate) fn align(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3]) -> Rigid {
     if points.len() < 4 {
         return Rigid::IDENTITY;
@@ -113,6 +113,24 @@ pub(crate) fn align(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3
         .map(|(_, rigid)| target.iterate(&points, *rigid, 60));
     let best = fine.min_by(|a, b| a.0.total_cmp(&b.0));
     best.map_or(Rigid::IDENTITY, |(_, rigid)| rigid.inverse())
+}
+
+/// Returns how to turn and move a mesh onto points that are near it: iterated closest points from
+/// where it is. No motion where that brings half of the points less than twice as near.
+pub(crate) fn nudge(positions: &[DVec3], triangles: &[[u32; 3]], points: &[DVec3]) -> Rigid {
+    if points.len() < 4 {
+        return Rigid::IDENTITY;
+    }
+    let step = points.len().div_ceil(POINTS);
+    let points: Vec<DVec3> = points.iter().step_by(step).copied().collect();
+    let target = Target::new(positions, triangles);
+    let (_, before) = target.pairs(&points, &Rigid::IDENTITY);
+    let (after, rigid) = target.iterate(&points, Rigid::IDENTITY, 60);
+    if after < 0.5 * before {
+        rigid.inverse()
+    } else {
+        Rigid::IDENTITY
+    }
 }
 
 /// The median of each coordinate.
@@ -306,7 +324,7 @@ fn onto(pairs: &[Pair]) -> Rigid {
 }
 
 /// The unit eigenvector of a symmetric matrix with the largest eigenvalue, by Jacobi's rotations.
-fn largest_eigenvector(mut a: [[f64; 4]; 4]) -> [f64; 4] {
+pub(crate) fn largest_eigenvector(mut a: [[f64; 4]; 4]) -> [f64; 4] {
     let mut vectors = [[0.0; 4]; 4];
     for (i, row) in vectors.iter_mut().enumerate() {
         row[i] = 1.0;

@@ -47,6 +47,9 @@ impl Numbers {
 pub struct Disturbance {
     /// Standard deviation of each coordinate.
     pub noise: f64,
+    /// Unevenness of the noise, 0 … 1: it grows along x from
+    /// `(1 − uneven)·noise` to `(1 + uneven)·noise`.
+    pub uneven: f64,
     /// Share of the points, 0 … 1, that become outliers: anywhere in a box of twice the size.
     pub outliers: f64,
     /// Share of the points, 0 … 1, that is missing: those furthest in one direction.
@@ -86,7 +89,8 @@ impl Disturbance {
             if is_outlier {
                 numbers.within(&wide)
             } else {
-                points[i] + shift * self.noise
+                let along = (points[i].x - tight.min.x) / tight.size().x.max(f64::MIN_POSITIVE);
+                points[i] + shift * self.noise * (1.0 + self.uneven * (2.0 * along - 1.0))
             }
         });
         disturbed.collect()
@@ -106,6 +110,7 @@ mod tests {
             outliers: 0.1,
             gap: 0.25,
             seed: 5,
+            ..Disturbance::default()
         };
         let disturbed = disturbance.apply(&points);
         assert_eq!(disturbed.len(), 3000);
@@ -120,6 +125,16 @@ mod tests {
         let toward = disturbance.toward();
         let in_gap = inliers.iter().filter(|p| p.dot(toward) > 0.55);
         assert!(in_gap.count() < 5);
+        let uneven = Disturbance {
+            noise: 0.01,
+            uneven: 0.8,
+            ..Disturbance::default()
+        };
+        let mut squares = [0.0; 2];
+        for (moved, point) in uneven.apply(&points).iter().zip(&points) {
+            squares[usize::from(point.x > 0.0)] += moved.distance_squared(*point);
+        }
+        assert!(squares[1] > 4.0 * squares[0], "{squares:?}");
         let same = Disturbance {
             seed: 5,
             ..Disturbance::default()

@@ -5,7 +5,7 @@ use core::cell::Cell;
 use field::Real;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Bvh};
-use metaballs::{Metaballs, circumcircle, nearest, profile};
+use metaballs::{Metaballs, Nearest, circumcircle, nearest, profile};
 use serde::{Deserialize, Serialize};
 
 /// Surface that stands for a mesh in a fit.
@@ -33,8 +33,16 @@ pub(crate) struct Field<'a> {
 #[derive(Debug)]
 enum Form {
     Explicit(Bvh),
-    Implicit(Box<Metaballs>),
+    Shells {
+        bvh: Bvh,
+        thickness: f64,
+        sharpness: f64,
+    },
+    Balls(Box<Metaballs>),
 }
+
+/// Facet is passed over where it adds less than e^−this of what the nearest one adds.
+const FAINT: f64 = 14.0;
 
 /// The derivative of a distance: vertices and how it grows when they move.
 pub(crate) type Gradient = Vec<(u32, DVec3)>;
@@ -47,21 +55,19 @@ impl<'a> Field<'a> {
         kind: Kind,
         k: f64,
     ) -> Result<Self, Error> {
-        let implicit = |kind| {
-            Metaballs::new(positions, triangles, kind, k)
-                .map(|made| Form::Implicit(Box::new(made)))
-                .map_err(|error| Error(error.to_string()))
-        };
+        let boxes = triangles
+            .iter()
+            .map(|t| Aabb::of_points(t.map(|i| positions[i as usize])));
         let form = match kind {
-            Kind::Explicit => {
-                let boxes: Vec<Aabb> = triangles
-                    .iter()
-                    .map(|t| Aabb::of_points(t.map(|i| positions[i as usize])))
-                    .collect();
-                Form::Explicit(Bvh::new(&boxes))
-            }
-            Kind::Spherical => implicit(metaballs::Kind::Spherical)?,
-            Kind::Triangular { thickness } => implicit(metaballs::Kind::Triangular { thickness })?,
+            Kind::Explicit => Form::Explicit(Bvh::new(&boxes.collect::<Vec<_>>())),
+            Kind::Triangular { thickness } => Form::Shells {
+                bvh: Bvh::new(&boxes.collect::<Vec<_>>()),
+                thickness,
+                sharpness: k,
+            },
+            Kind::Spherical => Metaballs::new(positions, triangles, metaballs::Kind::Spherical, k)
+                .map(|made| Form::Balls(Box::new(made)))
+                .map_err(|error| Error(error.to_string()))?,
         };
         Ok(Self {
             positions,
@@ -72,6 +78,12 @@ impl<'a> Field<'a> {
 
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
+    }
+
+    /// Returns the unit normal of a facet; 0 without area.
+    pub fn normal(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a).normalize_or_zero()
     }
 
     /// Returns the distance of a point from the surface and sets its derivative: of an explicit
@@ -87,52 +99,83 @@ impl<'a> Field<'a> {
     pub fn distance_near(&self, point: DVec3, facet: &Cell<u32>, gradient: &mut Gradient) -> f64 {
         gradient.clear();
         match &self.form {
-            Form::Explicit(bvh) => {
-                let square = |i| {
-                    nearest(&self.corners(i), point)
-                        .point
-                        .distance_squared(point)
-                };
-                let known = facet.get();
-                let limit = if (known as usize) < self.triangles.len() {
-                    square(known)
-                } else {
-                    f64::INFINITY
-                };
-                let Some((found, square)) = bvh.nearest(point, limit, square) else {
+            Form::Balls(balls) => self.distance_from_balls(balls, point, gradient),
+            Form::Explicit(_) => {
+                let Some((facet, square)) = self.nearest(point, facet) else {
                     return f64::INFINITY;
                 };
-                facet.set(found);
-                let facet = found;
-                self.pull(facet, point, 1.0, gradient);
+                let found = nearest(&self.corners(facet), point);
+                self.pull(facet, &found, point, 1.0, gradient);
                 square.sqrt()
             }
-            Form::Implicit(balls) => self.soft_distance(balls, point, gradient),
+            Form::Shells {
+                bvh,
+                thickness,
+                sharpness: k,
+            } => {
+                let Some((_, square)) = self.nearest(point, facet) else {
+                    return f64::INFINITY;
+                };
+                // −ln Σ e^−k(d − ρ) = k(d₀ − ρ) − ln Σ e^−k(d − d₀), d₀ the least distance.
+                let least = square.sqrt();
+                let reach = least + FAINT / k;
+                let around = Aabb {
+                    min: point - reach,
+                    max: point + reach,
+                };
+                let mut sum = 0.0;
+                for facet in bvh.overlapping(&around) {
+                    let found = nearest(&self.corners(facet), point);
+                    let beyond = k * (found.point.distance(point) - least);
+                    if beyond < FAINT {
+                        let value = Real::exp(-beyond);
+                        sum += value;
+                        self.pull(facet, &found, point, value, gradient);
+                    }
+                }
+                for (_, way) in gradient {
+                    *way /= sum;
+                }
+                least - thickness - Real::ln(sum) / k
+            }
         }
     }
 
-    fn soft_distance(&self, balls: &Metaballs, point: DVec3, gradient: &mut Gradient) -> f64 {
+    /// Returns the facet that is nearest to a point, and the square of the distance; `known` is as
+    /// in [`Self::distance_near`]. `None` of balls.
+    pub fn nearest(&self, point: DVec3, known: &Cell<u32>) -> Option<(u32, f64)> {
+        let (Form::Explicit(bvh) | Form::Shells { bvh, .. }) = &self.form else {
+            return None;
+        };
+        let square = |i| {
+            nearest(&self.corners(i), point)
+                .point
+                .distance_squared(point)
+        };
+        let limit = if (known.get() as usize) < self.triangles.len() {
+            square(known.get())
+        } else {
+            f64::INFINITY
+        };
+        let found = bvh.nearest(point, limit, square)?;
+        known.set(found.0);
+        Some(found)
+    }
+
+    fn distance_from_balls(&self, balls: &Metaballs, point: DVec3, gradient: &mut Gradient) -> f64 {
         let k = balls.sharpness();
         let mut sum = 0.0;
         for facet in balls.near(point) {
-            match balls.kind() {
-                metaballs::Kind::Triangular { thickness } => {
-                    let found = nearest(&self.corners(facet), point);
-                    let distance = found.point.distance(point);
-                    let (value, slope) = profile(k * (distance - thickness));
-                    sum += value;
-                    self.pull(facet, point, slope, gradient);
-                }
-                metaballs::Kind::Spherical => {
-                    let corners = self.corners(facet);
-                    let (center, radius) = circumcircle(&corners);
-                    let (value, slope) = profile(k * (point.distance(center) - radius));
-                    sum += value;
-                    let ways = by_circle(&corners, center, radius, point);
-                    for (vertex, way) in self.triangles[facet as usize].into_iter().zip(ways) {
-                        gradient.push((vertex, way * slope));
-                    }
-                }
+            let corners = self.corners(facet);
+            let (center, radius) = circumcircle(&corners);
+            let (value, slope) = profile(k * (point.distance(center) - radius));
+            if value == 0.0 {
+                continue;
+            }
+            sum += value;
+            let ways = by_circle(&corners, center, radius, point);
+            for (vertex, way) in self.triangles[facet as usize].into_iter().zip(ways) {
+                gradient.push((vertex, way * slope));
             }
         }
         if sum <= 0.0 {
@@ -146,9 +189,15 @@ impl<'a> Field<'a> {
         -Real::ln(sum) / k
     }
 
-    /// Appends the derivative of the distance from a facet, times a factor.
-    fn pull(&self, facet: u32, point: DVec3, factor: f64, gradient: &mut Gradient) {
-        let found = nearest(&self.corners(facet), point);
+    /// Appends the derivative of the distance from the nearest point of a facet, times a factor.
+    fn pull(
+        &self,
+        facet: u32,
+        found: &Nearest,
+        point: DVec3,
+        factor: f64,
+        gradient: &mut Gradient,
+    ) {
         let away = (point - found.point).normalize_or_zero() * -factor;
         let corners = self.triangles[facet as usize]
             .into_iter()

@@ -5,8 +5,9 @@
 //!   free-form deformation, after Moccozet and Magnenat-Thalmann.
 //! - [`fit()`] finds the moves of control points that bring a mesh, or the implicit surface around
 //!   it, onto [`Observations`]: points, and lines of sight that graze it. After Ilić and Fua.
+//!   Nearly half of the points may be wrong; a fit that fails says why ([`Fitted::failure`]).
 //! - [`cloud()`] and [`outlines()`] read those from files; [`Disturbance`] makes measurements of
-//!   perfect ones; [`trial`] has a head to try all this on.
+//!   perfect ones; [`trial`] has a head to try all this on, [`shapes`] has others.
 //!
 //! Knows meshes and fields, no scenes and no pages.
 //!
@@ -34,11 +35,13 @@ mod disturb;
 mod error;
 mod field;
 mod lines;
+mod noise;
 mod normal;
 mod outlines;
 mod problem;
 pub mod recovery;
 mod remarks;
+pub mod shapes;
 mod sibson;
 mod sight;
 mod solve;

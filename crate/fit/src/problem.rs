@@ -38,7 +38,8 @@ pub struct Options {
     /// Whether distances count no more beyond the scale of the fit; otherwise squares of distances
     /// are summed, as if there were no outliers.
     pub saturates: bool,
-    /// Whether the mesh is first turned and moved as a whole.
+    /// Whether the mesh is first turned and moved as a whole; if not, it still is where the fit
+    /// fails otherwise, or comes much nearer so.
     pub align: bool,
     /// Most iterations in all.
     pub iterations: usize,
@@ -53,7 +54,7 @@ impl Default for Options {
             outlines: 1.0,
             saturates: true,
             align: false,
-            iterations: 60,
+            iterations: 100,
         }
     }
 }

@@ -1,13 +1,14 @@
-//! The trial that tells how well a known shape is found again: a head, deformed, measured with
-//! noise, outliers, a gap and outlines, and fitted in several ways.
+//! The trial that tells how well a known shape is found again: a head, or another shape, deformed,
+//! measured with noise, outliers, a gap and outlines, and fitted in several ways.
 
+use crate::align::Rigid;
 use crate::disturb::Disturbance;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
 use crate::outlines::{Outline, sights};
 use crate::problem::{Observations, Options, Problem, mean_edge};
 use crate::trial;
-use crate::{Deformation, fit};
+use crate::{Deformation, Fitted, fit};
 use glam::DVec3;
 use mesh::{Aabb, Bvh, HalfEdgeMesh, Ray, TriangleMesh, closest_point, simplify};
 
@@ -40,6 +41,8 @@ pub struct Outcome {
     pub surface: f64,
     /// Iterations.
     pub iterations: usize,
+    /// Whether the fit itself says that it failed.
+    pub failed: bool,
 }
 
 /// True shape with its measurements.
@@ -66,28 +69,60 @@ impl Trial {
             deformation.apply(&head.positions, &moves),
             head.triangles.clone(),
         );
-        let sampled = trial::sample(&truth.positions, &truth.triangles, points, 3);
         let disturbance = Disturbance {
             noise: NOISE,
             outliers,
             gap: 0.25,
             seed: 8,
+            ..Disturbance::default()
         };
+        Ok(Self::of(&truth, cage, points, disturbance))
+    }
+
+    /// Measures a shape, which is to be found again by moving the vertices of a cage: `points`
+    /// points before the gap, six outlines.
+    #[must_use]
+    pub fn of(
+        truth: &TriangleMesh,
+        cage: TriangleMesh,
+        points: usize,
+        disturbance: Disturbance,
+    ) -> Self {
+        let sampled = trial::sample(&truth.positions, &truth.triangles, points, 3);
         // The gap's border, along its direction.
         let toward = disturbance.toward();
         let mut along: Vec<f64> = sampled.iter().map(|p| p.dot(toward)).collect();
         along.sort_by(f64::total_cmp);
-        let border = along.get(along.len() * 3 / 4).copied().unwrap_or(0.0);
+        let kept = along.len() as f64 * (1.0 - disturbance.gap);
+        let border = along.get(kept as usize).copied().unwrap_or(f64::INFINITY);
         let probes = trial::sample(&truth.positions, &truth.triangles, 4000, 77);
         let (gap, near) = probes.into_iter().partition(|p| p.dot(toward) > border);
-        Ok(Self {
+        Self {
             cage,
             observations: Observations {
                 points: disturbance.apply(&sampled),
-                sights: sights(&outlines(&Surface::new(&truth))),
+                sights: sights(&outlines(&Surface::new(truth))),
             },
             probes: [near, gap],
-        })
+        }
+    }
+
+    /// Returns the trial with all that was measured turned and moved, and the truth with it.
+    #[must_use]
+    pub fn turn(mut self, rigid: &Rigid) -> Self {
+        for sight in &mut self.observations.sights {
+            sight.origin = rigid.apply(sight.origin);
+            sight.direction = rigid.turn * sight.direction;
+        }
+        let [near, gap] = &mut self.probes;
+        for place in near
+            .iter_mut()
+            .chain(gap)
+            .chain(&mut self.observations.points)
+        {
+            *place = rigid.apply(*place);
+        }
+        self
     }
 
     /// Numbers of control points, points and lines of sight.
@@ -118,10 +153,6 @@ impl Trial {
     /// # Errors
     /// As [`Problem::new`].
     pub fn problem(&self, model: &TriangleMesh, way: Way) -> Result<Problem, Error> {
-        let mut observations = self.observations.clone();
-        if !way.outlines {
-            observations.sights.clear();
-        }
         let edge = mean_edge(&model.positions, &model.triangles);
         let options = Options {
             kind: way.kind,
@@ -129,7 +160,20 @@ impl Trial {
             saturates: way.saturates,
             ..Options::default()
         };
+        let observations = self.observe(true, way.outlines);
         Problem::new(model, &self.cage, observations, options)
+    }
+
+    /// The points, or the outlines, or both.
+    fn observe(&self, points: bool, outlines: bool) -> Observations {
+        let mut observations = self.observations.clone();
+        if !points {
+            observations.points.clear();
+        }
+        if !outlines {
+            observations.sights.clear();
+        }
+        observations
     }
 
     /// Fits a mesh and measures the result.
@@ -137,12 +181,40 @@ impl Trial {
     /// # Errors
     /// As [`Problem::new`] and [`fit()`].
     pub fn run(&self, model: &TriangleMesh, way: Way) -> Result<Outcome, Error> {
-        let problem = self.problem(model, way)?;
-        let fitted = fit(&problem, &mut |_| true)?;
-        let mesh = TriangleMesh::new(fitted.positions.clone(), model.triangles.clone());
-        let [near, gap] = self.start(&mesh);
+        let fitted = fit(&self.problem(model, way)?, &mut |_| true)?;
         let slope = way.sharpness / mean_edge(&model.positions, &model.triangles);
-        let field = Field::new(&mesh.positions, &mesh.triangles, way.kind, slope)?;
+        self.measure(&fitted, &model.triangles, way.kind, slope)
+    }
+
+    /// Fits a mesh with other options than those of a [`Way`], to the points, the outlines or both,
+    /// and measures the result.
+    ///
+    /// # Errors
+    /// As [`Problem::new`] and [`fit()`].
+    pub fn run_with(
+        &self,
+        model: &TriangleMesh,
+        options: Options,
+        [points, outlines]: [bool; 2],
+    ) -> Result<(Fitted, Outcome), Error> {
+        let observations = self.observe(points, outlines);
+        let problem = Problem::new(model, &self.cage, observations, options)?;
+        let fitted = fit(&problem, &mut |_| true)?;
+        let slope = options.slope.unwrap_or(20.0 / problem.mean_edge());
+        let outcome = self.measure(&fitted, &model.triangles, options.kind, slope)?;
+        Ok((fitted, outcome))
+    }
+
+    fn measure(
+        &self,
+        fitted: &Fitted,
+        triangles: &[[u32; 3]],
+        kind: Kind,
+        slope: f64,
+    ) -> Result<Outcome, Error> {
+        let mesh = TriangleMesh::new(fitted.positions.clone(), triangles.to_vec());
+        let [near, gap] = self.start(&mesh);
+        let field = Field::new(&mesh.positions, &mesh.triangles, kind, slope)?;
         let mut gradient = Gradient::new();
         // Where no facet acts the surface is further away than that.
         let surface = root_mean_square(&self.probes[0], |p| {
@@ -153,6 +225,7 @@ impl Trial {
             gap,
             surface,
             iterations: fitted.last.iteration,
+            failed: fitted.failure.is_some(),
         })
     }
 }
@@ -177,12 +250,15 @@ fn root_mean_square(points: &[DVec3], mut value: impl FnMut(DVec3) -> f64) -> f6
 
 /// Returns six outlines of the truth, seen from around.
 fn outlines(truth: &Surface) -> Vec<Outline> {
+    let bounds = truth.bvh.bounds();
+    let (middle, far) = (bounds.center(), 1.9 * bounds.size().length());
     (0..6)
         .map(|i| {
             let angle = core::f64::consts::PI / 6.0 * f64::from(i);
+            let way = DVec3::new(libm::sin(angle), -libm::cos(angle), 0.05);
             let mut outline = Outline {
-                eye: [9.0 * libm::sin(angle), -9.0 * libm::cos(angle), 0.4],
-                target: [0.0, 0.0, -0.1],
+                eye: (middle + way * far).to_array(),
+                target: middle.to_array(),
                 up: [0.0, 0.0, 1.0],
                 fov: 32.0,
                 size: [640.0, 640.0],

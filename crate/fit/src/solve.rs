@@ -2,33 +2,54 @@
 //!
 //! The residual of an observation is `w·s·tanh(h/s)` with the distance h of [`Field::distance`]: a
 //! length that does not grow beyond s, so that outliers pull little. s falls in steps from the
-//! mesh's distance at the start to three times the spread of the observations, and the implicit
-//! surface's k rises with it to its last value: coarse to fine.
+//! mesh's distance at the start to three times the spread of the nearer observations ([`spread`]),
+//! of which up to nearly half may be wrong: graduated non-convexity.
+//!
+//! An implicit surface has two sheets, and where it is wide its field says little about which of
+//! them a point is on. So the facets themselves are fitted first. Then they are drawn back from the
+//! points by the height of the outer sheet over them ([`Run::heights`]), and only then the surface
+//! takes their place, as thick as it is to be. The surface of balls is high over the facets, and
+//! higher over large ones: it is the mesh that is to be on the points there, and the sheet above it
+//! is fitted to points that are moved outwards by its mean height.
 
-use crate::align::{Rigid, align};
+use crate::align::{Rigid, align, nudge};
 use crate::deformation::Deformation;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
+use crate::noise::noise;
 use crate::normal::Normal;
 use crate::problem::{Options, Problem};
 use crate::stiffness::energy;
 use core::cell::Cell;
 use glam::DVec3;
 use mesh::{Aabb, Bvh};
+use metaballs::nearest;
 
-/// Most iterations of a level.
+/// Most iterations of a level, the last one or one on the way.
 const PER_LEVEL: usize = 12;
+const PER_COARSE_LEVEL: usize = 5;
+/// s in spreads of the distances: at the start, and at the least.
+const WIDE: f64 = 5.0;
+const NARROW: f64 = 3.0;
+/// The least s, in diagonals of the mesh's box.
+const LEAST_SCALE: f64 = 3e-4;
 /// Most levels.
-const MOST_LEVELS: usize = 12;
-/// Relative decrease of the sum below which a level is done.
+const MOST_LEVELS: usize = 16;
+/// Relative decrease of the sum below which a level is done, the last one or one on the way.
 const SETTLED: f64 = 1e-4;
+const SETTLED_COARSE: f64 = 1e-2;
 /// Steps tried from one place, each more damped.
 const MOST_TRIES: usize = 8;
 /// The damping at the start of a level, and the least.
 const DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 1e-7;
-/// The distance that the implicit surface's field reaches, in s.
-const REACH: f64 = 8.0;
+/// Steps to a height of the surface.
+const RISING: usize = 12;
+/// Share of left-out measurements above which a fit has failed: others may be the right ones.
+const MOST_LEFT_OUT: f64 = 0.5;
+/// Times the noise of the points, as they tell it themselves, that their spread about the surface
+/// may have. Outliers make the noise look larger than it is, never smaller.
+const ROUGHLY: f64 = 1.3;
 
 /// State of a fit after an iteration.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,23 +84,52 @@ pub struct Fitted {
     pub smooth: f64,
     /// Whether the fit was stopped before it had settled.
     pub stopped: bool,
+    /// Numbers of the points that were left out: further than three times the residual from the
+    /// surface.
+    pub left_out: Vec<u32>,
+    /// Reason why the result cannot be relied on, a sentence; `None` if it can.
+    pub failure: Option<String>,
 }
 
 /// Fits a mesh. `tell` is called after each iteration, and says whether to go on.
 ///
+/// A mesh that is not to be turned and moved as a whole is fitted again after that, where its
+/// result cannot be relied on, or where it is twice as near the points by that alone; the better
+/// result counts.
+///
 /// # Errors
 /// If the implicit surface cannot be made.
-pub fn fit(problem: &Problem, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<Fitted, Error> {
-    let mut problem = problem.clone();
-    let rigid = if problem.options.align {
-        align(
-            &problem.positions,
-            &problem.triangles,
-            &problem.observations.points,
-        )
+pub fn fit(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
+    let (points, options) = (&problem.observations.points, problem.options);
+    let (positions, triangles) = (&problem.positions, &problem.triangles);
+    if options.align {
+        return fit_from(problem, align(positions, triangles, points), tell);
+    }
+    let fitted = fit_from(problem, Rigid::IDENTITY, tell)?;
+    let begins_moved = problem.start.iter().any(|way| *way != DVec3::ZERO);
+    let size = Aabb::of_points(positions.iter().copied()).size().length();
+    let has_failed = fitted.failure.is_some();
+    let is_near = !has_failed && fitted.last.residual < 1e-3 * size;
+    if fitted.stopped || !options.saturates || begins_moved || is_near {
+        return Ok(fitted);
+    }
+    let rigid = if has_failed {
+        align(positions, triangles, points)
     } else {
-        Rigid::IDENTITY
+        nudge(positions, triangles, points)
     };
+    if rigid == Rigid::IDENTITY {
+        return Ok(fitted);
+    }
+    let again = fit_from(problem, rigid, tell)?;
+    let is_nearer = has_failed || again.last.residual < 0.8 * fitted.last.residual;
+    let is_better = again.failure.is_none() && !again.stopped && is_nearer;
+    Ok(if is_better { again } else { fitted })
+}
+
+/// Fits a mesh that is turned and moved as a whole first.
+fn fit_from(problem: &Problem, rigid: Rigid, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
+    let mut problem = problem.clone();
     if rigid != Rigid::IDENTITY {
         for place in problem.positions.iter_mut().chain(&mut problem.controls) {
             *place = rigid.apply(*place);
@@ -89,38 +139,63 @@ pub fn fit(problem: &Problem, tell: &mut dyn FnMut(&Progress) -> bool) -> Result
     }
     let mut run = Run::new(&problem, rigid);
     let stopped = !run.all(tell)?;
+    let failure = if stopped { None } else { run.judge()? };
+    let last = run.progress()?;
+    let points = problem.observations.points.len();
+    let numbered = run.apart()?.iter().take(points).zip(0..);
+    let left_out = numbered.filter(|(d, _)| **d > 3.0 * last.residual);
     Ok(Fitted {
         rigid,
-        positions: run.positions.clone(),
-        last: run.progress()?,
+        left_out: left_out.map(|(_, i)| i).collect(),
+        positions: run.positions,
+        last,
         smooth: run.smooth,
         moves: run.moves,
         stopped,
+        failure,
     })
 }
 
-/// An observation for one iteration: a place, and its class.
+/// Listener that is told the state after each iteration, and says whether to go on.
+type Tell<'a> = dyn FnMut(&Progress) -> bool + 'a;
+
+/// An observation for one iteration: a place, and its class: points, outlines, or [`LEFT_OUT`].
 type Place = (DVec3, usize);
+
+/// Class of the points that are passed over.
+const LEFT_OUT: usize = 2;
 
 struct Run<'a> {
     problem: &'a Problem,
     rigid: Rigid,
     options: Options,
+    /// The surface that is fitted now.
+    kind: Kind,
+    /// Height of the surface's outer sheet over each vertex.
+    heights: Vec<f64>,
+    /// Whether each observation is passed over; none where this is empty.
+    left_out: Vec<bool>,
+    /// Shift of observations along the normals of their facets, in heights.
+    shift: f64,
+    /// Height over the facets at which the observations are to lie, in heights.
+    rise: f64,
     stiffness: Vec<(u32, u32, f64)>,
     moves: Vec<DVec3>,
     positions: Vec<DVec3>,
     /// Facet that was last found nearest to each point.
     facets: Vec<Cell<u32>>,
-    /// Distance of each point from the nearest facet at the present positions, if the last sum has
-    /// left these.
+    /// Distance of each observation at the present positions, once it is known: see
+    /// [`Self::apart`].
     apart: Option<Vec<f64>>,
-    /// k at the end.
+    /// k of the implicit surface.
     slope: f64,
     scale: f64,
     damping: f64,
     iteration: usize,
-    /// Weights of points and outlines.
-    weights: [f64; 2],
+    /// Whether there were too few iterations.
+    is_cut: bool,
+    /// Weights of points, outlines and what is left out.
+    weights: [f64; 3],
     /// Weight of the smoothness.
     smooth: f64,
 }
@@ -128,10 +203,16 @@ struct Run<'a> {
 impl<'a> Run<'a> {
     fn new(problem: &'a Problem, rigid: Rigid) -> Self {
         let options = problem.options;
+        let slope = options.slope.unwrap_or(20.0 / problem.mean_edge());
         Self {
             problem,
             rigid,
             options,
+            kind: Kind::Explicit,
+            heights: Vec::new(),
+            left_out: Vec::new(),
+            shift: 0.0,
+            rise: 0.0,
             stiffness: problem.stiffness(),
             moves: problem.start.clone(),
             positions: problem
@@ -139,67 +220,146 @@ impl<'a> Run<'a> {
                 .apply(&problem.positions, &problem.start),
             facets: vec![Cell::new(u32::MAX); problem.observations.points.len()],
             apart: None,
-            slope: options.slope.unwrap_or(20.0 / problem.mean_edge()),
+            slope,
             scale: f64::INFINITY,
             damping: DAMPING,
             iteration: 0,
-            weights: [1.0; 2],
+            is_cut: false,
+            weights: [1.0, 1.0, 0.0],
             smooth: 0.0,
         }
     }
 
-    /// k at the present scale.
-    fn sharpness(&self) -> f64 {
-        self.slope.min(REACH / self.scale)
-    }
-
-    fn field<'b>(&self, positions: &'b [DVec3]) -> Result<Field<'b>, Error>
+    fn field<'b>(&self, positions: &'b [DVec3], kind: Kind) -> Result<Field<'b>, Error>
     where
         'a: 'b,
     {
-        Field::new(
-            positions,
-            &self.problem.triangles,
-            self.options.kind,
-            self.sharpness(),
-        )
+        Field::new(positions, &self.problem.triangles, kind, self.slope)
     }
 
-    /// Runs all levels, coarse to fine. Returns whether it came to the end.
-    fn all(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
-        let apart = self.distances()?;
+    /// Fits the facets, then the surface that stands for them. Returns whether it came to the end.
+    fn all(&mut self, tell: &mut Tell<'_>) -> Result<bool, Error> {
+        let kind = self.options.kind;
+        if !self.stage(Kind::Explicit, 0.0, WIDE, tell)? {
+            return Ok(false);
+        }
+        if kind == Kind::Explicit {
+            return Ok(true);
+        }
+        self.heights = self.heights()?;
+        let distances = self.apart()?;
+        let mut sorted = distances.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let spread = spread(&sorted);
+        let left_out = distances.iter().map(|d| *d > NARROW * spread).collect();
+        if kind == Kind::Spherical {
+            self.left_out = left_out;
+            return self.stage(kind, 1.0, NARROW, tell);
+        }
+        self.rise = 1.0;
+        // A thin shell is on the points with both its sheets.
+        if self.heights.iter().any(|height| *height > spread) {
+            self.left_out = left_out;
+            if !self.stage(Kind::Explicit, -1.0, NARROW, tell)? {
+                return Ok(false);
+            }
+            self.left_out.clear();
+        }
+        self.stage(kind, 0.0, NARROW, tell)
+    }
+
+    /// Fits one surface, coarse to fine. Returns whether to go on.
+    fn stage(
+        &mut self,
+        kind: Kind,
+        shift: f64,
+        spreads: f64,
+        tell: &mut Tell<'_>,
+    ) -> Result<bool, Error> {
+        (self.kind, self.shift, self.apart) = (kind, shift, None);
+        let mut begun = (self.positions.clone(), self.moves.clone());
+        let start = self.distances()?;
         let size = Aabb::of_points(self.positions.iter().copied())
             .size()
             .length();
-        // Nine of ten are within it.
-        self.scale = quantile(&apart, 0.9).clamp(1e-9 * size, size);
-        for _ in 0..MOST_LEVELS {
-            if !self.level(tell)? {
+        self.scale = (spreads * spread(&start)).clamp(LEAST_SCALE * size, size);
+        for level in 0..MOST_LEVELS {
+            let least = (NARROW * spread(&self.distances()?)).max(LEAST_SCALE * size);
+            let is_coarse = level == 0 || self.scale > 1.01 * least;
+            if !self.level(is_coarse, tell)? {
                 return Ok(false);
             }
-            if !self.has_scale() {
+            let least = (NARROW * spread(&self.distances()?)).max(LEAST_SCALE * size);
+            if !self.options.saturates || (!is_coarse && self.scale <= 1.01 * least) {
                 break;
             }
-            let spread = 1.4826 * quantile(&self.distances()?, 0.5);
-            let least = (3.0 * spread).max(1e-9 * size);
-            if self.scale <= least * 1.01 {
-                break;
-            }
-            self.scale = (0.5 * self.scale).max(least);
+            self.scale = (0.5 * self.scale).max(least).min(self.scale);
+        }
+        // A surface that leads away from where the facets were is left.
+        if spreads == NARROW && mean_of_half(&self.distances()?) > 1.1 * mean_of_half(&start) {
+            self.exchange(&mut begun);
         }
         Ok(true)
     }
 
-    /// Whether the scale changes what is summed: distances that saturate, or an implicit surface
-    /// that sharpens with it.
-    fn has_scale(&self) -> bool {
-        self.options.saturates || self.options.kind != Kind::Explicit
+    /// Returns the mean height of the surface's outer sheet over the facets around each vertex; 0
+    /// if they do not agree on what is outside.
+    fn heights(&self) -> Result<Vec<f64>, Error> {
+        let facets = &self.problem.triangles;
+        if !face_alike(facets) {
+            return Ok(vec![0.0; self.positions.len()]);
+        }
+        let mut sums = vec![(0.0, 0.0); self.positions.len()];
+        let field = self.field(&self.positions, self.options.kind)?;
+        // Shells are as high everywhere.
+        let samples: &[[f64; 2]] = match self.options.kind {
+            Kind::Spherical => &[[1.0 / 3.0; 2], [0.6, 0.2], [0.2, 0.6], [0.2, 0.2]],
+            _ => &[[1.0 / 3.0; 2]],
+        };
+        let mut gradient = Gradient::new();
+        for (facet, corners) in facets.iter().enumerate() {
+            let [a, b, c] = field.corners(facet as u32);
+            let normal = field.normal(facet as u32);
+            for [u, v] in samples {
+                let base = a + (b - a) * *u + (c - a) * *v;
+                // The distance changes no faster than the height, so that this does not go too far.
+                let mut height = 0.0;
+                for _ in 0..RISING {
+                    let distance = field.distance(base + normal * height, &mut gradient);
+                    if distance.is_finite() {
+                        height -= distance;
+                    }
+                }
+                for vertex in corners {
+                    let (sum, count) = &mut sums[*vertex as usize];
+                    (*sum, *count) = (*sum + height, *count + 1.0);
+                }
+            }
+        }
+        Ok(sums
+            .iter()
+            .map(|(sum, count)| sum / f64::max(*count, 1.0))
+            .collect())
+    }
+
+    /// Returns the height over a facet at the place nearest to a point.
+    fn height(&self, field: &Field<'_>, facet: u32, point: DVec3) -> f64 {
+        let weights = nearest(&field.corners(facet), point).weights;
+        let corners = self.problem.triangles[facet as usize].into_iter();
+        corners
+            .zip(weights)
+            .map(|(vertex, weight)| self.heights[vertex as usize] * weight)
+            .sum()
     }
 
     /// The places of the observations: where lines of sight should touch the surface is found anew.
-    fn places(&self, field: &Field<'_>) -> Vec<Place> {
+    fn places(&self, field: &Field<'_>, shift: f64) -> Result<Vec<Place>, Error> {
         let observations = &self.problem.observations;
-        let mut places: Vec<Place> = observations.points.iter().map(|p| (*p, 0)).collect();
+        let left_out = self.left_out.iter().chain(core::iter::repeat(&false));
+        let points = observations.points.iter().zip(left_out);
+        let mut places: Vec<Place> = points
+            .map(|(p, out)| (*p, if *out { LEFT_OUT } else { 0 }))
+            .collect();
         if self.options.outlines > 0.0 && !observations.sights.is_empty() {
             let corners = (0..self.problem.triangles.len() as u32).map(|i| field.corners(i));
             let boxes: Vec<Aabb> = corners.map(Aabb::of_points).collect();
@@ -210,7 +370,19 @@ impl<'a> Run<'a> {
                 .filter_map(|s| s.touch(field, &bvh));
             places.extend(touches.map(|place| (place, 1)));
         }
-        places
+        if shift != 0.0 {
+            let facets = self.field(field.positions, Kind::Explicit)?;
+            let none = Cell::new(u32::MAX);
+            for (i, (place, _)) in places.iter_mut().enumerate() {
+                let known = self.facets.get(i).unwrap_or(&none);
+                if let Some((facet, _)) = facets.nearest(*place, known) {
+                    let height = self.height(&facets, facet, *place);
+                    *place += facets.normal(facet) * (shift * height);
+                }
+                none.set(u32::MAX);
+            }
+        }
+        Ok(places)
     }
 
     /// The distance of an observation by its number and place: see [`Field::distance`].
@@ -221,28 +393,108 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Distances of all observations from the nearest facets of the present mesh, the least first.
-    fn distances(&self) -> Result<Vec<f64>, Error> {
-        let mut distances = if let Some(apart) = &self.apart {
-            apart.clone()
-        } else {
-            let (facets, kind) = (&self.problem.triangles, Kind::Explicit);
-            let field = Field::new(&self.positions, facets, kind, self.slope)?;
-            let mut gradient = Gradient::new();
-            let places = self.places(&field);
-            let numbered = places.iter().enumerate();
-            numbered
-                .map(|(i, (place, _))| self.distance(&field, i, *place, &mut gradient))
-                .collect()
-        };
+    /// Distances of all observations from where they are to be, the points first: from the surface
+    /// of balls, else from the height over the facets at which the surface's outer sheet lies. Of a
+    /// thin shell the distance from its surface would be that of the nearer of two sheets.
+    fn apart(&mut self) -> Result<&[f64], Error> {
+        if self.apart.is_none() {
+            self.apart = Some(self.measure()?);
+        }
+        Ok(self.apart.as_deref().unwrap_or_default())
+    }
+
+    fn measure(&self) -> Result<Vec<f64>, Error> {
+        let is_round = self.kind == Kind::Spherical;
+        let kind = if is_round { self.kind } else { Kind::Explicit };
+        let field = self.field(&self.positions, kind)?;
+        let places = self.places(&field, if is_round { self.shift } else { 0.0 })?;
+        let mut gradient = Gradient::new();
+        let none = Cell::new(u32::MAX);
+        let mut distances = Vec::with_capacity(places.len());
+        for (i, (place, _)) in places.into_iter().enumerate() {
+            let known = self.facets.get(i).unwrap_or(&none);
+            distances.push(match field.nearest(place, known) {
+                Some((facet, square)) if self.rise != 0.0 => {
+                    let away = (place - field.corners(facet)[0]).dot(field.normal(facet));
+                    let height = self.rise * self.height(&field, facet, place);
+                    (square.sqrt().copysign(away) - height).abs()
+                }
+                Some((_, square)) => square.sqrt(),
+                None => self.distance(&field, i, place, &mut gradient).abs(),
+            });
+            none.set(u32::MAX);
+        }
+        Ok(distances)
+    }
+
+    /// Returns the same distances, the least first.
+    fn distances(&mut self) -> Result<Vec<f64>, Error> {
+        let mut distances = self.apart()?.to_vec();
         distances.sort_by(f64::total_cmp);
         Ok(distances)
     }
 
-    fn progress(&self) -> Result<Progress, Error> {
+    /// Returns why the present state cannot be relied on, if it cannot; goes back to the start if
+    /// that was better.
+    fn judge(&mut self) -> Result<Option<String>, Error> {
+        let end = self.distances()?;
+        let own = &self.problem.positions;
+        let begun = self.problem.start.clone();
+        let mut other = (self.problem.deformation.apply(own, &begun), begun);
+        let size = Aabb::of_points(other.0.iter().copied()).size().length();
+        self.exchange(&mut other);
+        let start = self.distances()?;
+        let [before, after] = [&start, &end].map(|distances| mean_of_half(distances));
+        if after.is_nan() || after > 1.1 * before + 1e-6 * size {
+            return Ok(Some(format!(
+                "the nearer half of the measurements was {before:.3e} away at the start, and \
+                 {after:.3e} at the end"
+            )));
+        }
+        self.exchange(&mut other);
+        let spread = spread(&end);
+        let near = end.partition_point(|d| *d <= NARROW * spread);
+        let share = 1.0 - near as f64 / end.len().max(1) as f64;
+        if share > MOST_LEFT_OUT {
+            return Ok(Some(format!(
+                "{:.0} % of the measurements are left out, and others may be right",
+                100.0 * share
+            )));
+        }
+        if self.is_cut && spread > 1e-3 * size {
+            return Ok(Some(format!(
+                "it has not settled within {} iterations",
+                self.options.iterations
+            )));
+        }
+        let noise = noise(&self.problem.observations.points);
+        let limit = if noise.is_finite() {
+            (ROUGHLY * noise).max(0.01 * size)
+        } else {
+            0.03 * size
+        };
+        if spread > limit {
+            return Ok(Some(format!(
+                "the nearer measurements are {spread:.3e} away from the surface, {:.1} % of the \
+                 mesh's size, and {noise:.3e} from planes through their neighbours: the start may \
+                 be too far off, the control points too few, or too many measurements wrong",
+                100.0 * spread / size
+            )));
+        }
+        Ok(None)
+    }
+
+    /// Exchanges the positions and moves for others.
+    fn exchange(&mut self, other: &mut (Vec<DVec3>, Vec<DVec3>)) {
+        core::mem::swap(&mut self.positions, &mut other.0);
+        core::mem::swap(&mut self.moves, &mut other.1);
+        self.apart = None;
+    }
+
+    fn progress(&mut self) -> Result<Progress, Error> {
         let distances = self.distances()?;
-        let spread = 1.4826 * quantile(&distances, 0.5);
-        let near = distances.partition_point(|d| *d <= 3.0 * spread);
+        let limit = NARROW * spread(&distances);
+        let near = distances.partition_point(|d| *d <= limit);
         let squares: f64 = distances[..near].iter().map(|d| d * d).sum();
         let residual = (squares / near.max(1) as f64).sqrt();
         let far = distances.len() - distances.partition_point(|d| *d <= 3.0 * residual);
@@ -256,30 +508,31 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Iterates with one scale. Returns whether to go on.
-    fn level(&mut self, tell: &mut dyn FnMut(&Progress) -> bool) -> Result<bool, Error> {
+    /// Iterates with one scale, the last one or one on the way. Returns whether to go on.
+    fn level(&mut self, is_coarse: bool, tell: &mut Tell<'_>) -> Result<bool, Error> {
         self.damping = DAMPING;
-        let most = if self.has_scale() {
-            PER_LEVEL
-        } else {
-            self.options.iterations
+        let (most, settled) = match (self.options.saturates, is_coarse) {
+            (false, _) => (self.options.iterations, SETTLED),
+            (true, false) => (PER_LEVEL, SETTLED),
+            (true, true) => (PER_COARSE_LEVEL, SETTLED_COARSE),
         };
         for turn in 0..most {
             if self.iteration >= self.options.iterations {
+                self.is_cut = self.options.saturates;
                 return Ok(true);
             }
-            let field = self.field(&self.positions)?;
-            let places = self.places(&field);
+            let field = self.field(&self.positions, self.kind)?;
+            let places = self.places(&field, self.shift)?;
             if turn == 0 {
                 (self.weights, self.smooth) = self.balance(&field, &places);
             }
             let (normal, before) = self.equations(&field, &places);
-            let settled = self.step(&normal, before, &places)?;
+            let decrease = self.step(&normal, before, &places)?;
             self.iteration += 1;
             if !tell(&self.progress()?) {
                 return Ok(false);
             }
-            if settled {
+            if decrease <= settled * before {
                 break;
             }
         }
@@ -288,10 +541,13 @@ impl<'a> Run<'a> {
 
     /// Weights that make the classes, and the smoothness, count as the options say: by the sums of
     /// the squares of their derivatives.
-    fn balance(&self, field: &Field<'_>, places: &[Place]) -> ([f64; 2], f64) {
-        let mut sums = [0.0; 2];
+    fn balance(&self, field: &Field<'_>, places: &[Place]) -> ([f64; 3], f64) {
+        let mut sums = [0.0; 3];
         let mut row = Row::new(self.moves.len());
         for (i, (place, class)) in places.iter().enumerate() {
+            if *class == LEFT_OUT {
+                continue;
+            }
             if let Some((_, factor)) = self.residual(field, i, *place, &mut row) {
                 let square: f64 = row
                     .entries
@@ -301,11 +557,11 @@ impl<'a> Run<'a> {
                 sums[*class] += factor * factor * square;
             }
         }
-        let [points, outlines] = sums;
+        let [points, outlines, _] = sums;
         let weights = if points > 0.0 && outlines > 0.0 {
-            [1.0, self.options.outlines * points / outlines]
+            [1.0, self.options.outlines * points / outlines, 0.0]
         } else {
-            [1.0; 2]
+            [1.0, 1.0, 0.0]
         };
         let all = weights[0] * points + weights[1] * outlines;
         let diagonal = self.stiffness.iter().filter(|(i, j, _)| i == j);
@@ -351,6 +607,9 @@ impl<'a> Run<'a> {
         let mut sum = 0.0;
         for (i, (place, class)) in places.iter().enumerate() {
             let weight = self.weights[*class];
+            if weight == 0.0 {
+                continue;
+            }
             let Some((residual, factor)) = self.residual(field, i, *place, &mut row) else {
                 sum += 0.5 * weight * self.scale * self.scale;
                 continue;
@@ -382,7 +641,7 @@ impl<'a> Run<'a> {
         positions: &[DVec3],
         places: &[Place],
     ) -> Result<(f64, Vec<f64>), Error> {
-        let field = self.field(positions)?;
+        let field = self.field(positions, self.kind)?;
         let mut gradient = Gradient::new();
         let numbered = places.iter().enumerate();
         let distances: Vec<f64> = numbered
@@ -407,11 +666,12 @@ impl<'a> Run<'a> {
         ))
     }
 
-    /// Moves the controls to where the sum is less. Returns whether it has settled.
+    /// Moves the controls to where the sum is less. Returns by how much, 0 if there is no such
+    /// place.
     ///
     /// The damping falls by how well the equations foretold the new sum, and grows twice as quickly
     /// with each failure (Nielsen 1999).
-    fn step(&mut self, normal: &Normal, before: f64, places: &[Place]) -> Result<bool, Error> {
+    fn step(&mut self, normal: &Normal, before: f64, places: &[Place]) -> Result<f64, Error> {
         let mut growth = 2.0;
         for _ in 0..MOST_TRIES {
             if let Some(way) = normal.solve(self.damping) {
@@ -424,22 +684,22 @@ impl<'a> Run<'a> {
                 let (after, distances) = self.sum(&moves, &positions, places)?;
                 if after < before {
                     (self.moves, self.positions) = (moves, positions);
-                    // Where lines of sight touch, and what is fitted to, may be other than what is
-                    // told.
-                    let is_told =
-                        self.options.kind == Kind::Explicit && distances.len() == self.facets.len();
+                    // Lines of sight touch elsewhere now.
+                    let is_told = self.kind == Kind::Explicit
+                        && self.shift == 0.0
+                        && distances.len() == self.facets.len();
                     self.apart = is_told.then_some(distances);
                     let foretold = normal.decrease(&way);
                     let miss = 2.0 * (before - after) / foretold - 1.0;
                     let fall = (1.0 - miss.powi(3)).clamp(0.1, 2.0);
                     self.damping = (self.damping * fall).max(LEAST_DAMPING);
-                    return Ok(before - after <= SETTLED * before);
+                    return Ok(before - after);
                 }
             }
             self.damping *= growth;
             growth *= 2.0;
         }
-        Ok(true)
+        Ok(0.0)
     }
 }
 
@@ -477,6 +737,37 @@ impl Row {
             self.places[*control as usize] = 0;
         }
         self.entries.sort_unstable_by_key(|(control, _)| *control);
+    }
+}
+
+/// Whether no two triangles pass an edge in the same direction.
+fn face_alike(triangles: &[[u32; 3]]) -> bool {
+    let ways = triangles
+        .iter()
+        .flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let mut ways: Vec<_> = ways.collect();
+    ways.sort_unstable();
+    ways.windows(2).all(|pair| pair[0] != pair[1])
+}
+
+/// Returns the mean of the least half of sorted distances.
+fn mean_of_half(sorted: &[f64]) -> f64 {
+    let near = &sorted[..sorted.len().div_ceil(2)];
+    near.iter().sum::<f64>() / near.len().max(1) as f64
+}
+
+/// Returns the standard deviation of the nearer ones of sorted distances: from the median of those
+/// within three of it, so that the others do not count.
+fn spread(sorted: &[f64]) -> f64 {
+    let (mut near, mut spread) = (sorted, f64::INFINITY);
+    // The number falls each time.
+    loop {
+        spread = spread.min(1.4826 * quantile(near, 0.5));
+        let count = near.partition_point(|d| *d <= 3.0 * spread);
+        if count == near.len() {
+            return spread;
+        }
+        near = &near[..count];
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::error::{Error, Remark, fail};
 use crate::graph::{Clip, Graph, Group, Limb, Node};
 use crate::limits::{
-    MAX_COORDINATE, MAX_GROUPS, MAX_LIMBS, MAX_LISTED, MAX_NODES, MAX_POINTS, MAX_REMARKS,
+    MAX_COORDINATE, MAX_GROUPS, MAX_LIMBS, MAX_LISTED, MAX_NAME, MAX_NODES, MAX_POINTS, MAX_REMARKS,
 };
 use glam::DVec3;
 use std::collections::HashMap;
@@ -54,6 +54,7 @@ impl Draft {
             radius: radius.max(UNKNOWN),
             group,
             is_ball: false,
+            is_guessed: false,
         });
         Ok(self.graph.nodes.len() as u32 - 1)
     }
@@ -106,6 +107,7 @@ impl Draft {
 
     /// Returns the index of the group of a name, which is made if there is none.
     pub(crate) fn group(&mut self, name: &str, color: Option<[f32; 3]>) -> Result<u32, Error> {
+        let name = &name[..name.floor_char_boundary(MAX_NAME)];
         if let Some(group) = self.groups.get(name) {
             return Ok(*group);
         }
@@ -230,10 +232,9 @@ impl Draft {
                     );
                 };
                 node.radius = radius;
+                node.is_guessed = true;
             }
-            if none_known {
-                self.remark(None, "the file gives no radii: the given one is used");
-            } else {
+            if !none_known {
                 self.remark_count(
                     unknown,
                     "nodes have no radius above 0 and get that of the nearest one along the limbs",

@@ -4,6 +4,7 @@ use crate::error::Remark;
 use glam::{DAffine3, DVec3};
 use mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 
 /// Node of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,6 +18,9 @@ pub struct Node {
     pub group: u32,
     /// Whether a ball of this radius stands here, as for an atom or a soma of one node.
     pub is_ball: bool,
+    /// Whether neither the file nor a node along the limbs gives a radius, so that it is that of
+    /// [`Reading`](crate::Reading).
+    pub is_guessed: bool,
 }
 
 /// Shape of a limb's end where no other limb goes on.
@@ -179,6 +183,71 @@ impl Graph {
             let text = format!("{} limbs or balls are thinned to nothing", before - after);
             self.remarks.push(Remark { line: None, text });
             self.drop_lonely_nodes();
+        }
+    }
+
+    /// Returns a graph of some limbs in which each node has the radius of all its limbs: a node at
+    /// which radii jump is there once for each.
+    #[must_use]
+    pub fn part(&self, is_in: impl Fn(&Limb) -> bool) -> Self {
+        let mut part = Self::default();
+        let mut places: HashMap<(u32, u64), u32> = HashMap::new();
+        for limb in self.limbs.iter().filter(|limb| is_in(limb)) {
+            let ends = [0, 1].map(|side| {
+                let (node, radius) = (limb.ends[side], limb.radii[side]);
+                *places.entry((node, radius.to_bits())).or_insert_with(|| {
+                    part.nodes.push(Node {
+                        radius,
+                        is_ball: false,
+                        ..self.nodes[node as usize]
+                    });
+                    part.nodes.len() as u32 - 1
+                })
+            });
+            part.limbs.push(Limb {
+                ends,
+                group: 0,
+                clip: None,
+                ..*limb
+            });
+        }
+        part
+    }
+
+    /// Gives a radius > 0 to all nodes that have none of their own, and to the limbs' ends there.
+    pub fn give_radius(&mut self, radius: f64) {
+        for node in self.nodes.iter_mut().filter(|node| node.is_guessed) {
+            node.radius = radius;
+        }
+        for limb in &mut self.limbs {
+            for (own, end) in limb.radii.iter_mut().zip(limb.ends) {
+                if self.nodes[end as usize].is_guessed {
+                    *own = radius;
+                }
+            }
+        }
+    }
+
+    /// Moves each free end on along its limb, by a multiple of its radius that its cap gives; one
+    /// below 0 moves it back, by a quarter of the limb at most. The limb's radius goes on as it
+    /// varies, down to a half of the end's.
+    pub fn lengthen_free_ends(&mut self, by: impl Fn(Cap) -> f64) {
+        let degrees = self.degrees();
+        for limb in &mut self.limbs {
+            let [start, end] = limb.ends.map(|end| self.nodes[end as usize].position);
+            let (along, radii) = (end - start, limb.radii);
+            let length = along.length();
+            for (side, onwards) in [(0, -along), (1, along)] {
+                let node = &mut self.nodes[limb.ends[side] as usize];
+                if degrees[limb.ends[side] as usize] != 1 || node.is_ball {
+                    continue;
+                }
+                let step = (by(limb.caps[side]) * radii[side]).max(-0.25 * length);
+                let slope = (radii[side] - radii[1 - side]) / length;
+                limb.radii[side] = (radii[side] + slope * step).max(0.5 * radii[side]);
+                node.position += onwards * (step / length);
+                node.radius = limb.radii[side];
+            }
         }
     }
 

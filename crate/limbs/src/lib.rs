@@ -5,8 +5,10 @@
 //!   their kinds, and remarks about what a file says otherwise.
 //! - [`read`] makes one of the bytes of a file: SWC, 3MF with beam lattices, VTK's polygonal data,
 //!   tables of a tree's cylinders, OBJ and PLY with lines, molecules in XYZ and PDB.
+//! - [`Builder`] makes one of limbs from elsewhere.
 //! - [`Graph::scale`], [`Graph::thicken`], [`Graph::merge`], [`Graph::simplify`] change one;
 //!   [`Graph::facts`] counts its parts, cycles and ends.
+//! - [`Recipe`]: all that is done to a file which takes long, as data.
 //! - [`Graph::write_swc`], [`Graph::write_obj`], [`Graph::write_block`] write one.
 //!
 //! ```
@@ -21,17 +23,22 @@
 //! Files are untrusted: every count is checked against the bytes that are there and against
 //! [`limits`] before memory is allocated for it, and errors are sentences with a line.
 
+mod build;
 mod draft;
 mod error;
 mod graph;
 pub mod limits;
 mod merge;
 mod read;
+mod recipe;
 mod simplify;
 mod tidy;
 mod write;
 
+pub use build::Builder;
 pub use error::{Error, Remark};
 pub use graph::{Cap, Clip, Facts, Graph, Group, Limb, Node, Side};
 pub use read::{Reading, read};
+pub use recipe::Recipe;
+pub use simplify::Chain;
 pub use write::Written;

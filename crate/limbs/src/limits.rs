@@ -14,6 +14,8 @@ pub const MAX_POINTS: usize = 2_000_000;
 pub const MAX_LISTED: usize = 2_000_000;
 /// Names of types and materials.
 pub const MAX_GROUPS: usize = 10_000;
+/// Bytes of such a name; of longer ones the beginning is kept.
+pub const MAX_NAME: usize = 200;
 /// Largest coordinate and radius, of either sign.
 pub const MAX_COORDINATE: f64 = mesh::limits::MAX_COORDINATE;
 /// Remarks about single lines; those beyond are counted.

@@ -7,11 +7,11 @@ use std::collections::HashSet;
 
 /// Line of limbs between two nodes at which something changes, or once around.
 #[derive(Clone, Debug)]
-pub(crate) struct Chain {
+pub struct Chain {
     /// Nodes along the line; the last is the first of a line that runs once around.
-    pub(crate) nodes: Vec<u32>,
+    pub nodes: Vec<u32>,
     /// Limbs between them, and whether each is walked from its first end to its second.
-    pub(crate) limbs: Vec<(u32, bool)>,
+    pub limbs: Vec<(u32, bool)>,
 }
 
 impl Graph {
@@ -72,7 +72,8 @@ impl Graph {
     }
 
     /// Splits the graph into lines. Each limb is in one of them.
-    pub(crate) fn chains(&self) -> Vec<Chain> {
+    #[must_use]
+    pub fn chains(&self) -> Vec<Chain> {
         let around = self.around();
         let is_passed: Vec<bool> = (0..)
             .zip(&around)

@@ -4,8 +4,7 @@
 //!   whether one is a closed manifold, [`self_intersections`] whether it cuts itself, with proof.
 //! - [`HalfEdgeMesh`]: polygons that know their neighbours, for edits; made of a [`PolygonSoup`].
 //! - [`Bvh`]: search among boxes.
-//! - [`read`] makes a mesh of the bytes of an OBJ, PLY, STL, GLB or 3MF file, [`Export`] writes
-//!   these.
+//! - [`read`] makes a mesh of the bytes of a file of any [`Format`], [`Export`] writes one.
 //! - [`heights`] makes [`Heights`] of a PNG picture, and [`terra`] makes a smooth mesh of those.
 //!
 //! ```
@@ -24,6 +23,7 @@ mod aabb;
 mod bvh;
 mod color;
 mod error;
+mod format;
 pub mod formats;
 mod half_edge;
 mod heights;
@@ -41,6 +41,7 @@ pub use aabb::Aabb;
 pub use bvh::{Bvh, Ray};
 pub use color::{linear_from_srgb, phong_from_roughness, roughness_from_phong, srgb_from_linear};
 pub use error::Error;
+pub use format::Format;
 pub use half_edge::{
     Built, EditError, FaceId, HalfEdgeId, HalfEdgeMesh, ListPatch, MeshPatch, PolygonSoup, Repairs,
     Shell, VertexCopy, VertexId, Violation,
@@ -53,4 +54,4 @@ pub use report::Topology;
 pub use simplify::{Level, levels_of_detail, simplify, simplify_part};
 pub use terra::terra;
 pub use triangle_mesh::{Group, Material, TriangleMesh};
-pub use write::{Export, ExportedFile, Format, Joint, Part, Pose, Rig};
+pub use write::{Export, ExportedFile, Joint, Part, Pose, Rig};

@@ -110,7 +110,7 @@ impl Lattice {
     }
 
     /// Evaluates the function at all vertices of the tetrahedra of some cells where that was not
-    /// done.
+    /// done, exactly or as well as a mesh within the tolerance needs it.
     ///
     /// # Errors
     /// If the caller cancels.
@@ -118,6 +118,7 @@ impl Lattice {
         &mut self,
         space: &Space<'_>,
         cells: &[u32],
+        is_exact: bool,
         tolerance: f64,
         threads: usize,
         progress: &mut Progress<'_>,
@@ -136,9 +137,21 @@ impl Lattice {
         wanted.sort_unstable();
         wanted.dedup_by_key(|(key, _)| *key);
         wanted.retain(|(key, _)| self.keys.binary_search(key).is_err());
-        let values = map_told(threads, &wanted, progress, |(key, node)| {
+        let jets = if is_exact {
+            map_told(threads, &wanted, progress, |(key, node)| {
+                let cell = &space.forest.cells[*node as usize];
+                space.jet(cell.part, space.forest.position(unpack(*key)))
+            })?
+        } else {
+            let places = wanted.iter().map(|(key, node)| {
+                let part = space.forest.cells[*node as usize].part;
+                (part, space.forest.position(unpack(*key)))
+            });
+            let places: Vec<(u32, DVec3)> = places.collect();
+            space.jets_in_parts(&places, tolerance, threads, progress)?
+        };
+        let values = wanted.iter().zip(&jets).map(|((_, node), jet)| {
             let cell = &space.forest.cells[*node as usize];
-            let jet = space.jet(cell.part, space.forest.position(unpack(*key)));
             let gradient = DVec3::from_array(jet.gradient);
             let slope = gradient.length();
             let least = space.forest.size(cell.level).max_element();
@@ -153,7 +166,8 @@ impl Lattice {
                 -least
             };
             (value, exact, gradient)
-        })?;
+        });
+        let values: Vec<(f64, f64, DVec3)> = values.collect();
         for ((key, _), (value, exact, _)) in wanted.iter().zip(&values) {
             if value != exact {
                 self.moved.insert(*key, *exact);

@@ -1,4 +1,5 @@
-//! Closed triangle meshes of implicit surfaces and scenes, within a proven tolerance.
+//! Closed triangle meshes of implicit surfaces and scenes: for files, with an error that is
+//! measured, or within a proven tolerance, which takes about ten times as long.
 //!
 //! ```
 //! use core::ops::ControlFlow;
@@ -27,7 +28,11 @@
 //! # Ok::<(), mesher::MeshError>(())
 //! ```
 //!
-//! The way of a mesh, a file each:
+//! A mesh for a file ([`approximate`]): `grow.rs` finds cells of the size that curvature asks for,
+//! `decimate.rs` makes few triangles of those that `march.rs` makes in them, and `file.rs` measures
+//! the error both ways and mends what is too far, or cuts itself.
+//!
+//! The way of a proven mesh, a file each:
 //! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with
 //!   tetrahedra that fit together;
 //! - `refine.rs` splits cells until each proves, by bounds on the function's derivatives, that the
@@ -64,7 +69,10 @@ mod boxes;
 mod cages;
 mod certify;
 mod coating;
+mod decimate;
+mod file;
 mod forest;
+mod grow;
 mod guard;
 mod improve;
 mod lattice;
@@ -85,6 +93,7 @@ mod unite;
 
 pub use cages::{Cage, Spoke};
 pub use coating::{Coat, Coating};
+pub use file::approximate;
 pub use measure::Measured;
 pub use model::{CoatedBody, Model, ModelPart, Tolerance, Wishes, coat_scene, mesh_scene};
 pub use options::{MeshError, Options, Phase, Progress, Step};

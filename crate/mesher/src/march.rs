@@ -9,6 +9,8 @@ use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
 use crate::refine::crossing;
 use crate::space::Space;
+use field::Ball;
+use glam::DVec3;
 
 /// An edge of the lattice on which a vertex of the mesh lies, as the numbers of its ends, the lower
 /// one first; or twice the same vertex of the lattice.
@@ -44,6 +46,11 @@ const FIRST_TWO: [[usize; 4]; 6] = [
 
 fn place(a: u32, b: u32) -> Place {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
+}
+
+/// The ends of the edge of a place.
+fn ends(place: Place) -> [u32; 2] {
+    [(place >> 32) as u32, place as u32]
 }
 
 /// The triangles of the level set in a tetrahedron: none, one or two, outward for a positive one.
@@ -129,13 +136,15 @@ fn lids(
 }
 
 /// The level set of the interpolant in all cells. Leaves that are wholly inside have lids, too:
-/// `lattice` is extended by their vertices.
+/// `lattice` is extended by their vertices. With a tolerance, vertices are put onto the surface as
+/// well as that needs it, eight at a time.
 ///
 /// # Errors
 /// If the caller cancels.
 pub fn march(
     space: &Space<'_>,
     lattice: &Lattice,
+    tolerance: Option<f64>,
     threads: usize,
     progress: &mut Progress<'_>,
 ) -> Result<Raw, MeshError> {
@@ -183,8 +192,22 @@ pub fn march(
         };
         forest.position(unpack(key))
     };
-    let vertices = map_told(threads, &places, progress, |place| {
-        let [a, b] = [(place >> 32) as u32, *place as u32];
+    let found = match tolerance {
+        None => vec![None; places.len()],
+        Some(tolerance) => {
+            let edges = places.iter().map(|place| {
+                let [a, b] = ends(*place);
+                (a != b).then(|| Edge::new(lattice, [a, b], [at(a), at(b)]))
+            });
+            Edge::roots(edges.collect(), space, tolerance, threads, progress)?
+        }
+    };
+    let places_found: Vec<(Place, Option<Vertex>)> = places.iter().copied().zip(found).collect();
+    let vertices = map_told(threads, &places_found, progress, |(place, found)| {
+        if let Some(vertex) = found {
+            return *vertex;
+        }
+        let [a, b] = ends(*place);
         if a == b {
             return Vertex::new(at(a), &space.jet_at(at(a)));
         }
@@ -206,4 +229,113 @@ pub fn march(
             .collect(),
         is_lid: triangles.iter().map(|(_, is_lid)| *is_lid).collect(),
     })
+}
+
+/// An edge of the lattice that the surface crosses.
+#[derive(Clone, Copy)]
+struct Edge {
+    ends: [DVec3; 2],
+    /// Values at its ends, less the threshold, and their changes along it.
+    values: [f64; 2],
+    slopes: [f64; 2],
+    /// Share of the way at which the surface is.
+    share: f64,
+}
+
+/// Largest distance from the surface of vertices that two steps put onto it, in tolerances.
+const NEAR: f64 = 0.02;
+
+impl Edge {
+    fn new(lattice: &Lattice, numbers: [u32; 2], ends: [DVec3; 2]) -> Self {
+        let way = ends[1] - ends[0];
+        let mut edge = Self {
+            ends,
+            values: numbers.map(|i| lattice.value(i)),
+            slopes: numbers.map(|i| lattice.gradient(i).dot(way)),
+            share: 0.5,
+        };
+        edge.share = edge.guess();
+        edge
+    }
+
+    /// The root of the cubic polynomial with the values and slopes at the ends.
+    fn guess(&self) -> f64 {
+        let ([a, b], [c, d]) = (self.values, self.slopes);
+        let rest = b - a - c;
+        let bend = d - c;
+        // a + c·t + square·t² + cube·t³.
+        let (square, cube) = (3.0 * rest - bend, bend - 2.0 * rest);
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut t = a / (a - b);
+        for _ in 0..6 {
+            let value = a + t * (c + t * (square + t * cube));
+            let slope = c + t * (2.0 * square + t * 3.0 * cube);
+            *(if (value > 0.0) == (a > 0.0) {
+                &mut low
+            } else {
+                &mut high
+            }) = t;
+            let next = t - value / slope;
+            t = if next > low && next < high {
+                next
+            } else {
+                0.5 * (low + high)
+            };
+        }
+        t.clamp(MARGIN, 1.0 - MARGIN)
+    }
+
+    fn place(&self) -> DVec3 {
+        // Exact where the edge is across an axis.
+        self.ends[0] + (self.ends[1] - self.ends[0]) * self.share
+    }
+
+    /// The places of the surface on edges by two evaluations each; `None` where that is not enough.
+    fn roots(
+        mut edges: Vec<Option<Self>>,
+        space: &Space<'_>,
+        tolerance: f64,
+        threads: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<Option<Vertex>>, MeshError> {
+        let parts = map_told(threads, &edges, progress, |edge| {
+            edge.map_or(NONE, |Self { ends: [a, b], .. }| {
+                space.part_for(Ball {
+                    center: a.midpoint(b),
+                    radius: 0.5 * a.distance(b),
+                })
+            })
+        })?;
+        let mut found: Vec<Option<Vertex>> = vec![None; edges.len()];
+        for step in 0..2 {
+            let known = (0..).zip(&edges).zip(&parts);
+            let known = known.filter_map(|((i, edge), part)| Some((i, edge.as_ref()?, *part)));
+            let known = known.filter(|(i, ..)| found[*i].is_none());
+            let places: Vec<(usize, (u32, DVec3))> = known
+                .map(|(i, edge, part)| (i, (part, edge.place())))
+                .collect();
+            let (numbers, places): (Vec<usize>, Vec<(u32, DVec3)>) = places.into_iter().unzip();
+            let jets = space.jets_in_parts(&places, tolerance, threads, progress)?;
+            for (i, ((_, place), jet)) in numbers.into_iter().zip(places.iter().zip(jets)) {
+                let vertex = Vertex::new(*place, &jet);
+                let Some(edge) = &mut edges[i] else {
+                    continue;
+                };
+                let off = vertex.value.abs() / vertex.gradient.length();
+                let is_end = edge.share <= MARGIN || edge.share >= 1.0 - MARGIN;
+                // Not so for NaN.
+                if off <= NEAR * tolerance || (is_end && step == 1) {
+                    found[i] = Some(vertex);
+                }
+                let slope = vertex.gradient.dot(edge.ends[1] - edge.ends[0]);
+                let next = edge.share - vertex.value / slope;
+                let is_first = (vertex.value > 0.0) == (edge.values[0] > 0.0);
+                let is_ahead = (next > edge.share) == is_first;
+                if next.is_finite() && is_ahead {
+                    edge.share = next.clamp(MARGIN, 1.0 - MARGIN);
+                }
+            }
+        }
+        Ok(found)
+    }
 }

@@ -42,7 +42,7 @@ impl Measured {
     }
 
     /// One way of several, of distances that were found.
-    fn add(&mut self, way: usize, distances: &[f64]) {
+    pub fn add(&mut self, way: usize, distances: &[f64]) {
         for distance in distances.iter().filter(|distance| distance.is_finite()) {
             self.largest[way] = self.largest[way].max(*distance);
             self.samples[way] += 1;
@@ -177,14 +177,14 @@ fn scattered(space: &Space<'_>, cell: &Cell, node: u32) -> DVec3 {
 }
 
 /// Some of many, spread evenly.
-fn spread<T>(all: Vec<T>, most: usize) -> Vec<T> {
+pub fn spread<T>(all: Vec<T>, most: usize) -> Vec<T> {
     let step = all.len().div_ceil(most).max(1);
     all.into_iter().step_by(step).collect()
 }
 
 /// Distance to a place of the surface on a ray, no nearer than it is; `None` if none was found
 /// within the largest distance.
-fn along_ray(
+pub fn along_ray(
     space: &Space<'_>,
     from: DVec3,
     direction: DVec3,
@@ -219,6 +219,6 @@ fn along_ray(
 }
 
 /// The distance that a search found; infinite if there was nothing.
-fn root_of(found: Option<(u32, f64)>) -> f64 {
+pub fn root_of(found: Option<(u32, f64)>) -> f64 {
     found.map_or(f64::INFINITY, |(_, square)| square.sqrt())
 }

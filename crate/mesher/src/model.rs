@@ -2,6 +2,7 @@
 
 use crate::cages::Cage;
 use crate::coating::{Coat, Coating};
+use crate::file::approximate;
 use crate::level::QuadricFunction;
 use crate::measure::Measured;
 use crate::options::{MeshError, Options, Phase, Progress};
@@ -49,6 +50,9 @@ pub struct Wishes {
     pub union: bool,
     /// Whether cavities are left out.
     pub outer: bool,
+    /// Whether what can be proved of the mesh is, which takes about ten times as long; else its
+    /// error is measured.
+    pub prove: bool,
     /// Most triangles of each part.
     pub max_triangles: usize,
     /// Threads; the result does not depend on them.
@@ -63,6 +67,7 @@ impl Default for Wishes {
             body: None,
             union: false,
             outer: false,
+            prove: true,
             max_triangles: Options::MOST_TRIANGLES,
             threads: 1,
         }
@@ -93,6 +98,8 @@ pub struct ModelPart {
     pub is_closed: bool,
     /// Whether its closed shells may overlap, as those of hard elements do.
     pub overlaps: bool,
+    /// Whether the error was only measured; else it is proved, but for `unproved` triangles.
+    pub is_measured: bool,
     /// The largest distance between mesh and surface, either way.
     pub error: f64,
     /// Centres of the cells in which the topology is not proved.
@@ -438,6 +445,19 @@ fn soft_part(
         threads: wishes.threads,
     };
     let name = name_of(scene, surface.body(), "");
+    let mut is_measured = !wishes.prove;
+    let function = surface.function();
+    let mut made = if is_measured {
+        approximate(function, domain, &options, &mut progress.part(0.0, 0.5))
+    } else {
+        polygonize(function, domain, &options, progress)
+    };
+    if let (true, Err(MeshError::Failed(why))) = (is_measured, &made) {
+        let note = format!("{name}: {why}: it was made with proofs");
+        model.notes.push(note);
+        is_measured = false;
+        made = polygonize(function, domain, &options, &mut progress.part(0.5, 1.0));
+    }
     let Mesh {
         mut mesh,
         error,
@@ -449,7 +469,7 @@ fn soft_part(
         evaluations,
         is_cut,
         ..
-    } = match polygonize(surface.function(), domain, &options, progress) {
+    } = match made {
         Ok(surface) => surface,
         Err(MeshError::Nothing) => return Ok(()),
         Err(other) => return Err(other),
@@ -488,6 +508,7 @@ fn soft_part(
         mesh,
         is_closed: true,
         overlaps: false,
+        is_measured,
         error,
         undecided,
         unproved,
@@ -569,6 +590,7 @@ fn hard_parts<'a>(
             mesh,
             is_closed,
             overlaps,
+            is_measured: false,
             error,
             undecided: Vec::new(),
             unproved: 0,
@@ -684,6 +706,7 @@ fn unite(model: &mut Model, progress: &mut Progress<'_>) -> Result<(), MeshError
             mesh: unite::union(&meshes, progress)?,
             is_closed: true,
             overlaps: false,
+            is_measured: closed.iter().any(|part| part.is_measured),
             error: closed.iter().map(|part| part.error).fold(0.0, f64::max),
             undecided: closed
                 .iter()

@@ -75,7 +75,7 @@ pub fn fine_range(variation: &Variation, jet: &Jet<f64>, size: DVec3, error: f64
 }
 
 /// The side of values within bounds.
-fn side([low, high]: [f64; 2]) -> Side {
+pub fn side([low, high]: [f64; 2]) -> Side {
     if low > THRESHOLD {
         Side::Inside
     } else if high < THRESHOLD {
@@ -295,7 +295,7 @@ impl<'s, 'a> Refinement<'s, 'a> {
             look_beside(self.space, &new, self.tolerances, threads, progress)?;
             let coarse = self.tolerances[0];
             self.lattice
-                .extend(self.space, &new, coarse, threads, progress)?;
+                .extend(self.space, &new, true, coarse, threads, progress)?;
             let (space, lattice) = (&*self.space, &self.lattice);
             let verdicts = map_told(threads, &new, progress, |node| {
                 verdict(space, lattice, *node, coarse)

@@ -3,10 +3,12 @@
 use core::sync::atomic::{AtomicU64, Ordering};
 use field::{Ball, Implicit, Jet, Logarithm, Part, Slack, Variation};
 use glam::DVec3;
+use wide::f32x8;
 
 use crate::forest::{Cell, Forest, NONE};
 use crate::lattice::Lattice;
 use crate::options::{MeshError, Progress};
+use crate::parallel::map_told;
 use crate::patches::Patches;
 
 /// Bound on the sum of terms that are left out at a place, in units of the threshold.
@@ -17,6 +19,10 @@ pub const SLACK: f64 = 1e-7;
 /// whole surface or on a shorter way, it moves no point by more than a fifth of the tolerance, and
 /// mostly by far less.
 const BORNE: f64 = 0.2;
+
+/// Largest coordinates at which single precision tells places apart, over the tolerance: some
+/// hundred roundings of 2⁻²⁴.
+const SINGLE: f64 = 1e-5;
 
 /// Parts with fewer terms are not divided further.
 const FEW_TERMS: usize = 4;
@@ -76,6 +82,64 @@ impl<'a> Space<'a> {
             Some(_) => Logarithm::of(&jet),
             None => jet,
         }
+    }
+
+    /// Value and gradient at eight points of the ball of a part, in single precision where that is
+    /// enough for places within a tolerance.
+    pub fn jets(&self, part: u32, points: &[DVec3; 8], tolerance: f64) -> [Jet<f64>; 8] {
+        let largest = points.iter().map(|p| p.abs().max_element());
+        // Not so for NaN.
+        let is_near = largest.fold(0.0, f64::max) * SINGLE <= tolerance;
+        if !is_near {
+            return points.map(|point| self.jet(part, point));
+        }
+        self.evaluations.fetch_add(8, Ordering::Relaxed);
+        let lanes = [0, 1, 2].map(|axis| f32x8::new(points.map(|p| p[axis] as f32)));
+        let jet = match self.part(part) {
+            Some(part) => self.function.jet8_of(part, lanes),
+            None => self.function.jet8(lanes),
+        };
+        let value = jet.value.to_array();
+        let gradient = jet.gradient.map(|slope| slope.to_array());
+        core::array::from_fn(|i| {
+            let jet = Jet {
+                value: f64::from(value[i]),
+                gradient: gradient.map(|slope| f64::from(slope[i])),
+            };
+            match self.logarithm {
+                Some(_) => Logarithm::of(&jet),
+                None => jet,
+            }
+        })
+    }
+
+    /// Value and gradient at many points, each in the ball of a part: [`Space::jets`] of those that
+    /// have the same part.
+    ///
+    /// # Errors
+    /// If the caller cancels.
+    pub fn jets_in_parts(
+        &self,
+        places: &[(u32, DVec3)],
+        tolerance: f64,
+        threads: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<Jet<f64>>, MeshError> {
+        let mut order: Vec<u32> = (0..places.len() as u32).collect();
+        order.sort_by_key(|i| places[*i as usize].0);
+        let same = order.chunk_by(|i, j| places[*i as usize].0 == places[*j as usize].0);
+        let eights: Vec<&[u32]> = same.flat_map(|same| same.chunks(8)).collect();
+        let found = map_told(threads, &eights, progress, |eight| {
+            let points = core::array::from_fn(|k| places[eight[k.min(eight.len() - 1)] as usize].1);
+            self.jets(places[eight[0] as usize].0, &points, tolerance)
+        })?;
+        let mut jets = vec![Jet::zero(); places.len()];
+        for (eight, found) in eights.iter().zip(found) {
+            for (i, jet) in eight.iter().zip(found) {
+                jets[*i as usize] = jet;
+            }
+        }
+        Ok(jets)
     }
 
     /// Bounds in a ball within that of a part.

@@ -138,7 +138,7 @@ fn guarded(
     };
     let mut progress = progress.part(0.0, 1.0).in_phase(Phase::Triangles);
     progress.at(0.4)?;
-    let raw = march(&space, &lattice, threads, &mut progress)?;
+    let raw = march(&space, &lattice, None, threads, &mut progress)?;
     if raw.triangles.is_empty() {
         return Err(MeshError::Nothing);
     }
@@ -202,7 +202,7 @@ fn guarded(
 }
 
 /// Crossings of triangles with which a search for them ends.
-const MOST_CROSSINGS: usize = 100;
+pub const MOST_CROSSINGS: usize = 100;
 
 /// A mesh that was not yet improved.
 struct Start<'a> {
@@ -236,7 +236,7 @@ impl Start<'_> {
 }
 
 /// Largest tolerance that is worked with, in sizes of the surface.
-const LARGEST: f64 = 0.02;
+pub const LARGEST: f64 = 0.02;
 /// Cells are at least half so large, in tolerances, but for those that hold parts of the surface
 /// which are [thinner](crate::thin): smaller ones take minutes where surfaces touch.
 const FINEST: f64 = 4.0;
@@ -245,9 +245,9 @@ const FINEST: f64 = 4.0;
 const COARSE: f64 = 16.0;
 
 /// A limit of cells that is not too low for any surface's topology.
-const LEAST_CELLS: usize = 400_000;
+pub const LEAST_CELLS: usize = 400_000;
 
-fn check(domain: &Aabb) -> Result<(), MeshError> {
+pub fn check(domain: &Aabb) -> Result<(), MeshError> {
     let size = domain.max - domain.min;
     if size.is_finite() && size.min_element() > 0.0 {
         Ok(())

@@ -6,9 +6,10 @@
 use crate::evaluation::{Evaluation, extent, jet, peak, primitive, sensitivity, single};
 use crate::quadrature;
 use core::f64::consts::TAU;
+use field::kernel::Tail;
 use field::{Kernel, Shaping, Skeleton};
 use glam::{DQuat, DVec3};
-use trials::skeletons::{Kind, halves, move_by, shaping};
+use trials::skeletons::{Kind, degenerate, halves, move_by, shaping};
 use trials::{Random, count};
 
 const EPSILON32: f64 = f32::EPSILON as f64 / 2.0;
@@ -343,7 +344,7 @@ pub fn degenerate_geometry(kernel: Kernel, kind: Kind, [evaluate, eight]: [Evalu
                 // Values below single precision's smallest number become 0: a bone 1e-300 long.
                 let slack = 64.0 * EPSILON32 * (want_gradient.length() + peak)
                     + f64::from(f32::MIN_POSITIVE) * primitive.height.abs().max(1.0);
-                // As in `single_matches_double`.
+                // The same exception is in `single_matches_double`.
                 let on_pole = kernel == Kernel::Cubed && kind == Kind::Curve;
                 let relative = if on_pole { 1e-3 } else { 1e-4 };
                 assert!(
@@ -351,108 +352,6 @@ pub fn degenerate_geometry(kernel: Kernel, kind: Kind, [evaluate, eight]: [Evalu
                     "{value8} instead of {want}: {skeleton:?} at {p:?}"
                 );
             }
-        }
-    }
-}
-
-/// Returns skeletons of a kind that are degenerate, or nearly.
-fn degenerate(kind: Kind) -> Vec<Skeleton> {
-    let arc = |radius: f64, angle: f64| Skeleton::Arc {
-        center: DVec3::ZERO,
-        u: DVec3::X,
-        v: DVec3::Y,
-        radius,
-        angle,
-    };
-    let flat = |b: [f64; 2], c: [f64; 2]| {
-        [
-            DVec3::ZERO,
-            DVec3::new(b[0], b[1], 0.0),
-            DVec3::new(c[0], c[1], 0.0),
-        ]
-    };
-    let triangles = [
-        flat([2.0, 0.0], [0.0, 2.0]),
-        flat([2.0, 0.0], [1.0, 0.0]),
-        flat([2.0, 0.0], [1.0, 1e-16]),
-        flat([2.0, 0.0], [2.0, 0.0]),
-        flat([0.0, 0.0], [0.0, 0.0]),
-        flat([1e-9, 0.0], [0.0, 1e-9]),
-        flat([1e-300, 0.0], [0.0, 1e-300]),
-    ];
-    match kind {
-        Kind::Point => vec![Skeleton::Point {
-            center: DVec3::ZERO,
-        }],
-        Kind::Plane => vec![Skeleton::Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::Z,
-        }],
-        Kind::Segment => [2.0, 0.0, 1e-300, 1e-30, 1e-9, 1e3]
-            .map(|length| Skeleton::Segment {
-                base: DVec3::ZERO,
-                apex: DVec3::X * length,
-            })
-            .to_vec(),
-        Kind::Arc => vec![
-            arc(1.0, TAU),
-            arc(1.0, TAU / 2.0),
-            arc(1.0, TAU.next_down()),
-            arc(1.0, 1e-9),
-            arc(1.0, 1e-300),
-            arc(1.0, 0.0),
-            arc(0.0, 3.0),
-            arc(1e-12, TAU),
-            arc(1e-300, TAU),
-            arc(1e3, 1e-3),
-        ],
-        Kind::Triangle => triangles
-            .map(|corners| Skeleton::Triangle { corners })
-            .to_vec(),
-        Kind::Polygon => triangles
-            .into_iter()
-            .map(|corners| Skeleton::Polygon {
-                rings: vec![corners.to_vec()],
-            })
-            .chain([
-                // Corners on a side, a corner given twice, a hole, two corners only.
-                Skeleton::Polygon {
-                    rings: vec![vec![
-                        DVec3::ZERO,
-                        DVec3::X,
-                        DVec3::X * 2.0,
-                        DVec3::X * 2.0,
-                        DVec3::Y * 2.0,
-                        DVec3::Y,
-                    ]],
-                },
-                Skeleton::Polygon {
-                    rings: vec![
-                        vec![DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0],
-                        flat([0.5, 0.0], [0.0, 0.5])
-                            .map(|p| p + DVec3::new(0.2, 0.2, 0.0))
-                            .to_vec(),
-                    ],
-                },
-                Skeleton::Polygon {
-                    rings: vec![vec![DVec3::ZERO, DVec3::X]],
-                },
-            ])
-            .collect(),
-        Kind::Curve => {
-            let [o, x, y] = [DVec3::ZERO, DVec3::X, DVec3::Y];
-            [
-                [o, o, o, o],
-                [o, x, x, x],
-                [o, x * 0.5, x * 1.5, x * 2.0],
-                [o, x * 2.0, o, x * 2.0],
-                [o, x, y, o],
-                [x, y, y, x],
-                [o, x * 1e-300, y * 1e-300, x * 1e-300],
-                [o, x * 1e-9, y * 1e-9, x * 1e-9],
-            ]
-            .map(|control| Skeleton::Curve { control })
-            .to_vec()
         }
     }
 }
@@ -468,7 +367,7 @@ pub fn radius_in_isolation(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>)
             kernel,
             ..shaping(1.0, random.decades(-1.0, 1.0))
         };
-        // Of the inverse kernel, a line of ten radii either way stands for an infinite one.
+        // A line of ten radii either way stands for an infinite one of the inverse kernel.
         let reach = if kernel.is_finite_over(1) { 1e5 } else { 10.0 };
         let skeleton = match kind {
             Kind::Point => Skeleton::Point {
@@ -486,7 +385,8 @@ pub fn radius_in_isolation(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>)
         };
         let primitive = primitive(skeleton, &shaping, None);
         let (value, _) = evaluate(&primitive, DVec3::Y * radius);
-        let tolerance = if kernel == Kernel::Squared {
+        // The rest of a line falls off like its length to the power 1 less the exponent.
+        let tolerance = if matches!(kernel.tail(), Tail::Power { exponent: 2, .. }) {
             1e-4
         } else {
             1e-9

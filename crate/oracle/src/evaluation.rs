@@ -1,7 +1,8 @@
 //! Evaluations of a primitive's field, and how exact they can be.
 
+use crate::quadrature::{Definition, define};
 use core::f64::consts::PI;
-use field::{Evaluate, Jet, Kernel, Primitive, Profile, Shaping, Skeleton};
+use field::{Evaluate, Jet, Primitive, Profile, Shaping, Skeleton};
 use glam::DVec3;
 
 /// Way of computing a primitive's field: value and gradient at a point.
@@ -53,16 +54,16 @@ pub fn sensitivity(primitive: &Primitive, point: DVec3) -> f64 {
     if longest > 0.0 {
         // A needle's width is uncertain by its length: so is the field, by a line's of that width.
         let square = (primitive.width * primitive.skeleton.distance(point)).powi(2);
-        let line = match primitive.kernel {
-            Kernel::Inverse => {
+        let line = match define(primitive.kernel) {
+            Definition::Pole(1) => {
                 let k = (square + 1e-10).sqrt() / primitive.width;
                 2.0 * libm::asinh(longest / (2.0 * k)) / primitive.width
             }
-            Kernel::Squared => {
+            Definition::Pole(2) => {
                 let k = (square + 1e-10).sqrt() / primitive.width;
                 2.0 * libm::atan(longest / (2.0 * k)) / (k * primitive.width * primitive.width)
             }
-            Kernel::Cubed => {
+            Definition::Pole(_) => {
                 let k2 = (square + 1e-10) / primitive.width.powi(2);
                 longest / (k2 * (k2 + longest * longest / 4.0).sqrt() * primitive.width.powi(3))
             }

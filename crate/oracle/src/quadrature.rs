@@ -7,31 +7,87 @@ use field::skeleton::{area_vector, cubic};
 use field::{Kernel, Primitive, Profile, Shaping, Skeleton, Sum, Wave};
 use glam::DVec3;
 
-/// Computes a kernel by its definition (fields.md, section 1), of a squared distance.
-fn kernel(kernel: Kernel, width: f64, square: f64) -> f64 {
-    let q = width * width * square;
-    let u = q.sqrt();
-    let pole = 1e-10;
-    let inside = |value: f64| if u <= 1.0 { value } else { 0.0 };
+/// A kernel by its definition (fields.md, section 1), as a function G of q, the square of the
+/// distance u in its widths.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Definition {
+    /// A smooth function, 0 only at infinity.
+    Smooth(fn(f64) -> f64),
+    /// 1/u to the power of an exponent, with its pole rounded off.
+    Pole(i32),
+    /// Functions of q up to places u, the last at 1, and 0 beyond.
+    Pieces(&'static [Piece]),
+}
+
+/// The place u where a piece of a kernel ends, and G on it.
+type Piece = (f64, fn(f64) -> f64);
+
+/// The place on a line, and its length per unit of the parameter, by the parameter from 0 to 1.
+type Trace<'l> = Box<dyn Fn(f64) -> (DVec3, f64) + 'l>;
+
+/// Returns a kernel's definition.
+pub(crate) fn define(kernel: Kernel) -> Definition {
+    use Definition::{Pieces, Pole, Smooth};
     match kernel {
-        Kernel::Cauchy => 1.0 / ((1.0 + q) * (1.0 + q)),
-        Kernel::Gauss => libm::exp(-q),
-        Kernel::Inverse => 1.0 / (q + pole).sqrt(),
-        Kernel::Squared => 1.0 / (q + pole),
-        Kernel::Cubed => 1.0 / ((q + pole) * (q + pole).sqrt()),
-        Kernel::Metaballs if u <= 1.0 / 3.0 => 1.0 - 3.0 * q,
-        Kernel::Metaballs => inside(1.5 * (1.0 - u) * (1.0 - u)),
+        Kernel::Cauchy => Smooth(|q| 1.0 / ((1.0 + q) * (1.0 + q))),
+        Kernel::Gauss => Smooth(|q| libm::exp(-q)),
+        Kernel::Inverse => Pole(1),
+        Kernel::Squared => Pole(2),
+        Kernel::Cubed => Pole(3),
+        Kernel::Metaballs => Pieces(&[
+            (1.0 / 3.0, |q| 1.0 - 3.0 * q),
+            (1.0, |q| 1.5 * (1.0 - q.sqrt()) * (1.0 - q.sqrt())),
+        ]),
         // (1−q)² times what is left of the polynomial, so that its end keeps its digits.
-        Kernel::Soft => inside((1.0 - q) * (1.0 - q) * (1.0 - 4.0 / 9.0 * q)),
-        Kernel::Quartic => inside((1.0 - q) * (1.0 - q)),
-        Kernel::Compact6 => inside((1.0 - q) * (1.0 - q) * (1.0 - q)),
+        Kernel::Soft => Pieces(&[(1.0, |q| (1.0 - q) * (1.0 - q) * (1.0 - 4.0 / 9.0 * q))]),
+        Kernel::Quartic => Pieces(&[(1.0, |q| (1.0 - q) * (1.0 - q))]),
+        Kernel::Compact6 => Pieces(&[(1.0, |q| (1.0 - q) * (1.0 - q) * (1.0 - q))]),
     }
 }
 
-/// Returns the length scale, in kernel widths, on which an integrand varies: the kernel's width, or
-/// its pole's.
-fn finest(kernel: Kernel) -> f64 {
-    if kernel.has_pole() { 1e-5 } else { 1.0 }
+impl Definition {
+    /// Computes the kernel.
+    pub(crate) fn value(self, q: f64) -> f64 {
+        let pole = q + 1e-10;
+        match self {
+            Self::Smooth(g) => g(q),
+            Self::Pole(1) => 1.0 / pole.sqrt(),
+            Self::Pole(2) => 1.0 / pole,
+            Self::Pole(_) => 1.0 / (pole * pole.sqrt()),
+            Self::Pieces(pieces) => {
+                let u = q.sqrt();
+                pieces
+                    .iter()
+                    .find(|(end, _)| u <= *end)
+                    .map_or(0.0, |(_, g)| g(q))
+            }
+        }
+    }
+
+    /// Returns the places u at which the kernel's pieces end.
+    pub(crate) fn kinks(self) -> impl Iterator<Item = f64> + Clone {
+        let pieces = match self {
+            Self::Pieces(pieces) => pieces,
+            Self::Smooth(_) | Self::Pole(_) => &[],
+        };
+        pieces.iter().map(|(end, _)| *end)
+    }
+
+    /// Whether the kernel has a pole.
+    pub(crate) fn has_pole(self) -> bool {
+        matches!(self, Self::Pole(_))
+    }
+
+    /// Whether the kernel's integral over a line (1) or a plane (2) is finite.
+    pub(crate) fn is_finite_over(self, dimension: i32) -> bool {
+        !matches!(self, Self::Pole(exponent) if exponent <= dimension)
+    }
+
+    /// Returns the length scale, in kernel widths, on which an integrand varies: the kernel's
+    /// width, or its pole's.
+    fn finest(self) -> f64 {
+        if self.has_pole() { 1e-5 } else { 1.0 }
+    }
 }
 
 /// Computes a primitive's field at a point, by integration over its skeleton.
@@ -54,15 +110,15 @@ pub fn value(primitive: &Primitive, point: DVec3) -> f64 {
 /// Integrates the kernel over a skeleton.
 fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
     let s = primitive.width;
-    let k = primitive.kernel;
-    let h = |q: DVec3| kernel(k, s, q.distance_squared(point));
-    let grain = |length: f64| finest(k) / (s * length);
+    let k = define(primitive.kernel);
+    let h = |q: DVec3| k.value(s * s * q.distance_squared(point));
+    let grain = |length: f64| k.finest() / (s * length);
     let along = |base: DVec3, d: DVec3| {
         let length = d.length();
         let near = near(base, d, point);
-        // Where the kernel's pieces meet on the line.
+        // Places where the kernel's pieces meet on the line.
         let beside = (base + d * near).distance_squared(point);
-        let kinks = k.kinks().iter().flat_map(|&kink| {
+        let kinks = k.kinks().flat_map(|kink| {
             let reach = (kink / s).powi(2) - beside;
             let reach = reach.max(0.0).sqrt() / length;
             [near - reach, near + reach]
@@ -84,7 +140,7 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             // |p − q|² = a − b·cos of the angle between them.
             let a = d.length_squared() + radius * radius;
             let b = 2.0 * radius * (d.dot(u) * d.dot(u) + d.dot(v) * d.dot(v)).sqrt();
-            let kinks = k.kinks().iter().flat_map(|&kink| {
+            let kinks = k.kinks().flat_map(|kink| {
                 let turn = libm::acos(((a - (kink / s).powi(2)) / b).clamp(-1.0, 1.0));
                 let tau = core::f64::consts::TAU;
                 [
@@ -124,7 +180,7 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             let mut kinks = Vec::new();
             let normal = side.cross(altitude).normalize_or_zero();
             let height = (point - a).dot(normal);
-            for &kink in k.kinks() {
+            for kink in k.kinks() {
                 let reach = ((kink / s).powi(2) - height * height).max(0.0).sqrt();
                 let middle = near(foot, altitude, point);
                 let step = reach / altitude.length();
@@ -172,29 +228,16 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
             }
             sum
         }
-        Skeleton::Curve { control } => {
-            let c = cubic(control);
-            let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-            let breaks = breaks_along(k, &|t| s * at(t).distance(point));
-            integral(
-                &mut |t| {
-                    let speed = (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length();
-                    h(at(t)) * speed
-                },
-                &breaks,
-                1e-13,
-            )
-        }
         Skeleton::Plane { point: p, normal } => {
             let d = (point - p).dot(normal.normalize());
             // Rings; where the integral diverges, up to ten radii, else of radius t/(1−t)/s.
             let windowed = !k.is_finite_over(2);
-            let kinks = k.kinks().iter().map(|kink| {
+            let kinks = k.kinks().map(|kink| {
                 let r = (kink * kink - d * d * s * s).max(0.0).sqrt();
                 r / (1.0 + r)
             });
             let (peak, grain) = if windowed {
-                (0.0, finest(k).max(d.abs() * s) / 10.0)
+                (0.0, k.finest().max(d.abs() * s) / 10.0)
             } else {
                 (0.5, 1.0)
             };
@@ -206,11 +249,25 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
                         let rest = 1.0 - t;
                         (t / rest / s, 1.0 / (rest * rest * s))
                     };
-                    core::f64::consts::TAU * r * stretch * kernel(k, s, d * d + r * r)
+                    core::f64::consts::TAU * r * stretch * k.value(s * s * (d * d + r * r))
                 },
                 peak,
                 grain,
                 kinks,
+            )
+        }
+        ref line => {
+            let Some(at) = trace(line) else {
+                return 0.0;
+            };
+            let breaks = breaks_along(k, &|t| s * at(t).0.distance(point));
+            integral(
+                &mut |t| {
+                    let (place, speed) = at(t);
+                    h(place) * speed
+                },
+                &breaks,
+                1e-13,
             )
         }
     }
@@ -218,10 +275,55 @@ fn integrate(primitive: &Primitive, skeleton: &Skeleton, point: DVec3) -> f64 {
 
 /// Computes the field of a tapered bone, integrated with each point's own radius and blobbiness.
 fn integrate_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> f64 {
-    let k = primitive.kernel;
+    let k = define(primitive.kernel);
     let skeleton = &primitive.skeleton;
-    // Place, and length per unit of t.
-    let at: Box<dyn Fn(f64) -> (DVec3, f64)> = match *skeleton {
+    let Some(at) = trace(skeleton) else {
+        return 0.0;
+    };
+    // Length up to t: exact at the ends of steps, and integrated from the one before t.
+    const STEPS: usize = 64;
+    let place = |i: usize| i as f64 / STEPS as f64;
+    let mut speed = |t: f64| at(t).1;
+    let mut lengths = vec![0.0];
+    for i in 0..STEPS {
+        let step = integral(&mut speed, &[place(i), place(i + 1)], 1e-13);
+        lengths.push(lengths[i] + step);
+    }
+    let total = lengths[STEPS];
+    let here = |t: f64| {
+        let i = ((t * STEPS as f64) as usize).min(STEPS - 1);
+        let rest = match skeleton {
+            Skeleton::Segment { .. } | Skeleton::Arc { .. } => (t - place(i)) * total,
+            // A single panel is nearly always enough, and most of the time goes here.
+            _ => {
+                let (low, high) = (place(i), t.max(place(i)));
+                of_one_panel(&mut |t| at(t).1, low, high, 1e-11)
+            }
+        };
+        shaping.at((lengths[i] + rest) / total)
+    };
+    let breaks = breaks_along(k, &|t| {
+        here(t).width().unwrap_or(0.0) * at(t).0.distance(point)
+    });
+    // Next to a pole, as narrow as 10⁻⁵, the rounding of places alone changes the integrand by more
+    // than 10⁻¹² of itself.
+    let tolerance = if k.has_pole() { 1e-11 } else { 1e-13 };
+    integral(
+        &mut |t| {
+            let (q, speed) = at(t);
+            let shaping = here(t);
+            let (s, h) = (shaping.width(), shaping.height(skeleton));
+            let s = s.unwrap_or(0.0);
+            h.unwrap_or(0.0) * k.value(s * s * q.distance_squared(point)) * speed
+        },
+        &breaks,
+        tolerance,
+    )
+}
+
+/// Traces a line; `None` for other bones.
+fn trace(skeleton: &Skeleton) -> Option<Trace<'_>> {
+    Some(match *skeleton {
         Skeleton::Segment { base, apex } => Box::new(move |t| {
             let d = apex - base;
             (base + d * t, d.length())
@@ -243,52 +345,16 @@ fn integrate_tapered(primitive: &Primitive, shaping: &Shaping, point: DVec3) -> 
                 (c[0] + t * (c[1] + t * (c[2] + t * c[3])), tangent.length())
             })
         }
-        _ => return 0.0,
-    };
-    // Length up to t: exact at the ends of steps, and integrated from the one before t.
-    const STEPS: usize = 64;
-    let place = |i: usize| i as f64 / STEPS as f64;
-    let mut speed = |t: f64| at(t).1;
-    let mut lengths = vec![0.0];
-    for i in 0..STEPS {
-        let step = integral(&mut speed, &[place(i), place(i + 1)], 1e-13);
-        lengths.push(lengths[i] + step);
-    }
-    let total = lengths[STEPS];
-    let here = |t: f64| {
-        let i = ((t * STEPS as f64) as usize).min(STEPS - 1);
-        let rest = match skeleton {
-            // One panel is nearly always enough, and most of the time goes here.
-            Skeleton::Curve { .. } => {
-                let (low, high) = (place(i), t.max(place(i)));
-                of_one_panel(&mut |t| at(t).1, low, high, 1e-11)
-            }
-            _ => (t - place(i)) * total,
-        };
-        shaping.at((lengths[i] + rest) / total)
-    };
-    let breaks = breaks_along(k, &|t| {
-        here(t).width().unwrap_or(0.0) * at(t).0.distance(point)
-    });
-    // Next to a pole, as narrow as 10⁻⁵, the rounding of places alone changes the integrand by more
-    // than 10⁻¹² of itself.
-    let tolerance = if k.has_pole() { 1e-11 } else { 1e-13 };
-    integral(
-        &mut |t| {
-            let (q, speed) = at(t);
-            let shaping = here(t);
-            let (s, h) = (shaping.width(), shaping.height(skeleton));
-            let square = q.distance_squared(point);
-            h.unwrap_or(0.0) * kernel(k, s.unwrap_or(0.0), square) * speed
-        },
-        &breaks,
-        tolerance,
-    )
+        ref line if line.dimension() == 1 => {
+            Box::new(move |t| (line.at(t), difference(|t| line.at(t), t, 0.01).length()))
+        }
+        _ => return None,
+    })
 }
 
 /// Returns breaks in [0, 1] for an integrand that depends on a distance, in kernel widths: around
 /// every place where the distance has a minimum, and where it passes a kink.
-fn breaks_along(k: Kernel, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
+fn breaks_along(k: Definition, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
     const SAMPLES: usize = 400;
     let place = |i: usize| i as f64 / SAMPLES as f64;
     let mut breaks = Vec::new();
@@ -314,16 +380,29 @@ fn breaks_along(k: Kernel, distance: &dyn Fn(f64) -> f64) -> Vec<f64> {
             }
             // The samples next to it may both be on the same side of a kink.
             for (a, b) in [(a.min(middle), middle), (middle, b.max(middle))] {
-                breaks.extend(k.kinks().iter().filter_map(|u| passes(distance, *u, a, b)));
+                breaks.extend(k.kinks().filter_map(|u| passes(distance, u, a, b)));
             }
         }
-        breaks.extend(k.kinks().iter().filter_map(|u| passes(distance, *u, a, b)));
+        breaks.extend(k.kinks().filter_map(|u| passes(distance, u, a, b)));
     }
     breaks.extend((0..=16).map(|i| f64::from(i) / 16.0));
     breaks.retain(|t| (0.0..=1.0).contains(t));
     breaks.sort_unstable_by(f64::total_cmp);
     breaks.dedup();
     breaks
+}
+
+/// Computes a derivative from differences over steps of h: it is exact but for h⁸f⁽⁹⁾/630.
+pub(crate) fn difference<V>(f: impl Fn(f64) -> V, x: f64, h: f64) -> V
+where
+    V: core::ops::Sub<Output = V> + core::ops::Mul<f64, Output = V> + core::iter::Sum,
+{
+    let factors = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+    let terms = factors.into_iter().zip(1..).map(|(factor, i)| {
+        let step = f64::from(i) * h;
+        (f(x + step) - f(x - step)) * (factor / h)
+    });
+    terms.sum()
 }
 
 /// Returns the place between two others where a function passes a level; `None` if it is on one
@@ -352,7 +431,7 @@ pub fn sum(field: &Sum, point: DVec3) -> f64 {
 
 /// Integrates a function from 0 to 1 that has a peak at `peak`, of about the width `grain`, and
 /// kinks: panels grow fourfold away from the peak, and end at kinks.
-fn split(
+pub(crate) fn split(
     mut f: impl FnMut(f64) -> f64,
     peak: f64,
     grain: f64,
@@ -385,10 +464,6 @@ fn near(base: DVec3, d: DVec3, point: DVec3) -> f64 {
 /// Computes a profile's factor, from its definition in the world.
 fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
     let (u, v) = match *skeleton {
-        Skeleton::Point { .. }
-        | Skeleton::Polygon { .. }
-        | Skeleton::Curve { .. }
-        | Skeleton::Plane { .. } => (0.0, 0.0),
         Skeleton::Segment { base, apex } => (near(base, apex - base, point), 0.0),
         Skeleton::Arc {
             center,
@@ -399,7 +474,7 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
         } => {
             let d = point - center;
             let t = libm::atan2(d.dot(v), d.dot(u)).rem_euclid(core::f64::consts::TAU);
-            // In the gap: before the start if that is nearer than the end.
+            // A point of the gap is before the start if that is nearer than the end.
             let past = t - angle;
             let before = core::f64::consts::TAU - t;
             (
@@ -417,6 +492,8 @@ fn factor(profile: &Profile, skeleton: &Skeleton, point: DVec3) -> f64 {
             let area = n.length_squared();
             (n.dot(d.cross(e2)) / area, n.dot(e1.cross(d)) / area)
         }
+        // Other bones have no parameters.
+        _ => (0.0, 0.0),
     };
     let [low, high] = profile.bounds;
     let product = wave(profile.waves[0], profile.scale[0] * u.clamp(0.0, 1.0))

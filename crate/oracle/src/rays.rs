@@ -50,7 +50,7 @@ impl Trial {
         let size = 64 << n.below(7);
         let tolerance = Picture::new(&scene, [size; 2]).tolerance(f64::INFINITY);
         let mut rays = Vec::new();
-        // Some scenes have no point outside the surface.
+        // Trials end: a scene may have no point outside the surface.
         for _ in 0..4 * packets {
             if rays.len() >= packets * PACKET {
                 break;
@@ -116,7 +116,7 @@ fn packet(
                 }
             }
         }
-        // From inside, in all directions; or from just outside.
+        // Rays from inside, in all directions, or from just outside.
         5 => {
             if let Some((point, normal)) = foot(reference) {
                 let depth = n.range(-0.1, 0.3) * scale;
@@ -125,13 +125,13 @@ fn packet(
                 }
             }
         }
-        // At the bone itself, its ends, and the edge of the kernel's support.
+        // Rays at the bone itself, its ends, and the edge of the kernel's support.
         6 => {
             for _ in 0..PACKET {
                 made.push((eye, bone + n.vector(1.0) * (0.02 * scale) - eye));
             }
         }
-        // Nothing to do with one another.
+        // Rays that have nothing to do with one another.
         _ => {
             for _ in 0..PACKET {
                 let from = world.at(n.vector(1.0) * 3.0);

@@ -337,7 +337,7 @@ impl Reference {
             }
             at -= step;
             here = self.sample(at);
-            // If the sign has changed a little further on there is surface between.
+            // The surface is between if the sign has changed a little further on.
             let beyond = at - step.normalize_or_zero() * (1e-3 * reach);
             let far = beyond.distance(point);
             if far <= reach {

@@ -24,7 +24,7 @@ pub fn judge(
         let many = matches!(kind, Kind::Cluster | Kind::Cloud);
         let packets = if many { 2 } else { packets };
         for (seed, &kernel) in (7_000_000..).zip(kernels.iter().cycle().take(count(scenes))) {
-            // Other seeds than those of the large run.
+            // The seeds differ from those of the large run.
             let trial = Trial::new(kernel, kind, seed, packets);
             total.add(&check(trial, method, &mut faults));
         }

@@ -8,12 +8,10 @@ use crate::quadrature;
 use field::bound::Bound;
 use field::shaping::SLIMMEST;
 use field::{Kernel, Primitive, Shaping, Skeleton, THRESHOLD, Taper};
-use glam::DVec3;
-use trials::skeletons::{Kind, halves, shaping};
+use glam::{DQuat, DVec3};
+use trials::skeletons::{Kind, LINES, halves, move_by, shaping};
 use trials::{Random, count};
 use wide::f32x8;
-
-const KINDS: [Kind; 3] = [Kind::Segment, Kind::Arc, Kind::Curve];
 
 /// Returns a shaping of radius 1 at the start and anything from a tip to three times that at the
 /// end.
@@ -39,7 +37,7 @@ fn random_primitive(random: &mut Random, kernel: Kernel, kind: Kind, low: f64) -
 
 /// Checks that values are those of quadrature, to 10⁻⁹ (metaballs 10⁻⁸).
 pub fn matches_quadrature(kernel: Kernel, evaluate: Evaluation<'_>) {
-    for kind in KINDS {
+    for kind in LINES {
         let mut random = Random::new(401);
         for _ in 0..count(80) {
             let primitive = random_primitive(&mut random, kernel, kind, -2.0);
@@ -77,7 +75,7 @@ pub fn matches_quadrature(kernel: Kernel, evaluate: Evaluation<'_>) {
 /// Checks that two forms in single precision have the same bits, and are `field`'s double form to
 /// 10⁻⁵.
 pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
-    for kind in KINDS {
+    for kind in LINES {
         let mut random = Random::new(402);
         for _ in 0..count(150) {
             let primitive = random_primitive(&mut random, kernel, kind, -2.0);
@@ -91,7 +89,7 @@ pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
                     (value8.to_bits(), gradient8),
                     "{primitive:?} at {point:?}"
                 );
-                // As on the chart; 32 units in the last place of the input.
+                // 32 units in the last place of the input, like on the chart.
                 let slack = 32.0 * f64::from(f32::EPSILON) * sensitivity(&primitive, point);
                 let distance = primitive.skeleton.distance(point);
                 // Next to a pole it counts that the ends of spans are rounded: a gap or an overlap
@@ -112,7 +110,7 @@ pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
                     primitive.tapered
                 );
                 if kernel.has_pole() && distance < 1e-3 {
-                    // Here a rounding of the coordinates turns the gradient.
+                    // A rounding of the coordinates turns the gradient here.
                     continue;
                 }
                 let near = (primitive.width * distance).max(1e-3);
@@ -133,7 +131,7 @@ pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
 
 /// Checks that gradients are differences of values.
 pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
-    for kind in KINDS {
+    for kind in LINES {
         let mut random = Random::new(403);
         for _ in 0..count(60) {
             let primitive = random_primitive(&mut random, kernel, kind, -1.0);
@@ -171,7 +169,7 @@ pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
 /// Returns the parts of a bone before and after a fraction of its length.
 fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
     let mut at = fraction;
-    if let Skeleton::Curve { .. } = skeleton {
+    if !matches!(skeleton, Skeleton::Segment { .. } | Skeleton::Arc { .. }) {
         let whole = skeleton.measure();
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..50 {
@@ -191,7 +189,7 @@ fn parts(skeleton: &Skeleton, fraction: f64) -> [Skeleton; 2] {
 /// Checks that a bone cut in two, with the radius and blobbiness that it has there, is the same
 /// field.
 pub fn superposition(kernel: Kernel, evaluate: Evaluation<'_>) {
-    for kind in KINDS {
+    for kind in LINES {
         let mut random = Random::new(404);
         for _ in 0..count(60) {
             let size = random.decades(-1.0, 1.0);
@@ -246,7 +244,7 @@ pub fn superposition(kernel: Kernel, evaluate: Evaluation<'_>) {
 
 /// Checks that a bone magnified with its radii has the same field at magnified places.
 pub fn scale_invariance(kernel: Kernel, evaluate: Evaluation<'_>) {
-    for kind in KINDS {
+    for kind in LINES {
         let mut random = Random::new(405);
         for _ in 0..count(40) {
             let size = random.decades(-1.0, 1.0);
@@ -261,29 +259,7 @@ pub fn scale_invariance(kernel: Kernel, evaluate: Evaluation<'_>) {
                 }),
                 ..shaping
             };
-            let magnified = match skeleton {
-                Skeleton::Segment { base, apex } => Skeleton::Segment {
-                    base: base * scale,
-                    apex: apex * scale,
-                },
-                Skeleton::Arc {
-                    center,
-                    u,
-                    v,
-                    radius,
-                    angle,
-                } => Skeleton::Arc {
-                    center: center * scale,
-                    u,
-                    v,
-                    radius: radius * scale,
-                    angle,
-                },
-                Skeleton::Curve { control } => Skeleton::Curve {
-                    control: control.map(|p| p * scale),
-                },
-                _ => unreachable!("no bone"),
-            };
+            let magnified = move_by(&skeleton, DQuat::IDENTITY, scale, DVec3::ZERO);
             let here = primitive(skeleton, &shaping, None);
             let there = primitive(magnified, &larger, None);
             let point = random.near(&here.skeleton, -2.0, 0.5);
@@ -357,7 +333,7 @@ pub fn cones_have_their_radius(kernel: Kernel) {
 /// its depth of influence, its sphere or its interval of a ray; none is outside a compact kernel's
 /// support.
 pub fn bounds_hold(kernel: Kernel) {
-    for kind in KINDS {
+    for kind in LINES {
         let mut random = Random::new(406);
         for _ in 0..count(50) {
             let primitive = random_primitive(&mut random, kernel, kind, -1.5);
@@ -466,7 +442,7 @@ pub fn degenerate_tapers(kernel: Kernel) {
         }
         assert!(Primitive::new(bone.clone(), &with(0.0, 0.0, 1.0), None).is_none());
     }
-    // As its end nears its start, a taper nears none at all.
+    // A taper whose end nears its start nears none at all.
     let bone = Skeleton::Segment {
         base: DVec3::ZERO,
         apex: DVec3::X * 2.0,
@@ -488,7 +464,7 @@ pub fn degenerate_tapers(kernel: Kernel) {
         let (value, gradient) = jet::<f32x8>(&short, DVec3::Y * 0.1);
         assert!(value.is_finite() && gradient.is_finite());
     }
-    // Other skeletons have no taper.
+    // A point has no taper.
     let point = Skeleton::Point {
         center: DVec3::ZERO,
     };

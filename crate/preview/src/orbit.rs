@@ -110,7 +110,8 @@ fn usable(camera: Camera) -> Camera {
     if !near(camera.eye)
         || !near(camera.target)
         || !camera.fov.is_finite()
-        || camera.shift.iter().any(|s| !(-1e3..=1e3).contains(s))
+        || !camera.pixel.is_finite()
+        || !camera.shift.iter().all(|s| s.abs() <= Camera::MAX_SHIFT)
     {
         return fallback;
     }

@@ -1,10 +1,10 @@
-//! Meshes, height fields and images made of a project's files, kept while the files are: a text is
-//! compiled at every keystroke, a large file should be read once.
+//! Height fields and images made of a project's files, kept while the files are: a text is compiled
+//! at every keystroke, a large file should be read once.
 
+use crate::asset::Asset;
 use crate::limits::MAX_IMAGE_PIXELS;
-use crate::project::Asset;
 use glam::DVec3;
-use mesh::{Error, Topology, TriangleMesh};
+use mesh::{Error, TriangleMesh};
 use picture::Format;
 use scene::Shape;
 use std::cell::RefCell;
@@ -20,7 +20,7 @@ type Made<T> = Result<T, Error>;
 /// Name of a file, and the size of a height field made of it.
 type How = (String, Option<DVec3>);
 
-/// A mesh or image made of some bytes.
+/// A height field or image made of some bytes.
 struct Kept<T> {
     bytes: Weak<[u8]>,
     how: How,
@@ -67,34 +67,8 @@ impl<T: Clone> Cache<T> {
 }
 
 thread_local! {
-    static MESHES: RefCell<Cache<Rc<TriangleMesh>>> = const { RefCell::new(Cache(Vec::new())) };
-    static TOPOLOGIES: RefCell<Cache<Rc<Topology>>> = const { RefCell::new(Cache(Vec::new())) };
+    static TERRAS: RefCell<Cache<Rc<TriangleMesh>>> = const { RefCell::new(Cache(Vec::new())) };
     static IMAGES: RefCell<Cache<Arc<Rgb8>>> = const { RefCell::new(Cache(Vec::new())) };
-}
-
-/// Reads the triangles of an OBJ, PLY, STL or GLB file.
-///
-/// # Errors
-/// A sentence on what is wrong with the file.
-pub fn mesh(asset: &Asset) -> Made<Rc<TriangleMesh>> {
-    MESHES.with_borrow_mut(|cache| {
-        cache.get(asset, (asset.name.clone(), None), |bytes| {
-            mesh::read(&asset.name, bytes).map(Rc::new)
-        })
-    })
-}
-
-/// Finds the topology of a mesh that [`mesh`] gives.
-///
-/// # Errors
-/// If there is none, or it cannot be told.
-pub fn topology(asset: &Asset) -> Made<Rc<Topology>> {
-    let mesh = mesh(asset)?;
-    TOPOLOGIES.with_borrow_mut(|cache| {
-        cache.get(asset, (asset.name.clone(), None), |_| {
-            Topology::of(&mesh).map(Rc::new)
-        })
-    })
 }
 
 /// Makes a height field of a PNG image, which fills a box of this size from the origin.
@@ -102,7 +76,7 @@ pub fn topology(asset: &Asset) -> Made<Rc<Topology>> {
 /// # Errors
 /// A sentence on what is wrong with the file.
 pub fn terra(asset: &Asset, size: DVec3) -> Made<Rc<TriangleMesh>> {
-    MESHES.with_borrow_mut(|cache| {
+    TERRAS.with_borrow_mut(|cache| {
         cache.get(asset, (asset.name.clone(), Some(size)), |bytes| {
             mesh::terra(&mesh::heights(bytes)?, size).map(Rc::new)
         })
@@ -155,60 +129,31 @@ pub fn cost(asset: &Asset) -> u64 {
     1 + bytes.len() as u64 / 100 + pixels / 64
 }
 
-/// Whether [`keep_mesh`] or an earlier compilation has the mesh of this file, so that compiling
-/// does not read it.
-#[must_use]
-pub fn is_mesh_read(asset: &Asset) -> bool {
-    let how = (asset.name.clone(), None);
-    MESHES.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
-}
-
-/// Keeps the mesh of a file that was read elsewhere, or the error message of its reader, for all
-/// compilations by this thread while the file's bytes are kept. It must be what [`mesh::read`]
-/// gives.
-pub fn keep_mesh(asset: &Asset, mesh: Result<TriangleMesh, String>) {
-    let how = (asset.name.clone(), None);
-    MESHES.with_borrow_mut(|cache| {
-        cache.0.retain(|kept| !kept.is_of(asset, &how));
-        cache.keep(asset, how, mesh.map(Rc::new).map_err(Error));
-    });
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn asset(name: &str, text: &str) -> Asset {
-        Asset {
-            name: name.to_owned(),
-            bytes: text.as_bytes().into(),
-        }
+    fn asset(name: &str) -> Asset {
+        Asset::new(name, *b"broken")
+    }
+
+    fn is_kept(asset: &Asset) -> bool {
+        let how = (asset.name.clone(), Some(DVec3::ONE));
+        TERRAS.with_borrow_mut(|cache| cache.find(asset, &how).is_some())
     }
 
     #[test]
-    fn mesh_that_is_kept_is_used_in_place_of_the_file() {
-        let file = asset("a.obj", "broken");
-        assert!(!is_mesh_read(&file));
-        keep_mesh(&file, Err(String::from("on purpose")));
-        assert!(is_mesh_read(&file));
-        assert_eq!(mesh(&file), Err(Error(String::from("on purpose"))));
-        let triangle = mesh::read("b.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-        keep_mesh(&file, Ok(triangle.clone()));
-        assert_eq!(*mesh(&file).unwrap(), triangle);
-        // Other bytes of the same content are another file.
-        assert!(!is_mesh_read(&asset("a.obj", "broken")));
-    }
-
-    #[test]
-    fn mesh_in_use_is_not_dropped_for_others() {
-        let used = asset("used.obj", "broken");
-        keep_mesh(&used, Err(String::from("kept")));
-        let others: Vec<Asset> = (0..2 * KEPT).map(|_| asset("other.obj", "")).collect();
+    fn height_field_in_use_is_not_dropped_for_others() {
+        let used = asset("used.png");
+        assert!(!is_kept(&used));
+        let _ = terra(&used, DVec3::ONE);
+        let others: Vec<Asset> = (0..2 * KEPT).map(|_| asset("other.png")).collect();
         for other in &others {
-            let _ = mesh(other);
-            assert!(is_mesh_read(&used));
+            let _ = terra(other, DVec3::ONE);
+            assert!(is_kept(&used));
         }
-        assert!(!is_mesh_read(&others[0]));
-        assert!(MESHES.with_borrow(|cache| cache.0.len() <= KEPT));
+        // Other bytes of the same content are another file.
+        assert!(!is_kept(&asset("used.png")) && !is_kept(&others[0]));
+        assert!(TERRAS.with_borrow(|cache| cache.0.len() <= KEPT));
     }
 }

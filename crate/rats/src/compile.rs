@@ -88,13 +88,17 @@ pub fn provenance(
 /// Returns an error if a project has too many files or too much text.
 fn refuse_large(project: &Project) -> Option<Diagnostic> {
     let length: usize = project.files.iter().map(|file| file.text.len()).sum();
-    let message = if project.files.len() > MAX_FILES {
-        format!(
-            "the project has {} files; {MAX_FILES} is the limit",
-            project.files.len()
+    let files = project.files.len();
+    let (message, hint) = if files > MAX_FILES {
+        (
+            format!("the project has {files} files; {MAX_FILES} is the limit"),
+            "put the texts of several files into one",
         )
     } else if length > MAX_TEXT {
-        format!("the text has {length} bytes; {MAX_TEXT} is the limit")
+        (
+            format!("the text has {length} bytes; {MAX_TEXT} is the limit"),
+            "use loops instead of long lists of shapes",
+        )
     } else {
         return None;
     };
@@ -105,7 +109,8 @@ fn refuse_large(project: &Project) -> Option<Diagnostic> {
         span: 0..0,
         line: 1,
         column: 1,
-        hint: Some(String::from("use loops instead of long lists of shapes")),
+        hint: Some(String::from(hint)),
+        fix: None,
         related: Vec::new(),
         command: None,
     })

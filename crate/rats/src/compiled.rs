@@ -2,6 +2,7 @@
 
 use crate::{Diagnostic, Tool};
 use glam::{DAffine3, DVec3};
+use limbs::Recipe;
 use scene::{Origin, Scene};
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,8 +10,11 @@ use std::sync::Arc;
 /// Scene of a text, and all else that a run gives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compiled {
-    /// The scene, as far as the text could be understood. Shared by all who draw or mesh it.
+    /// The scene of the last `shoot` or of the whole text, as far as it could be understood. Shared
+    /// by all who draw or mesh it.
     pub scene: Arc<Scene>,
+    /// The pictures of the `shoot`s before the last, in order.
+    pub earlier: Vec<Picture>,
     /// The way of each element of the scene from its command, for those who move it by hand.
     pub placements: Vec<Placement>,
     /// The messages about the text, in the order of the text.
@@ -19,6 +23,8 @@ pub struct Compiled {
     pub hot: Vec<HotVariable>,
     /// The work on files that the text asks for, in order.
     pub tools: Vec<Tool>,
+    /// The things that the program does before, between and behind the pictures, in order.
+    pub interludes: Vec<Interlude>,
     /// The places of [`Self::tools`] in the texts.
     pub tool_origins: Vec<Origin>,
     /// The name under which the picture is to be saved.
@@ -29,6 +35,52 @@ pub struct Compiled {
     pub rate: Option<f64>,
     /// The deformations that were carried out, in order.
     pub deforms: Vec<Deform>,
+    /// Skeletons that have not been read, where compiling does not read them: without them the
+    /// scene is not that of the text (see [`crate::Asset::keep_skeleton`]).
+    pub unread: Vec<Unread>,
+}
+
+/// Skeleton of a file that is still to be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unread {
+    /// Name of the file among the project's assets.
+    pub name: String,
+    /// Way to make the skeleton of it.
+    pub recipe: Recipe,
+}
+
+/// Something that the program does between the pictures of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Interlude {
+    /// The number of pictures that come before it.
+    pub after: usize,
+    /// The thing to do.
+    pub act: Act,
+}
+
+/// The kind of an [`Interlude`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Act {
+    /// `pause`: wait for a key, below this message.
+    Pause(String),
+    /// `log`: write what is said from here on into a file, too; `None`: no more.
+    Log(Option<String>),
+    /// `stopwatch`: start it, or tell the time since it was started.
+    Stopwatch {
+        /// Whether it is started.
+        starts: bool,
+    },
+}
+
+/// The picture of a `shoot` before the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The name under which it is to be saved.
+    pub output: Output,
+    /// The place of the `shoot`.
+    pub origin: Origin,
 }
 
 /// A `deform` command that was carried out.

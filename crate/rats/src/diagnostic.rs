@@ -1,5 +1,6 @@
 //! Diagnostics: messages of the compiler about a text.
 
+use crate::TextEdit;
 use serde::{Deserialize, Serialize};
 
 /// Severity of a message.
@@ -42,6 +43,9 @@ pub struct Diagnostic {
     pub column: usize,
     /// Advice, e.g. "did you mean `sphere`?".
     pub hint: Option<String>,
+    /// A change of the text that does what the hint says, if one is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fix: Option<TextEdit>,
     /// Places that explain it, such as "it begins here".
     #[serde(default)]
     pub related: Vec<Related>,

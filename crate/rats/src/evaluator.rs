@@ -31,7 +31,9 @@ mod picture;
 mod primitives;
 mod run;
 mod scene_commands;
+mod shots;
 mod skeleton;
+mod skeleton_file;
 pub(crate) mod state;
 mod structure;
 mod surroundings;
@@ -39,6 +41,7 @@ pub(crate) mod table;
 pub(crate) mod textures;
 mod tints;
 mod tools;
+mod values;
 pub(crate) mod variables;
 mod view_plane;
 mod watch;
@@ -46,13 +49,14 @@ mod watched;
 mod words;
 
 use crate::Project;
-use crate::compiled::{Compiled, Placement};
-use crate::project::Asset;
+use crate::asset::Asset;
+use crate::compiled::{Compiled, Picture};
 use crate::provenance::Provenance;
 use crate::scope::Scope;
 use crate::sources::Sources;
 use moments::Exposure;
-use scene::{Origin, Scene};
+use scene::Origin;
+use shots::Shot;
 use state::Evaluator;
 use std::sync::Arc;
 use watched::Watch;
@@ -68,55 +72,65 @@ pub fn run<'a>(
 ) -> Compiled {
     let symbols = scope.symbols.clone();
     let mut state = Evaluator::new(sources, assets, moment, scope);
-    let (mut scene, placements) = state.run_all();
+    let mut shots = state.run_all();
     state.note_unused_materials();
-    state.lint(&scene);
-    if (state.animated || state.moving.is_any())
-        && state.shutter > 0.0
-        && !state.report.has_errors()
-    {
+    if let Some(last) = shots.last() {
+        state.lint(&last.scene);
+    }
+    let open = shots.iter().filter(|shot| shot.shutter > 0.0).count();
+    if (state.animated || state.moving.is_any()) && open > 0 && !state.report.has_errors() {
         let exposure = Exposure {
             sources,
             assets,
             symbols,
             from: moment,
-            length: state.shutter,
             frozen: std::mem::take(&mut state.frozen),
-            steps: state.scope.steps(),
+            steps: state.scope.steps() * open as u64,
         };
-        scene.moments = exposure.moments(&scene);
+        for (number, shot) in shots.iter_mut().enumerate() {
+            if shot.shutter > 0.0 {
+                shot.scene.moments = exposure.moments(number, &shot.scene, shot.shutter);
+            }
+        }
     }
+    let Some(last) = shots.pop() else {
+        return Compiled::default();
+    };
+    let earlier = shots.into_iter().map(|shot| Picture {
+        scene: Arc::new(shot.scene),
+        output: shot.output,
+        origin: shot.origin,
+    });
     Compiled {
-        scene: Arc::new(scene),
-        placements,
+        scene: Arc::new(last.scene),
+        placements: last.placements,
+        earlier: earlier.collect(),
         diagnostics: state.report.finish(project),
         hot: state.hot,
         tools: state.tools,
+        interludes: state.interludes,
         tool_origins: state.tool_origins,
-        output: state.output,
+        output: last.output,
         animated: state.animated || state.moving.is_any(),
         rate: state.moving.rate(),
         deforms: state.deforms,
+        unread: state.unread,
     }
 }
 
 impl Evaluator<'_> {
-    /// Runs the first file to its end; returns the picture of `shoot`, or that of all there is at
-    /// the end.
-    fn run_all(&mut self) -> (Scene, Vec<Placement>) {
+    /// Runs the first file to its end; returns the pictures of its `shoot`s, or that of all there
+    /// is at the end.
+    fn run_all(&mut self) -> Vec<Shot> {
         if !self.sources.all.is_empty() {
             self.run_file(0);
         }
         if !self.report.is_cut_off() {
             self.check_open_objects();
         }
-        self.check_camera();
         self.check_penumbra();
         self.check_words();
-        self.shot.take().unwrap_or_else(|| {
-            let parts = std::mem::take(&mut self.model.parts);
-            self.picture(parts)
-        })
+        self.finish_shots()
     }
 }
 

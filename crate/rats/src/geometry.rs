@@ -220,6 +220,21 @@ impl Transform {
         }
     }
 
+    /// Makes the turns about the x axis, then y, then z, by angles in degrees.
+    #[must_use]
+    pub fn rotations(degrees: DVec3) -> Self {
+        let [x, y, z] = [
+            (DVec3::X, degrees.x),
+            (DVec3::Y, degrees.y),
+            (DVec3::Z, degrees.z),
+        ]
+        .map(|(axis, degrees)| Self::rotation(axis, degrees).linear);
+        Self {
+            linear: z * y * x,
+            ..Self::translation(DVec3::ZERO)
+        }
+    }
+
     /// Makes a scale along the axes by factors that are not 0; negative ones mirror.
     #[must_use]
     pub fn scaling(factors: DVec3) -> Self {

@@ -454,7 +454,9 @@ impl<'a> Reader<'_, 'a> {
             Kind::Copy(_) => self.datum() == Some(Datum::Sign(b'=')),
             Kind::Known(Names::Texture) => self.datum() == Some(Datum::Sign(b'+')),
             // Nodes and objects have short names, which are the beginnings of many words.
-            Kind::Known(Names::Node | Names::Object) => !self.is_whole_option_next(options),
+            Kind::Known(Names::Node | Names::Object) | Kind::New(Names::Object) => {
+                !self.is_whole_option_next(options)
+            }
             Kind::Block => false,
             _ => !self.is_option_next(options),
         }

@@ -24,6 +24,7 @@
 //! the functions that run them; as plain data it also serves help and the editor (the crate
 //! `assist`). All bounds are in [`limits`].
 
+mod asset;
 mod assets;
 pub mod colours;
 pub mod commands;
@@ -61,12 +62,16 @@ mod text_edit;
 pub mod tool;
 mod value;
 
-pub use assets::{is_mesh_read, keep_mesh};
+pub use asset::Asset;
 pub use compile::{compile, compile_at, provenance};
-pub use compiled::{Compiled, Control, Deform, HotValue, HotVariable, Output, Placement};
+pub use compiled::{
+    Act, Compiled, Control, Deform, HotValue, HotVariable, Interlude, Output, Picture, Placement,
+    Unread,
+};
 pub use diagnostic::{Diagnostic, Related, Severity};
-pub use project::{Asset, File, Project};
-pub use reads::{ASSET_ENDINGS, asset_names, is_image, places, reads};
+pub use limbs::Recipe;
+pub use project::{File, Project};
+pub use reads::{asset_names, is_image, is_mesh, is_skeleton, places, reads};
 pub use strokes::{is_strokes, keep_sculpted, start_file};
 pub use text_edit::TextEdit;
 pub use tool::Tool;

@@ -5,7 +5,8 @@
 //! then a line `#   parameter  meaning` for each parameter; the defaults stand in the `define`
 //! only.
 
-use crate::project::Asset;
+use crate::asset::Asset;
+use mesh::TriangleMesh;
 use std::fmt::Write;
 use std::sync::LazyLock;
 
@@ -24,15 +25,29 @@ pub const FILES: &[(&str, &str)] = &[
 
 /// An image and a mesh, for the examples of `terra` and `mesh`.
 static ASSETS: LazyLock<[Asset; 2]> = LazyLock::new(|| {
-    let asset = |name: &str, bytes: &[u8]| Asset {
-        name: name.to_owned(),
-        bytes: bytes.into(),
-    };
-    [
-        asset("hills.png", include_bytes!("../library/hills.png")),
-        asset("gem.obj", include_bytes!("../library/gem.obj")),
-    ]
+    let text = include_str!("../library/gem.obj");
+    let gem = Asset::await_mesh("gem.obj", text.as_bytes());
+    gem.keep_mesh(Ok(read_plain(text)));
+    let hills: &[u8] = include_bytes!("../library/hills.png");
+    [Asset::await_mesh("hills.png", hills), gem]
 });
+
+/// Reads an OBJ file that has nothing but vertices, in the order of their use, and triangles: the
+/// page needs no other reader for the library.
+fn read_plain(text: &str) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    for line in text.lines() {
+        let mut words = line.split(' ');
+        let kind = words.next();
+        let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+        match (kind, &numbers[..]) {
+            (Some("v"), &[x, y, z]) => mesh.positions.push([x, y, z].into()),
+            (Some("f"), &[a, b, c]) => mesh.triangles.push([a, b, c].map(|n| n as u32 - 1)),
+            _ => {}
+        }
+    }
+    mesh
+}
 
 /// Returns the images and meshes of the library.
 #[must_use]
@@ -164,6 +179,17 @@ pub fn synopsis(command: &str) -> String {
 mod tests {
     use super::*;
     use crate::commands;
+
+    #[test]
+    fn mesh_of_the_library_is_that_of_its_file() {
+        let [_, gem] = assets() else {
+            unreachable!("two of them")
+        };
+        assert_eq!(
+            gem.mesh().as_deref(),
+            Ok(&mesh::read(&gem.name, &gem.bytes).unwrap())
+        );
+    }
 
     #[test]
     fn every_file_is_a_command_with_a_manual() {

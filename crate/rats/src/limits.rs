@@ -6,8 +6,8 @@
 
 /// Bytes of all texts of a project together.
 pub const MAX_TEXT: usize = 1024 * 1024;
-/// Files in a project.
-pub const MAX_FILES: usize = 64;
+/// Files in a project, as many as RATS read from one another.
+pub const MAX_FILES: usize = 128;
 /// Commands run plus operands evaluated, with heavier work charged more. A step takes 50
 /// nanoseconds or so, so that all take a fifteenth of a second.
 pub const MAX_STEPS: u64 = 1_320_000;
@@ -43,6 +43,11 @@ pub const MAX_NESTED_BLOCKS: usize = 64;
 pub const MAX_NESTED_EXPRESSIONS: usize = 64;
 /// Words, numbers and signs of one command.
 pub const MAX_OPERANDS: usize = 4096;
+/// Words, numbers and signs of a `skeleton` with its block: as many as a text can hold.
+pub const MAX_BLOCK_OPERANDS: usize = MAX_TEXT;
+/// Skeletons of files in a text, those that differ in the file or in how they are made of it: no
+/// more than are kept between two compilations.
+pub const MAX_SKELETON_FILES: usize = 20;
 /// Shapes in a scene.
 pub const MAX_ELEMENTS: usize = 200_000;
 /// Faces of the mesh that strokes in a model start from.
@@ -86,7 +91,13 @@ pub const MAX_MAGNITUDE: f64 = 1e12;
 /// Smallest magnitude of a number given to a command that is not 0; what is smaller counts as 0, as
 /// its square's inverse would not be finite in single precision.
 pub const MIN_MAGNITUDE: f64 = 1e-15;
+/// Pictures that one text may take with `shoot`.
+pub const MAX_SHOTS: usize = 128;
+/// Shapes, materials, lights and objects of all these pictures together, beyond those of the first.
+pub const MAX_SHOT_WEIGHT: usize = 2 * MAX_ELEMENTS;
 /// Messages about one project.
 pub const MAX_DIAGNOSTICS: usize = 200;
+/// Pauses, logs and times that one text may ask for.
+pub const MAX_INTERLUDES: usize = 1000;
 /// Jobs on files that one text may ask for.
 pub const MAX_TOOLS: usize = 1000;

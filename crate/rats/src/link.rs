@@ -167,8 +167,10 @@ fn check(shared: &Shared) -> Result<(), LinkError> {
         let finite = points
             .iter()
             .all(|p| p.is_finite() && p.abs().max_element() <= MAX_MAGNITUDE);
-        let shifted = camera.shift.iter().all(|s| s.abs() <= 1e3);
-        if !finite || !shifted || !(0.01..=179.0).contains(&camera.fov) {
+        let shifted = camera.shift.iter().all(|s| s.abs() <= Camera::MAX_SHIFT);
+        let [least, most] = Camera::PIXELS;
+        let proportioned = (least..=most).contains(&camera.pixel);
+        if !finite || !shifted || !proportioned || !(0.01..=179.0).contains(&camera.fov) {
             return refuse("its camera is out of bounds");
         }
     }

@@ -149,9 +149,11 @@ impl Reader<'_, '_> {
     /// As [`Self::vector`].
     pub fn triple(&mut self, what: &str) -> Outcome<Value> {
         let start = self.start();
+        let first = self.at;
         let value = match self.value(what)? {
             Value::Scalar(x) => {
-                let y = self.number_after(what)?;
+                let y = self.number_after(what);
+                let y = y.map_err(|problem| self.only_a_number(what, first, problem))?;
                 Value::Vector(DVec3::new(x, y, self.number_after(what)?))
             }
             Value::Name(_) => {
@@ -188,6 +190,30 @@ impl Reader<'_, '_> {
             None => format!("{what} takes three numbers, but the command ends here"),
         };
         Err(Problem::new(&self.here(), message).maybe_hint(inner.or_else(|| self.usage())))
+    }
+
+    /// Makes the problem that the variable which stands for three numbers, the item `first`, holds
+    /// but one, if that is why the second is missing; else returns the problem.
+    fn only_a_number(&self, what: &str, first: usize, problem: Box<Problem>) -> Box<Problem> {
+        let item = self.items.get(first);
+        let Some((item, Datum::Word(symbol))) = item.map(|item| (item, item.datum)) else {
+            return problem;
+        };
+        let word = self.scope.symbols.word(symbol);
+        if problem.quiet
+            || problem.fatal
+            || self.at != first + 1
+            || self.scope.get(symbol).is_none()
+        {
+            return problem;
+        }
+        Problem::new(
+            &item.span(),
+            format!("{what} takes three numbers, but `{word}` is one number"),
+        )
+        .hint(format!(
+            "write two more behind it, or set it to three: `var {word} = 0 0 0`"
+        ))
     }
 
     /// Reads a direction, a vector that is not 0, and returns the unit vector.

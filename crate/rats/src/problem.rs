@@ -1,5 +1,6 @@
 //! A mistake in one command, before it becomes a [`crate::Diagnostic`].
 
+use crate::TextEdit;
 use std::ops::Range;
 
 /// Why a command was dropped.
@@ -11,6 +12,8 @@ pub struct Problem {
     pub message: String,
     /// Advice.
     pub hint: Option<String>,
+    /// A change of the text that does what the hint says.
+    pub fix: Option<TextEdit>,
     /// Places that explain it: the file (`None` for the same), the place, what it is.
     pub related: Vec<(Option<usize>, Range<usize>, String)>,
     /// The command it is about.
@@ -31,6 +34,7 @@ impl Problem {
             span: span.clone(),
             message: message.into(),
             hint: None,
+            fix: None,
             related: Vec::new(),
             command: None,
             fatal: false,
@@ -56,6 +60,13 @@ impl Problem {
     #[must_use]
     pub fn maybe_hint(mut self: Box<Self>, hint: Option<String>) -> Box<Self> {
         self.hint = hint;
+        self
+    }
+
+    /// Adds a change of the text that does what the hint says.
+    #[must_use]
+    pub fn fix(mut self: Box<Self>, fix: TextEdit) -> Box<Self> {
+        self.fix = Some(fix);
         self
     }
 

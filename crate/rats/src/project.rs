@@ -1,7 +1,6 @@
-//! The texts that make one model, and the other files that they use.
+//! The texts that make one model.
 
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// A named text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,13 +41,4 @@ impl Project {
             files: vec![File { name, text }],
         }
     }
-}
-
-/// A file that is no text: an image or a mesh. Links do not carry it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Asset {
-    /// The name, by which commands find it.
-    pub name: String,
-    /// The content.
-    pub bytes: Arc<[u8]>,
 }

@@ -21,6 +21,14 @@ fn quote(text: &str) -> &str {
     &text[..text.floor_char_boundary(LONGEST_QUOTE)]
 }
 
+/// Returns whether a name is that of an image of a kind that is not read.
+fn is_unread_image(name: &str) -> bool {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    ["jpg", "jpeg", "webp", "bmp", "avif", "heic", "svg"]
+        .iter()
+        .any(|kind| ending.eq_ignore_ascii_case(kind))
+}
+
 /// A user's name: of a material, an object, a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name<'a> {
@@ -235,11 +243,12 @@ impl<'e, 'a> Reader<'e, 'a> {
         })
     }
 
-    /// Reads the name of an image, if its ending says so; else takes nothing.
+    /// Reads the name of an image, even of a kind that is not read, if its ending says so; else
+    /// takes nothing.
     pub fn image_name(&mut self) -> Option<Name<'a>> {
         let back = self.at;
         let name = self.peek_word().and_then(|_| self.file_name("").ok());
-        let name = name.filter(|name| is_image(name.text));
+        let name = name.filter(|name| is_image(name.text) || is_unread_image(name.text));
         if name.is_none() {
             self.at = back;
         }

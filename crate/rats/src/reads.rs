@@ -6,6 +6,7 @@ use crate::symbol::Symbols;
 use crate::syntax::{Block, Command, Datum, Node, Syntax};
 use crate::{is_strokes, start_file};
 use std::ops::Range;
+use std::path::Path;
 
 /// Returns the file names after every `read` of a text, in order, wherever it stands, then the
 /// texts of strokes after `mesh`. Nothing is run, so a `read` that a condition would skip is listed
@@ -51,30 +52,32 @@ fn join(folder: &str, name: &str) -> Option<String> {
     Some(parts.join("/"))
 }
 
-/// Endings of the files that are no texts: images and meshes.
-pub const ASSET_ENDINGS: [&str; 11] = [
-    "png", "tif", "tiff", "tga", "gif", "mtv", "obj", "ply", "stl", "glb", "3mf",
-];
-
-/// Number of [`ASSET_ENDINGS`] that are those of images.
-const IMAGES: usize = 6;
+/// Endings of files of limbs, beside those of meshes that may hold limbs, too.
+pub const SKELETONS: [&str; 7] = ["swc", "vtp", "vtk", "csv", "xyz", "pdb", "ent"];
 
 /// Returns whether a name has the ending of an image.
 #[must_use]
 pub fn is_image(name: &str) -> bool {
-    has_ending(name, &ASSET_ENDINGS[..IMAGES])
+    picture::Format::of(Path::new(name)).is_ok()
 }
 
-fn has_ending(name: &str, endings: &[&str]) -> bool {
-    name.rsplit_once('.').is_some_and(|(_, ending)| {
-        endings
-            .iter()
-            .any(|known| ending.eq_ignore_ascii_case(known))
-    })
+/// Returns whether a name has the ending of a mesh.
+#[must_use]
+pub fn is_mesh(name: &str) -> bool {
+    mesh::Format::of_name(name).is_some()
 }
 
-/// Returns the images and meshes that a text asks for (`mesh`, `terra`, `texture`, `background`),
-/// in order, wherever it does. A text of strokes asks for the mesh that it starts from.
+/// Returns whether a name has the ending of a file that holds nothing but limbs, or limbs or
+/// points.
+#[must_use]
+pub fn is_skeleton(name: &str) -> bool {
+    let (_, ending) = name.rsplit_once('.').unwrap_or_default();
+    SKELETONS.iter().any(|own| ending.eq_ignore_ascii_case(own))
+}
+
+/// Returns the images, meshes and skeletons that a text asks for (`mesh`, `terra`, `texture`,
+/// `background`, `skeleton`), in order, wherever it does. A text of strokes asks for the mesh that
+/// it starts from.
 #[must_use]
 pub fn asset_names(text: &str) -> Vec<String> {
     let mut lines = text.lines().map(str::trim_start);
@@ -85,9 +88,9 @@ pub fn asset_names(text: &str) -> Vec<String> {
     let mut symbols = Symbols::default();
     let syntax = parse(text, &mut symbols);
     let mut names = Vec::new();
-    let commands = ["mesh", "terra", "texture", "background"];
+    let commands = ["mesh", "terra", "texture", "background", "skeleton"];
     collect(&syntax.block, &commands, &syntax, text, &mut names);
-    names.retain(|name| has_ending(name, &ASSET_ENDINGS));
+    names.retain(|name| is_image(name) || is_mesh(name) || is_skeleton(name));
     names
 }
 
@@ -170,10 +173,17 @@ mod tests {
     fn images_and_meshes_are_found() {
         let text = "mesh Clay, parts/bunny.ply\nif 1 { terra Clay hills.png 0 0 0 1 1 1 }\n\
             mesh robust\ntexture Mona { diffuse mona.tif plain, scale 2 2 1 }\n\
-            background Red\nbackground sky.png\n";
+            background Red\nbackground sky.png\nskeleton Clay, N n-1.swc scale 2\n\
+            skeleton Clay, M { node A <0 0.5 .3> node B <1 0 0> curve A B }\n";
         assert_eq!(
             asset_names(text),
-            ["parts/bunny.ply", "hills.png", "mona.tif", "sky.png"]
+            [
+                "parts/bunny.ply",
+                "hills.png",
+                "mona.tif",
+                "sky.png",
+                "n-1.swc"
+            ]
         );
     }
 }

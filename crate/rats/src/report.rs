@@ -195,6 +195,7 @@ impl<'p> Places<'p> {
             line: self.line,
             span,
             hint: problem.hint,
+            fix: problem.fix,
         }
     }
 

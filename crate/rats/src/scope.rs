@@ -184,6 +184,17 @@ impl<'a> Scope<'a> {
         self.calls
     }
 
+    /// Returns all variables that are set, with their values.
+    pub fn variables(&self) -> impl Iterator<Item = (&'a str, Value)> {
+        let locals = self.locals[self.frame..].iter().copied();
+        let globals = self.globals.iter().enumerate();
+        let globals = globals.filter_map(|(index, slot)| match slot {
+            Slot::Full(value) => Some((self.symbols.at(index), *value)),
+            _ => None,
+        });
+        globals.chain(locals.map(|(name, value)| (self.symbols.word(name), value)))
+    }
+
     /// Returns the names of all variables that are set, for suggestions.
     pub fn names(&self) -> impl Iterator<Item = &'a str> {
         let locals = self.locals[self.frame..].iter().map(|(name, _)| *name);

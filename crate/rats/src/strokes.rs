@@ -4,9 +4,9 @@
 //! The meshes are kept while compilations ask for them, and a text that has only grown goes on from
 //! where the last one ended, as a text is compiled after every stroke.
 
+use crate::asset::Asset;
+use crate::limits;
 use crate::limits::{MAX_STROKES_FACES, MAX_STROKES_WORK};
-use crate::project::Asset;
-use crate::{assets, limits};
 use mesh::{Topology, TriangleMesh};
 use sculpt::{Beginning, Clay, Diagnostic, Script};
 use std::cell::{OnceCell, RefCell};
@@ -210,7 +210,7 @@ fn begin(script: &Script, start: Option<&Asset>) -> Result<Clay, Diagnostic> {
             let asset = start.ok_or_else(|| {
                 script.problem_at_start(&format!("there is no mesh `{name}` in the project"))
             })?;
-            let mesh = assets::mesh(asset);
+            let mesh = asset.mesh();
             mesh.map_err(|error| script.problem_at_start(&error.0))?
                 .triangles
                 .len()
@@ -221,7 +221,7 @@ fn begin(script: &Script, start: Option<&Asset>) -> Result<Clay, Diagnostic> {
         let message = format!("this start has {faces} faces; {most}, `sinew sculpt` takes more");
         return Err(script.problem_at_start(&message));
     }
-    script.begin(&mut |_: &str| match start.map(assets::mesh) {
+    script.begin(&mut |_: &str| match start.map(Asset::mesh) {
         Some(Ok(mesh)) => Ok((*mesh).clone()),
         Some(Err(error)) => Err(error.0),
         None => Err(String::from("there is no such file")),

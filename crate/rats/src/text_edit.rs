@@ -1,6 +1,7 @@
 //! Changes of texts, as a hand, a tool or a person asks for them.
 
 use crate::Project;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Change of one file.
@@ -12,7 +13,7 @@ use std::ops::Range;
 /// let edit = TextEdit::new(0, 12..13, "2.5");
 /// assert_eq!(project.apply(&[edit]).files[0].text, "sphere Clay 2.5, 0 0 0\n");
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextEdit {
     /// Index of the file in [`Project::files`].
     pub file: usize,

@@ -12,14 +12,22 @@ pub struct Camera {
     pub target: DVec3,
     /// The direction that is up in the picture (`vup`); need not be a unit vector.
     pub up: DVec3,
-    /// Horizontal angle of view in degrees, in (0, 180). Pixels are square, so the vertical angle
-    /// follows from the picture's proportions: the published seahorse asks for 13°×13° in a
-    /// 160×256 frame and fits only when read so.
+    /// Horizontal angle of view in degrees, in (0, 180). The vertical angle follows from the
+    /// picture's proportions and those of its pixels: the published seahorse asks for 13°×13° in a
+    /// 160×256 frame and fits only when its pixels are square.
     pub fov: f64,
     /// Shift of the picture across the view, in halves of its width to the right and up: 0 0 has
     /// the target in the middle (`window`, Foley's camera).
     #[serde(default)]
     pub shift: [f64; 2],
+    /// Height of what a pixel shows, in its widths, in [`Camera::PIXELS`]; 1: pixels are square.
+    #[serde(default = "square")]
+    pub pixel: f64,
+}
+
+/// Returns the proportions of square pixels.
+fn square() -> f64 {
+    1.0
 }
 
 impl Default for Camera {
@@ -30,11 +38,43 @@ impl Default for Camera {
             up: DVec3::Y,
             fov: 45.0,
             shift: [0.0; 2],
+            pixel: 1.0,
         }
     }
 }
 
 impl Camera {
+    /// Least and largest angle of view, degrees.
+    pub const ANGLES: [f64; 2] = [0.01, 179.0];
+    /// Largest shift of a picture, either way.
+    pub const MAX_SHIFT: f64 = 2e4;
+    /// Least and largest proportions of a pixel.
+    pub const PIXELS: [f64; 2] = [1e-3, 1e3];
+
+    /// Places the eye so far away that rays are as good as parallel, as `direction` points from the
+    /// target towards it (its last coordinate along `normal`, above 0), and lets the picture show
+    /// `half` to either side of the target.
+    ///
+    /// That is 11,459 halves away, for the least angle of view. Where a true parallel projection
+    /// puts a place that is z halves nearer than the target, this one puts it nearer to the edge by
+    /// z / 11,459 of its distance from the point below the eye: within z ≤ 5 that is less than half
+    /// a pixel of a picture 2,000 wide.
+    #[must_use]
+    pub fn far(self, axes: [DVec3; 3], direction: DVec3, half: f64) -> Self {
+        let [right, up, normal] = axes;
+        let distance = half / libm::tan(Self::ANGLES[0].to_radians() * 0.5);
+        let lean = direction / direction.z;
+        let eye = self.target + (right * lean.x + up * lean.y + normal) * distance;
+        Self {
+            eye,
+            target: eye - normal * distance,
+            up,
+            fov: Self::ANGLES[0],
+            shift: [lean.x, lean.y].map(|lean| -lean * distance / half),
+            ..self
+        }
+    }
+
     /// The projection of this camera onto a picture of the given size in pixels.
     ///
     /// Degenerate cameras (eye on target, up along the view) are repaired by an arbitrary but
@@ -50,8 +90,12 @@ impl Camera {
             .or_else(|| forward.cross(DVec3::Y).try_normalize())
             .unwrap_or(DVec3::X);
         let up = right.cross(forward);
-        let half_width = libm::tan(self.fov.clamp(0.01, 179.0).to_radians() * 0.5);
-        let half_height = half_width * f64::from(height.max(1)) / f64::from(width.max(1));
+        let [least, most] = Self::ANGLES;
+        let half_width = libm::tan(self.fov.clamp(least, most).to_radians() * 0.5);
+        let mut half_height = half_width * f64::from(height.max(1)) / f64::from(width.max(1));
+        if self.pixel > 0.0 && self.pixel != 1.0 {
+            half_height *= self.pixel.clamp(Self::PIXELS[0], Self::PIXELS[1]);
+        }
         Projection {
             eye: self.eye,
             world_from_view: DMat3::from_cols(right, up, -forward),

@@ -13,6 +13,11 @@ const LENGTH: f64 = 2.0;
 /// Most factor by which radius and blobbiness vary along a piece, until there are [`MOST`] pieces.
 const CHANGE: f64 = 1.25;
 
+/// Most factor by which the radius of a limb varies that is evaluated at once
+/// ([`Shaping::is_cone`]), and the most pieces of such a limb.
+const CHANGE_OF_CONES: f64 = 2.0;
+const MOST_CONES: usize = 4;
+
 /// The pieces of a curve or of a tapered segment or arc, each with its part of the taper; any other
 /// bone as it is.
 #[must_use]
@@ -74,6 +79,11 @@ fn share(i: usize, count: usize) -> f64 {
 /// Returns the number of pieces into which a bone is cut.
 fn pieces(skeleton: &Skeleton, shaping: &Shaping) -> usize {
     let end = shaping.at(1.0);
+    if shaping.is_cone(skeleton) {
+        let ratio = shaping.radius / end.radius;
+        let wanted = libm::log(ratio.max(1.0 / ratio)) / libm::log(CHANGE_OF_CONES);
+        return (wanted.ceil() as usize).clamp(1, MOST_CONES);
+    }
     let radius = 0.5 * (shaping.radius + end.radius);
     let by_length = skeleton.measure() / (LENGTH * radius);
     let [by_radius, by_blobbiness] = [

@@ -11,6 +11,9 @@ pub struct Settings {
     /// `sample n`: at most n×n rays a pixel where the picture has contrast. 1 …
     /// [`Settings::MAX_SAMPLES`].
     pub samples: u32,
+    /// Side, in pixels, of the blocks that one ray is sent for: a power of 2 up to
+    /// [`Settings::MAX_BLOCK`], more than 1 by `sample` below 1. Then no pixel gets more rays.
+    pub block: u32,
     /// Per-channel contrast between neighbouring pixels above which a pixel is sampled further.
     pub contrast: [f32; 3],
     /// `gamma g`: the picture's values are raised to 1/g.
@@ -52,6 +55,8 @@ impl Settings {
     pub const MAX_FRAME: u32 = 8192;
     /// Largest sampling grid side.
     pub const MAX_SAMPLES: u32 = 16;
+    /// Largest side of a block of pixels with one ray.
+    pub const MAX_BLOCK: u32 = 16;
     /// Largest depth of reflections and refractions.
     pub const MAX_DEPTH: u32 = 32;
     /// Most Hermite spans a primitive ([`Digger::Spans`]).
@@ -63,6 +68,7 @@ impl Default for Settings {
         Self {
             frame: [128, 128],
             samples: 1,
+            block: 1,
             contrast: [0.25, 0.2, 0.4],
             gamma: 1.0,
             soft: true,

@@ -109,13 +109,15 @@ impl Scene {
             let mut limbs = self.segments_of(element, function, &flesh);
             return limbs.any(|(skeleton, shaping)| {
                 let widths = shaping.widths_along(skeleton.measure());
-                shaping.taper.is_some() && widths > field::primitive::LONGEST
+                let is_numeric = shaping.taper.is_some() && !shaping.is_cone(&skeleton);
+                is_numeric && widths > field::primitive::LONGEST
             });
         }
         let shaping = self.shaping(element, &flesh, self.radius(element));
         element.shape.skeleton().is_some_and(|skeleton| {
             let is_line = skeleton.dimension() == 1;
-            let is_numeric = skeleton.is_numeric() || is_line && shaping.taper.is_some();
+            let is_taper = is_line && shaping.taper.is_some() && !shaping.is_cone(skeleton);
+            let is_numeric = skeleton.is_numeric() || is_taper;
             is_numeric && shaping.widths_along(skeleton.most_length()) > field::primitive::LONGEST
         })
     }

@@ -45,9 +45,9 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// The most nodes of a skeleton.
-pub const MOST_NODES: usize = 10_000;
+pub const MOST_NODES: usize = 400_000;
 /// The most curves of a skeleton.
-pub const MOST_CURVES: usize = 10_000;
+pub const MOST_CURVES: usize = 200_000;
 /// The most segments of a polyline.
 pub const MOST_SEGMENTS: usize = 200_000;
 /// The most levels of subdivision.

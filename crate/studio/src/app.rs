@@ -9,9 +9,8 @@ use crate::film::FilmPanel;
 use crate::fit::FitPanel;
 use crate::help::Help;
 use crate::lessons::Lessons;
-use crate::notice::Notice;
-use crate::page::{Dialog, Moment, Page, Parts, Screen, Tab};
-use crate::panel::{Panel, Panels};
+use crate::page::{Moment, Page, Parts, Screen, Tab, repaint_once};
+use crate::panels::Panels;
 use crate::render::{Phase, Renderer};
 use crate::scripts::Scripts;
 use crate::scripts::request::{Answer, Request};
@@ -22,7 +21,7 @@ use crate::stage::Stage;
 use crate::text::TextPanel;
 use crate::text::keyboard::Keyboard;
 use crate::tray::Tray;
-use crate::wish::{LabWish, Wish, Wishes, WorkWish};
+use crate::wish::{Dialog, LabWish, Notice, ViewWish, Wish, Wishes, WorkWish};
 use crate::works::gallery::Gallery;
 use crate::{fonts, keys, layout, screen, theme};
 use browser::Backend;
@@ -56,11 +55,6 @@ pub struct App {
     saved_settings: Settings,
     /// The name in the title of the browser's tab.
     tab_title: String,
-}
-
-/// Asks egui for one more frame. The delay matters: a repaint without one is drawn twice.
-pub(crate) fn repaint_once(ctx: &Context) {
-    ctx.request_repaint_after_secs(1e-3);
 }
 
 fn is_drawn_by_processor(backend: Backend, state: Option<&egui_wgpu::RenderState>) -> bool {
@@ -126,6 +120,7 @@ impl App {
             page: Page {
                 work,
                 reading: MeshReading::new(tools.clone()),
+                to_frame: None,
                 renderer: Renderer::new(pool),
                 settings,
                 parts,
@@ -138,7 +133,8 @@ impl App {
                     forced: None,
                 },
                 is_lab_open: lab.is_open(),
-                is_reading: false,
+                is_measuring: false,
+                film: FilmPanel::default().length(),
                 dialog: None,
                 tab: Tab::Text,
                 notice: None,
@@ -211,7 +207,8 @@ impl App {
         let started = *self.started.get_or_insert(now);
         let dropped = ctx.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
         if !dropped.is_empty() {
-            browser::read_dropped(dropped, self.page.parts.requests.taker());
+            let of = self.page.work.number();
+            browser::read_dropped(dropped, self.page.parts.requests.taker(of));
         }
         let mut answers = Vec::new();
         for request in self.page.parts.requests.take() {
@@ -222,32 +219,29 @@ impl App {
         if let Some(trouble) = page.work.tick(now) {
             page.warn(trouble);
         }
-        if page.reading.tick(&page.work.session) {
-            page.work.session.compile();
+        if page.to_frame.is_some() && page.work.session.is_compiled() {
+            let is_open = page.to_frame.take() == Some(page.work.number());
+            page.wishes
+                .extend(is_open.then_some(Wish::from(ViewWish::ShowAll)));
         }
-        let panels = &mut self.panels;
-        panels.mesh.film = panels.film.length();
-        panels.mesh.tick(page, &at);
-        panels.fit.tick(page, &at);
-        page.is_reading = page.reading.current().is_some() || panels.fit.0.is_reading();
-        panels.stage.tick(page, &at);
         if page.settings != self.saved_settings {
             self.saved_settings = page.settings.clone();
             page.parts.shelf.borrow_mut().set_settings(&page.settings);
         }
-        let title = panels.lab.0.title().unwrap_or(&page.work.name);
+        let title = self.panels.lab.0.title().unwrap_or(&page.work.name);
         if self.tab_title != title {
             self.tab_title = title.to_owned();
             browser::set_title(&self.tab_title);
         }
-        panels.film.tick(page, &at);
+        // Panels look at a picture that has just been finished, and may want another one.
+        self.trace(&at);
+        self.panels.tick(&mut self.page, &at);
         self.trace(&at);
         let page = &mut self.page;
         if page.work.session.is_enabled() && !self.is_healthy && now - started > HEALTHY {
             self.is_healthy = true;
             browser::set_stopped(false);
         }
-        self.panels.tray.tick(page, &at);
         if let Some(notice) = &page.notice
             && notice.until.is_some_and(|until| now > until)
         {
@@ -261,10 +255,9 @@ impl App {
     }
 
     /// Returns the seconds until the next tick; `None` if nothing waits for one.
-    fn wait(&mut self, started: f64, now: f64) -> Option<f64> {
+    fn wait(&self, started: f64, now: f64) -> Option<f64> {
         let page = &self.page;
-        let panels = self.panels.all();
-        let mut waits: Vec<_> = panels.map(|panel| panel.wait(page, now)).into();
+        let mut waits = vec![self.panels.wait(page, now)];
         // While frames are expensive, writing waits for the next one, which comes soon.
         waits.push(page.work.wait(now).filter(|_| !page.is_short_of_time()));
         if !page.is_lab_open {
@@ -341,20 +334,21 @@ impl App {
     /// Carries out a wish, and those that follow from it.
     fn carry_out(&mut self, wish: Wish, at: &Moment<'_>) {
         let (page, panels) = (&mut self.page, &mut self.panels);
+        panels.sculpt.on_show = panels.text.file_on_show();
+        if let Some(wish) = panels.act(wish, page, at) {
+            self.carry_out_own(wish, at);
+        }
+        self.follow(at.ctx);
+        for wish in std::mem::take(&mut self.page.wishes) {
+            self.carry_out(wish, at);
+        }
+    }
+
+    /// Carries out a wish that belongs to no panel.
+    fn carry_out_own(&mut self, wish: Wish, at: &Moment<'_>) {
+        let (page, panels) = (&mut self.page, &mut self.panels);
         match wish {
-            Wish::Text(wish) => panels.text.act(wish, page, at),
-            Wish::View(wish) => panels.stage.act(wish, page, at),
-            Wish::Film(wish) => panels.film.act(wish, page, at),
-            Wish::Tray(wish) => panels.tray.act(wish, page, at),
-            Wish::Mesh(wish) => panels.mesh.act(wish, page, at),
-            Wish::Fit(wish) => panels.fit.act(wish, page, at),
-            Wish::Work(wish) => panels.gallery.act(wish, page, at),
-            Wish::Lab(wish) => panels.lab.act(wish, at),
-            Wish::Sculpt(wish) => {
-                let on_show = panels.text.file_on_show();
-                panels.sculpt.act(wish, on_show, page, at);
-            }
-            Wish::Set(setting) => setting.apply(page, at.ctx),
+            Wish::Set(setting) => page.set(setting, at.ctx),
             Wish::Open(dialog) => {
                 match dialog {
                     Dialog::Gallery => panels.gallery.open(page),
@@ -368,16 +362,15 @@ impl App {
                 page.dialog = Some(Dialog::Help);
             }
             Wish::Close => {
-                if page.dialog.take().is_none() {
+                let closed = page.dialog.take();
+                if closed.is_none() {
                     page.notice = None;
                 }
             }
             Wish::Tell(text) => page.tell(text, at.now),
             Wish::Notice(notice) => page.notice = Some(*notice),
-        }
-        self.follow(at.ctx);
-        for wish in std::mem::take(&mut self.page.wishes) {
-            self.carry_out(wish, at);
+            // A panel carries out the others.
+            _ => {}
         }
     }
 
@@ -386,9 +379,7 @@ impl App {
         let page = &mut self.page;
         if self.work != page.work.number() {
             self.work = page.work.number();
-            for panel in self.panels.all() {
-                panel.forget(page, ctx);
-            }
+            self.panels.forget(page, ctx);
             page.renderer.clear();
             page.notice = None;
             page.dialog = None;
@@ -412,14 +403,18 @@ impl App {
                 self.carry_out(wish.into(), at);
             }
             Request::Wish(wish) => self.carry_out(wish, at),
+            Request::Late { of, wish, .. } if of == page.work.number() => self.carry_out(wish, at),
+            Request::Late { what, .. } => page.warn(format!(
+                "{what} came after another work was opened, and was left out. \
+                    Go back to the work that it was for, and ask for it again."
+            )),
             Request::Videos(formats) => self.panels.film.formats = Some(formats),
             Request::SetCamera(camera) => page.work.session.set_camera(camera),
             Request::Picture(answer) => answer(page.renderer.image()),
             Request::Mesh(order, taker) => {
                 let name = work::file_stem(&page.work.name);
-                let film = self.panels.film.length();
                 let export = &mut self.panels.mesh.export;
-                export.make_for(&page.work.session, film, &name, order, taker);
+                export.make_for(&page.work.session, page.film, &name, order, taker);
             }
             Request::PictureSize(size) => {
                 let longest = at.ctx.input(|input| input.max_texture_side) as u32;

@@ -2,9 +2,8 @@
 
 use crate::film::FilmPanel;
 use crate::icon::{self, Icon};
-use crate::page::Dialog;
 use crate::page::Page;
-use crate::wish::{LabWish, SculptWish, Setting, TextWish, Wish, Wishes, WorkWish};
+use crate::wish::{Dialog, LabWish, SculptWish, Setting, TextWish, Wish, Wishes, WorkWish};
 use crate::{download, places, theme};
 use document::work::{Origin, Work};
 use egui::{Align, Button, Layout, RichText, TextEdit, Ui};

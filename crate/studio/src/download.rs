@@ -1,9 +1,8 @@
 //! The menu of everything that the page can save as a file.
 
 use crate::film::FilmPanel;
-use crate::page::Dialog;
 use crate::page::Page;
-use crate::wish::{FilmWish, ViewWish, Wish, Wishes, WorkWish};
+use crate::wish::{Dialog, FilmWish, ViewWish, Wish, Wishes, WorkWish};
 use crate::{places, theme};
 use browser::recording::Kind;
 use egui::{Button, RichText, Ui};

@@ -1,7 +1,7 @@
 //! Keys of the whole page.
 
 use crate::page::Page;
-use crate::panel::Panels;
+use crate::panels::Panels;
 use crate::stage::pencil::tool::Tool;
 use crate::wish::{LabWish, TextWish, ViewWish, Wish, Wishes};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};

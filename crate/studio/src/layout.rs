@@ -2,13 +2,14 @@
 //! dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
 
 use crate::icon::{self, Icon};
-use crate::page::{Dialog, Page, Tab};
-use crate::panel::{Panel as _, Panels};
+use crate::page::{Page, Tab};
+use crate::panel::Panel as _;
+use crate::panels::Panels;
 use crate::settings::Show;
 use crate::stage::pencil;
 use crate::text::files;
 use crate::theme::{self, STRIP};
-use crate::wish::{Setting, ViewWish, Wish, Wishes};
+use crate::wish::{Dialog, Setting, ViewWish, Wish, Wishes};
 use crate::{bar, download, fit, notice, places, problems, screen, sculpt, sliders, status, tray};
 use document::{intake, size};
 use egui::{
@@ -127,7 +128,7 @@ fn drop_hint(ctx: &Context) {
     painter.rect_filled(place, 0.0, palette.stage.gamma_multiply(0.85));
     let edge = Stroke::new(2.0, palette.accent);
     painter.rect_stroke(place.shrink(14.0), 10.0, edge, egui::StrokeKind::Inside);
-    let text = format!("Drop {} here", intake::KINDS);
+    let text = format!("Drop {} here", intake::kinds());
     let font = egui::FontId::proportional(17.0);
     let width = place.width() - 60.0;
     let galley = painter.layout(text, font, palette.strong, width);

@@ -1,34 +1,21 @@
 //! The lab in the page: opens its lessons, and carries out its wishes (crate `lab`).
 
+pub mod wish;
+
 use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
-use crate::wish::{Setting, Wish, Wishes, WorkWish};
+use crate::wish::{LabWish, Setting, Wish, Wishes, WorkWish};
 use document::examples;
 use egui::{Context, Ui};
 use lab::{Dataset, Lab, Lesson};
-
-/// Wishes about the lab.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LabWish {
-    /// Go to a lesson.
-    Open(Lesson),
-    /// Go to the lesson seen last.
-    Show,
-    /// Leave it for the editor.
-    Close,
-    /// Open the lesson to which the address has changed, or leave the lab if it is `None`.
-    Follow(Option<Lesson>),
-    /// Copy a link to the lesson.
-    Share,
-}
 
 /// The lab.
 pub struct Lessons(pub Lab);
 
 impl Lessons {
     /// Carries out a wish.
-    pub fn act(&mut self, wish: LabWish, at: &Moment<'_>) {
+    pub fn act(&mut self, wish: LabWish, _page: &mut Page, at: &Moment<'_>) {
         let Self(lab) = self;
         match wish {
             LabWish::Open(lesson) => open(lab, lesson),

@@ -3,7 +3,7 @@
 //!
 //! The user's work is in crate `document`, which knows no window, the browser in crate `browser`.
 //! Here are the panels: each has its state, its widgets, its wishes and what they do in a file or a
-//! folder ([`panel`]). [`page::Page`] is what they share;
+//! folder ([`panel`], [`panels`]). [`page::Page`] is what they share;
 //! [`app::App`] ticks and shows them, and has their [`wish`]es carried out.
 
 pub mod app;
@@ -23,6 +23,7 @@ mod lessons;
 pub mod notice;
 pub mod page;
 pub mod panel;
+pub mod panels;
 mod problems;
 pub mod render;
 pub mod scripts;

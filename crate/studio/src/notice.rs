@@ -1,54 +1,9 @@
-//! A message across the top of the picture: something that went wrong or was done, perhaps with a
-//! button. There is one at a time.
+//! The message across the top of the picture. There is one at a time.
 
 use crate::icon::{self, Icon};
-use crate::wish::{Wish, Wishes};
+use crate::wish::{Notice, Wish, Wishes};
 use crate::{places, theme};
 use egui::{Align, Button, Frame, Label, Layout, Margin, Rect, RichText, Ui, vec2};
-
-/// A message.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Notice {
-    /// The text.
-    pub text: String,
-    /// Whether something went wrong.
-    pub bad: bool,
-    /// A button: its text and its wish.
-    pub action: Option<(String, Wish)>,
-    /// Time at which the message disappears by itself, seconds on the app's clock.
-    pub until: Option<f64>,
-}
-
-impl Notice {
-    /// Makes a message about something that was done. It disappears after six seconds.
-    #[must_use]
-    pub fn success(text: impl Into<String>, now: f64) -> Self {
-        Self {
-            text: text.into(),
-            bad: false,
-            action: None,
-            until: Some(now + 6.0),
-        }
-    }
-
-    /// Makes a message about something that went wrong. It stays until it is closed.
-    #[must_use]
-    pub fn trouble(text: impl Into<String>) -> Self {
-        Self {
-            text: text.into(),
-            bad: true,
-            action: None,
-            until: None,
-        }
-    }
-
-    /// Adds a button.
-    #[must_use]
-    pub fn with_button(mut self, text: &str, wish: impl Into<Wish>) -> Self {
-        self.action = Some((text.to_owned(), wish.into()));
-        self
-    }
-}
 
 /// Shows a message at the top of a place.
 pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, wishes: &mut Wishes) {

@@ -1,14 +1,14 @@
 //! State that all panels share: the open work, the traced picture, settings, and what lies over
 //! the page.
 
-use crate::notice::Notice;
 use crate::render::{Phase, Renderer};
 use crate::screen;
 use crate::scripts::report::Shared;
 use crate::scripts::request::Requests;
 use crate::settings::Settings;
-use crate::wish::{Wish, Wishes};
+use crate::wish::{Dialog, Notice, Setting, Wish, Wishes};
 use browser::Backend;
+use document::mesh_export::Film;
 use document::reading::MeshReading;
 use document::size;
 use document::storage::Shelf;
@@ -18,21 +18,6 @@ use lab::Lesson;
 use pool::Pool;
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
-
-/// A window over the page.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dialog {
-    /// Examples and own works.
-    Gallery,
-    /// The help.
-    Help,
-    /// A result of the text's jobs on pictures.
-    Result,
-    /// Choices of how to begin a sculpture.
-    Sculpt,
-    /// The model as a mesh.
-    Mesh,
-}
 
 /// The part that a narrow page shows below the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -98,6 +83,11 @@ pub struct Screen {
     pub forced: Option<[u32; 2]>,
 }
 
+/// Asks egui for one more frame. The delay matters: a repaint without one is drawn twice.
+pub(crate) fn repaint_once(ctx: &Context) {
+    ctx.request_repaint_after_secs(1e-3);
+}
+
 /// A moment on the app's clock.
 pub struct Moment<'a> {
     /// The window.
@@ -110,8 +100,10 @@ pub struct Moment<'a> {
 pub struct Page {
     /// The open work.
     pub work: Work,
-    /// Large meshes on their way into the work.
+    /// Meshes on their way into the work.
     pub reading: MeshReading,
+    /// Number of the work whose whole model is to be brought into view once it is compiled.
+    pub to_frame: Option<u64>,
     /// The traced picture.
     pub renderer: Renderer,
     /// The user's choices.
@@ -122,8 +114,10 @@ pub struct Page {
     pub screen: Screen,
     /// Whether the lab is open, which hides the work. The app keeps it up to date.
     pub is_lab_open: bool,
-    /// Whether a file is being read, which other jobs make way for. The app keeps it up to date.
-    pub is_reading: bool,
+    /// Whether measured files are being read. The panel of fits keeps it up to date.
+    pub is_measuring: bool,
+    /// The length of the film. Its panel keeps it up to date.
+    pub film: Film,
     /// The window over the page.
     pub dialog: Option<Dialog>,
     /// The part that a narrow page shows.
@@ -169,11 +163,36 @@ impl Page {
         }
     }
 
-    /// Puts a changed work on the shelf, and compiles it.
+    /// Puts a changed work on the shelf, has the meshes that it names read, and compiles it.
     pub fn settle(&mut self, now: f64) {
         // The work in a link is not the one on the screen any more.
         if self.work.settle(now) && Lesson::of_hash(&browser::hash()).is_none() {
             browser::set_hash("");
+        }
+        if self.reading.tick(&self.work.session) {
+            self.work.session.compile();
+        }
+    }
+
+    /// Whether a file is being read, which other jobs make way for.
+    #[must_use]
+    pub fn is_reading(&self) -> bool {
+        self.is_measuring || self.reading.current().is_some()
+    }
+
+    /// Changes a setting.
+    pub fn set(&mut self, setting: Setting, ctx: &Context) {
+        match setting {
+            Setting::Theme(theme) => {
+                self.settings.theme = theme;
+                ctx.set_theme(theme);
+            }
+            Setting::Show(show) => self.settings.show = show,
+            Setting::Size(size) => {
+                self.settings.size = size;
+                self.screen.forced = None;
+            }
+            Setting::Hints(hints) => self.settings.hints = hints,
         }
     }
 

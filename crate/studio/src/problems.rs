@@ -190,6 +190,7 @@ mod tests {
             line: 1,
             column: 1,
             hint: None,
+            fix: None,
             related: Vec::new(),
             command: None,
         };

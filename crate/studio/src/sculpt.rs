@@ -1,11 +1,15 @@
 //! Sculpting in the page: opens and begins texts of strokes in the sculpting view (crate
 //! `modeling`), and carries out its wishes.
 
-use crate::page::{Dialog, Moment, Page};
+pub mod wish;
+
+use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::scripts::report;
 use crate::scripts::request::Request;
-use crate::wish::{FitWish, Setting, TextWish, ViewWish, Wish, Wishes, WorkWish};
+use crate::wish::{
+    Dialog, FitWish, SculptWish, Setting, TextWish, ViewWish, Wish, Wishes, WorkWish,
+};
 use crate::{places, theme};
 use document::asset::{self, Kind};
 use document::examples;
@@ -53,7 +57,8 @@ fn start_of(session: &Session, name: &str, text: &str) -> Option<Asset> {
 /// Reads the file that strokes start from.
 fn load(start: Option<&Asset>, name: &str) -> Result<mesh::TriangleMesh, String> {
     let asset = start.ok_or_else(|| format!("there is no mesh `{name}` in this work"))?;
-    mesh::read(&asset.name, &asset.bytes).map_err(|error| error.to_string())
+    let mesh = asset.mesh().map_err(|error| error.to_string())?;
+    Ok((*mesh).clone())
 }
 
 /// The colour of clay.
@@ -120,73 +125,34 @@ fn grow(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
     Some(text.replacen(line, &new, 1))
 }
 
-/// Wishes about sculptures.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SculptWish {
-    /// Go on with a sculpture of the work, or ask how to begin one.
-    Show,
-    /// Ask how to begin a sculpture.
-    New,
-    /// Open a text of strokes.
-    Open(String),
-    /// Begin a sculpture.
-    Begin {
-        /// The line of its text that says what it starts from.
-        start: String,
-        /// Whether it is a work of its own.
-        is_new: bool,
-    },
-    /// Mesh the model, and sculpt the mesh.
-    Model,
-    /// Sculpt the mesh of the model, a PLY file, or say why there is none.
-    Mesh(Result<Vec<u8>, String>),
-    /// Replace a text of strokes.
-    SetStrokes {
-        /// The file's name.
-        name: String,
-        /// The new text.
-        text: String,
-        /// The mesh that it makes, if it is known.
-        mesh: Option<Box<mesh::TriangleMesh>>,
-    },
-    /// Show a sculpture as a hard mesh, as flesh or as metaballs.
-    Grow {
-        /// The name of its text.
-        name: String,
-        /// The kind of flesh.
-        flesh: Flesh,
-        /// The mean length of its edges.
-        edge: f64,
-    },
-    /// Leave the sculpting view, to fit the mesh of a sculpture to measured points.
-    Fit(String),
-    /// Leave the sculpting view for the editor.
-    Close,
+/// Whether the file that a text of strokes starts from is there and not read yet.
+fn must_wait(session: &Session, name: &str, text: &str) -> bool {
+    start_of(session, name, text).is_some_and(|asset| asset.is_unread())
 }
 
 /// The sculpture that is worked on, in place of the editor.
 #[derive(Default)]
-pub struct SculptPanel(Option<Box<Sculpting>>);
+pub struct SculptPanel {
+    open: Option<Box<Sculpting>>,
+    /// The text in the editor. The app keeps it up to date.
+    pub on_show: Option<usize>,
+    /// The text that is opened once the file that it starts from is read.
+    next: Option<String>,
+}
 
 impl SculptPanel {
     /// Whether the sculpting view is open.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        self.0.is_some()
+        self.open.is_some()
     }
 
-    /// Carries out a wish. `on_show` is the text in the editor.
-    pub fn act(
-        &mut self,
-        wish: SculptWish,
-        on_show: Option<usize>,
-        page: &mut Page,
-        at: &Moment<'_>,
-    ) {
+    /// Carries out a wish.
+    pub fn act(&mut self, wish: SculptWish, page: &mut Page, at: &Moment<'_>) {
         match wish {
             SculptWish::Show => {
                 let files = &page.work.session.project().files;
-                let on_show = on_show.and_then(|file| files.get(file));
+                let on_show = self.on_show.and_then(|file| files.get(file));
                 let on_show = on_show.filter(|file| is_strokes(&file.name));
                 let first = files.iter().find(|file| is_strokes(&file.name));
                 match on_show.or(first).map(|file| file.name.clone()) {
@@ -206,27 +172,32 @@ impl SculptPanel {
                 grow_flesh(page, &name, flesh, edge, at.now);
             }
             SculptWish::Fit(name) => {
-                self.0 = None;
+                self.open = None;
                 page.wish(FitWish::Show(true));
                 page.wish(FitWish::Choose(name));
             }
-            SculptWish::Close => self.0 = None,
+            SculptWish::Close => self.open = None,
         }
     }
 
     /// Opens a text of strokes.
     fn open(&mut self, name: &str, page: &mut Page) {
         page.dialog = None;
+        self.next = None;
         let session = &page.work.session;
         let mut files = session.project().files.iter();
         let Some(file) = files.find(|file| file.name == name) else {
             return;
         };
+        if must_wait(session, name, &file.text) {
+            self.next = Some(name.to_owned());
+            return;
+        }
         let start = start_of(session, name, &file.text);
         match Sculpting::open(name, &file.text, &mut |name| load(start.as_ref(), name)) {
             Ok(place) => {
                 page.notice = None;
-                self.0 = Some(Box::new(place));
+                self.open = Some(Box::new(place));
             }
             Err(trouble) => page.warn(format!("{name}, {trouble}.")),
         }
@@ -235,7 +206,7 @@ impl SculptPanel {
     /// Returns the state for scripts.
     #[must_use]
     pub fn report(&self) -> Option<report::Sculpture> {
-        self.0.as_ref().map(|place| report::Sculpture {
+        self.open.as_ref().map(|place| report::Sculpture {
             name: place.name.clone(),
             counts: place.counts(),
             depth: place.depth(),
@@ -245,16 +216,16 @@ impl SculptPanel {
 
 impl Panel for SculptPanel {
     fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
-        let Some(place) = &mut self.0 else {
+        let Some(place) = &mut self.open else {
             return;
         };
         let session = &page.work.session;
         let files = &session.project().files;
         let Some(file) = files.iter().find(|file| file.name == place.name) else {
-            self.0 = None;
+            self.open = None;
             return;
         };
-        if place.is_behind(&file.text) {
+        if place.is_behind(&file.text) && !must_wait(session, &place.name, &file.text) {
             let start = start_of(session, &place.name, &file.text);
             place.sync(&file.text, &mut |name| load(start.as_ref(), name));
         }
@@ -274,8 +245,20 @@ impl Panel for SculptPanel {
         wishes.extend(commands.into_iter().map(|command| wish(command, name)));
     }
 
+    fn tick(&mut self, page: &mut Page, _at: &Moment<'_>) {
+        let session = &page.work.session;
+        let mut files = session.project().files.iter();
+        let next = self.next.take_if(|name| {
+            let file = files.find(|file| file.name == *name);
+            file.is_none_or(|file| !must_wait(session, name, &file.text))
+        });
+        if let Some(name) = next {
+            self.open(&name, page);
+        }
+    }
+
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
-        self.0 = None;
+        *self = Self::default();
     }
 }
 
@@ -353,11 +336,15 @@ fn mesh_model(page: &mut Page, now: f64) {
         // As large as the shapes to begin with.
         size: 2.0,
         union: true,
-        rig: false,
+        ..Order::default()
     };
-    let requests = page.parts.requests.clone();
+    let (requests, of) = (page.parts.requests.clone(), page.work.number());
     let taker = Box::new(move |result| {
-        requests.ask(Request::Wish(SculptWish::Mesh(result).into()));
+        requests.ask(Request::Late {
+            of,
+            what: String::from("The mesh to be sculpted"),
+            wish: SculptWish::Mesh(result).into(),
+        });
     });
     page.tell("The model is being meshed; then you can sculpt it.", now);
     page.parts.requests.ask(Request::Mesh(order, taker));

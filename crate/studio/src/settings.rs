@@ -1,9 +1,7 @@
 //! The user's choices about the page, kept in the browser apart from the works.
 
-use crate::page::Page;
 use crate::theme;
 use document::size;
-use egui::Context;
 use serde::{Deserialize, Serialize};
 
 /// Content of the picture's place.
@@ -61,22 +59,4 @@ pub enum Setting {
     Size(size::Choice),
     /// Show a line at the caret that says how its command is written, or hide it.
     Hints(bool),
-}
-
-impl Setting {
-    /// Carries it out.
-    pub fn apply(self, page: &mut Page, ctx: &Context) {
-        match self {
-            Self::Theme(theme) => {
-                page.settings.theme = theme;
-                ctx.set_theme(theme);
-            }
-            Self::Show(show) => page.settings.show = show,
-            Self::Size(size) => {
-                page.settings.size = size;
-                page.screen.forced = None;
-            }
-            Self::Hints(hints) => page.settings.hints = hints,
-        }
-    }
 }

@@ -1,19 +1,16 @@
 //! Wishes of the user, grouped by the panel that carries them out. Widgets only read the state and
 //! list wishes; [`crate::app::App`] has them carried out after the frame.
 
-use crate::notice::Notice;
-use crate::page::Dialog;
-
-pub use crate::export::MeshWish;
-pub use crate::film::FilmWish;
-pub use crate::fit::FitWish;
-pub use crate::lessons::LabWish;
-pub use crate::sculpt::SculptWish;
+pub use crate::export::wish::MeshWish;
+pub use crate::film::wish::FilmWish;
+pub use crate::fit::wish::FitWish;
+pub use crate::lessons::wish::LabWish;
+pub use crate::sculpt::wish::SculptWish;
 pub use crate::settings::Setting;
-pub use crate::stage::ViewWish;
-pub use crate::text::TextWish;
-pub use crate::tray::TrayWish;
-pub use crate::works::WorkWish;
+pub use crate::stage::wish::ViewWish;
+pub use crate::text::wish::TextWish;
+pub use crate::tray::wish::TrayWish;
+pub use crate::works::wish::WorkWish;
 
 /// A wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +73,66 @@ groups! {
 impl From<Notice> for Wish {
     fn from(notice: Notice) -> Self {
         Self::Notice(Box::new(notice))
+    }
+}
+
+/// A window over the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dialog {
+    /// Examples and own works.
+    Gallery,
+    /// The help.
+    Help,
+    /// A result of the text's jobs on pictures.
+    Result,
+    /// Choices of how to begin a sculpture.
+    Sculpt,
+    /// The model as a mesh.
+    Mesh,
+}
+
+/// A message across the top of the picture: something that went wrong or was done, perhaps with a
+/// button.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notice {
+    /// The text.
+    pub text: String,
+    /// Whether something went wrong.
+    pub bad: bool,
+    /// A button: its text and its wish.
+    pub action: Option<(String, Wish)>,
+    /// Time at which the message disappears by itself, seconds on the app's clock.
+    pub until: Option<f64>,
+}
+
+impl Notice {
+    /// Makes a message about something that was done. It disappears after six seconds.
+    #[must_use]
+    pub fn success(text: impl Into<String>, now: f64) -> Self {
+        Self {
+            text: text.into(),
+            bad: false,
+            action: None,
+            until: Some(now + 6.0),
+        }
+    }
+
+    /// Makes a message about something that went wrong. It stays until it is closed.
+    #[must_use]
+    pub fn trouble(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            bad: true,
+            action: None,
+            until: None,
+        }
+    }
+
+    /// Adds a button.
+    #[must_use]
+    pub fn with_button(mut self, text: &str, wish: impl Into<Wish>) -> Self {
+        self.action = Some((text.to_owned(), wish.into()));
+        self
     }
 }
 

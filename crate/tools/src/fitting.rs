@@ -39,6 +39,10 @@ pub struct FitStep {
     pub residual: f64,
     /// The share of outliers, [`fit::Progress::outliers`].
     pub outliers: f64,
+    /// Numbers of the points that were left out, once the fit has ended.
+    pub left_out: Vec<u32>,
+    /// Reason why the result cannot be relied on, if it cannot.
+    pub failure: Option<String>,
     /// The lines of a scene's text that deform the mesh like this.
     pub text: String,
 }
@@ -78,6 +82,8 @@ impl Job for FitMesh {
             iteration: now.iteration as u32,
             residual: now.residual,
             outliers: now.outliers,
+            left_out: Vec::new(),
+            failure: None,
             text: deform_lines(None, rigid, &frame.positions, &now.moves),
         };
         let mut tell = |now: &fit::Progress| {
@@ -86,9 +92,18 @@ impl Job for FitMesh {
             progress.report(fraction).is_continue()
                 && progress.pass(step(&rigid, now)).is_continue()
         };
-        let Fitted { rigid, last, .. } =
-            fit(&problem, &mut tell).map_err(|error| error.to_string())?;
-        Ok(step(&rigid, &last))
+        let Fitted {
+            rigid,
+            last,
+            left_out,
+            failure,
+            ..
+        } = fit(&problem, &mut tell).map_err(|error| error.to_string())?;
+        Ok(FitStep {
+            left_out,
+            failure,
+            ..step(&rigid, &last)
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use crate::coating::CoatScene;
 use crate::fitting::FitMesh;
 use crate::meshing::{MeshScene, WriteMesh};
 use crate::message::{Answer, DIFFERENT_VERSIONS, Request, pack};
-use crate::reading::{ReadMeasured, ReadMesh};
+use crate::reading::{ReadMeasured, ReadMesh, ReadSkeleton};
 use crate::view::ViewScene;
 use core::ops::ControlFlow;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -73,6 +73,7 @@ macro_rules! jobs {
 jobs!(
     ReadMesh,
     ReadMeasured,
+    ReadSkeleton,
     ViewScene,
     CoatScene,
     MeshScene,

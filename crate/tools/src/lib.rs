@@ -34,5 +34,5 @@ pub use fitting::{Controls, FitMesh, FitStep};
 pub use job::{Job, News, Pace, Progress, Work, serve};
 pub use meshing::{MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
 pub use message::{Answer, Request};
-pub use reading::{ReadMeasured, ReadMesh};
+pub use reading::{ReadMeasured, ReadMesh, ReadSkeleton};
 pub use view::{Detail, ViewMesh, ViewScene};

@@ -92,7 +92,10 @@ pub struct MeshFacts {
     pub sides: [f64; 3],
     /// Tolerance that was asked for, in units of the scene.
     pub tolerance: f64,
-    /// Largest proved distance between mesh and surface, millimetres.
+    /// Whether the error of some part was only measured.
+    pub is_measured: bool,
+    /// Largest distance between mesh and surface, millimetres: proved, but for the triangles that
+    /// are not, or measured.
     pub error: f64,
     /// Largest distance that samples found, either way, millimetres.
     pub measured: f64,
@@ -115,6 +118,7 @@ impl MeshFacts {
             sides: (model.bounds().size() * millimetres).to_array(),
             tolerance: model.tolerance,
             is_closed: model.parts.iter().all(|part| part.is_closed),
+            is_measured: model.parts.iter().any(|part| part.is_measured),
             notes: model.notes.clone(),
             ..Self::default()
         };

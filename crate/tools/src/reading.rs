@@ -2,10 +2,11 @@
 
 use crate::job::{Job, Pace, Progress};
 use fit::Observations;
+use limbs::{Graph, Recipe};
 use mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
 
-/// Reads a mesh from an OBJ, PLY, STL or GLB file.
+/// Reads a mesh from a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReadMesh {
     /// The file's name, whose ending says the format where the content does not.
@@ -22,6 +23,28 @@ impl Job for ReadMesh {
 
     fn run(self, _: &mut Progress<'_, TriangleMesh>) -> Result<TriangleMesh, String> {
         mesh::read(&self.name, &self.bytes).map_err(|error| error.to_string())
+    }
+}
+
+/// Makes a skeleton of a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReadSkeleton {
+    /// The file's name, whose ending says the format.
+    pub name: String,
+    /// The file's content.
+    #[serde(with = "serde_bytes")]
+    pub bytes: Vec<u8>,
+    /// Way to make it.
+    pub recipe: Recipe,
+}
+
+impl Job for ReadSkeleton {
+    type Output = Graph;
+    const PACE: Pace = Pace::Quick;
+
+    fn run(self, _: &mut Progress<'_, Graph>) -> Result<Graph, String> {
+        let made = self.recipe.make(&self.name, &self.bytes);
+        made.map_err(|error| error.to_string())
     }
 }
 
@@ -93,6 +116,20 @@ mod tests {
         assert_eq!(read("a.json", outline), Ok([0, 1]));
         let message = read("a.xyz", "0 0\n").unwrap_err();
         assert!(message.contains("line 1"), "{message}");
+    }
+
+    #[test]
+    fn skeleton_equals_that_of_a_direct_read() {
+        let bytes = b"1 3 0 0 0 1 -1\n2 3 20 0 0 1 1\n".to_vec();
+        let recipe = Recipe::default();
+        let direct = recipe.make("n.swc", &bytes).unwrap();
+        let name = String::from("n.swc");
+        let job = ReadSkeleton {
+            name,
+            bytes,
+            recipe,
+        };
+        assert_eq!(job.run(&mut Progress::silent()), Ok(direct));
     }
 
     #[test]

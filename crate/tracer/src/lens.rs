@@ -149,6 +149,7 @@ mod tests {
             let view = View {
                 size: [512, 384],
                 projection: scene.camera.projection(512, 384),
+                shortest: 1.0,
             };
             for (left, top) in [(0, 0), (256, 128), (448, 320)] {
                 let area = Area {
@@ -195,6 +196,7 @@ mod tests {
         let view = View {
             size: [32, 32],
             projection: scene.camera.projection(32, 32),
+            shortest: 1.0,
         };
         let area = Area {
             left: 0,

@@ -64,6 +64,8 @@ pub struct Picture {
     gamma: f32,
     /// The map of costs, if they are shown instead of colours.
     map: Option<Map>,
+    /// Side of the blocks of pixels that one ray is sent for.
+    block: u32,
 }
 
 impl Picture {
@@ -82,7 +84,10 @@ impl Picture {
             exposure: Exposure::of(scene, &world.unit, size),
             soft_light: rich.is_some_and(|rich| rich.has_soft_light(&world.lights)),
             world,
-            samples: settings.samples.clamp(1, Settings::MAX_SAMPLES),
+            samples: match settings.block {
+                ..=1 => settings.samples.clamp(1, Settings::MAX_SAMPLES),
+                _ => 1,
+            },
             contrast: Vec3::from(settings.contrast),
         };
         sampler.world.soft.pixel = view.pixel();
@@ -90,6 +95,10 @@ impl Picture {
             sampler,
             gamma: settings.gamma,
             map: settings.map.map(Map::new),
+            block: settings
+                .block
+                .clamp(1, Settings::MAX_BLOCK)
+                .next_power_of_two(),
         }
     }
 
@@ -179,15 +188,19 @@ impl Picture {
             return self.smooth(area, samples, stop, work, stats);
         }
         let mut pixels = Pixels::new(self, area, stop)?;
-        if pass == Pass::Coarse {
+        let block = match pass {
+            Pass::Coarse => self.block.max(BLOCK),
+            _ => self.block,
+        };
+        if block > 1 {
             let blocks = Area {
-                left: area.left / BLOCK,
-                top: area.top / BLOCK,
-                right: area.right.div_ceil(BLOCK),
-                bottom: area.bottom.div_ceil(BLOCK),
+                left: area.left / block,
+                top: area.top / block,
+                right: area.right.div_ceil(block),
+                bottom: area.bottom.div_ceil(block),
             };
-            let samples = sampler.sample(blocks, BLOCK, cache, stop, work, stats)?;
-            pixels.show::<BLOCK>(area, &samples);
+            let samples = sampler.sample(blocks, block, cache, stop, work, stats)?;
+            pixels.show(block, area, &samples);
             return Some(pixels.rgba);
         }
         // Square by square, so that samples need little memory.
@@ -198,7 +211,7 @@ impl Picture {
             if sampler.samples > 1 {
                 stats.edges += sampler.edges(&samples);
             }
-            pixels.show::<1>(part, &samples);
+            pixels.show(1, part, &samples);
         }
         Some(pixels.rgba)
     }
@@ -225,7 +238,7 @@ impl Picture {
         self.sampler
             .refine(packets, &mut samples, stop, work, stats)?;
         let mut pixels = Pixels::new(self, area, stop)?;
-        pixels.show::<1>(area, &samples);
+        pixels.show(1, area, &samples);
         Some(pixels.rgba)
     }
 
@@ -305,8 +318,10 @@ impl<'a> Pixels<'a> {
         })
     }
 
-    /// Shows samples in a part of the tile, each in a block of `BLOCK` pixels across and down.
-    fn show<const BLOCK: u32>(&mut self, part: Area, samples: &Samples) {
+    /// Shows samples in a part of the tile, each in a block of `block` pixels across and down, a
+    /// power of 2.
+    fn show(&mut self, block: u32, part: Area, samples: &Samples) {
+        let level = block.ilog2();
         let width = (self.area.right - self.area.left) as usize;
         // Neighbours often have the same colour, that of the background.
         let mut last = (Vec3::NAN, [0; 3]);
@@ -315,8 +330,8 @@ impl<'a> Pixels<'a> {
             let start = row + (part.left - self.area.left) as usize;
             let end = row + (part.right - self.area.left) as usize;
             let bytes = self.rgba[4 * start..4 * end].chunks_exact_mut(4);
-            let columns = (part.left..part.right).map(|x| x / BLOCK);
-            for (sample, pixel) in samples.row(y / BLOCK, columns).zip(bytes) {
+            let columns = (part.left..part.right).map(|x| x >> level);
+            for (sample, pixel) in samples.row(y >> level, columns).zip(bytes) {
                 let (colour, gamma) = match &self.picture.map {
                     Some(map) => (map.grey(sample, self.dearest), 1.0),
                     None => (sample.colour, self.picture.gamma),

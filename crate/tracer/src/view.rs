@@ -4,7 +4,7 @@ use crate::beam::Beam;
 use crate::layout::halves_across;
 use crate::ray::Ray;
 use crate::unit::Unit;
-use scene::{Projection, Scene};
+use scene::{Camera, Projection, Scene};
 
 /// The camera of a picture of a given size.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +12,8 @@ pub(crate) struct View {
     /// Width and height in pixels.
     pub size: [u32; 2],
     pub projection: Projection,
+    /// Shorter side of what a pixel shows, in its widths; 1 where pixels are square.
+    pub shortest: f64,
 }
 
 impl View {
@@ -23,6 +25,11 @@ impl View {
         Self {
             size,
             projection: camera.projection(size[0], size[1]),
+            shortest: if camera.pixel > 0.0 {
+                camera.pixel.clamp(Camera::PIXELS[0], 1.0)
+            } else {
+                1.0
+            },
         }
     }
 
@@ -36,9 +43,9 @@ impl View {
         }
     }
 
-    /// Returns the width of a pixel at distance 1.
+    /// Returns the width of a pixel at distance 1, or its height if that is less.
     pub fn pixel(&self) -> f64 {
-        2.0 * self.projection.half_width / f64::from(self.size[0])
+        2.0 * self.projection.half_width / f64::from(self.size[0]) * self.shortest
     }
 
     /// Returns the beam of all rays through a rectangle of pixels.

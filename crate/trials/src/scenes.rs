@@ -101,7 +101,7 @@ pub fn empty() -> Scene {
             target: DVec3::ZERO,
             up: DVec3::Y,
             fov: 50.0,
-            shift: [0.0; 2],
+            ..Camera::default()
         },
         ..Scene::default()
     };

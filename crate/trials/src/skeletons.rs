@@ -26,6 +26,9 @@ pub enum Kind {
     Curve,
 }
 
+/// The kinds of lines.
+pub const LINES: [Kind; 3] = [Kind::Segment, Kind::Arc, Kind::Curve];
+
 /// The kinds that have closed forms of the Cauchy kernel.
 pub const KINDS: [Kind; 5] = [
     Kind::Point,
@@ -239,34 +242,6 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
 #[must_use]
 pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
     Some(match *skeleton {
-        Skeleton::Segment { base, apex } => {
-            let middle = base + (apex - base) * at;
-            [
-                Skeleton::Segment { base, apex: middle },
-                Skeleton::Segment { base: middle, apex },
-            ]
-        }
-        Skeleton::Arc {
-            center,
-            u,
-            v,
-            radius,
-            angle,
-        } => {
-            let turn = angle * at;
-            let (sine, cosine) = libm::sincos(turn);
-            let parts = [
-                (u, v, turn),
-                (u * cosine + v * sine, v * cosine - u * sine, angle - turn),
-            ];
-            parts.map(|(u, v, angle)| Skeleton::Arc {
-                center,
-                u,
-                v,
-                radius,
-                angle,
-            })
-        }
         Skeleton::Triangle { corners: [a, b, c] } => {
             let middle = a + (b - a) * at;
             [
@@ -299,28 +274,113 @@ pub fn halves(skeleton: &Skeleton, at: f64) -> Option<[Skeleton; 2]> {
             }
             parts
         }
-        Skeleton::Curve {
-            control: [a, b, c, d],
-        } => {
-            let [ab, bc, cd] = [[a, b], [b, c], [c, d]].map(|ends| mix(ends, at));
-            let [abc, bcd] = [[ab, bc], [bc, cd]].map(|ends| mix(ends, at));
-            let m = mix([abc, bcd], at);
-            [
-                Skeleton::Curve {
-                    control: [a, ab, abc, m],
-                },
-                Skeleton::Curve {
-                    control: [m, bcd, cd, d],
-                },
-            ]
-        }
-        Skeleton::Point { .. } | Skeleton::Plane { .. } => return None,
+        ref line => [line.part(0.0, at)?, line.part(at, 1.0)?],
     })
 }
 
-/// Returns the point at a fraction of the way from one end to the other.
-fn mix([from, to]: [DVec3; 2], at: f64) -> DVec3 {
-    from + (to - from) * at
+/// Returns an arc around the origin.
+fn arc(radius: f64, angle: f64) -> Skeleton {
+    Skeleton::Arc {
+        center: DVec3::ZERO,
+        u: DVec3::X,
+        v: DVec3::Y,
+        radius,
+        angle,
+    }
+}
+
+/// Returns the corners of a triangle in the plane z = 0, the first at the origin.
+fn flat(b: [f64; 2], c: [f64; 2]) -> [DVec3; 3] {
+    [[0.0; 2], b, c].map(|[x, y]| DVec3::new(x, y, 0.0))
+}
+
+/// Returns skeletons of a kind that are degenerate, or nearly.
+#[must_use]
+pub fn degenerate(kind: Kind) -> Vec<Skeleton> {
+    let triangles = [
+        flat([2.0, 0.0], [0.0, 2.0]),
+        flat([2.0, 0.0], [1.0, 0.0]),
+        flat([2.0, 0.0], [1.0, 1e-16]),
+        flat([2.0, 0.0], [2.0, 0.0]),
+        flat([0.0, 0.0], [0.0, 0.0]),
+        flat([1e-9, 0.0], [0.0, 1e-9]),
+        flat([1e-300, 0.0], [0.0, 1e-300]),
+    ];
+    match kind {
+        Kind::Point => vec![Skeleton::Point {
+            center: DVec3::ZERO,
+        }],
+        Kind::Plane => vec![Skeleton::Plane {
+            point: DVec3::ZERO,
+            normal: DVec3::Z,
+        }],
+        Kind::Segment => [2.0, 0.0, 1e-300, 1e-30, 1e-9, 1e3]
+            .map(|length| Skeleton::Segment {
+                base: DVec3::ZERO,
+                apex: DVec3::X * length,
+            })
+            .to_vec(),
+        Kind::Arc => vec![
+            arc(1.0, TAU),
+            arc(1.0, TAU / 2.0),
+            arc(1.0, TAU.next_down()),
+            arc(1.0, 1e-9),
+            arc(1.0, 1e-300),
+            arc(1.0, 0.0),
+            arc(0.0, 3.0),
+            arc(1e-12, TAU),
+            arc(1e-300, TAU),
+            arc(1e3, 1e-3),
+        ],
+        Kind::Triangle => triangles
+            .map(|corners| Skeleton::Triangle { corners })
+            .to_vec(),
+        Kind::Polygon => triangles
+            .into_iter()
+            .map(|corners| Skeleton::Polygon {
+                rings: vec![corners.to_vec()],
+            })
+            .chain([
+                // Corners on a side, a corner given twice, a hole, two corners only.
+                Skeleton::Polygon {
+                    rings: vec![vec![
+                        DVec3::ZERO,
+                        DVec3::X,
+                        DVec3::X * 2.0,
+                        DVec3::X * 2.0,
+                        DVec3::Y * 2.0,
+                        DVec3::Y,
+                    ]],
+                },
+                Skeleton::Polygon {
+                    rings: vec![
+                        vec![DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0],
+                        flat([0.5, 0.0], [0.0, 0.5])
+                            .map(|p| p + DVec3::new(0.2, 0.2, 0.0))
+                            .to_vec(),
+                    ],
+                },
+                Skeleton::Polygon {
+                    rings: vec![vec![DVec3::ZERO, DVec3::X]],
+                },
+            ])
+            .collect(),
+        Kind::Curve => {
+            let [o, x, y] = [DVec3::ZERO, DVec3::X, DVec3::Y];
+            [
+                [o, o, o, o],
+                [o, x, x, x],
+                [o, x * 0.5, x * 1.5, x * 2.0],
+                [o, x * 2.0, o, x * 2.0],
+                [o, x, y, o],
+                [x, y, y, x],
+                [o, x * 1e-300, y * 1e-300, x * 1e-300],
+                [o, x * 1e-9, y * 1e-9, x * 1e-9],
+            ]
+            .map(|control| Skeleton::Curve { control })
+            .to_vec()
+        }
+    }
 }
 
 /// A turn, a scale and a shift.

@@ -4,6 +4,7 @@ use crate::shell::{command, find, read, root, run, tell, words};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 
 /// The target of everything that runs in the page.
 pub const WASM: &str = "wasm32-unknown-unknown";
@@ -86,6 +87,9 @@ pub fn wasm_opt() -> Option<PathBuf> {
 /// # Errors
 /// If `apt-get` fails, or this user may not install packages; the message says what to install.
 fn apt_install(packages: &[&str]) -> Result<()> {
+    // The lanes of a test wait for each other here: apt keeps a lock on its lists.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _turn = ONE_AT_A_TIME.lock();
     let root_user = read(&mut command("id", &["-u"])).is_some_and(|id| id == "0");
     let sudo = if root_user { "" } else { "sudo -n" };
     let packages = packages.join(" ");
@@ -117,6 +121,35 @@ pub fn firefox() -> Result<PathBuf> {
     find("firefox-esr").context("apt-get installed no Firefox")
 }
 
+/// Returns the name of this system as `/etc/os-release` has it, or nothing.
+fn system() -> String {
+    let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
+    let name = release.lines().find_map(|line| line.strip_prefix("ID="));
+    String::from(name.unwrap_or_default())
+}
+
+/// Returns whether there is a Vulkan driver, which on Debian and Ubuntu is installed if it is
+/// missing: one that draws without a graphics card.
+///
+/// # Errors
+/// If it could not be installed.
+pub fn graphics_driver() -> Result<bool> {
+    let folders = ["/usr/share", "/usr/local/share", "/etc"];
+    let mut drivers = folders
+        .map(|folder| format!("{folder}/vulkan/icd.d"))
+        .into_iter();
+    let is_there =
+        drivers.any(|path| std::fs::read_dir(path).is_ok_and(|mut files| files.next().is_some()));
+    if is_there {
+        return Ok(true);
+    }
+    let installs = ["debian", "ubuntu"].contains(&system().as_str());
+    if installs {
+        apt_install(&["mesa-vulkan-drivers"]).context("The graphics driver is missing")?;
+    }
+    Ok(installs)
+}
+
 /// Returns the Chromium that is installed, if it runs.
 fn find_chromium() -> Option<PathBuf> {
     let names = words("chromium chromium-browser google-chrome-stable google-chrome");
@@ -136,14 +169,12 @@ pub fn chromium() -> Result<PathBuf> {
     if let Some(path) = find_chromium() {
         return Ok(path);
     }
-    let release = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
-    let system = release.lines().find_map(|line| line.strip_prefix("ID="));
-    if system == Some("debian") {
-        // The second package draws without a graphics card.
-        apt_install(&["chromium", "mesa-vulkan-drivers"]).context("The browser is missing")?;
+    let system = system();
+    if system == "debian" {
+        apt_install(&["chromium"]).context("The browser is missing")?;
         return find_chromium().context("apt-get installed no chromium that runs");
     }
-    if system == Some("ubuntu") {
+    if system == "ubuntu" {
         // Ubuntu's own package is a snap, which does not run everywhere.
         let cli = node_packages()?.join("playwright-core/cli.js");
         let install = |options: &str| {

@@ -55,7 +55,7 @@ pub fn cage(deform: &Deform) -> Vec<Handle> {
 /// use rats::{Asset, Project};
 ///
 /// let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-/// let asset = Asset { name: "leaf.obj".into(), bytes: obj.to_vec().into() };
+/// let asset = Asset::new("leaf.obj", *obj);
 /// let text = "surface s, diffuse Red\nmesh s leaf.obj\ndeform { control <1 0 0> }\n";
 /// let project = Project::single(text);
 /// let compiled = rats::compile_at(&project, &[asset], 0.0);

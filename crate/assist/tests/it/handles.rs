@@ -210,10 +210,8 @@ fn copies_follow_and_loops_share_a_radius() {
 #[test]
 fn a_mesh_has_no_numbers() {
     let project = project("surface s, diffuse Red\nmesh s corner.obj\n");
-    let assets = [rats::Asset {
-        name: String::from("corner.obj"),
-        bytes: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".as_slice().into(),
-    }];
+    let obj = *b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let assets = [rats::Asset::new("corner.obj", obj)];
     let compiled = rats::compile_at(&project, &assets, 0.0);
     let handles = handles::handles(&project, &assets, 0, &compiled, 0, &DMat3::IDENTITY);
     assert_eq!(

@@ -31,7 +31,7 @@ pub fn scene(count: u32, kernel: Kernel, apart: f64) -> Scene {
         target: DVec3::ZERO,
         up: DVec3::Z,
         fov: 45.0,
-        shift: [0.0; 2],
+        ..Camera::default()
     };
     scene.lights.push(Light {
         kind: LightKind::Point {

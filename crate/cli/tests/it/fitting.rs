@@ -104,6 +104,10 @@ fn a_bent_head_is_found_again_and_written_as_text_and_mesh() {
     assert_eq!(told["controls"], 14);
     assert_eq!(told["moves"].as_array().map(Vec::len), Some(14));
     assert!(told["sights"].as_u64() > Some(60), "{told}");
+    // A twentieth of the points are outliers.
+    let left_out = told["left_out"].as_array().map_or(0, Vec::len);
+    assert!((20..80).contains(&left_out), "{told}");
+    assert!(told["failure"].is_null());
     // The text makes the mesh that was written beside it.
     let text = std::fs::read_to_string(folder.path("fitted.rat")).expect("written");
     assert!(
@@ -183,6 +187,39 @@ fn a_turned_cloud_is_met_by_an_alignment() {
             .code(),
         Some(0)
     );
+}
+
+#[test]
+fn fit_that_fails_is_told_and_its_best_is_written() {
+    let folder = prepare("failed");
+    // Points anywhere around the head.
+    let mut cloud = String::new();
+    let mut random = trials::Random::new(3);
+    for _ in 0..600 {
+        let [x, y, z] = [3.0, 2.0, 4.0].map(|half| random.range(-half, half));
+        cloud += &format!("{x} {y} {z}\n");
+    }
+    let cloud = folder.write("anywhere.xyz", &cloud);
+    let [mesh, cage, out] = ["head.obj", "cage.obj", "out.ply"].map(|name| folder.path(name));
+    let arguments = [
+        "fit",
+        &mesh,
+        "--control",
+        &cage,
+        "--points",
+        &cloud,
+        "-o",
+        &out,
+        "--json",
+    ];
+    let output = sinew(&arguments, "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("the fit failed: "), "{said}");
+    let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+    assert!(told["failure"].is_string() && told["left_out"].is_array());
+    let bytes = std::fs::read(&out).expect("written");
+    assert!(mesh::read("out.ply", &bytes).is_ok());
 }
 
 #[test]

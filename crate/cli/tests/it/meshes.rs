@@ -34,6 +34,7 @@ fn every_format_holds_the_same_closed_mesh() {
             "--json",
         ]);
         let part = &known["parts"][0];
+        assert_eq!(part["level"], "file");
         assert_eq!(part["closed"], true);
         assert_eq!(part["genus"], serde_json::json!([0]));
         assert_eq!(
@@ -97,6 +98,23 @@ fn levels_of_detail_and_coatings_are_written() {
     let part = &known["parts"][0];
     assert!(part["triangles"].as_f64().unwrap() >= 40.0);
     assert!(part["excess"].as_f64().unwrap() <= 0.1);
+}
+
+#[test]
+fn words_say_what_a_user_wants_to_know() {
+    let folder = Folder::new("mesh-said");
+    let file = folder.write("pair.rat", PAIR);
+    let out = folder.path("pair.stl");
+    let output = sinew(&["mesh", &file, "-o", &out, "--relative", "5e-3"], "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains(": Watertight. 1 part. 0."), "{said}");
+    assert!(
+        said.contains(" mm. ") && said.contains(" triangles"),
+        "{said}"
+    );
+    let arguments = ["--relative", "5e-3", "--json", "--prove"];
+    let known = mesh(&[&["mesh", &file, "-o", &out][..], &arguments].concat());
+    assert_eq!(known["parts"][0]["level"], "proof");
 }
 
 #[test]

@@ -289,6 +289,194 @@ fn links_carry_all_texts_there_and_back() {
     );
 }
 
+/// Pixels of a picture file, three bytes each, with its size.
+fn pixels(path: &str) -> ([u32; 2], Vec<u8>) {
+    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let picture = picture::file::decode(&bytes, picture::Format::Png).expect("a picture");
+    (picture.size(), picture.rgb())
+}
+
+/// Pictures of several `shoot`s have names of their own; `-o` numbers those before the last.
+#[test]
+fn several_shoots_write_several_pictures() {
+    let folder = Folder::new("shoots");
+    let text = "eyep 0 0 5\nfov 40\nframesize 16 12\nlight White, pos 3 4 5\n\
+        surface s diffuse Red\nsphere s 0.5 -1 0 0\nfilename one\nshoot\n\
+        surface s diffuse Blue\nsphere s 0.5 1 0 0\nfilename two.tga\nshoot\n\
+        reset data\nfilename three\nformat png\nsphere s 0.5 0 0 0\nshoot\n";
+    let file = folder.write("film.rat", text);
+    let output = sinew(&[&file], "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    for name in ["one.png", "two.tga", "three.png"] {
+        assert!(said.contains(&format!("wrote {name}, 16×12")), "{said}");
+    }
+    // First one red ball to the left, then two blue ones, then one in the middle.
+    fn lit((size, bytes): &([u32; 2], Vec<u8>), channel: usize) -> [usize; 2] {
+        let width = size[0] as usize;
+        let rgb = bytes.chunks_exact(3).enumerate();
+        let bright = rgb.filter(|(_, rgb)| rgb[channel] > 60 && rgb[2 - channel] < 60);
+        let sides: Vec<bool> = bright.map(|(i, _)| i % width < width / 2).collect();
+        let first = sides.iter().filter(|is_left| **is_left).count();
+        [first, sides.len() - first]
+    }
+    let one = pixels(&folder.path("one.png"));
+    assert!(
+        lit(&one, 0)[0] > 3 && lit(&one, 0)[1] == 0,
+        "{:?}",
+        lit(&one, 0)
+    );
+    assert_eq!(lit(&one, 2), [0, 0]);
+    let three = pixels(&folder.path("three.png"));
+    assert!(lit(&three, 2).into_iter().all(|count| count > 3));
+
+    let picture = folder.path("out.png");
+    for arguments in [
+        &["render", &file, "-o", &picture][..],
+        &["-o", &picture, &file],
+    ] {
+        let output = sinew(arguments, "");
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let names = ["out-1.png", "out-2.png", "out.png"].map(|name| folder.path(name));
+        let [first, second, last] = names.each_ref().map(|name| pixels(name));
+        assert_eq!((&first, &last), (&one, &three));
+        let both = lit(&second, 2);
+        assert!(both[0] > 3 && both[1] > 3, "{both:?}");
+        for name in names {
+            std::fs::remove_file(name).expect("removed");
+        }
+    }
+}
+
+/// `-` is a dataset that comes from the standard input.
+#[test]
+fn datasets_come_from_the_standard_input() {
+    let folder = Folder::new("input");
+    let picture = folder.path("ball.png");
+    let output = sinew(&["-o", &picture, "-"], BALL);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert_eq!(pixels(&picture).0, [32, 24]);
+    let output = sinew(&["check", "-"], "wibble\n");
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("input.rat:1:1"), "{said}");
+    let output = sinew(&["scene", "-"], BALL);
+    assert!(stdout(&output).contains("\"elements\""));
+}
+
+/// `log` and `stopwatch` do what they say; `pause` waits for nobody where nobody sits.
+#[test]
+fn logs_pauses_and_stopwatches() {
+    let folder = Folder::new("interludes");
+    let text = BALL.replace(
+        "shoot",
+        "log said.txt\nstopwatch start\nfilename a\nshoot\n\
+        stopwatch stop\npause look\nlog\nfilename b\nshoot",
+    );
+    let file = folder.write("ball.rat", &text);
+    let output = sinew(&["-r", "8", "6", &file], "");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let log = std::fs::read_to_string(folder.path("said.txt")).expect("the log");
+    assert!(
+        log.contains("wrote a.png") && log.contains("stopwatch: "),
+        "{log}"
+    );
+    assert!(
+        log.contains("look") && !log.contains("wrote b.png"),
+        "{log}"
+    );
+    // A stranger's log stays in the folder, and is none but a log.
+    for name in ["../said.txt", "/tmp/said.txt"] {
+        let file = folder.write("odd.rat", &format!("log {name}\n{BALL}"));
+        let output = sinew(&[&file], "");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("leads out of"), "{said}");
+    }
+}
+
+/// `cp x y z 0` is what an eye twice as near shows, but for a pixel here and there.
+#[test]
+fn parallel_rays_are_those_of_an_eye_far_away() {
+    let folder = Folder::new("parallel");
+    let model = "framesize 64 64\nlight White, pos 3 4 5\nsurface s diffuse White, rad 1, blob -2\n\
+        surface h diffuse Red\nsphere s 1 -1.5 0 0\ncylinder s 1 <-1 1 -6> <2 -1 6>\n\
+        sphere h 1 1.5 1 -5\nsphere h 1 1.5 -1.5 5\n";
+    let camera = "cp 0 0 1 0\nwindow -4 4 -4 4\n";
+    let near = "eyep 0 0 22918.3\nfov 0.02\n";
+    fn show(folder: &Folder, name: &str, text: String) -> Vec<u8> {
+        let file = folder.write(&format!("{name}.rat"), &text);
+        let picture = folder.path(&format!("{name}.png"));
+        let output = sinew(&["render", &file, "-o", &picture, "--threads", "1"], "");
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        pixels(&picture).1
+    }
+    let parallel = show(&folder, "parallel", format!("{camera}{model}"));
+    let far = show(&folder, "far", format!("{near}{model}"));
+    fn differ(a: &[u8], b: &[u8]) -> usize {
+        let pairs = a.chunks_exact(3).zip(b.chunks_exact(3));
+        let pairs = pairs.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 24));
+        pairs.count()
+    }
+    assert!(differ(&parallel, &far) < 12, "{}", differ(&parallel, &far));
+    let close = show(&folder, "close", format!("eyep 0 0 12\nfov 36.87\n{model}"));
+    assert!(differ(&parallel, &close) > 200);
+    // The two hard balls are equally large, though one is three times as far from a near eye.
+    fn red(pixels: &[u8], rows: std::ops::Range<usize>) -> usize {
+        let rows = pixels
+            .chunks_exact(3 * 64)
+            .enumerate()
+            .filter(|(y, _)| rows.contains(y));
+        let rgb = rows.flat_map(|(_, row)| row.chunks_exact(3));
+        rgb.filter(|rgb| rgb[0] > 40 && rgb[0] / 2 > rgb[1]).count()
+    }
+    let [above, below] = [red(&close, 0..32), red(&close, 32..64)];
+    assert!(below > 2 * above, "{above} {below}");
+}
+
+/// `sample 0.5` sends one ray for four pixels, which all show it.
+#[test]
+fn fewer_rays_than_pixels_make_blocks() {
+    let folder = Folder::new("blocks");
+    fn render(folder: &Folder, sample: &str, size: [&str; 2]) -> (Option<u64>, Vec<u8>) {
+        let picture = folder.path("ball.png");
+        let file = folder.write("ball.rat", &format!("sample {sample}\n{BALL}"));
+        let [w, h] = size;
+        let arguments = ["render", &file, "-o", &picture, "--json", "-r", w, h];
+        let output = sinew(&arguments, "");
+        assert!(output.status.success(), "{output:?}");
+        let summary: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+        (summary["rays"]["primary"].as_u64(), pixels(&picture).1)
+    }
+    for (sample, side) in [("0.5", 2), ("0.25", 4), ("0.125", 8), ("0.0625", 16)] {
+        let (rays, shown) = render(&folder, sample, ["150", "90"]);
+        let wanted = 150_u64.div_ceil(side) * 90_u64.div_ceil(side);
+        assert_eq!(rays, Some(wanted), "{sample}");
+        let side = side as usize;
+        for (y, x) in (0..90).flat_map(|y| (0..150).map(move |x| (y, x))) {
+            assert_eq!(
+                shown[3 * (150 * y + x)..][..3],
+                shown[3 * (150 * (y - y % side) + x - x % side)..][..3],
+                "{sample}: {x} {y}"
+            );
+        }
+    }
+    // A block shows what its middle does: blocks of 2 are the picture of half the size.
+    assert_eq!(render(&folder, "0.5", ["128", "96"]).1.len(), 3 * 128 * 96);
+    let (_, blocks) = render(&folder, "0.5", ["128", "96"]);
+    let (_, half) = render(&folder, "1", ["64", "48"]);
+    let small: Vec<u8> = (0..48)
+        .flat_map(|y| (0..64).flat_map(move |x| (0..3).map(move |k| 3 * (256 * y + 2 * x) + k)))
+        .map(|index| blocks[index])
+        .collect();
+    let apart = small
+        .iter()
+        .zip(&half)
+        .filter(|(a, b)| a.abs_diff(**b) > 2)
+        .count();
+    assert!(apart < 30, "{apart}");
+}
+
 #[test]
 fn the_options_of_rats() {
     let folder = Folder::new("classic");

@@ -62,6 +62,8 @@ pub struct Curve<S> {
     pub tapered: bool,
     /// Closed form, if there is one; there are no nodes and spans then.
     pub cone: Option<Cone<S>>,
+    /// Half the length of a cone of a compact kernel, in double precision only.
+    pub capsule: Option<f64>,
     /// Bounds on its pieces, in double precision only.
     pub piece_bounds: Vec<PieceBounds>,
     /// The coarser version for single precision; `None` in that version itself.
@@ -173,6 +175,7 @@ impl<S: Copy> Curve<S> {
             nodes: source.nodes.iter().map(|node| node.cast(f)).collect(),
             spans: source.spans.iter().map(|span| span.cast(f)).collect(),
             tapered: source.tapered,
+            capsule: None,
             piece_bounds: Vec::new(),
             single: None,
         }
@@ -227,7 +230,48 @@ impl Curve<f64> {
             rule: Vec::new(),
             tapered: true,
             cone: Some(cone),
+            capsule: None,
             piece_bounds: pieces.iter().map(Piece::bounds).collect(),
+            single: None,
+        }
+    }
+
+    /// Prepares a segment of a compact kernel whose support is a slender cone.
+    pub(crate) fn cone(cone: Cone<f64>) -> Self {
+        let Cone {
+            half,
+            middle,
+            slope,
+            ..
+        } = cone;
+        let [first, last] = [middle - slope * half, middle + slope * half];
+        // Pieces along which bounds vary twofold.
+        let count = if first.max(last) > 2.0 * first.min(last) {
+            8
+        } else {
+            1
+        };
+        let pieces = (0..count).map(|i| {
+            let [from, to] =
+                [i, i + 1].map(|i| (2.0 * f64::from(i) / f64::from(count) - 1.0) * half);
+            let [a, b] = [from, to].map(|t| middle + slope * t);
+            let density = first / a.min(b) * (1.0 + 1e-9);
+            PieceBounds {
+                center: DVec3::X * (0.5 * (from + to)),
+                radius: 0.5 * (to - from) * (1.0 + 1e-9),
+                mass: density * (to - from),
+                density,
+                thinness: (1.0 - 1e-9) / (a.max(b) * a.max(b)),
+            }
+        });
+        Self {
+            nodes: Vec::new(),
+            spans: Vec::new(),
+            rule: Vec::new(),
+            tapered: true,
+            piece_bounds: pieces.collect(),
+            capsule: Some(half),
+            cone: Some(cone),
             single: None,
         }
     }
@@ -257,6 +301,7 @@ impl Curve<f64> {
             }),
             tapered: law.is_some(),
             cone: None,
+            capsule: None,
             piece_bounds: pieces.iter().map(Piece::bounds).collect(),
             single: None,
         };
@@ -274,10 +319,16 @@ impl Curve<f64> {
     /// Upper bound on the field at distance d or more, as if all of the curve were at that
     /// distance.
     pub(crate) fn most_beyond(&self, kernel: Kernel, d: f64) -> f64 {
-        self.piece_bounds
-            .iter()
-            .map(|piece| piece.mass * kernel.value(d * piece.thinness.sqrt()))
-            .sum()
+        let pieces = self.piece_bounds.iter();
+        let sum = pieces.map(|piece| piece.mass * kernel.value(d * piece.thinness.sqrt()));
+        let sum: f64 = sum.sum();
+        if self.capsule.is_none() {
+            return sum;
+        }
+        // No more than an endless line of the largest density and the smallest width.
+        let [_, density, thinness] = self.extremes();
+        let width = thinness.sqrt();
+        sum.min(density / width * kernel.line(d * width))
     }
 
     /// `∫α|q′|dt` and the largest α, from above, and the smallest ω, from below.
@@ -346,7 +397,7 @@ impl Piece<'_> {
         let (sine, cosine) = libm::sincos(demands.turn.min(1.5));
         let straight = tangents.iter().all(|v| {
             let along = v.dot(middle);
-            // At a cusp the direction is rounding noise.
+            // The direction is rounding noise at a cusp.
             v.length() <= 1e-6 * fastest
                 || along > 0.0 && v.cross(middle).length() * cosine <= along * sine
         });
@@ -469,7 +520,7 @@ impl Piece<'_> {
                 .iter()
                 .map(|t| self.law(*t))
                 .collect();
-            // Between the sample points it may be slightly smaller.
+            // The least may be slightly smaller between the sample points.
             slimmest = values
                 .iter()
                 .fold(slimmest, |least, v| least.min(0.8 * v[1]));
@@ -504,7 +555,7 @@ impl Piece<'_> {
             .fold(0.0, |r: f64, p| r.max(p.distance(center)));
         let (mut density, mut thinness) = (1.0, 1.0);
         if self.law.is_some() {
-            // Both are smooth and vary little on a piece; 1 % covers the values between samples.
+            // Density and thinness vary little on a piece; 1 % covers the values between samples.
             let (mut most, mut least) = (0.0_f64, f64::INFINITY);
             for i in -8..=8 {
                 let [alpha, omega] = self.law(f64::from(i) / 8.0);

@@ -145,7 +145,7 @@ impl Place {
 
 impl Sweep {
     fn new(center: DVec3, [u, v]: [DVec3; 2], radius: f64, angle: f64) -> Self {
-        // With the same orthonormal axes as the field.
+        // The orthonormal axes are those of the field.
         let (u, v) = orthonormal(u, v);
         let angle = angle.clamp(0.0, TAU);
         let half = 0.5 * angle.min(PI);

@@ -243,7 +243,7 @@ pub struct Points {
     pub softening: f32,
     /// Largest coordinate of a place.
     furthest: f64,
-    /// [`Gegenbauer::factor`] for 0 to 3 axes.
+    /// Factors of [`Gegenbauer::factor`] for 0 to 3 axes.
     factors: [f32; 4],
     square: f32,
 }
@@ -294,7 +294,7 @@ impl Points {
                 }))
             };
             let (scale, whole) = (gather(&self.scale), gather(&self.whole));
-            // In kernel widths, squared.
+            // A squared distance in squared kernel widths is times this.
             let widths = scale * scale;
             let away: [f32x8; 3] =
                 core::array::from_fn(|i| (gather(&self.place[i]) - center[i]).abs());
@@ -395,7 +395,7 @@ mod tests {
             for case in 0..cases {
                 let mut direction = random.direction();
                 if case % 2 == 0 {
-                    // Nearly along an axis.
+                    // The direction is nearly that of an axis.
                     direction = (DVec3::X + 0.1 * direction).normalize();
                 }
                 let center = direction * (random.range(1.5, 3.5));

@@ -65,8 +65,9 @@ impl Falloff for Cauchy {
         (g, R::splat(2.0) * g * i)
     }
 
-    fn along(u: f64) -> f64 {
-        0.5 * (u / (1.0 + u * u) + libm::atan(u))
+    fn between(a: f64, b: f64) -> f64 {
+        let [inner, outer] = [a, b].map(|u| 0.5 * (u / (1.0 + u * u) + libm::atan(u)));
+        outer - inner
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {
@@ -84,10 +85,6 @@ impl Falloff for Cauchy {
         let one = R::splat(1.0);
         let i = one / (one + z * z);
         (R::splat(PI) * i, Self::falling(z * z).0)
-    }
-
-    fn width(blobbiness: f64) -> f64 {
-        blobbiness.sqrt()
     }
 
     #[inline(always)]

@@ -125,7 +125,7 @@ impl<R: Real> Ends<R> {
         let (rho0, rho1) = (rho2_0.sqrt(), rho2_1.sqrt());
         let (product, both) = (rho0 * rho1, t0 * t1);
         let beside = both.lt(zero);
-        // Of an end that is at the foot, too, one of the two terms is 0.
+        // One of the two terms is 0 if an end is at the foot.
         let cross = t1.abs() * rho0 + t0.abs() * rho1;
         let apart = k2 * (length * ((t0 + t1).abs() / cross.max(R::splat(1e-37))));
         let span = R::select(beside, cross, apart);

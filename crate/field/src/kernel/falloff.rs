@@ -1,4 +1,4 @@
-//! Everything that the program knows of a kernel.
+//! The trait of kernels: all that the program knows of one.
 use crate::bone::Bone;
 use crate::envelope::Roughness;
 use crate::influence::Crowding;
@@ -69,7 +69,8 @@ pub(crate) trait Falloff: Sized {
     /// Whether G has no singularity at any complex q. Of other smooth kernels none is nearer to
     /// q ≥ 0 than −1.
     const ENTIRE: bool = false;
-    /// Whether tapered segments have a closed form, a [`Cone`](crate::kernel::cubed::cone::Cone).
+    /// Whether tapered segments are evaluated at once, as a
+    /// [`Cone`](crate::kernel::cubed::cone::Cone).
     const HAS_CONES: bool = false;
 
     /// Computes G and its first four derivatives; at a kink those of the inner piece.
@@ -119,18 +120,18 @@ pub(crate) trait Falloff: Sized {
 
     /// Computes `∫₀ᵘ h`, along a line through the point.
     fn along(u: f64) -> f64 {
-        numeric::along::<Self>(u)
+        Self::between(0.0, u)
     }
 
     /// Computes `∫ₐᵇ h` along a line through the point, 0 ≤ a ≤ b.
     fn between(a: f64, b: f64) -> f64 {
-        Self::along(b) - Self::along(a)
+        numeric::between::<Self>(a, b)
     }
 
     /// Computes `∫ G` from p to q, 0 ≤ p ≤ q: over a ring around the point, of area π(q−p), the
     /// kernel's integral is π times this.
     fn over_ring(p: f64, q: f64) -> f64 {
-        numeric::ring::<Self>(p, q)
+        numeric::ring::<Self>(p, q - p)[0]
     }
 
     /// Computes the field of an infinite line at a distance; where that is infinite, of one of

@@ -68,8 +68,9 @@ impl Falloff for Gauss {
         libm::log(ratio)
     }
 
-    fn along(u: f64) -> f64 {
-        PI.sqrt() / 2.0 * libm::erf(u)
+    fn between(a: f64, b: f64) -> f64 {
+        let [inner, outer] = [a, b].map(|u| PI.sqrt() / 2.0 * libm::erf(u));
+        outer - inner
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {

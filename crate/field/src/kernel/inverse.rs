@@ -48,8 +48,9 @@ impl Falloff for Inverse {
         (g, R::splat(0.5) * g * i)
     }
 
-    fn along(u: f64) -> f64 {
-        libm::asinh(u / POLE2.sqrt())
+    fn between(a: f64, b: f64) -> f64 {
+        let [inner, outer] = [a, b].map(|u| libm::asinh(u / POLE2.sqrt()));
+        outer - inner
     }
 
     /// Differences of large numbers would lose the digits of a small ring far away.

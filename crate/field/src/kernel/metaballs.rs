@@ -82,9 +82,12 @@ impl Falloff for Metaballs {
         )
     }
 
-    fn along(u: f64) -> f64 {
-        let [outer, inner] = [u, 3.0 * u].map(|u| (1.0 - (1.0 - u.min(1.0)).powi(3)) / 3.0);
-        1.5 * outer - inner / 6.0
+    fn between(a: f64, b: f64) -> f64 {
+        let [inner, outer] = [a, b].map(|u| {
+            let [large, small] = [u, 3.0 * u].map(|u| (1.0 - (1.0 - u.min(1.0)).powi(3)) / 3.0);
+            1.5 * large - small / 6.0
+        });
+        outer - inner
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {

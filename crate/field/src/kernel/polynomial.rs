@@ -10,6 +10,7 @@ use crate::{Jet, Real};
 use core::f64::consts::PI;
 
 pub mod arc;
+pub mod cone;
 pub mod polygon;
 pub mod segment;
 
@@ -70,6 +71,7 @@ impl<P: Polynomial> Falloff for P {
     };
     const KINKS: &'static [f64] = &[1.0];
     const SMOOTHNESS: usize = <P as Polynomial>::SMOOTHNESS;
+    const HAS_CONES: bool = true;
     /// √y(12G″ + 8yG‴) and 12G″ + 48yG‴ at y ≤ q ≤ 1, G″ = 2c₂ + 6c₃v, G‴ = −6c₃.
     const INSIDE: [f64; 2] = {
         let [c2, c3] = P::COEFFICIENTS;
@@ -100,13 +102,16 @@ impl<P: Polynomial> Falloff for P {
         (v * v * (a + b), v * (a + a + R::splat(3.0) * b))
     }
 
-    fn along(u: f64) -> f64 {
+    fn between(a: f64, b: f64) -> f64 {
         let [c2, c3] = P::COEFFICIENTS;
-        let u = u.min(1.0);
-        let q = u * u;
-        let fourth = 1.0 - q * (2.0 / 3.0 - q / 5.0);
-        let sixth = 1.0 - q * (1.0 - q * (3.0 / 5.0 - q / 7.0));
-        u * (c2 * fourth + c3 * sixth)
+        let [inner, outer] = [a, b].map(|u| {
+            let u = u.min(1.0);
+            let q = u * u;
+            let fourth = 1.0 - q * (2.0 / 3.0 - q / 5.0);
+            let sixth = 1.0 - q * (1.0 - q * (3.0 / 5.0 - q / 7.0));
+            u * (c2 * fourth + c3 * sixth)
+        });
+        outer - inner
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {
@@ -145,6 +150,7 @@ impl<P: Polynomial> Falloff for P {
             Bone::Arc(bone) => arc::jet(P::COEFFICIENTS, bone, p),
             Bone::Triangle(bone) => polygon::jet(P::COEFFICIENTS, &bone.edges, p),
             Bone::Polygon(bone) => polygon::jet(P::COEFFICIENTS, &bone.edges, p),
+            Bone::Curve(bone) if let Some(cone) = &bone.cone => cone::jet(P::COEFFICIENTS, cone, p),
             _ => numeric::jet::<Self, R>(bone, p),
         }
     }

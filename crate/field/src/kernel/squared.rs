@@ -46,9 +46,10 @@ impl Falloff for Squared {
         (i, i * i)
     }
 
-    fn along(u: f64) -> f64 {
+    fn between(a: f64, b: f64) -> f64 {
         let pole = POLE2.sqrt();
-        libm::atan(u / pole) / pole
+        let [inner, outer] = [a, b].map(|u| libm::atan(u / pole) / pole);
+        outer - inner
     }
 
     fn over_ring(p: f64, q: f64) -> f64 {

@@ -135,7 +135,7 @@ pub(super) trait Binary: Real {
 /// the least relative error where |r| ≤ ½·ln 2 (and a little more), which is 3·10⁻⁹.
 #[inline(always)]
 pub(super) fn decay<R: Binary>(x: R) -> R {
-    // From here on n = −127, which encodes 0.
+    // A larger x has n = −127, too, which encodes 0.
     let x = x.min(R::splat(88.1));
     // Adding 1.5·2²³ rounds to a whole number, and leaves that in the low bits.
     let shifted = R::splat(ROUNDER) - x * R::splat(core::f64::consts::LOG2_E);
@@ -150,7 +150,7 @@ pub(super) fn decay<R: Binary>(x: R) -> R {
         0.001_381_443_325_322_647_7,
     ]
     .map(R::splat);
-    // In independent parts: latency dominates where many e⁻ˣ are computed.
+    // Independent parts, as latency dominates where many e⁻ˣ are computed.
     let square = r * r;
     let low = R::splat(1.0) + r + square * (a + b * r);
     let power = low + square * square * (c + d * r + e * square);
@@ -163,7 +163,7 @@ pub(super) fn decay<R: Binary>(x: R) -> R {
 /// above it by no more than 6.2 %.
 #[inline(always)]
 pub(super) fn decay_at_most<R: Binary>(x: R) -> R {
-    // No exponent is less than 1.
+    // The exponent stays 1 or more.
     let x = x.min(R::splat(87.3));
     let shifted = R::splat(EIGHT_BITS) - x * R::splat(core::f64::consts::LOG2_E);
     shifted.bits_up::<15>()

@@ -47,7 +47,7 @@ impl Geometry for Arc {
         if self.angle >= PI {
             return Some((self.center, self.radius));
         }
-        // Up to a half circle the sphere over the chord holds the arc.
+        // The sphere over the chord holds an arc of up to a half circle.
         let (u, v) = orthonormal(self.u, self.v);
         let (sine, cosine) = libm::sincos(self.angle.max(0.0) / 2.0);
         let middle = self.center + (u * cosine + v * sine) * (self.radius * cosine);

@@ -1,9 +1,6 @@
 //! A cubic Bézier curve.
-use super::{Geometry, Map, Skeleton, ball_around};
-use crate::Kernel;
-use crate::bone::{self, Bone};
-use crate::term::{Frame, frame};
-use glam::{DMat3, DVec3};
+use super::{Geometry, Map, Skeleton};
+use glam::DVec3;
 
 /// Number of lines that draw a curve.
 const LINES: usize = 48;
@@ -27,49 +24,17 @@ impl Geometry for Curve {
         true
     }
 
-    fn measure(&self) -> f64 {
-        let c = cubic(self.control);
-        let breaks: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0).collect();
-        crate::integral::integral(
-            &mut |t| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length(),
-            &breaks,
-            1e-12,
-        )
-    }
-
     /// The length of the control polygon.
     fn most_length(&self) -> f64 {
         let sides = self.control.windows(2);
         sides.map(|w| w[0].distance(w[1])).sum()
     }
 
-    /// The best of samples, improved by bisection of the steps to either side.
     fn nearest(&self, point: DVec3) -> DVec3 {
         let c = cubic(self.control);
-        let at = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-        let distance = |t: f64| at(t).distance_squared(point);
-        let mut best = (0..=SAMPLES)
-            .map(|i| f64::from(i) / f64::from(SAMPLES))
-            .min_by(|s, t| distance(*s).total_cmp(&distance(*t)))
-            .unwrap_or(0.0);
-        let mut step = 1.0 / f64::from(SAMPLES);
-        while step > 1e-12 {
-            step *= 0.5;
-            for t in [(best - step).max(0.0), (best + step).min(1.0)] {
-                if distance(t) < distance(best) {
-                    best = t;
-                }
-            }
-        }
-        at(best)
+        nearest_along(|t| c[0] + t * (c[1] + t * (c[2] + t * c[3])), point)
     }
 
-    /// A ball around the control points, in whose hull the curve lies.
-    fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
-        Some(ball_around(self.control.iter()))
-    }
-
-    /// The mean of the control points.
     fn middle(&self) -> DVec3 {
         self.control.iter().sum::<DVec3>() / 4.0
     }
@@ -115,18 +80,40 @@ impl Geometry for Curve {
         Some(Skeleton::Curve { control })
     }
 
-    fn place(&self, kernel: Kernel, s: f64) -> (Frame<f64>, Bone<f64>) {
-        let origin = self.control.iter().sum::<DVec3>() / 4.0;
-        let cubics = [cubic(self.control.map(|p| (p - origin) * s))];
-        (
-            frame(origin, DMat3::IDENTITY, s),
-            Bone::Curve(Box::new(bone::Curve::new(kernel, &cubics, &cubics, None))),
-        )
-    }
-
     fn cubics(&self, _: f64) -> Vec<[DVec3; 4]> {
         vec![self.control]
     }
+}
+
+/// Computes a Bézier curve's length.
+pub(super) fn length(control: [DVec3; 4]) -> f64 {
+    let c = cubic(control);
+    let breaks: Vec<f64> = (0..=8).map(|i| f64::from(i) / 8.0).collect();
+    crate::integral::integral(
+        &mut |t| (c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])).length(),
+        &breaks,
+        1e-12,
+    )
+}
+
+/// Finds the point of a line, given by its place at a share of its parameter, that is nearest to a
+/// point: the best of samples, improved by bisection of the steps to either side.
+pub(super) fn nearest_along(at: impl Fn(f64) -> DVec3, point: DVec3) -> DVec3 {
+    let distance = |t: f64| at(t).distance_squared(point);
+    let mut best = (0..=SAMPLES)
+        .map(|i| f64::from(i) / f64::from(SAMPLES))
+        .min_by(|s, t| distance(*s).total_cmp(&distance(*t)))
+        .unwrap_or(0.0);
+    let mut step = 1.0 / f64::from(SAMPLES);
+    while step > 1e-12 {
+        step *= 0.5;
+        for t in [(best - step).max(0.0), (best + step).min(1.0)] {
+            if distance(t) < distance(best) {
+                best = t;
+            }
+        }
+    }
+    at(best)
 }
 
 /// Computes a Bézier curve's coefficients in powers of t.

@@ -3,8 +3,8 @@
 
 use field::Kernel;
 use glam::DVec3;
-use oracle::cells;
 use oracle::evaluation::{Evaluation, jet, peak};
+use oracle::{cells, kernels};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use trials::skeletons::{ALL_KINDS, Kind};
 use wide::f32x8;
@@ -18,6 +18,19 @@ macro_rules! chart {
     (() $($module:ident: $kernel:ident;)*) => {$(
         mod $module {
             use super::*;
+
+            #[test]
+            fn values_as_defined() {
+                kernels::values_as_defined(Kernel::$kernel, &|q| Kernel::$kernel.derivatives(q));
+            }
+
+            #[test]
+            fn integrals_as_defined() {
+                let kernel = Kernel::$kernel;
+                kernels::integrals_over_lines(kernel, &|a, b| kernel.between(a, b));
+                kernels::integrals_over_rings(kernel, &|p, q| kernel.over_ring(p, q));
+            }
+
             chart!(@checks Kernel::$kernel;
                 matches_quadrature: DOUBLE;
                 single_matches_double: [SINGLE, EIGHT];
@@ -47,7 +60,11 @@ macro_rules! chart {
     };
 }
 
-field::each_kernel!(chart!());
+mod conformance {
+    use super::*;
+
+    field::each_kernel!(chart!());
+}
 
 /// Asserts that a check of every kernel on a kind of skeleton finds a fault.
 fn is_told(kind: Kind, check: impl Fn(Kernel, Kind)) {
@@ -55,6 +72,33 @@ fn is_told(kind: Kind, check: impl Fn(Kernel, Kind)) {
         let held = catch_unwind(AssertUnwindSafe(|| check(kernel, kind)));
         assert!(held.is_err(), "{kernel:?} {kind:?}");
     }
+}
+
+/// Asserts that a check of every kernel finds a fault.
+fn is_told_of(check: impl Fn(Kernel)) {
+    for kernel in Kernel::ALL {
+        let held = catch_unwind(AssertUnwindSafe(|| check(kernel)));
+        assert!(held.is_err(), "{kernel:?}");
+    }
+}
+
+#[test]
+fn a_kernel_that_is_off_is_told() {
+    for (order, share) in [(0, 1e-14), (1, 1e-9), (2, 1e-9)] {
+        is_told_of(|kernel| {
+            kernels::values_as_defined(kernel, &|q| {
+                let mut derivatives = kernel.derivatives(q);
+                derivatives[order] *= 1.0 + share;
+                derivatives
+            });
+        });
+    }
+    is_told_of(|kernel| {
+        kernels::integrals_over_lines(kernel, &|a, b| kernel.between(a, b) * (1.0 + 3e-9));
+    });
+    is_told_of(|kernel| {
+        kernels::integrals_over_rings(kernel, &|p, q| kernel.over_ring(p, q) + 3e-9);
+    });
 }
 
 #[test]

@@ -6,6 +6,7 @@ use field::real::Scalar;
 use field::{Evaluate, Kernel, Primitive, Shaping, Skeleton};
 use glam::DVec3;
 use std::time::Instant;
+use trials::Random;
 use trials::skeletons::{ALL_KINDS, Kind, shaping};
 use wide::f32x8;
 
@@ -116,9 +117,6 @@ fn speed() {
 fn typical(kind: Kind) -> Skeleton {
     let flat = [DVec3::X, DVec3::Y, DVec3::new(-0.3, -0.2, 0.0)];
     match kind {
-        Kind::Point => Skeleton::Point {
-            center: DVec3::ZERO,
-        },
         Kind::Segment => Skeleton::Segment {
             base: DVec3::new(-0.5, 0.1, 0.0),
             apex: DVec3::new(0.5, 0.2, 0.1),
@@ -146,6 +144,7 @@ fn typical(kind: Kind) -> Skeleton {
                 DVec3::new(0.5, 0.0, 0.0),
             ],
         },
+        other => Random::fixed(1).skeleton(other, 1.0),
     }
 }
 

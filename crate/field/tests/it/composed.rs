@@ -65,7 +65,7 @@ fn a_ball_is_e_to_the_distance() {
     assert!((jet.value - want).abs() < 1e-15);
     assert!((jet.gradient[1] + 3.0 * want).abs() < 1e-14);
     assert_eq!([jet.gradient[0], jet.gradient[2]], [0.0; 2]);
-    // No direction at the centre.
+    // The gradient has no direction at the centre.
     assert_eq!(ball.jet(DVec3::X).gradient, [0.0; 3]);
     for (hardness, radius) in [
         (0.0, 1.0),

@@ -2,10 +2,10 @@
 
 use core::f64::consts::{PI, TAU};
 use field::{Evaluate, Kernel, Primitive, Real, Shaping, Skeleton};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use oracle::evaluation::{extent, jet, primitive, sensitivity, single};
 use oracle::quadrature;
-use trials::skeletons::{KINDS, Kind, shaping};
+use trials::skeletons::{KINDS, Kind, move_by, shaping};
 use trials::{Random, count};
 use wide::f32x8;
 
@@ -303,7 +303,7 @@ fn along_ray_is_the_field() {
                 continue; // The shift would change a needle's shape.
             }
             let shift = DVec3::new(1e4, -2e4, 3e4);
-            translate(&mut skeleton, shift);
+            skeleton = move_by(&skeleton, DQuat::IDENTITY, 1.0, shift);
             let primitive = primitive(skeleton.clone(), &random.shaping(0.1), None);
             let origin = shift + random.vector(1.0);
             let direction = random.direction() * random.range(0.5, 2.0);
@@ -325,18 +325,5 @@ fn along_ray_is_the_field() {
             assert!((value - want).abs() <= 1e-9 * want.abs(), "{primitive:?}");
             assert!((derivative - slope).abs() <= 1e-9 * scale, "{primitive:?}");
         }
-    }
-}
-
-fn translate(skeleton: &mut Skeleton, by: DVec3) {
-    match skeleton {
-        Skeleton::Point { center } | Skeleton::Arc { center, .. } => *center += by,
-        Skeleton::Segment { base, apex } => {
-            *base += by;
-            *apex += by;
-        }
-        Skeleton::Triangle { corners } => corners.iter_mut().for_each(|p| *p += by),
-        Skeleton::Plane { point, .. } => *point += by,
-        Skeleton::Polygon { .. } | Skeleton::Curve { .. } => unreachable!("not among KINDS"),
     }
 }

@@ -138,7 +138,7 @@ fn balls_have_small_errors_and_true_slopes() {
                 });
             let told = cell.expansion.jet(local.to_array(), f64::from).gradient;
             let told = DVec3::from_array(told) / cell.reach();
-            // By Markov's inequality a polynomial of degree 5 with this error has at most 25 times
+            // Markov's inequality: a polynomial of degree 5 with this error has at most 25 times
             // its slope.
             let most = 40.0 * cell.error / cell.reach();
             assert!(told.distance(slope) <= most, "{kernel:?} {told} {slope}");
@@ -281,7 +281,7 @@ fn edits_give_the_bits_of_a_fresh_hierarchy() {
                     all += usize::from(!own.is_empty);
                 }
             }
-            // Where the surface alone is looked for, few small cells are not empty.
+            // Few small cells are not empty if the surface alone is looked for.
             let least = if case / 3 == 1 { 20 } else { 4 };
             assert!(taken * least > all, "case {case}: {taken} of {all}");
         }
@@ -434,6 +434,19 @@ fn sums_are_as_exact_as_is_asked() {
         let off = (told.value - want.value).abs();
         assert!(off <= part.error()[0] + 1e-9);
         largest = largest.max(off);
+        let lanes = point.to_array().map(|x| wide::f32x8::splat(x as f32));
+        let eight = sum.jet8_of(&part, lanes);
+        for lane in [0, 7] {
+            let off = f64::from(eight.value.to_array()[lane]) - told.value;
+            assert!(off.abs() <= 1e-4, "{off}");
+            for (slope, eight) in told.gradient.iter().zip(eight.gradient) {
+                let off = f64::from(eight.to_array()[lane]) - slope;
+                assert!(
+                    off.abs() <= 1e-3 * (1.0 + DVec3::from_array(told.gradient).length()),
+                    "{off}"
+                );
+            }
+        }
         let bounds = sum.variation(Some(&part), ball).range;
         assert!(bounds.value[0] <= want.value && want.value <= bounds.value[1]);
         assert!(DVec3::from_array(want.gradient).length() <= bounds.slope);

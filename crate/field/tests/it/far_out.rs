@@ -49,7 +49,7 @@ fn arcs_keep_their_digits() {
             "{double:e} {want:e} {arc:?} {point}"
         );
         let single = f64::from(arc.value(point.to_array().map(|x| x as f32)));
-        // Where it is T or so; coordinates are rounded, too.
+        // The field is about T; coordinates are rounded, too.
         assert!(
             (single - want).abs() <= 3e-4 * want + 1e-6,
             "{single:e} {want:e} {arc:?} {point}"

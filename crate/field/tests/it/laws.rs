@@ -148,7 +148,7 @@ fn radius_in_isolation() {
                 );
                 assert!(gradient.y < 0.0);
             }
-            // And a circle of large radius is a line.
+            // A circle of large radius is a line.
             let ring = Skeleton::Arc {
                 center: DVec3::Y * -long,
                 u: DVec3::Y,
@@ -344,7 +344,7 @@ fn profiles() {
             let want = quadrature::value(&primitive, point);
             let (value, gradient) = jet::<f64>(&primitive, point);
             let (single, _) = jet::<f32x8>(&primitive, point);
-            // At kinks and jumps (and the axis of an arc) rounding decides for a side: all that
+            // Rounding decides for a side at kinks and jumps (and at the axis of an arc): all that
             // the neighbourhood takes on is right.
             let h = 1e-6;
             let scale = 30.0 * primitive.most_beyond(0.0);
@@ -396,7 +396,7 @@ fn waves_along_an_arc() {
         let p = DVec3::new(2.0 * cosine, 2.0 * sine, 0.2);
         jet::<f64>(&with, p).0 / jet::<f64>(&without, p).0
     };
-    // On the axis, where all angles meet, the mean of the waves.
+    // The mean of the waves counts on the axis, where all angles meet.
     let axis = DVec3::new(0.0, 0.0, 0.2);
     let mean = 1.15 * (0.5 + 0.2 * (1.0 + (1.0 - libm::cos(22.0)) / 22.0) / 2.0);
     let on_axis = jet::<f64>(&with, axis).0 / jet::<f64>(&without, axis).0;

@@ -99,7 +99,7 @@ fn bounds_on_the_logarithm_hold_in_balls() {
             radius: random.decades(-3.0, -0.3),
         };
         let found = check(&sum, ball, &logarithm.variation(None, ball), &mut random);
-        // In a part that leaves some out.
+        // The slack of a part that leaves some out.
         let slack = Slack {
             left_out: Logarithm::slack(1e-7),
             far: 0.0,
@@ -129,7 +129,7 @@ fn logarithm_is_the_function_at_the_threshold() {
         assert!((of.value - THRESHOLD).abs() < 1e-12);
         let off = DVec3::from_array(of.gradient) - DVec3::from_array(at.gradient);
         assert!(off.length() < 1e-12);
-        // It grows with the function.
+        // The logarithm grows with the function.
         let above = Logarithm::of(&Jet {
             value: THRESHOLD + 1e-6,
             ..at

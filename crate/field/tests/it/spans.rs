@@ -1,4 +1,4 @@
-//! [`field::Bound`] holds: for values, slopes, curvatures and the errors of Hermite spans.
+//! Bounds ([`field::Bound`]) hold: for values, slopes, curvatures and the errors of Hermite spans.
 
 use field::bound::{Bound, Estimate, SpanLength};
 use field::{Kernel, Primitive, Profile, Shaping, Taper, Wave};
@@ -71,7 +71,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
     let (mut tightest, mut tightest_span) = (0.0_f64, 0.0_f64);
     let (mut tightest_slope, mut tightest_turn) = (0.0_f64, 0.0_f64);
     let mut tightest_bend = 0.0_f64;
-    // Those that taper take long to prepare; fewer do not come near to the bounds.
+    // Tapers take long to prepare, so that there are fewer, which do not come near to the bounds.
     let [cases, least] = if dress == Dress::Tapered {
         [8, 8]
     } else {
@@ -128,7 +128,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
                 "{turned} > {allowed} on {h}: {primitive:?} {center}"
             );
             tightest_turn = tightest_turn.max(turned / allowed);
-            // On a chord the slope is off its linear interpolant by an eighth of the third
+            // The slope on a chord is off its linear interpolant by an eighth of the third
             // derivative times its square.
             let bent = slope_at(0.5 * h) - 0.5 * (slope_at(0.3 * h) + slope_at(0.7 * h));
             let allowed = 0.125 * (0.4 * h) * (0.4 * h) * bound.third(near);
@@ -172,8 +172,7 @@ fn bounds_hold_of(kernel: Kernel, kind: Kind, dress: Dress) {
         "{kind:?} {dress:?}: {tightest} {tightest_span} {tightest_slope}"
     );
     assert!(tightest_turn > least, "{kind:?} {dress:?}: {tightest_turn}");
-    // Of kernels that end in a kink, and of planes, there may be no place where the third
-    // derivative is told.
+    // The third derivative may be told nowhere, for kernels that end in a kink and for planes.
     assert!(
         tightest_bend <= 1.0 && (tightest_bend == 0.0 || tightest_bend > 0.1 * least),
         "{kind:?} {dress:?}: {tightest_bend}"

@@ -82,8 +82,8 @@ pub static WORDS: Words = Words {
     sentences: "One coarse mesh, here in a section, becomes a soft surface in two ways: with a \
                 ball around each facet, or with a thin shell. Both surfaces are fitted to the \
                 same measured points, and the mesh moves with its surface. A ball is as thick as \
-                its facet is large, so its mesh ends up away from the points; a shell is as thin \
-                as you like.",
+                its facet is large: its mesh comes near the points, but its surface stays away \
+                from them; a shell is as thin as you like.",
 };
 
 /// The lesson's state.

@@ -7,6 +7,7 @@ use crate::graph::{Cap, Clip, Graph, Limb, Side, growth};
 use glam::{DAffine3, DVec3};
 use mesh::TriangleMesh;
 use mesh::formats::package::{Lattice, Object, Package, Part, Property};
+use mesh::limits::{MAX_TRIANGLES, MAX_VERTICES};
 use std::collections::HashMap;
 
 /// Share by which a map's scales may differ along its axes before radii are said to be rough.
@@ -24,8 +25,15 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>,
         let Some(lattice) = &object.lattice else {
             return Ok(());
         };
-        add(part, object, lattice, &place, &mut draft, &mut counts)
-            .map_err(|Error(text)| mesh::Error(text))
+        add(
+            &package,
+            (part, object),
+            lattice,
+            &place,
+            &mut draft,
+            &mut counts,
+        )
+        .map_err(|Error(text)| mesh::Error(text))
     })?;
     if draft.is_bare() {
         return Ok(None);
@@ -53,8 +61,8 @@ struct Counts {
 
 /// Adds a lattice at a place, in millimetres.
 fn add(
-    part: &Part,
-    object: &Object,
+    package: &Package,
+    (part, object): (&Part, &Object),
     lattice: &Lattice,
     place: &DAffine3,
     draft: &mut Draft,
@@ -69,7 +77,7 @@ fn add(
         .iter()
         .any(|scale| (scale - growth).abs() > UNEVEN * growth);
     counts.uneven += usize::from(is_uneven);
-    let clip = clip(part, lattice, place)?;
+    let clip = clip(package, part, lattice, place)?;
     counts.clips += usize::from(clip.is_some());
     let clip = clip.map(|clip| draft.clip(clip));
     // The node of each vertex that is used.
@@ -153,38 +161,51 @@ fn kind<'a>(
     }
 }
 
-/// Returns the mesh that a lattice is clipped by, at its place.
-fn clip(part: &Part, lattice: &Lattice, place: &DAffine3) -> Result<Option<Clip>, Error> {
+/// Returns the mesh that a lattice is clipped by, at its place: an object's, with those of its
+/// components.
+fn clip(
+    package: &Package,
+    part: &Part,
+    lattice: &Lattice,
+    place: &DAffine3,
+) -> Result<Option<Clip>, Error> {
     let Some((is_inside, id)) = lattice.clip else {
         return Ok(None);
     };
-    let Some(object) = part.objects.get(&id) else {
-        return fail(format!(
-            "this 3MF file has no object {id}, which clips a lattice"
-        ));
-    };
-    let count = object.positions.len() as u32;
-    let is_mirror = place.matrix3.determinant() < 0.0;
-    let triangles = object
-        .triangles
-        .iter()
-        .map(|([a, b, c], _)| match is_mirror {
-            true => [*a, *c, *b],
-            false => [*a, *b, *c],
-        });
-    let triangles: Vec<[u32; 3]> = triangles.collect();
-    if let Some(beyond) = triangles.iter().flatten().find(|i| **i >= count) {
-        return fail(format!(
-            "a triangle of this 3MF file has vertex {beyond} (from 0) of {count}"
-        ));
-    }
-    let positions = object.positions.iter().map(|p| place.transform_point3(*p));
+    let mut mesh = TriangleMesh::default();
+    package.visit_object(part, id, place, |_, object, place| {
+        let (first, count) = (mesh.positions.len(), object.positions.len());
+        if mesh.triangles.len() + object.triangles.len() > MAX_TRIANGLES
+            || first + count > MAX_VERTICES
+        {
+            return Err(mesh::Error(format!(
+                "the mesh that clips a lattice has more than {MAX_TRIANGLES} triangles"
+            )));
+        }
+        let is_mirror = place.matrix3.determinant() < 0.0;
+        for (corners, _) in &object.triangles {
+            if let Some(beyond) = corners.iter().find(|i| **i as usize >= count) {
+                return Err(mesh::Error(format!(
+                    "a triangle of this 3MF file has vertex {beyond} (from 0) of {count}"
+                )));
+            }
+            let [a, b, c] = corners.map(|i| first as u32 + i);
+            mesh.triangles.push(match is_mirror {
+                true => [a, c, b],
+                false => [a, b, c],
+            });
+        }
+        let positions = object.positions.iter();
+        mesh.positions
+            .extend(positions.map(|p| place.transform_point3(*p)));
+        Ok(())
+    })?;
     Ok(Some(Clip {
         side: if is_inside {
             Side::Inside
         } else {
             Side::Outside
         },
-        mesh: TriangleMesh::new(positions.collect(), triangles),
+        mesh,
     }))
 }

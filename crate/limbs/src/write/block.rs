@@ -1,8 +1,7 @@
 //! The block form of the language of scenes.
 
 use super::Written;
-use crate::graph::{Graph, Limb, Node};
-use std::collections::HashMap;
+use crate::graph::Graph;
 use std::fmt::Write as _;
 
 impl Graph {
@@ -34,11 +33,7 @@ impl Graph {
             }
         }
         for sn in names {
-            let limbs = self
-                .limbs
-                .iter()
-                .filter(|limb| own[limb.group as usize] == sn);
-            let part = self.part(limbs);
+            let part = self.part(|limb| own[limb.group as usize] == sn);
             if !part.limbs.is_empty() {
                 let behind = if sn == otherwise { "" } else { sn };
                 let gap = if behind.is_empty() { "" } else { "_" };
@@ -57,33 +52,6 @@ impl Graph {
         let flat = flat.filter(|cap| *cap == crate::Cap::Flat).count();
         written.remark_count(flat, "ends are flat in the file and become round");
         written
-    }
-
-    /// Returns a graph of some limbs in which each node has the radius of all its limbs: a node at
-    /// which radii jump is there once for each.
-    fn part<'a>(&self, limbs: impl Iterator<Item = &'a Limb>) -> Self {
-        let mut part = Self::default();
-        let mut places: HashMap<(u32, u64), u32> = HashMap::new();
-        for limb in limbs {
-            let ends = [0, 1].map(|side| {
-                let (node, radius) = (limb.ends[side], limb.radii[side]);
-                *places.entry((node, radius.to_bits())).or_insert_with(|| {
-                    part.nodes.push(Node {
-                        radius,
-                        is_ball: false,
-                        ..self.nodes[node as usize]
-                    });
-                    part.nodes.len() as u32 - 1
-                })
-            });
-            part.limbs.push(Limb {
-                ends,
-                group: 0,
-                clip: None,
-                ..*limb
-            });
-        }
-        part
     }
 
     /// Writes nodes and curves.

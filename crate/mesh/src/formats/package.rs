@@ -150,15 +150,40 @@ impl Package {
     /// If an object is missing, there are too many places, or `visit` returns an error.
     pub fn visit(
         &self,
-        mut visit: impl FnMut(&Part, &Object, &DAffine3) -> Result<(), Error>,
+        visit: impl FnMut(&Part, &Object, &DAffine3) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let mut open: Vec<((usize, u32), DAffine3)> = Vec::new();
         self.open(0, &self.items, DAffine3::IDENTITY, &mut open);
+        self.walk(open, visit)
+    }
+
+    /// Visits an object of a part at a place, and the objects that it is made of at theirs.
+    ///
+    /// # Errors
+    /// As [`Self::visit`].
+    pub fn visit_object(
+        &self,
+        part: &Part,
+        id: u32,
+        place: &DAffine3,
+        visit: impl FnMut(&Part, &Object, &DAffine3) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let number = self.parts.iter().position(|own| std::ptr::eq(own, part));
+        let open = number.map(|number| ((number, id), *place));
+        self.walk(open.into_iter().collect(), visit)
+    }
+
+    /// Visits objects at their places, and the objects that they are made of.
+    fn walk(
+        &self,
+        mut open: Vec<((usize, u32), DAffine3)>,
+        mut visit: impl FnMut(&Part, &Object, &DAffine3) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         let mut tally = 0;
         while let Some((id, map)) = open.pop() {
-            // Objects in objects may be many.
+            // Objects in objects may be many, and a mesh that clips may contain itself.
             tally += 1;
-            if tally > MAX_PLACES {
+            if tally + open.len() > MAX_PLACES {
                 return fail(format!("this 3MF file has more than {MAX_PLACES} parts"));
             }
             let object = self.object(id)?;

@@ -2,11 +2,11 @@
 
 use super::{glb, obj, ply, stl, three_mf};
 use crate::error::{Error, fail};
+use crate::format::Format;
 use crate::limits;
 use crate::triangle_mesh::TriangleMesh;
 
-/// Reads a mesh. The format follows from the first bytes, where they tell, else from the ending of
-/// the file's name (`.obj`, `.ply`, `.stl`, `.glb`, `.3mf`, in any case).
+/// Reads a mesh of the format that [`Format::of`] tells.
 ///
 /// Positions are in the file's units, but those of 3MF files in millimetres (GLB's unit is the
 /// metre). Colours become linear: vertex colours of GLB are, those of PLY, OBJ and 3MF are taken
@@ -43,24 +43,22 @@ pub fn read_with_remarks(name: &str, bytes: &[u8]) -> Result<(TriangleMesh, Vec<
             limits::MAX_BYTES / 1_000_000
         ));
     }
-    let name = name.to_ascii_lowercase();
-    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-    let mesh = if bytes.starts_with(b"glTF") {
-        glb::read(bytes)
-    } else if bytes.starts_with(b"PK\x03\x04") {
-        three_mf::read(bytes)
-    } else if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
-        ply::read(bytes)
-    } else {
-        match ending {
-            "obj" => obj::read(bytes),
-            "stl" => stl::read(bytes),
-            "ply" => fail("this is no PLY file: it does not begin with `ply`"),
-            "glb" => fail("this is no GLB file: it does not begin with `glTF`"),
-            "gltf" => fail("a .gltf file needs others beside it; save it as .glb"),
-            "3mf" => fail("this is no 3MF file: it does not begin as a zip archive does"),
-            _ => fail("meshes are read from .obj, .ply, .stl, .glb and .3mf files"),
+    let is_told = Format::of_bytes(bytes).is_some();
+    let mesh = match Format::of(name, bytes) {
+        Some(Format::Obj) => obj::read(bytes),
+        Some(Format::Stl) => stl::read(bytes),
+        Some(Format::Glb) if is_told => glb::read(bytes),
+        Some(Format::ThreeMf) if is_told => three_mf::read(bytes),
+        Some(Format::Ply) if is_told => ply::read(bytes),
+        Some(Format::Ply) => fail("this is no PLY file: it does not begin with `ply`"),
+        Some(Format::Glb) => fail("this is no GLB file: it does not begin with `glTF`"),
+        Some(Format::ThreeMf) => {
+            fail("this is no 3MF file: it does not begin as a zip archive does")
         }
+        None if name.to_ascii_lowercase().ends_with(".gltf") => {
+            fail("a .gltf file needs others beside it; save it as .glb")
+        }
+        None => Err(Format::refuse()),
     }?;
     mesh.check()
 }

@@ -32,7 +32,7 @@ struct Reader {
 }
 
 pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes));
     let mut reader = Reader::default();
     // A backslash at its end continues a line.
     let mut begun = String::new();

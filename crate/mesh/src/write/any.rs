@@ -1,9 +1,10 @@
 //! The writer of any format.
 
-use super::export::{Export, ExportedFile, Format};
+use super::export::{Export, ExportedFile};
 use super::prepared::prepare;
 use super::{glb, obj, ply, stl, three_mf};
 use crate::error::Error;
+use crate::format::Format;
 
 impl Export {
     /// The files of a format: one, or two for OBJ (the second has the materials, if there are any).

@@ -54,21 +54,6 @@ pub struct Part {
     pub mesh: TriangleMesh,
 }
 
-/// File format that can be written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Format {
-    /// Binary glTF: parts, groups, normals, colours, materials; metres.
-    Glb,
-    /// 3D Manufacturing Format: parts, colours, materials; millimetres.
-    ThreeMf,
-    /// Binary STL: triangles only; millimetres.
-    Stl,
-    /// Wavefront OBJ with an MTL file: parts, groups, normals, colours, materials; millimetres.
-    Obj,
-    /// Binary PLY: normals and colours; millimetres.
-    Ply,
-}
-
 /// File as bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExportedFile {
@@ -76,35 +61,4 @@ pub struct ExportedFile {
     pub name: String,
     /// Contents.
     pub bytes: Vec<u8>,
-}
-
-impl Format {
-    /// The formats that can be written.
-    pub const ALL: [Self; 5] = [Self::Glb, Self::ThreeMf, Self::Stl, Self::Obj, Self::Ply];
-
-    /// The ending of file names, without the dot.
-    #[must_use]
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Glb => "glb",
-            Self::ThreeMf => "3mf",
-            Self::Stl => "stl",
-            Self::Obj => "obj",
-            Self::Ply => "ply",
-        }
-    }
-
-    /// The format of a file name's ending, in any case; `None` for others.
-    ///
-    /// ```
-    /// assert_eq!(mesh::Format::of_name("a.STL"), Some(mesh::Format::Stl));
-    /// assert_eq!(mesh::Format::of_name("stl"), None);
-    /// ```
-    #[must_use]
-    pub fn of_name(name: &str) -> Option<Self> {
-        let (_, ending) = name.rsplit_once('.')?;
-        Self::ALL
-            .into_iter()
-            .find(|format| ending.eq_ignore_ascii_case(format.extension()))
-    }
 }

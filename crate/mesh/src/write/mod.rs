@@ -11,5 +11,5 @@ mod shading;
 mod stl;
 mod three_mf;
 
-pub use export::{Export, ExportedFile, Format, Part};
+pub use export::{Export, ExportedFile, Part};
 pub use rig::{Joint, Pose, Rig};

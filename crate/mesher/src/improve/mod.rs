@@ -16,7 +16,7 @@ mod rounds;
 mod settle;
 mod state;
 
-pub use state::{Improver, may_be_unproved};
+pub use state::{Improver, may_be_unproved, sine};
 
 use crate::certify::at;
 use crate::options::{MeshError, Progress};

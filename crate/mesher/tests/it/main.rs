@@ -3,6 +3,7 @@
 mod coating;
 mod contact;
 mod degenerate;
+mod file;
 mod judges;
 mod painted;
 mod scenes;

@@ -31,6 +31,8 @@ struct Care {
     rays: usize,
     genus: bool,
     threads: usize,
+    /// Whether the mesh is made with proofs.
+    prove: bool,
     /// Seconds after which a mesh is given up; infinity for none.
     limit: f64,
 }
@@ -39,6 +41,10 @@ struct Care {
 #[derive(Default)]
 struct Row {
     triangles: usize,
+    /// Triangles before they were made fewer.
+    raw: usize,
+    /// Parts that were made with proofs though none were asked for.
+    proved: usize,
     undecided: usize,
     unproved: usize,
     /// Largest distances that the mesher sampled where nothing is proved, in tolerances.
@@ -59,6 +65,7 @@ fn mesh_with(scene: &Scene, relative: f64, care: Care) -> Result<Model, MeshErro
         tolerance: Tolerance::Relative(relative),
         max_triangles: 600_000,
         threads: care.threads,
+        prove: care.prove,
         ..Wishes::default()
     };
     let (clock, mut phases) = (Clock::new(), Vec::new());
@@ -78,7 +85,11 @@ fn mesh_with(scene: &Scene, relative: f64, care: Care) -> Result<Model, MeshErro
         .map(|(phase, s)| format!("{} {s:.1} s", phase.name()));
     let begun = begun.collect::<Vec<String>>().join(", ");
     match &result {
-        Ok(model) => println!("  {} evaluations; {begun}", model.evaluations),
+        Ok(model) => println!(
+            "  {} evaluations; {begun}; {}",
+            model.evaluations,
+            model.notes.join("; ")
+        ),
         Err(why) => println!("  {why}; {begun}"),
     }
     result
@@ -106,6 +117,10 @@ fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
         let mesh = &part.mesh;
         let name = &part.name;
         row.triangles += mesh.triangles.len();
+        row.raw += part.raw_triangles;
+        if !care.prove {
+            row.proved += usize::from(!part.is_measured && part.raw_triangles > 0);
+        }
         row.undecided += part.undecided.len();
         row.unproved += part.unproved;
         let measured = part
@@ -345,8 +360,11 @@ fn told(name: &str, result: &Result<Row, String>) -> bool {
         Ok(row) if row.empty => println!("{name}: nothing there"),
         Ok(row) if row.late => println!("{name}: LATE: given up after {} s", limit()),
         Ok(row) => println!(
-            "{name}: {} triangles, {} undecided, {} unproved ({:.2} {:.2}), off {:.2} {:.2}, {} unknown, {:.2} s{}",
+            "{name}: {} triangles of {}, {} made with proofs, {} undecided, {} unproved \
+             ({:.2} {:.2}), off {:.2} {:.2}, {} unknown, {:.2} s{}",
             row.triangles,
+            row.raw,
+            row.proved,
             row.undecided,
             row.unproved,
             row.measured[0],
@@ -371,6 +389,15 @@ const SLOW: [usize; 6] = [4, 5, 6, 7, 8, 10];
 
 #[test]
 fn random_scenes() {
+    judge_random_scenes(true);
+}
+
+#[test]
+fn random_scenes_without_proofs() {
+    judge_random_scenes(false);
+}
+
+fn judge_random_scenes(prove: bool) {
     let wanted = wanted();
     let some = wanted.as_deref().and_then(|wanted| {
         let (from, to) = wanted.split_once('-')?;
@@ -389,6 +416,7 @@ fn random_scenes() {
                 rays: 30,
                 genus: true,
                 threads: 1,
+                prove,
                 limit: limit(),
             },
         )
@@ -401,6 +429,7 @@ fn random_scenes() {
                 rays: 4,
                 genus: false,
                 threads: 1,
+                prove,
                 limit: limit(),
             },
         )
@@ -433,8 +462,8 @@ fn load(path: &Path) -> Scene {
     let text = std::fs::read_to_string(path).unwrap();
     let folder = path.parent().unwrap();
     let assets = rats::asset_names(&text).into_iter().filter_map(|name| {
-        let bytes = std::fs::read(folder.join(&name)).ok()?.into();
-        Some(rats::Asset { name, bytes })
+        let bytes = std::fs::read(folder.join(&name)).ok()?;
+        Some(rats::Asset::new(name, bytes))
     });
     let assets: Vec<rats::Asset> = assets.collect();
     let project = rats::Project {
@@ -445,6 +474,15 @@ fn load(path: &Path) -> Scene {
 
 #[test]
 fn examples() {
+    judge_examples(true);
+}
+
+#[test]
+fn examples_without_proofs() {
+    judge_examples(false);
+}
+
+fn judge_examples(prove: bool) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../www/examples");
     let wanted = wanted();
     let mut names: Vec<_> = std::fs::read_dir(folder)
@@ -460,6 +498,7 @@ fn examples() {
             rays: 60,
             genus: true,
             threads: 1,
+            prove,
             limit: if wanted == "all" {
                 limit()
             } else {
@@ -472,6 +511,7 @@ fn examples() {
             rays: 8,
             genus: false,
             threads: 2,
+            prove,
             limit: f64::INFINITY,
         },
     };

@@ -67,7 +67,7 @@ impl Function {
     pub fn extent(&mut self, center: DVec3, radius: f64, along: Option<DVec3>) -> Magnitudes {
         match self {
             Self::Sum(terms) => terms.extent(center, radius, along),
-            // Only the range is known.
+            // The range alone is known.
             Self::Touching(_) => Magnitudes {
                 above: f64::INFINITY,
                 below: f64::INFINITY,
@@ -80,7 +80,7 @@ impl Function {
                     .map(|part| part.extent(center, radius, along));
                 let both = a.slope + b.slope;
                 Magnitudes {
-                    // It grows with both parts, and is above each.
+                    // The maximum grows with both parts, and is above each.
                     above: mix(a.above, b.above, *k).0,
                     below: a.below.min(b.below),
                     slope: a.slope.max(b.slope),
@@ -104,7 +104,7 @@ impl Function {
         let parts = match self {
             Self::Sum(terms) => core::slice::from_ref(terms),
             Self::SmoothMaximum(parts, _) => &parts[..],
-            // They have more kinks than could be named.
+            // Contacts have more kinks than could be named.
             Self::Touching(_) => &[],
         };
         let primitives = parts.iter().flat_map(|part| &part.primitives);

@@ -32,6 +32,8 @@ enum Piece {
     Arc(DVec3, [DVec3; 2], [f64; 2]),
     Triangle([DVec3; 3]),
     Curve([DVec3; 4]),
+    /// A part of another bone.
+    Part(Skeleton),
     /// A square of a polygon's plane: centre, half its sides, and whether all of it is in the
     /// polygon.
     Cell(DVec3, [DVec3; 2], bool),
@@ -122,7 +124,7 @@ impl Pieces {
                 Skeleton::Triangle { corners } => Some(Piece::Triangle(*corners)),
                 Skeleton::Curve { control } => Some(Piece::Curve(*control)),
                 Skeleton::Polygon { rings } => Some(around(rings)),
-                Skeleton::Plane { .. } => None,
+                other => other.bounding_sphere().map(|_| Piece::Part(other.clone())),
             };
             let mut body = Body {
                 kernel: p.kernel,
@@ -182,7 +184,7 @@ impl Pieces {
             let body = &self.bodies[number];
             let [size, slope, bend] = body.factor.largest;
             let value = size * most[0] * BOUND_SLACK;
-            // Only factors with `turns` may change sign.
+            // A factor changes sign only if it `turns`.
             if body.adds || body.factor.turns {
                 sum.above += value;
             }
@@ -353,6 +355,20 @@ impl Body {
                 ];
                 two(Piece::Curve(left), Piece::Curve(right), at)
             }
+            Piece::Part(part) => {
+                let parts = part.part(0.0, 0.5).zip(part.part(0.5, 1.0));
+                let Some((left, right)) = parts else {
+                    // What cannot be cut is as small as can be.
+                    let depth = DEEPEST_PIECE;
+                    return vec![Node {
+                        depth,
+                        ..node.clone()
+                    }];
+                };
+                let [l, r] = [&left, &right].map(Skeleton::measure);
+                let at = from + (to - from) * (l / (l + r).max(1e-300));
+                two(Piece::Part(left), Piece::Part(right), [at; 2])
+            }
             Piece::Cell(c, [x, y], full) => {
                 let (x, y) = (*x * 0.5, *y * 0.5);
                 [(-x, -y), (x, -y), (-x, y), (x, y)]
@@ -414,6 +430,12 @@ impl Piece {
                 let [a, b, c, d] = *control;
                 let center = 0.25 * ((a + b) + (c + d));
                 (center, furthest(center, control), outline(control))
+            }
+            Self::Part(part) => {
+                let (center, radius) = part
+                    .bounding_sphere()
+                    .unwrap_or((part.middle(), f64::INFINITY));
+                (center, radius, part.most_length())
             }
             Self::Cell(c, [x, y], _) => {
                 let reach = (x.length_squared() + y.length_squared()).sqrt();

@@ -24,12 +24,14 @@ fn kernel(kernel: Kernel, q: f64) -> [f64; 3] {
     let pole = 1.0 / (q + 1e-10);
     let (root, i, v) = (pole.sqrt(), 1.0 / (1.0 + q), 1.0 - q);
     match kernel {
-        _ if kernel.is_compact() && q > 1.0 => [0.0; 3],
         Kernel::Cauchy => [1.0, 2.0 * i, 6.0 * i * i].map(|x| x * i * i),
         Kernel::Gauss => [libm::exp(-q); 3],
         Kernel::Inverse => [root, 0.5 * root * pole, 0.75 * root * pole * pole],
         Kernel::Squared => [pole, pole * pole, 2.0 * pole * pole * pole],
         Kernel::Cubed => [1.0, 1.5 * pole, 3.75 * pole * pole].map(|x| x * root * pole),
+        Kernel::Metaballs | Kernel::Soft | Kernel::Quartic | Kernel::Compact6 if q > 1.0 => {
+            [0.0; 3]
+        }
         Kernel::Metaballs if q < 1.0 / 9.0 => [1.0 - 3.0 * q, 3.0, 0.0],
         Kernel::Metaballs => {
             let u = q.sqrt();

@@ -64,18 +64,15 @@ impl Factor {
                 }
             }
             Skeleton::Arc { radius, angle, .. } => {
-                // With t = ρ/radius the waves count as g = (2t/(1+t²))², and the angle changes by
+                // Waves count as g = (2t/(1+t²))² with t = ρ/radius, and the angle changes by
                 // 1/ρ: g/t ≤ 1.3, g/t² ≤ 4, |g′| ≤ 1.8, |g′|/t ≤ 8, |g″| ≤ 8.
                 let (w1, w2) = steep(0, 1.0 / angle.max(f64::MIN_POSITIVE));
                 let i = 1.0 / radius;
                 first = (1.3 * w1 + 1.8) * i;
                 second = (4.0 * (w2 + w1) + 16.0 * w1 + 8.0) * i * i;
             }
-            // No parameters.
-            Skeleton::Point { .. }
-            | Skeleton::Polygon { .. }
-            | Skeleton::Curve { .. }
-            | Skeleton::Plane { .. } => (),
+            // Other bones have no parameters.
+            _ => (),
         }
         let kept = profile.restriction.abs().max(1.0);
         Self {

@@ -70,10 +70,10 @@ struct Inner<M> {
 enum Loading {
     /// Nothing is fetched.
     Idle,
-    /// It is being fetched.
+    /// The program is being fetched.
     Started,
-    /// It is being fetched, and was asked for once more meanwhile: if the fetch fails, which may
-    /// have been lost before that, it is fetched again.
+    /// The program is being fetched, and was asked for once more meanwhile: if that fetch fails,
+    /// which may have been lost before, it is fetched again.
     Repeated,
 }
 

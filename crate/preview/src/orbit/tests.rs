@@ -15,7 +15,7 @@ fn camera_from_above() -> Camera {
         target: DVec3::new(0.5, 0.25, -1.0),
         up: DVec3::new(0.1, 0.2, 2.0),
         fov: 30.0,
-        shift: [0.0; 2],
+        ..Camera::default()
     }
 }
 
@@ -94,7 +94,7 @@ fn orbit_leaves_a_pole_smoothly() {
         target: DVec3::ZERO,
         up: DVec3::Y,
         fov: 45.0,
-        shift: [0.0; 2],
+        ..Camera::default()
     };
     let after = orbit(camera, 0.0, -0.01);
     assert!(angle(camera.eye, after.eye) < 0.05);
@@ -150,7 +150,7 @@ fn senseless_cameras_and_pointers_give_usable_cameras() {
                     target,
                     up,
                     fov: 45.0,
-                    shift: [0.0; 2],
+                    ..Camera::default()
                 };
                 for x in [0.3, f64::NAN, f64::INFINITY, -1e300] {
                     for after in [

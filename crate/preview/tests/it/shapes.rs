@@ -129,6 +129,7 @@ fn compare_around(what: &str, shape: Shape, center: DVec3, size: f64) {
                 fov,
                 // Any camera may be shifted.
                 shift: [0.3, -0.2],
+                ..Camera::default()
             };
             compare(
                 gpu,
@@ -498,6 +499,7 @@ fn a_mesh_of_patches_has_no_gaps() {
                 up: DVec3::Y,
                 fov,
                 shift: [-0.2, 0.1],
+                ..Camera::default()
             };
             let mut scene = by_index(&shapes, camera);
             for element in &mut scene.elements {

@@ -34,10 +34,7 @@ fn scene(name: &str) -> Scene {
             let text = String::from_utf8(bytes).unwrap();
             files.push(File { name: file, text });
         } else {
-            assets.push(Asset {
-                name: file,
-                bytes: bytes.into(),
-            });
+            assets.push(Asset::new(file, bytes));
         }
     }
     let compiled = rats::compile_at(&Project { files }, &assets, 0.0);

@@ -138,7 +138,7 @@ macro_rules! plain {
 macro_rules! options {
     ($(#[$doc:meta])* $list:ident: $($name:ident: $kind:ty = ($($choice:tt)+);)+) => {
         $(
-            const $name: $crate::commands::slot::Choice<$kind> =
+            pub(super) const $name: $crate::commands::slot::Choice<$kind> =
                 $crate::commands::build::choice!($($choice)+);
         )+
         $(#[$doc])*

@@ -37,10 +37,11 @@ pub static BACKGROUND: CommandSpec = row(
 ))
 .default("a dark slate, or the `sky`")
 .details(
-    "With `to` it goes from the first colour, above, to the last, below; they change over around \
-     the horizon. An image lies around the scene: the whole way round across, its middle towards \
-     −z, from straight up to straight down. It is seen in mirrors and through glass, but it gives \
-     no light: `sky` does. What is above is said by `vup`.",
+    "There is one background at a time, the last one. With `to` it goes from the first colour, \
+     above, to the last, below; they change over around the horizon. An image lies around the \
+     scene: the whole way round across, its middle towards −z, from straight up to straight down. \
+     It is seen in mirrors and through glass, but it gives no light: `sky` does. What is above is \
+     said by `vup`.",
 )
 .example(clay!(
     "background SteelBlue to White to SaddleBrown\n\
@@ -54,6 +55,7 @@ fn background<'a>(
     options: &Options<'a>,
     behind: Behind<'a>,
 ) -> Outcome<Flow> {
+    run.note_replaced(command, run.air.background.is_some());
     run.air.background = Some(match behind {
         Behind::Colour(colour) => {
             let mut colours = vec![colour];
@@ -82,6 +84,20 @@ fn background<'a>(
         }
     });
     Ok(Flow::Next)
+}
+
+impl Evaluator<'_> {
+    /// Notes that a command takes the place of an earlier one, if there was one for this picture:
+    /// there is one background, sky, ground and fog at a time. In loops and branches that is meant.
+    fn note_replaced(&mut self, command: &Command, is_given: bool) {
+        let in_block = self.repeating > 0 || self.depth + 1 > self.reading.len();
+        if is_given && !in_block && self.is_own() && self.shots.taken.is_empty() {
+            let word = self.scope.symbols.word(command.word);
+            let message = format_args!("this `{word}` takes the place of the one before");
+            let hint = "there is one at a time: leave one of them out";
+            self.note(&command.word_span, message, hint);
+        }
+    }
 }
 
 options! {
@@ -114,10 +130,11 @@ pub static SKY: CommandSpec = row("sky", "light from everywhere")
 
 fn sky<'a>(
     run: &mut Evaluator<'a>,
-    _: &'a Command,
+    command: &'a Command,
     options: &Options<'a>,
     above: Rgb,
 ) -> Outcome<Flow> {
+    run.note_replaced(command, run.air.sky.is_some());
     let horizon = options.last(&SKY_TO).unwrap_or(above);
     let intensity = options.last(&INTENSITY).unwrap_or(1.0) as f32;
     let lit = |colour: Rgb| colour.map(|c| c * intensity);
@@ -154,10 +171,11 @@ pub static GROUND: CommandSpec = row("ground", "a plane to stand on")
 
 fn ground<'a>(
     run: &mut Evaluator<'a>,
-    _: &'a Command,
+    command: &'a Command,
     options: &Options<'a>,
     colour: Rgb,
 ) -> Outcome<Flow> {
+    run.note_replaced(command, run.air.ground.is_some());
     run.air.ground = Some(Ground {
         colour,
         height: options.last(&GROUND_HEIGHT),
@@ -195,10 +213,11 @@ pub static FOG: CommandSpec = row("fog", "fog over everything")
 
 fn fog<'a>(
     run: &mut Evaluator<'a>,
-    _: &'a Command,
+    command: &'a Command,
     options: &Options<'a>,
     colour: Rgb,
 ) -> Outcome<Flow> {
+    run.note_replaced(command, run.air.fog.is_some());
     let distance = options.last(&FOG_DISTANCE);
     let fog = Fog {
         colour,

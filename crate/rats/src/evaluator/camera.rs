@@ -9,6 +9,10 @@ use crate::limits::MAX_MAGNITUDE;
 use crate::problem::{Outcome, Problem};
 use crate::syntax::Command;
 use glam::DVec3;
+use std::ops::Range;
+
+/// Most by which parallel rays lean against the normal of the view plane.
+const MOST_LEAN: f64 = 1.7;
 
 pub static EYEP: CommandSpec = row("eyep", "position of the eye")
     .with(takes!(eyep, vector("XYZ", "the eye's position")))
@@ -18,7 +22,7 @@ pub static EYEP: CommandSpec = row("eyep", "position of the eye")
 fn eyep<'a>(run: &mut Evaluator<'a>, command: &'a Command, eye: DVec3) -> Outcome<Flow> {
     run.camera.eye = eye;
     let before = std::mem::take(&mut run.view_plane);
-    if before.cp.is_some() || before.normal.is_some() || before.window.is_some() {
+    if before.is_given() {
         let message = "`cp`, `vpn` and `window` from before do not count any more";
         let hint = "there are two kinds of camera; the last one counts";
         run.note(&command.word_span, message, hint);
@@ -58,7 +62,10 @@ pub static FOV: CommandSpec = row("fov", "angle of view")
     ))
     .default("45")
     .details(
-        "Pixels are square, so the vertical angle follows from the horizontal one and `framesize`.",
+        "Without a second angle, or if both are equal, pixels are square: the vertical angle \
+         follows from the horizontal one and `framesize`. A second angle that differs from that by \
+         more than a twentieth stretches the picture: pixels show more, or less, upwards than \
+         across.",
     )
     .example(clay!("fov 30\nsphere Clay 2, 0 0 0"));
 
@@ -132,7 +139,11 @@ pub static CP: CommandSpec = row("cp", "centre of projection, view coordinates")
     .details(
         "The camera of Foley et al.: the view plane goes through `vrp` with normal `vpn`; \
          `window` is the part of it that the picture shows, seen from `cp`. The weight divides \
-         the others.",
+         the others. With the weight 0 rays are parallel, and x y z is the direction against \
+         which they run: 0 0 1 looks straight at the view plane, 0.5 0.5 1 from the upper right. \
+         The eye is then so far away that a true parallel projection would differ by less than \
+         half a pixel; fog is as thick as from there. Without a `window` the picture is as wide as \
+         `fov` makes it at `vrp`.",
     )
     .example(clay!(
         "vrp 0 0 0\nvpn 0 0 1\ncp 0 0 8\nwindow -3 3 -3 3\nsphere Clay 2, 0 0 0"
@@ -147,13 +158,18 @@ fn cp<'a>(
     weight: Option<f64>,
 ) -> Outcome<Flow> {
     let weight = weight.unwrap_or(1.0);
+    run.view_plane.place = (run.file, command.span.clone());
     if weight == 0.0 {
-        return Err(Problem::new(
-            &command.span,
-            "the weight of a centre of projection must not be 0: parallel projections are not \
-             drawn",
-        )
-        .hint("put the eye far away and make the window's angle small"));
+        if x.abs().max(y.abs()) > MOST_LEAN * z {
+            return Err(Problem::new(
+                &command.span,
+                format!("parallel rays lean by {MOST_LEAN} to 1 at most"),
+            )
+            .hint("make z larger, or turn the view plane with `vpn`"));
+        }
+        run.view_plane.parallel = Some(DVec3::new(x, y, z));
+        run.view_plane.cp = None;
+        return Ok(Flow::Next);
     }
     let point = DVec3::new(x, y, z) / weight;
     if !(point.is_finite() && point.abs().max_element() <= MAX_MAGNITUDE) {
@@ -173,7 +189,7 @@ fn cp<'a>(
         ));
     }
     run.view_plane.cp = Some(point);
-    run.view_plane.place = (run.file, command.span.clone());
+    run.view_plane.parallel = None;
     Ok(Flow::Next)
 }
 
@@ -205,8 +221,8 @@ pub static WINDOW: CommandSpec = row(
     length("Y", "the upper edge")
 ))
 .details(
-    "In view coordinates, as for `cp`. Pixels are square: the width counts, the height follows \
-     from `framesize`.",
+    "In view coordinates, as for `cp`. Where its proportions are not those of `framesize`, pixels \
+     are not square: the picture is stretched.",
 )
 .example(clay!("cp 0 0 8\nwindow -4 4 -4 4\nsphere Clay 2, 0 0 0"));
 
@@ -237,8 +253,20 @@ impl Evaluator<'_> {
     /// the normal, towards the eye.
     pub(super) fn camera_of_picture(&mut self) -> scene::Camera {
         let mut camera = self.camera;
+        let [width, height] = self.settings.frame.map(f64::from);
+        let half_angle = camera.fov.to_radians() * 0.5;
+        if let Some((vertical, ..)) = self.vertical {
+            let half = libm::tan(half_angle) * height / width;
+            let square = 2.0 * libm::atan(half).to_degrees();
+            // Angles that nearly fit the frame are meant to fit it.
+            if (square / vertical - 1.0).abs() > 0.05 {
+                let (file, span) = self.place_of_vertical();
+                camera.pixel = libm::tan(vertical.to_radians() * 0.5) / half;
+                self.check_pixel(&mut camera, file, &span);
+            }
+        }
         let plane = self.view_plane.clone();
-        if plane.cp.is_none() && plane.normal.is_none() && plane.window.is_none() {
+        if !plane.is_given() {
             return camera;
         }
         let toward = camera.eye - camera.target;
@@ -252,6 +280,21 @@ impl Evaluator<'_> {
             .try_normalize()
             .unwrap_or_else(|| normal.any_orthonormal_vector());
         let up = normal.cross(right);
+        let (file, span) = plane.place;
+        if let Some([left, rightmost, low, high]) = plane.window {
+            let shown = (rightmost - left) * height / width;
+            camera.pixel = (high - low) / shown;
+            self.check_pixel(&mut camera, file, &span);
+        }
+        if let Some(direction) = plane.parallel {
+            let [left, rightmost, low, high] = plane.window.unwrap_or_else(|| {
+                let half = libm::tan(half_angle) * toward.length().max(1e-9);
+                [-half, half, 0.0, 0.0]
+            });
+            let middle = right * (0.5 * (left + rightmost)) + up * (0.5 * (low + high));
+            camera.target += middle;
+            return camera.far([right, up, normal], direction, 0.5 * (rightmost - left));
+        }
         let cp = plane
             .cp
             .unwrap_or(DVec3::new(0.0, 0.0, toward.length().max(1e-9)));
@@ -262,7 +305,7 @@ impl Evaluator<'_> {
             let half = 0.5 * (rightmost - left);
             camera.fov = (2.0 * libm::atan(half / cp.z))
                 .to_degrees()
-                .clamp(0.01, 179.0);
+                .clamp(scene::Camera::ANGLES[0], scene::Camera::ANGLES[1]);
             camera.shift = [
                 (0.5 * (left + rightmost) - cp.x) / half,
                 (0.5 * (low + high) - cp.y) / half,
@@ -270,39 +313,31 @@ impl Evaluator<'_> {
             // Beyond this a picture shows nothing but rays side by side.
             if !camera.shift.iter().all(|shift| shift.abs() <= 1e3) {
                 camera.shift = [0.0; 2];
-                let (file, span) = plane.place.clone();
                 let message = "the window is too small, or too far from the centre of projection";
                 let hint = "put the middle of the window nearer to `cp`'s x and y";
                 self.say_at(file, Severity::Error, &span, message, hint);
-            }
-            let [width, height] = self.settings.frame.map(f64::from);
-            let shown = (rightmost - left) * height / width;
-            if (shown / (high - low) - 1.0).abs() > 0.05 {
-                let (file, span) = plane.place;
-                let height = high - low;
-                let shows =
-                    format_args!("the picture shows a height of {shown:.4}, not {height:.4}");
-                let message = format_args!("pixels are square, so {shows}");
-                let hint = "choose a framesize of the window's proportions";
-                self.say_at(file, Severity::Note, &span, message, hint);
             }
         }
         camera
     }
 
-    /// Checks the camera as a whole, once the text is at its end.
-    pub(super) fn check_camera(&mut self) {
-        if let Some((vertical, file, span)) = self.vertical.take() {
-            let [width, height] = self.settings.frame.map(f64::from);
-            let half = libm::tan(self.camera.fov.to_radians() * 0.5) * height / width;
-            let drawn = 2.0 * libm::atan(half).to_degrees();
-            if (drawn / vertical - 1.0).abs() > 0.05 {
-                let angle = format_args!("angle of view is {drawn:.1} degrees, not {vertical}");
-                let message = format_args!("pixels are square, so the vertical {angle}");
-                let hint = "choose a framesize of the same proportions, or leave the second angle \
-                            out";
-                self.say_at(file, Severity::Note, &span, message, hint);
-            }
+    /// Returns the file and place of the vertical angle of view.
+    fn place_of_vertical(&self) -> (usize, Range<usize>) {
+        let place = self
+            .vertical
+            .as_ref()
+            .map(|(_, file, span)| (*file, span.clone()));
+        place.unwrap_or_default()
+    }
+
+    /// Makes the pixels of a camera square, with an error, if they are too far from that.
+    fn check_pixel(&mut self, camera: &mut scene::Camera, file: usize, span: &Range<usize>) {
+        let [least, most] = scene::Camera::PIXELS;
+        if !(least..=most).contains(&camera.pixel) {
+            camera.pixel = 1.0;
+            let message = format_args!("pixels would be more than {most} times as long as wide");
+            let hint = "give the proportions of `framesize`, or nearly so";
+            self.say_at(file, Severity::Error, span, message, hint);
         }
     }
 }

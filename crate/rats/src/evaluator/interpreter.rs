@@ -95,7 +95,7 @@ impl<'a> Evaluator<'a> {
         if spec.yields() && self.definitions.contains_key(&command.word) {
             return self.call(command, command.word);
         }
-        self.warn_after_shot(command);
+        self.note_after_shot(command);
         match spec.action {
             Action::Run(run) => run(self, command).inspect_err(|_| {
                 if let Some(mark) = spec.mark_failed {

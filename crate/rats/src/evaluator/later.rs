@@ -21,8 +21,8 @@ pub fn place_of_material(source: &Source<'_>, name: &Name<'_>) -> Option<Range<u
     Some(source.syntax.items[command.items.start].span())
 }
 
-/// Finds the first command with a property.
-fn find<'s>(block: &'s Block, property: &dyn Fn(&Command) -> bool) -> Option<&'s Command> {
+/// Finds the first command of a block, or of the blocks in it, that has a property.
+pub fn find<'s>(block: &'s Block, property: &dyn Fn(&Command) -> bool) -> Option<&'s Command> {
     block.iter().find_map(|node| match node {
         Node::Command(command) => property(command).then_some(command),
         Node::For(node) => find(&node.body, property),

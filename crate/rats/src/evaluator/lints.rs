@@ -4,11 +4,14 @@
 //! Lints are about the finished scene, so they are looked for only when the text has no errors.
 //! Those that evaluate the field are left out in large scenes: an edit must not wait for them.
 
+use super::later;
 use super::state::Evaluator;
-use crate::Severity;
+use crate::problem::Problem;
+use crate::{Severity, TextEdit};
 use field::{Primitive, THRESHOLD};
 use glam::DVec3;
 use scene::{Element, Scene, SoftSurface, Surface};
+use std::collections::BTreeSet;
 
 /// Weight of the scene up to which the field is evaluated (see [`crate::limits::CURVE_WEIGHT`]):
 /// limbs that taper take a millisecond each to prepare.
@@ -25,6 +28,7 @@ impl Evaluator<'_> {
             return;
         }
         self.lint_view(scene);
+        self.lint_blob_scale(scene);
         if self.model.weight() <= MOST_WEIGHT && scene.settings.soft {
             self.lint_field(scene);
             self.lint_contacts(scene);
@@ -61,6 +65,49 @@ impl Evaluator<'_> {
                 let hint = "let it begin nearer, with a larger c, or make it lower";
                 self.say_at(file, Severity::Warning, &span, message, hint);
             }
+        }
+    }
+
+    /// Warns of radii and blobbiness that go together as |B|·R² ≈ const where the text does not say
+    /// how blobbiness is read, or of blobbiness that makes sense only if it is absolute: so are
+    /// those of the published datasets, which read as relative make what is thin the crispest.
+    fn lint_blob_scale(&mut self, scene: &Scene) {
+        let soft = scene.elements.iter().filter_map(|element| element.flesh);
+        let used: BTreeSet<u32> = soft.collect();
+        let flesh = used.iter().map(|&index| &scene.flesh[index as usize]);
+        let pairs = flesh.filter_map(|flesh| Some([flesh.radius, flesh.blobbiness?]));
+        let pairs: Vec<_> = pairs.filter(|[radius, _]| *radius > 0.0).collect();
+        let message = match &pairs[..] {
+            _ if self.scaled => return,
+            pairs if goes_with_square(pairs) => {
+                "radii and blobbiness of this text go together as |B|·R² ≈ const, as where \
+                 blobbiness is absolute"
+            }
+            pairs if would_be_soft(pairs) => {
+                "blobbiness of 64 and more is as crisp as a hard shape, and with these radii it \
+                 would be soft if it were absolute"
+            }
+            _ => return,
+        };
+        let Some(surface) = used
+            .first()
+            .map(|&index| &self.palette.surfaces[index as usize])
+        else {
+            return;
+        };
+        let (file, name) = surface.origin.clone();
+        let source = &self.sources.all[file];
+        let command = later::find(&source.syntax.block, &|command| {
+            command.span.contains(&name.start)
+        });
+        let start = command.map_or(name.start, |command| command.span.start);
+        let line = source.text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let problem = Problem::new(&name, message)
+            .hint("add `blobscale absolute`, or `blobscale relative` if it is meant so")
+            .fix(TextEdit::new(file, line..line, "blobscale absolute\n"));
+        self.file = file;
+        if self.is_own() && self.is_news(Severity::Warning, &name) {
+            self.tell(Severity::Warning, problem);
         }
     }
 
@@ -158,6 +205,43 @@ impl Evaluator<'_> {
         }
         true
     }
+}
+
+/// Returns whether at least three radii, the largest four times the least or more, have a
+/// blobbiness that falls with their squares: the logarithm of |B|·R² varies (as the sum of squares
+/// from its mean) by less than a third of that of R². One blobbiness for all, which varies as R²
+/// does, is far from that. Without a large one the shapes are not crisp, however it is read.
+fn goes_with_square(pairs: &[[f64; 2]]) -> bool {
+    let mut radii: Vec<f64> = pairs.iter().map(|pair| pair[0]).collect();
+    radii.sort_by(f64::total_cmp);
+    radii.dedup();
+    let crispest = pairs.iter().map(|pair| pair[1]).fold(0.0, f64::max);
+    let [thinnest, _, .., widest] = radii[..] else {
+        return false;
+    };
+    if radii.len() < 3 || widest < 4.0 * thinnest || crispest < 16.0 {
+        return false;
+    }
+    let products = pairs.iter().map(|[radius, b]| b * radius * radius);
+    let squares = pairs.iter().map(|[radius, _]| radius * radius);
+    spread_of_logarithms(products) < spread_of_logarithms(squares) / 3.0
+}
+
+/// Returns whether shapes that are too crisp to be meant would be soft, all of them, if their
+/// blobbiness were absolute, for at least three radii.
+fn would_be_soft(pairs: &[[f64; 2]]) -> bool {
+    let mut radii: Vec<f64> = pairs.iter().map(|pair| pair[0]).collect();
+    radii.sort_by(f64::total_cmp);
+    radii.dedup();
+    let crisp = pairs.iter().filter(|pair| pair[1] >= 64.0).count();
+    radii.len() >= 3 && crisp >= 2 && pairs.iter().all(|[radius, b]| b * radius * radius <= 10.0)
+}
+
+/// Sums the squares of the differences of logarithms from their mean.
+fn spread_of_logarithms(values: impl Iterator<Item = f64>) -> f64 {
+    let logs: Vec<f64> = values.map(libm::log).collect();
+    let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+    logs.iter().map(|log| (log - mean) * (log - mean)).sum()
 }
 
 fn value(terms: &[Primitive], p: DVec3) -> f64 {

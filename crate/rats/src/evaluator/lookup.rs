@@ -2,12 +2,14 @@
 
 use super::later;
 use super::state::Evaluator;
+use crate::commands::{CommandSpec, OptionSpec, Parameter};
 use crate::given::Given;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
+use crate::reads::SKELETONS;
 use crate::syntax::{Command, Datum};
 use crate::value::Value;
-use crate::{Asset, commands, library, limits, places, suggest};
+use crate::{Asset, commands, is_image, is_mesh, is_skeleton, library, limits, places, suggest};
 
 impl<'a> Evaluator<'a> {
     /// Makes the problem that there is no such command.
@@ -45,9 +47,21 @@ impl<'a> Evaluator<'a> {
         let Some(spec) = command.spec else {
             return Ok(Given::default());
         };
+        self.read_given_by(command, spec, spec.parameters, spec.options)
+    }
+
+    /// Reads the operands and options of one of several forms of a command, as
+    /// [`Self::read_given`] does.
+    pub(super) fn read_given_by(
+        &mut self,
+        command: &'a Command,
+        spec: &'static CommandSpec,
+        parameters: &'static [Parameter],
+        options: &'static [OptionSpec],
+    ) -> Outcome<Given<'a>> {
         self.scope
             .step(limits::STEPS_PER_OPERANDS, &command.word_span)?;
-        let is_shape = spec.parameters.first().is_some_and(|first| first.in_chain);
+        let is_shape = parameters.first().is_some_and(|first| first.in_chain);
         let mut skipped = 0;
         if is_shape {
             let in_chain = self.model.chain.is_some();
@@ -81,7 +95,7 @@ impl<'a> Evaluator<'a> {
         let chain = self.model.chain.clone().filter(|_| is_shape);
         let mut read = self.reader(command);
         read.at = skipped;
-        let given = read.read_given(spec.parameters, spec.options, chain)?;
+        let given = read.read_given(parameters, options, chain)?;
         if is_shape {
             self.watch_shape(command, &given);
         }
@@ -123,6 +137,9 @@ impl<'a> Evaluator<'a> {
     pub(super) fn asset(&self, name: &Name<'_>) -> Outcome<&'a Asset> {
         let bare = name.text.strip_prefix("./").unwrap_or(name.text);
         self.find_asset(self.file, name.text).ok_or_else(|| {
+            if let Some(problem) = unread_kind(name) {
+                return problem;
+            }
             let known: Vec<_> = self
                 .assets
                 .iter()
@@ -141,4 +158,21 @@ impl<'a> Evaluator<'a> {
             .hint(hint)
         })
     }
+}
+
+/// Makes the problem that files of this kind are not read, if they are not: whoever keeps files
+/// does not fetch them then.
+fn unread_kind(name: &Name<'_>) -> Option<Box<Problem>> {
+    let (_, ending) = name.text.rsplit_once('.')?;
+    if is_image(name.text) || is_mesh(name.text) || is_skeleton(name.text) {
+        return None;
+    }
+    let name_of = name.text;
+    let message = format!("`{name_of}` is not read: .{ending} is no kind of file known here");
+    Some(Problem::new(&name.span, message).hint(format!(
+        "images can be {}, meshes {}, and skeletons {}: save it as one of these",
+        picture::Format::ENDINGS,
+        mesh::Format::ENDINGS,
+        SKELETONS.map(|ending| format!(".{ending}")).join(", ")
+    )))
 }

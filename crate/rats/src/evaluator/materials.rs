@@ -134,13 +134,22 @@ fn surface<'a>(
             colours: Colours::default(),
             origin: (0, 0..0),
             used: false,
+            shown: false,
             copied: false,
         },
     };
-    (surface.used, surface.copied) = (false, false);
+    (surface.used, surface.shown, surface.copied) = (false, false, false);
     surface.origin = (run.file, name.span.clone());
     set_flesh(options, &mut surface.flesh)?;
     set_finish(options, &mut surface.finish, &mut surface.colours);
+    // A skeleton is soft without a blobbiness; it needs a radius.
+    if let Some(chosen) = options.find(&KERNEL)
+        && !surface.flesh.is_soft()
+        && surface.flesh.radius <= 0.0
+    {
+        let message = "without a blobbiness this material is hard, and its kernel does nothing";
+        run.note(&chosen.span, message, "add a `blobbiness`, such as -1");
+    }
     surface.finish.name = name.text.to_owned();
     let textures: Vec<Name<'a>> = options.all(&TEXTURE).flatten().collect();
     if !textures.is_empty() {
@@ -155,6 +164,11 @@ fn surface<'a>(
                 name.text
             )
         });
+    }
+    if run.palette.keeps_old(&name, &surface) && !run.model.parts.is_empty() {
+        let message = format_args!("shapes made before this keep the old `{}`", name.text);
+        let hint = "what is soft, hard or tapers stays so: make them again, behind `reset data`";
+        run.warn(&name.span, message, hint);
     }
     run.palette.insert(&name, surface)?;
     Ok(Flow::Next)

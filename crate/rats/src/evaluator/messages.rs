@@ -12,11 +12,14 @@ use std::fmt::Display;
 use std::ops::Range;
 
 /// Options that change the picture.
-const SETTINGS: [&str; 12] = [
+const SETTINGS: [&str; 15] = [
     "soft",
     "double",
     "gamma",
     "framesize",
+    "filename",
+    "format",
+    "nosave",
     "contrast",
     "fragile",
     "sample",
@@ -70,11 +73,17 @@ impl Evaluator<'_> {
 
     /// Whether a message about this place would be the first, and wanted.
     pub(super) fn is_news(&self, severity: Severity, span: &Range<usize>) -> bool {
-        let (file, place) = match self.uses.last() {
-            Some((file, place)) if !self.is_own() => (*file, place),
-            _ => (self.file, span),
-        };
-        self.report.is_new(file, severity, place)
+        let (file, place) = self.place_of(span);
+        self.report.is_new(file, severity, &place)
+    }
+
+    /// Returns the file and place in the project's own texts where a message about this place of
+    /// the present file goes.
+    pub(super) fn place_of(&self, span: &Range<usize>) -> (usize, Range<usize>) {
+        match self.uses.last() {
+            Some((file, place)) if !self.is_own() => (*file, place.clone()),
+            _ => (self.file, span.clone()),
+        }
     }
 
     /// Says that something is made anew under a name, so that it was made in vain at the place
@@ -114,28 +123,19 @@ impl Evaluator<'_> {
         }
         self.file = before;
     }
+}
 
-    /// Warns once of a command behind `shoot` that changes the picture.
-    pub(super) fn warn_after_shot(&mut self, command: &Command) {
-        use commands::Group;
-        if self.shot.is_none() || self.told_after_shot {
-            return;
-        }
-        let Some(spec) = command.spec else { return };
-        let changes = match spec.group() {
-            Group::Run | Group::Tools => spec.is_library() || spec.name == "test",
-            Group::Options => SETTINGS.contains(&spec.name),
-            Group::Scene => spec.name != "report",
-            Group::Extensions => spec.name != "seed",
-            _ => true,
-        };
-        if changes {
-            self.told_after_shot = true;
-            self.warn(
-                &command.word_span,
-                "what follows the first `shoot` is not in the picture in this version",
-                "put `shoot` last",
-            );
-        }
+/// Returns whether a command may change the picture.
+pub(super) fn changes_picture(command: &Command) -> bool {
+    use commands::Group;
+    let Some(spec) = command.spec else {
+        return false;
+    };
+    match spec.group() {
+        Group::Run | Group::Tools => spec.is_library() || spec.name == "test",
+        Group::Options => SETTINGS.contains(&spec.name),
+        Group::Scene => !matches!(spec.name, "report" | "shoot" | "preview"),
+        Group::Extensions => spec.name != "seed",
+        _ => true,
     }
 }

@@ -30,8 +30,10 @@ pub struct Part {
     pub moved: Option<Box<DAffine3>>,
     /// Whether its command may have made other shapes too.
     pub repeated: bool,
-    /// Whether its width varies along it.
+    /// Whether its width varies along it, so that it counts as more than one shape.
     pub tapers: bool,
+    /// Number of shapes as which the limbs of a skeleton count; 0 for others.
+    pub limbs: usize,
     /// Whether it has been removed.
     pub removed: bool,
     /// The names of a skeleton's nodes.
@@ -43,17 +45,14 @@ pub struct Part {
 impl Part {
     /// Returns the number of shapes as which it counts.
     fn weight(&self) -> usize {
-        let (curves, skeleton) = (self.element.shape.curves(), self.element.shape.skeleton());
+        if self.limbs > 0 {
+            return self.limbs;
+        }
+        let skeleton = self.element.shape.skeleton();
         match (&self.element.shape, skeleton) {
             (_, Some(Skeleton::Polygon { rings })) => rings.iter().map(Vec::len).sum(),
             (_, Some(line)) if line.is_numeric() => CURVE_WEIGHT,
-            (Shape::Function(function), _) => curves.map_or_else(
-                || function.weight(),
-                |curves| {
-                    let each = if curves.tapers() { CURVE_WEIGHT } else { 1 };
-                    curves.pieces().count() * each
-                },
-            ),
+            (Shape::Function(function), _) => function.weight(),
             _ if self.tapers => CURVE_WEIGHT,
             _ => 1,
         }

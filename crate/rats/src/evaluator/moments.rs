@@ -2,8 +2,8 @@
 
 use super::frozen::Frozen;
 use super::state::Evaluator;
+use crate::asset::Asset;
 use crate::limits::{MAX_ELEMENTS, MAX_MOMENTS, MAX_STEPS};
-use crate::project::Asset;
 use crate::scope::Scope;
 use crate::sources::Sources;
 use crate::symbol::Symbols;
@@ -19,18 +19,17 @@ pub struct Exposure<'s, 'a> {
     pub symbols: Symbols<'a>,
     /// The time when the shutter opens, in frames.
     pub from: f64,
-    /// The time for which it is open, in frames.
-    pub length: f64,
     /// The shapes that the frame's own run has frozen.
     pub frozen: Frozen,
-    /// The steps that this run took.
+    /// The steps that this run took, times the number of pictures that need others.
     pub steps: u64,
 }
 
 impl<'s, 'a: 's> Exposure<'s, 'a> {
-    /// Makes the scenes at the middles of equal shares of the exposure: as many as the samples of a
-    /// pixel if that is not too much work. None if nothing moves.
-    pub fn moments(self, frame: &Scene) -> Vec<Scene> {
+    /// Makes the scenes of the picture of a number at the middles of equal shares of the time for
+    /// which its shutter is open, `length` in frames: as many as the samples of a pixel if that is
+    /// not too much work. None if nothing moves.
+    pub fn moments(&self, number: usize, frame: &Scene, length: f64) -> Vec<Scene> {
         let rays = (frame.settings.samples * frame.settings.samples) as usize;
         let in_time = 4 * MAX_STEPS / self.steps.max(1);
         let in_room = 2 * MAX_ELEMENTS / frame.elements.len().max(1);
@@ -42,7 +41,8 @@ impl<'s, 'a: 's> Exposure<'s, 'a> {
             return Vec::new();
         }
         let scenes: Vec<Scene> = (0..count)
-            .map(|i| self.at(self.from + self.length * (i as f64 + 0.5) / count as f64))
+            .map(|i| self.from + length * (i as f64 + 0.5) / count as f64)
+            .map(|moment| self.at(moment, number).unwrap_or_else(|| frame.clone()))
             .collect();
         if scenes.iter().all(|scene| scene == frame) {
             return Vec::new();
@@ -50,11 +50,12 @@ impl<'s, 'a: 's> Exposure<'s, 'a> {
         scenes
     }
 
-    /// Makes the scene at a moment.
-    fn at(&self, moment: f64) -> Scene {
+    /// Makes the scene of the picture of a number at a moment; `None` if there is none then.
+    fn at(&self, moment: f64, number: usize) -> Option<Scene> {
         let scope = Scope::new(self.symbols.clone());
         let mut state = Evaluator::new(self.sources, self.assets, moment, scope);
         state.frozen = self.frozen.of_frame();
-        state.run_all().0
+        let shot = state.run_all().into_iter().nth(number)?;
+        Some(shot.scene)
     }
 }

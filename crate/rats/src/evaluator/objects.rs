@@ -3,10 +3,11 @@
 use super::model::Group;
 use super::state::{Evaluator, Flow};
 use crate::Severity;
-use crate::commands::build::{clay, flesh, row, takes};
-use crate::commands::slot::{Named, Slot, degrees, direction, existing, new, triple, vector};
+use crate::commands::build::{clay, flesh, options, row, takes};
+use crate::commands::slot::{Named, Placed, Slot, degrees, existing, new, triple, vector};
 use crate::commands::{Bracket, CommandSpec, Names};
 use crate::geometry::Transform;
+use crate::given::Options;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
@@ -129,26 +130,55 @@ fn close<'a>(
     Ok(Flow::Next)
 }
 
+options! {
+    /// Options of `instance`.
+    INSTANCE_OPTIONS:
+    MOVED: DVec3 = ("translate", "0 0 0", "moves the copy", vector("x y z", "the shift"));
+    TURNED: (Placed<DVec3>, Option<f64>) = ("rotate", "0 0 0", "turns the copy",
+        AXIS.with_place(), ANGLE.optional("the three numbers are angles"));
+    SCALED: Placed<DVec3> = ("scale", "1 1 1", "scales the copy",
+        triple("x y z", "the scale").with_place());
+}
+
 pub static INSTANCE: CommandSpec = row("instance", "copy an object")
     .with(takes!(
         instance,
+        [INSTANCE_OPTIONS],
         existing("name", Names::Object, "the object's name"),
         new("copy", Names::Object, "the copy's name").optional("the same name")
     ))
+    .details(
+        "The transforms move the copy and leave the object; they are carried out in the order in \
+         which they are written, as often as they are.",
+    )
     .example(clay!(
-        "object BALL\n  sphere Clay 1, -1.5 0 0\nclose\ninstance BALL, OTHER\n\
-         translate 3 0 0, OTHER"
+        "object BALL\n  sphere Clay 1, -1.5 0 0\nclose\ninstance BALL, OTHER translate 3 0 0\n\
+         instance BALL scale 0.5 0.5 0.5 translate 0.75 1 0"
     ));
 
 fn instance<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
+    options: &Options<'a>,
     old: Name<'a>,
     new: Option<Name<'a>>,
 ) -> Outcome<Flow> {
+    let mut transforms = Vec::new();
+    for chosen in options.iter() {
+        transforms.push(if let Some((axis, angle)) = TURNED.of(chosen) {
+            turn(axis, angle)?
+        } else if let Some(factors) = SCALED.of(chosen) {
+            stretch(factors)?
+        } else {
+            Transform::translation(MOVED.of(chosen).unwrap_or_default())
+        });
+    }
     let range = run.model.find(&old)?;
     charge(run, command, &range)?;
     run.model.copy(range, &new.unwrap_or(old))?;
+    for transform in &transforms {
+        transform_by(run, command, None, transform)?;
+    }
     Ok(Flow::Next)
 }
 
@@ -162,18 +192,43 @@ pub static TRANSLATE: CommandSpec = row("translate", "move an object")
     ))
     .example(clay!("sphere Clay 1, 0 0 0\ntranslate 1 1 0"));
 
-pub static ROTATE: CommandSpec = row("rotate", "turn an object about an axis through the origin")
+/// Axis of a turn, or its three angles.
+const AXIS: Slot<DVec3> = triple("x y z", "the axis, or three angles about x, y and z");
+/// Angle of a turn about an axis.
+const ANGLE: Slot<f64> = degrees("angle", "the angle");
+
+pub static ROTATE: CommandSpec = row("rotate", "turn an object about axes through the origin")
     .with(takes!(
         |run, command, axis, angle, object| {
-            transform_by(run, command, object, &Transform::rotation(axis, angle))
+            transform_by(run, command, object, &turn(axis, angle)?)
         },
-        direction("x y z", "the axis"),
-        degrees("angle", "the angle"),
+        AXIS.with_place(),
+        ANGLE.optional("the three numbers are angles"),
         TARGET
     ))
+    .details(
+        "With an angle, `x y z` is the axis. Without one they are angles in degrees: the object is \
+         turned about the x axis, then about y, then about z.",
+    )
     .example(clay!(
-        "cylinder Clay 0.6, <-2 0 0>, <2 0 0>\nrotate 0 0 1 30"
+        "cylinder Clay 0.6, <-2 0 0>, <2 0 0>\nrotate 0 0 1 30\n\
+         object BAR\n  cylinder Clay 0.3, <-3 0 0>, <3 0 0>\nclose\nrotate 0 20 -45, BAR"
     ));
+
+/// Makes the turn about an axis, or by three angles.
+///
+/// # Errors
+/// If the axis has no length.
+fn turn((axis, span): (DVec3, Range<usize>), angle: Option<f64>) -> Outcome<Transform> {
+    match (angle, axis.try_normalize()) {
+        (None, _) => Ok(Transform::rotations(axis)),
+        (Some(angle), Some(axis)) => Ok(Transform::rotation(axis, angle)),
+        (Some(_), None) => Err(Problem::new(
+            &span,
+            "the axis must not be 0 0 0: it is a direction",
+        )),
+    }
+}
 
 pub static SCALE: CommandSpec = row("scale", "scale an object")
     .with(takes!(
@@ -187,13 +242,21 @@ pub static SCALE: CommandSpec = row("scale", "scale an object")
 fn scale<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
-    (factors, span): (DVec3, Range<usize>),
+    factors: (DVec3, Range<usize>),
     object: Option<Name<'a>>,
 ) -> Outcome<Flow> {
+    transform_by(run, command, object, &stretch(factors)?)
+}
+
+/// Makes the scaling by three factors.
+///
+/// # Errors
+/// If one of them is 0.
+fn stretch((factors, span): (DVec3, Range<usize>)) -> Outcome<Transform> {
     if factors.to_array().iter().any(|f| f.abs() < 1e-9) {
         return Err(Problem::new(&span, "a scale factor must not be 0"));
     }
-    transform_by(run, command, object, &Transform::scaling(factors))
+    Ok(Transform::scaling(factors))
 }
 
 /// `explode x y z [object]`: each shape moves away from the middle of the object.

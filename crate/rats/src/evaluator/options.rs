@@ -4,7 +4,7 @@ use super::state::{Evaluator, Flow};
 use crate::commands::build::{choice, clay, flesh, idle, plain, row, sets, takes, word_of};
 use crate::commands::slot::{ON_OFF, colour, new_file, number, text, whole, word};
 use crate::commands::{CommandSpec, OptionSpec, Unit};
-use crate::problem::Outcome;
+use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use field::BlobScale;
@@ -140,8 +140,11 @@ pub static FORMAT: CommandSpec = row("format", "format of the saved picture")
         |run, format| run.output.format = Some(format),
         word("format", FORMATS, "a format, such as `tif`")
     ))
-    .default("tif")
-    .details("The program writes all of these; the page saves PNG whatever stands here.")
+    .default("png")
+    .details(
+        "The program writes all of these; the page saves PNG whatever stands here. RATS wrote TIFF \
+         unless a text said otherwise; here that is PNG.",
+    )
     .example("format png");
 
 pub static NOSAVE: CommandSpec = row("nosave", "do not save the picture")
@@ -154,30 +157,74 @@ pub static NOSAVE: CommandSpec = row("nosave", "do not save the picture")
     )
     .example("nosave on");
 
+/// `sample`.
+pub static METHODS: &[OptionSpec] = &[word_of(
+    "adaptive",
+    "more rays where neighbours differ, which is always so",
+)];
+
 pub static SAMPLE: CommandSpec = row("sample", "at most n×n rays a pixel")
     .with(takes!(
         sample,
-        whole("n", 1, Settings::MAX_SAMPLES, "the number of samples"),
+        word("adaptive", METHODS, "`adaptive`").optional(""),
+        number("n", "the number of samples")
+            .from(
+                1.0 / Settings::MAX_BLOCK as f64,
+                Settings::MAX_SAMPLES as f64
+            )
+            .with_place()
+            .optional("4 if adaptive"),
         text("method", "the method").optional("")
     ))
     .default("1")
     .details(
         "The first ray of each pixel makes a whole picture; more follow where neighbours differ \
          (see `contrast`), and everywhere where a lens, the shutter, a light's size or the sky \
-         ask for many; if they do, n is 4 unless it is given.",
+         ask for many; if they do, n is 4 unless it is given. Below 1 there are fewer rays than \
+         pixels: 0.5 sends one for a block of 2×2, 0.25 for 4×4, down to 1/16; other numbers \
+         count as the nearest of these.",
     )
     .example(clay!("sample 4\nsphere Clay 2, 0 0 0"));
 
+/// Rays across and down a pixel of `sample adaptive` without a number.
+const ADAPTIVE: f64 = 4.0;
+
 fn sample<'a>(
     run: &mut Evaluator<'a>,
-    _: &'a Command,
-    n: u32,
+    command: &'a Command,
+    adaptive: Option<&'static str>,
+    number: Option<(f64, Range<usize>)>,
     method: Option<Range<usize>>,
 ) -> Outcome<Flow> {
-    run.settings.samples = n;
+    let (n, span) = match (number, adaptive) {
+        (Some(number), _) => number,
+        (None, Some(_)) => (ADAPTIVE, command.span.clone()),
+        (None, None) => {
+            return Err(Problem::new(
+                &command.span,
+                "`sample` takes the number of samples, or `adaptive`",
+            )
+            .hint("write `sample 4`"));
+        }
+    };
+    if n >= 1.0 && n.fract() != 0.0 {
+        return Err(Problem::new(
+            &span,
+            format!("the number of samples must be a whole number, or below 1, not {n}"),
+        ));
+    }
+    run.settings.samples = n.max(1.0) as u32;
+    // The nearest power of 2, in the logarithm.
+    run.settings.block = 1 << libm::round(libm::log2((1.0 / n).max(1.0))) as u32;
     run.sampled = true;
-    if let Some(span) = method {
-        let message = "the method changes nothing here: there is one, which spreads rays evenly";
+    let text = run.sources.all[run.file].text;
+    if let Some(span) = method
+        && !text[span.clone()]
+            .trim()
+            .eq_ignore_ascii_case(METHODS[0].name)
+    {
+        let message = "the method changes nothing here: there is one, which sends more rays \
+                       where neighbours differ";
         run.note(&span, message, "");
     }
     Ok(Flow::Next)
@@ -334,17 +381,25 @@ pub static BLOB_SCALES: &[OptionSpec] = &[
 ];
 
 pub static BLOBSCALE: CommandSpec = row("blobscale", "how blobbiness is read")
-    .with(sets!(
-        |run, what| run.settings.blob_scale = if what == "absolute" {
-            BlobScale::Absolute
-        } else {
-            BlobScale::Relative
-        },
+    .with(takes!(
+        blobscale,
         word("what", BLOB_SCALES, "`relative` or `absolute`")
     ))
     .default("relative")
-    .details("relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read.")
+    .details(
+        "relative: a² = |B|/R²; absolute: a² = |B|, as the published datasets read. A text whose \
+         radii and blobbiness go together as |B|·R² ≈ const is asked which of them it means.",
+    )
     .example(flesh!("blobscale absolute\nsphere Flesh 0.6, 0 0 0"));
+
+fn blobscale<'a>(run: &mut Evaluator<'a>, _: &'a Command, what: &'static str) -> Outcome<Flow> {
+    run.settings.blob_scale = match what {
+        "absolute" => BlobScale::Absolute,
+        _ => BlobScale::Relative,
+    };
+    run.scaled = true;
+    Ok(Flow::Next)
+}
 
 pub static INFLUENCE: CommandSpec = row(
     "influence",

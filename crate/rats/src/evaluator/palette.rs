@@ -1,7 +1,8 @@
 //! The materials and textures that a running text has made.
 //!
 //! A material that is made anew under an old name is a new one: shapes made before keep the old. So
-//! a dataset can vary one material along a row of shapes.
+//! a dataset can vary one material along a row of shapes. Between two pictures it changes the
+//! shapes that the first one shows, as a model lives on behind a `shoot`.
 
 use crate::limits::{MAX_LAYERS, MAX_MATERIALS};
 use crate::operands::Share;
@@ -24,10 +25,29 @@ pub struct Surface {
     pub colours: Colours,
     /// The file and place of its name.
     pub origin: (usize, Range<usize>),
-    /// Whether a shape is made of it.
+    /// Whether a shape is made of it, since the last `shoot` if there is one.
     pub used: bool,
+    /// Whether a `shoot` has shown shapes of it, and it has not been made again since.
+    pub shown: bool,
     /// Whether another material began as its copy.
     pub copied: bool,
+}
+
+impl Surface {
+    /// Returns whether no shape is made of it.
+    fn is_idle(&self) -> bool {
+        !self.used && !self.shown
+    }
+
+    /// Returns whether its shapes, all of which earlier pictures show, can become those of another
+    /// material: what is soft, hard or tapers stays so.
+    fn changes_to(&self, other: &Self) -> bool {
+        let [own, new] = [&self.flesh, &other.flesh].map(|flesh| {
+            let tapers = flesh.end_radius.is_some() || flesh.end_blobbiness.is_some();
+            (flesh.is_soft(), tapers)
+        });
+        self.shown && !self.used && own == new
+    }
 }
 
 /// The colours of a material as the text gives them; shares refer to others.
@@ -67,7 +87,13 @@ impl<'a> Palette<'a> {
     /// If there are too many.
     pub fn insert(&mut self, name: &Name<'a>, surface: Surface) -> Outcome<()> {
         match self.by_name.get(name.text) {
-            Some(&index) if !self.surfaces[index].used => self.surfaces[index] = surface,
+            Some(&index) if self.surfaces[index].is_idle() => self.surfaces[index] = surface,
+            Some(&index) if self.surfaces[index].changes_to(&surface) => {
+                self.surfaces[index] = Surface {
+                    used: true,
+                    ..surface
+                };
+            }
             _ => {
                 self.refuse_more(name)?;
                 self.by_name.insert(name.text, self.surfaces.len());
@@ -75,6 +101,24 @@ impl<'a> Palette<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Returns whether shapes of an earlier picture keep the material of this name when `surface`
+    /// takes its name, as they cannot become soft, hard or of varying width.
+    #[must_use]
+    pub fn keeps_old(&self, name: &Name<'a>, surface: &Surface) -> bool {
+        let old = self
+            .by_name
+            .get(name.text)
+            .map(|&index| &self.surfaces[index]);
+        old.is_some_and(|old| old.shown && !old.used && !old.changes_to(surface))
+    }
+
+    /// Remembers that a picture shows all shapes made so far.
+    pub fn mark_shown(&mut self) {
+        for surface in &mut self.surfaces {
+            surface.shown |= std::mem::take(&mut surface.used);
+        }
     }
 
     /// Adds a copy of a material, without a name, whose colours are multiplied by another.
@@ -89,6 +133,24 @@ impl<'a> Palette<'a> {
             finish.ambient[k] *= tint;
             finish.diffuse[k] *= tint;
         }
+        self.surfaces[material].used = true;
+        self.surfaces.push(surface);
+        Ok(self.surfaces.len() - 1)
+    }
+
+    /// Adds a copy of a material, without a name, with a blobbiness.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub fn add_soft(
+        &mut self,
+        name: &Name<'_>,
+        material: usize,
+        blobbiness: f64,
+    ) -> Outcome<usize> {
+        self.refuse_more(name)?;
+        let mut surface = self.surfaces[material].clone();
+        surface.flesh.blobbiness = Some(blobbiness);
         self.surfaces[material].used = true;
         self.surfaces.push(surface);
         Ok(self.surfaces.len() - 1)
@@ -109,7 +171,7 @@ impl<'a> Palette<'a> {
     #[must_use]
     pub fn idle_place(&self, name: &str) -> Option<&(usize, Range<usize>)> {
         let surface = &self.surfaces[*self.by_name.get(name)?];
-        (!surface.used && !surface.copied).then_some(&surface.origin)
+        (surface.is_idle() && !surface.copied).then_some(&surface.origin)
     }
 
     /// Remembers that a material or texture should have been made here but was not.
@@ -221,6 +283,11 @@ impl<'a> Palette<'a> {
         self.by_name.clear();
     }
 
+    /// Returns the materials that have a name.
+    pub fn with_names(&self) -> impl Iterator<Item = &Surface> {
+        self.by_name.values().map(|index| &self.surfaces[*index])
+    }
+
     /// Returns the number of textures.
     #[must_use]
     pub fn textures(&self) -> usize {
@@ -237,6 +304,6 @@ impl<'a> Palette<'a> {
         self.by_name
             .values()
             .map(|index| &self.surfaces[*index])
-            .filter(|surface| !surface.used)
+            .filter(|surface| surface.is_idle())
     }
 }

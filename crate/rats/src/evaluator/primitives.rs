@@ -17,7 +17,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::strokes::{self, Sculpted};
 use crate::syntax::Command;
-use crate::{assets, is_strokes};
+use crate::{Asset, assets, is_strokes};
 use field::Kernel;
 use field::Skeleton;
 use glam::{DMat3, DVec3};
@@ -72,6 +72,7 @@ impl<'a> Evaluator<'a> {
     ) -> Outcome<Flow> {
         let flesh = &self.palette.surfaces[material].flesh;
         let part = Part {
+            limbs: 0,
             tapers: shape.bone().is_some_and(|bone| match bone.skeleton {
                 _ if bone.end_radius.is_some() => flesh.is_soft(),
                 Skeleton::Segment { .. } | Skeleton::Arc { .. } => {
@@ -619,8 +620,8 @@ pub static MESH: CommandSpec = row(
 .with(by_itself(mesh, plain![SN, MESH_FILE], MESH_OPTIONS))
 .default("robust")
 .details(
-    "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL or GLB \
-     (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, \
+    "`mesh sn file.obj` draws the triangles of a file of the project: OBJ, PLY, STL, GLB or \
+     3MF (`gem.obj` is built in). A text of the project with the ending `.strokes` is a mesh, too, \
      made by strokes of tools (Sculpt writes them). Where the mesh has colours (of vertices), or \
      is painted, they are multiplied with the material's diffuse and ambient. Soft: each triangle \
      is a skeleton. `mesh sn file.obj metaballs triangular d0 k` makes a soft surface of any \
@@ -665,12 +666,35 @@ fn mesh_of_file<'a>(
     }
     let asset = run.asset(&file)?;
     run.scope.step(assets::cost(asset), &command.word_span)?;
-    let mesh = assets::mesh(asset).map_err(|error| Problem::new(&file.span, error.to_string()))?;
+    let mesh = asset
+        .mesh()
+        .map_err(|error| Problem::new(&file.span, error.to_string()))?;
+    note_coordinates(run, &name, &file, asset)?;
     if let Some(metaballs) = implicit_mesh::metaballs(options)? {
-        let topology = assets::topology(asset).ok().map(|own| (*own).clone());
+        let topology = asset.topology().ok().cloned();
         return implicit_mesh::add(run, command, &name, topology, &mesh, metaballs);
     }
     add_mesh(run, command, &name, &mesh, None)
+}
+
+/// Notes that texture coordinates of a file do not count, where its material shows an image.
+fn note_coordinates<'a>(
+    run: &mut Evaluator<'a>,
+    name: &Name<'a>,
+    file: &Name<'a>,
+    asset: &Asset,
+) -> Outcome<()> {
+    let material = run.material(name)?;
+    let mut layers = run.palette.surfaces[material].finish.layers.iter();
+    let shows_image = layers.any(|layer| matches!(layer.method, texture::Method::Image(..)));
+    let is_obj = asset.name.to_ascii_lowercase().ends_with(".obj");
+    if shows_image && is_obj && asset.bytes.windows(4).any(|bytes| bytes == b"\nvt ") {
+        let message = "the texture coordinates (`vt`) of this file do not count: the image is laid \
+                       into each triangle";
+        let hint = "a solid texture, or an image with a `region`, goes over the whole mesh";
+        run.note(&file.span, message, hint);
+    }
+    Ok(())
 }
 
 /// Returns the mesh of a text of strokes. Reports what is wrong with that text where it stands.

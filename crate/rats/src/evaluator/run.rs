@@ -1,17 +1,16 @@
 //! RUN: messages and help.
 
 use super::state::{Evaluator, Flow};
-use crate::commands::build::{by_itself, clay, idle, plain, row, takes, word_of};
+use crate::commands::build::{by_itself, clay, plain, row, takes, word_of};
 use crate::commands::slot::{existing, file, new_file, text, word};
 use crate::commands::{self, CommandSpec, Names, OptionSpec};
+use crate::compiled::{Act, Interlude};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::syntax::Command;
 use crate::{colours, manual};
 use std::fmt::from_fn;
-
-const REPORTS: &str = "the page and the program report what they do";
 
 /// `stopwatch`.
 pub static STOPWATCH_WORDS: &[OptionSpec] = &[
@@ -26,7 +25,10 @@ pub static PAUSE: CommandSpec = row("pause", "show a message")
         plain![text("message", "the message").optional("")],
         &[],
     ))
-    .details("RATS waits for a key. A page cannot, so the message is shown among the notes.")
+    .details(
+        "The program waits for the Enter key, if somebody sits before it. A page cannot, so the \
+         message is shown among the notes.",
+    )
     .example("pause this stands among the notes");
 
 fn pause<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
@@ -34,6 +36,21 @@ fn pause<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
     let message = source.text[command.word_span.end..command.span.end].trim();
     let message = if message.is_empty() { "pause" } else { message };
     run.note(&command.span, message, "");
+    interlude(run, command, Act::Pause(message.to_owned()))
+}
+
+/// Lists something that the program does between pictures.
+///
+/// # Errors
+/// If there are too many.
+fn interlude<'a>(run: &mut Evaluator<'a>, command: &'a Command, act: Act) -> Outcome<Flow> {
+    let most = limits::MAX_INTERLUDES;
+    if run.interludes.len() >= most {
+        let message = format!("there are more than {most} pauses, logs and times");
+        return Err(Problem::new(&command.span, message));
+    }
+    let after = run.shots.taken.len();
+    run.interludes.push(Interlude { after, act });
     Ok(Flow::Next)
 }
 
@@ -137,18 +154,63 @@ fn find_command(run: &mut Evaluator<'_>, name: &Name<'_>) -> Outcome<&'static Co
 }
 
 pub static LOG: CommandSpec = row("log", "open or close a log")
-    .with(idle(
-        REPORTS,
-        plain![new_file("file", "the log's name").optional("")],
+    .with(takes!(
+        log,
+        new_file("file", "the log's name, which ends in .txt or .log").optional("closes the log")
     ))
+    .details(
+        "The program writes what it says from there on into this file of the dataset's folder, \
+         too: the messages about the text and the pictures that it makes. A page has no log.",
+    )
     .example("log session.txt");
 
+fn log<'a>(run: &mut Evaluator<'a>, command: &'a Command, file: Option<Name<'a>>) -> Outcome<Flow> {
+    let name = file.map(|file| file.text.to_owned());
+    if let Some(name) = &name {
+        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+        if !["txt", "log"]
+            .iter()
+            .any(|log| ending.eq_ignore_ascii_case(log))
+        {
+            return Err(Problem::new(
+                &command.span,
+                format!("`{name}` is no name for a log, which is a text"),
+            )
+            .hint("let it end in .txt or .log"));
+        }
+    }
+    run.note(
+        &command.word_span,
+        "the program keeps a log; a page has none",
+        "",
+    );
+    interlude(run, command, Act::Log(name))
+}
+
 pub static STOPWATCH: CommandSpec = row("stopwatch", "measure time")
-    .with(idle(
-        REPORTS,
-        plain![word("what", STOPWATCH_WORDS, "`start` or `stop`")],
+    .with(takes!(
+        stopwatch,
+        word("what", STOPWATCH_WORDS, "`start` or `stop`")
     ))
+    .details(
+        "The program tells the time that the pictures between `start` and `stop` take. A page \
+         tells that of its own picture anyway.",
+    )
     .example("stopwatch start");
+
+fn stopwatch<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    what: &'static str,
+) -> Outcome<Flow> {
+    let starts = what == "start";
+    run.note(
+        &command.word_span,
+        "the program tells the time; a page has no stopwatch",
+        "",
+    );
+    interlude(run, command, Act::Stopwatch { starts })
+}
 
 pub static READ: CommandSpec = row("read", "run the commands of other files")
     .with(takes!(read, file("fn", "a file's name").many()))

@@ -8,7 +8,7 @@ use crate::commands::slot::{text, word};
 use crate::commands::{CommandSpec, OptionSpec};
 use crate::problem::Outcome;
 use crate::syntax::Command;
-use scene::{Background, Camera, Lens, Settings};
+use scene::{Camera, Lens, Settings};
 use std::ops::Range;
 
 /// `reset`, `report`.
@@ -32,6 +32,10 @@ pub static REPORT: CommandSpec = row("report", "tell what the scene holds")
         report,
         word("what", RESET_WORDS, "what to report on").any()
     ))
+    .details(
+        "Without a word it counts what there is; with one it tells values: of each material, \
+         light or variable, of the camera, of the settings. `report all` tells all of them.",
+    )
     .example("report");
 
 fn report<'a>(
@@ -39,74 +43,64 @@ fn report<'a>(
     command: &'a Command,
     words: Vec<&'static str>,
 ) -> Outcome<Flow> {
-    let is_named = |name: &str| words.contains(&name);
-    let is = |names: &[&str]| {
-        words.is_empty()
-            || words
-                .iter()
-                .any(|word| names.contains(word) || *word == "all")
-    };
-    run.scope
-        .step(1 + run.model.parts.len() as u64 / 16, &command.word_span)?;
+    let parts = run.model.parts.len() as u64;
+    let things = run.palette.surfaces.len() as u64 + run.scope.symbols.count() as u64;
+    run.scope.step(
+        1 + (parts + things) / 16 * words.len().max(1) as u64,
+        &command.word_span,
+    )?;
     if !run.is_news(Severity::Note, &command.span) {
         return Ok(Flow::Next);
     }
-    let parts = run.model.parts.iter().filter(|part| !part.removed).count();
-    let (camera, settings) = (run.camera, run.settings);
+    if words.is_empty() {
+        let counts = run.counts().join(", ");
+        run.note(&command.span, format_args!("there are here: {counts}"), "");
+        return Ok(Flow::Next);
+    }
     let mut lines = Vec::new();
-    if is(&["data", "model"]) {
-        lines.push(format!("{parts} shapes"));
+    for word in &words {
+        match run.values_of(word) {
+            values if values.is_empty() => lines.push(format!("no {word}")),
+            values => lines.extend(values),
+        }
     }
-    if is(&["surfaces"]) {
-        lines.push(format!("{} materials", run.palette.surfaces.len()));
-    }
-    if is(&["textures"]) {
-        lines.push(format!("{} textures", run.palette.textures()));
-    }
-    if is(&["lights"]) {
-        lines.push(format!("{} lights", run.lights.len()));
-    }
-    if is(&["background"]) {
-        lines.push(match run.air.background() {
-            Background::Colour([r, g, b]) => format!("the background {r} {g} {b}"),
-            Background::Gradient(colours) => format!("a background of {} colours", colours.len()),
-            Background::Image(_) => String::from("an image as the background"),
-        });
-    }
-    if is(&["cameras"]) {
-        let [eye, target] = [camera.eye, camera.target].map(|p| format!("{} {} {}", p.x, p.y, p.z));
-        lines.push(format!(
-            "the eye at {eye}, seeing {target} at {} degrees",
-            camera.fov
-        ));
-    }
-    if is(&["options"]) {
-        let [width, height] = settings.frame;
-        lines.push(format!(
-            "a picture of {width}×{height} pixels, {} samples, gamma {}, soft {}",
-            settings.samples,
-            settings.gamma,
-            if settings.soft { "on" } else { "off" }
-        ));
-    }
-    if is(&["var"]) {
-        lines.push(format!("{} variables", run.scope.names().count()));
-    }
-    let count = run.air.clouds.len();
-    if count > 0 || is_named("clouds") {
-        lines.push(format!("{count} clouds"));
-    }
-    match run.air.fog(camera.eye.distance(camera.target)) {
-        Some(fog) if is(&["fog"]) => lines.push(format!("fog of the distance {}", fog.distance)),
-        None if is_named("fog") => lines.push(String::from("no fog")),
-        _ => {}
-    }
-    run.note(
-        &command.span,
-        format_args!("there are here: {}", lines.join(", ")),
-        "",
-    );
+    run.note(&command.span, lines.join("\n"), "");
     Ok(Flow::Next)
+}
+
+impl Evaluator<'_> {
+    /// Counts what there is, kind by kind.
+    fn counts(&self) -> Vec<String> {
+        let parts = self.model.parts.iter().filter(|part| !part.removed).count();
+        let (camera, settings) = (self.camera, self.settings);
+        let [eye, target] = [camera.eye, camera.target].map(|p| format!("{} {} {}", p.x, p.y, p.z));
+        let [width, height] = settings.frame;
+        let mut counts = vec![
+            format!("{parts} shapes"),
+            format!("{} materials", self.palette.surfaces.len()),
+            format!("{} textures", self.palette.textures()),
+            format!("{} lights", self.lights.len()),
+            super::values::background(&self.air.background()),
+            format!(
+                "the eye at {eye}, seeing {target} at {} degrees",
+                camera.fov
+            ),
+            format!(
+                "a picture of {width}×{height} pixels, {} samples, gamma {}, soft {}",
+                settings.samples,
+                settings.gamma,
+                if settings.soft { "on" } else { "off" }
+            ),
+            format!("{} variables", self.scope.names().count()),
+        ];
+        if !self.air.clouds.is_empty() {
+            counts.push(format!("{} clouds", self.air.clouds.len()));
+        }
+        if let Some(fog) = self.air.fog(camera.eye.distance(camera.target)) {
+            counts.push(format!("fog of the distance {}", fog.distance));
+        }
+        counts
+    }
 }
 
 pub static RESET: CommandSpec = row("reset", "put things back to what they are at the start")
@@ -164,6 +158,7 @@ fn reset<'a>(
         if is("options") {
             run.settings = Settings::default();
             run.sampled = false;
+            run.scaled = false;
             run.report.no_warnings = false;
             run.report.no_notes = false;
             run.output = crate::compiled::Output::default();
@@ -184,14 +179,18 @@ pub static SHOOT: CommandSpec = row("shoot", "draw the picture")
     ))
     .interrupts()
     .details(
-        "The picture shows what has been made so far. Without `shoot` it shows what there is at \
-         the end.",
+        "The picture shows what has been made so far, and is saved under the `filename` that \
+         stands so far. A text can have several: the program writes each, the page shows the \
+         last. The model lives on behind a `shoot`: a material made again under its name changes \
+         the shapes that stand there, while shapes keep the variables that they were made with. \
+         What follows the last `shoot` is in its picture, too, up to a `reset`; without `shoot` \
+         the picture shows what there is at the end.",
     )
     .example(clay!("sphere Clay 2, 0 0 0\nshoot"));
 
 fn shoot<'a>(
     run: &mut Evaluator<'a>,
-    _: &'a Command,
+    command: &'a Command,
     options: Option<Range<usize>>,
 ) -> Outcome<Flow> {
     if let Some(span) = options {
@@ -201,10 +200,7 @@ fn shoot<'a>(
             "",
         );
     }
-    if run.shot.is_none() {
-        let parts = run.model.parts.clone();
-        run.shot = Some(run.picture(parts));
-    }
+    run.shoot(command)?;
     Ok(Flow::Next)
 }
 

@@ -1,25 +1,28 @@
 //! `skeleton`: subdivision curves through named nodes, with flesh around them.
 
 use super::model::{Group, Part};
+use super::skeleton_file::{self, FILE, FILE_OPTIONS, NAME};
 use super::state::{Evaluator, Flow};
-use crate::commands::build::{options, row, takes, word_of};
+use crate::commands::build::{by_itself, options, plain, row, word_of};
 use crate::commands::slot::{Named, Placed, SN, Word, existing, length, new, vector, whole, word};
-use crate::commands::{CommandSpec, Names, OptionSpec, Role};
+use crate::commands::{CommandSpec, Names, OptionSpec, Parameter, Role};
 use crate::given::{Chosen, Options};
+use crate::limits::{CURVE_WEIGHT, MAX_BLOCK_OPERANDS};
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use crate::syntax::Command;
-use field::Kernel;
+use field::{Kernel, Shaping, Taper};
 use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Form, Function, Shape};
 use skeleton::{Node, Scheme, Skeleton};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
 /// Schemes of subdivision.
-const SCHEMES: &[OptionSpec] = &[
+pub(super) const SCHEMES: &[OptionSpec] = &[
     word_of("cubic", "the smoothest: cubic B-splines"),
     word_of(
         "chaikin",
@@ -56,15 +59,35 @@ options! {
             blends").at_least(1e-6).with_place());
 }
 
+/// Operands of the form with a block.
+const PARAMETERS: &[Parameter] = plain![SN, NAME];
+
+/// Options of both forms, for the manual and the editor.
+static ALL_OPTIONS: &[OptionSpec] = plain![
+    NODE,
+    RADIUS,
+    CURVE,
+    SUBDIVIDE,
+    SCHEME,
+    LOCAL,
+    skeleton_file::SCALE,
+    skeleton_file::THICKEN,
+    skeleton_file::MERGE,
+    skeleton_file::SIMPLIFY,
+    skeleton_file::ENDS,
+    skeleton_file::MATERIALS,
+    skeleton_file::BONDS,
+];
+
 /// `skeleton sn, name [option …] { node A <x y z> [radius r] … curve A B … … }`
 pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with flesh around them")
-    .with(takes!(
+    .with(by_itself(
         skeleton,
-        [SKELETON_OPTIONS],
-        SN,
-        new("name", Names::Object, "the skeleton's name")
+        plain![SN, NAME, FILE.optional("")],
+        ALL_OPTIONS,
     ))
     .newer()
+    .most_operands(MAX_BLOCK_OPERANDS)
     .details(
         "Nodes and curves stand in `{ … }`. A curve begins and ends at its end nodes, passes \
          through nodes that it shares with other curves, which branch there, and is drawn towards \
@@ -73,7 +96,14 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
          `cubed` unless the material names another. With `local D` only the stretch within D \
          along the curves counts at a point, so that a fold does not blend with what lies beside \
          it; about four radii suit. A skeleton is an object: it is moved, turned and copied by \
-         its name.",
+         its name.\n\
+         `skeleton sn, name file.swc` has the limbs of a file of the project in place of a block: \
+         neurons (.swc), lattices of beams (.3mf), centrelines (.vtp .vtk), trees (.csv), lines \
+         with radii (.obj .ply) and molecules (.xyz .pdb). Its limbs are straight, `subdivide 0`, \
+         unless the text says otherwise; `subdivide` rounds them through their nodes. Radii are \
+         those of the file, times `scale`; `radius NAME` names the array or column that has \
+         them. The surface stands at these radii for the kernel `compact6` and the blobbiness 8, \
+         which a material has here that names neither.",
     )
     .example(
         "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
@@ -83,7 +113,31 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
          curve WRIST PALM TIP\n  curve PALM THUMB\n}",
     );
 
-fn skeleton<'a>(
+fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
+    let is_file = is_file_next(run, command);
+    let (parameters, options) = match is_file {
+        true => (skeleton_file::PARAMETERS, FILE_OPTIONS),
+        false => (PARAMETERS, SKELETON_OPTIONS),
+    };
+    let given = run.read_given_by(command, &SKELETON, parameters, options)?;
+    let mut values = given.values();
+    let (sn, name) = (values.take(|| SN)?, values.take(|| NAME)?);
+    if is_file {
+        let file = values.take(|| FILE)?;
+        return skeleton_file::add(run, command, &given.options, &[sn, name, file]);
+    }
+    add_block(run, command, &given.options, sn, name)
+}
+
+/// Whether a file's name, which has a dot, stands behind the names of material and skeleton.
+fn is_file_next(run: &mut Evaluator<'_>, command: &Command) -> bool {
+    let mut read = run.reader(command);
+    let is_named = read.name("").is_ok() && read.name("").is_ok();
+    let is_word = is_named && read.peek_word().is_some();
+    is_word && read.file_name("").is_ok_and(|name| name.text.contains('.'))
+}
+
+fn add_block<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
     options: &Options<'a>,
@@ -94,14 +148,13 @@ fn skeleton<'a>(
     let flesh = &run.palette.surfaces[material].flesh;
     let mut read = Read {
         nodes: Vec::new(),
+        indices: HashMap::new(),
         curves: Vec::new(),
         material: sn.text,
         radius: flesh.radius,
     };
     read.nodes(options)?;
     for chosen in options.iter().filter(|chosen| CURVE.is(chosen)) {
-        run.scope
-            .step((read.nodes.len() / 8) as u64, &chosen.span)?;
         read.curve(chosen)?;
     }
     if read.curves.is_empty() {
@@ -146,6 +199,7 @@ fn skeleton<'a>(
     };
     let part = Part {
         tapers: false,
+        limbs: weigh(run, &element),
         element,
         growth: 1.0,
         moved: None,
@@ -161,14 +215,58 @@ fn skeleton<'a>(
     Ok(Flow::Next)
 }
 
+/// Returns the number of shapes as which the limbs of an element count: those that taper count as
+/// [`CURVE_WEIGHT`], unless they are [cones](Shaping::is_cone).
+pub(super) fn weigh(run: &Evaluator<'_>, element: &Element) -> usize {
+    let flesh = element
+        .flesh
+        .map(|material| &run.palette.surfaces[material as usize].flesh);
+    let (Some(curves), Some(flesh)) = (element.shape.curves(), flesh) else {
+        return 0;
+    };
+    let blobbiness = flesh.blobbiness.unwrap_or(scene::curves::BLOBBINESS);
+    let mut weight = 0;
+    for [(base, start), (apex, end)] in curves.pieces() {
+        let shaping = Shaping {
+            kernel: flesh.kernel.unwrap_or(element.kernel),
+            radius: start,
+            blobbiness,
+            blob_scale: run.settings.blob_scale,
+            strength: 1.0,
+            influence: run.settings.influence,
+            taper: Some(Taper {
+                radius: end,
+                blobbiness,
+            }),
+        };
+        let is_one = start == end || shaping.is_cone(&field::Skeleton::Segment { base, apex });
+        weight += if is_one { 1 } else { CURVE_WEIGHT };
+    }
+    weight
+}
+
 /// Length along its curves within which flesh blends as if all of it counted, in its largest radii.
 const SUITABLE_REACH: f64 = 4.0;
 /// Least length along its curves within which flesh may blend, in its largest radii.
 const LEAST_REACH: f64 = 0.2;
 
+/// Refuses a reach of local convolution within which so few of the field's sources count that no
+/// flesh is left.
+pub(super) fn check_reach(reach: f64, thickest: f64, span: &Range<usize>) -> Outcome<()> {
+    if reach >= LEAST_REACH * thickest {
+        return Ok(());
+    }
+    let blends = format_args!("blends along {reach} of its curves only, and vanishes");
+    let message = format!("flesh as thick as {thickest} {blends}");
+    Err(Problem::new(span, message)
+        .hint("let it blend about as far as it is thick, and a fifth of that at least"))
+}
+
 /// Content of a block.
 struct Read<'a> {
     nodes: Vec<(Name<'a>, Node)>,
+    /// The index of each node.
+    indices: HashMap<&'a str, usize>,
     /// The place of each curve and the indices of its nodes.
     curves: Vec<(Range<usize>, Vec<usize>)>,
     /// The material's name and radius.
@@ -203,7 +301,8 @@ impl<'a> Read<'a> {
 
     /// Adds a node.
     fn node(&mut self, name: Name<'a>, place: DVec3) -> Outcome<()> {
-        if let Some((first, _)) = self.nodes.iter().find(|(n, _)| n.text == name.text) {
+        if let Some(first) = self.indices.get(name.text) {
+            let (first, _) = &self.nodes[*first];
             return Err(
                 Problem::new(&name.span, format!("there are two nodes `{}`", name.text))
                     .hint("give one of them another name")
@@ -214,6 +313,7 @@ impl<'a> Read<'a> {
             position: place,
             radius: self.radius,
         };
+        self.indices.insert(name.text, self.nodes.len());
         self.nodes.push((name, node));
         Ok(())
     }
@@ -245,14 +345,11 @@ impl<'a> Read<'a> {
 
     /// Finds the index of a node.
     fn find(&self, name: &Name<'_>) -> Outcome<usize> {
-        let names = self.nodes.iter().map(|(own, _)| own.text);
-        names
-            .clone()
-            .position(|own| own == name.text)
-            .ok_or_else(|| {
-                let message = format!("this skeleton has no node `{}`", name.text);
-                Problem::new(&name.span, message).maybe_hint(suggest::hint(name.text, names))
-            })
+        self.indices.get(name.text).copied().ok_or_else(|| {
+            let names = self.nodes.iter().map(|(own, _)| own.text);
+            let message = format!("this skeleton has no node `{}`", name.text);
+            Problem::new(&name.span, message).maybe_hint(suggest::hint(name.text, names))
+        })
     }
 
     /// Returns the names of nodes that are on no curve.
@@ -282,14 +379,7 @@ impl<'a> Read<'a> {
         let mut curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
             .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
         if let Some((reach, span)) = options.last(&LOCAL) {
-            // So few of the field's sources count within less that no flesh is left.
-            if reach < LEAST_REACH * thickest {
-                let blends = format_args!("blends along {reach} of its curves only, and vanishes");
-                let message = format!("flesh as thick as {thickest} {blends}");
-                return Err(Problem::new(&span, message).hint(
-                    "let it blend about as far as it is thick, and a fifth of that at least",
-                ));
-            }
+            check_reach(reach, thickest, &span)?;
             curves = curves.within(reach);
         }
         // A curve all of whose nodes are at one place has no flesh.

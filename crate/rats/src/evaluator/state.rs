@@ -5,10 +5,11 @@ use super::image_list::Images;
 use super::model::Model;
 use super::motion::Moving;
 use super::palette::Palette;
+use super::shots::Shots;
 use super::surroundings::Air;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
-use crate::compiled::{Deform, HotVariable, Output, Placement};
+use crate::compiled::{Deform, HotVariable, Interlude, Output, Unread};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
@@ -18,7 +19,7 @@ use crate::sources::Sources;
 use crate::symbol::Symbol;
 use crate::syntax::{Command, Define};
 use crate::{Asset, Tool};
-use scene::{Camera, Lens, Light, Origin, Scene, Settings};
+use scene::{Camera, Lens, Light, Origin, Settings};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -65,12 +66,19 @@ pub struct Evaluator<'a> {
     pub(super) settings: Settings,
     /// Whether `sample` has been given.
     pub(super) sampled: bool,
+    /// Whether `blobscale` has been given.
+    pub(super) scaled: bool,
     pub(super) definitions: HashMap<Symbol, (usize, &'a Define)>,
     pub(super) hot: Vec<HotVariable>,
     pub(super) tools: Vec<Tool>,
+    pub(super) interludes: Vec<Interlude>,
     pub(super) tool_origins: Vec<Origin>,
     pub(super) output: Output,
     pub(super) deforms: Vec<Deform>,
+    /// Skeletons of files, each once.
+    pub(super) skeletons: Vec<Unread>,
+    /// Skeletons of files that have not been read.
+    pub(super) unread: Vec<Unread>,
     /// Vertices of all deformations so far.
     pub(super) deformed: usize,
     /// Whether a variable changes with every frame.
@@ -90,9 +98,8 @@ pub struct Evaluator<'a> {
     pub(super) depth: usize,
     /// Loops and calls inside each other.
     pub(super) repeating: usize,
-    /// The picture that `shoot` took.
-    pub(super) shot: Option<(Scene, Vec<Placement>)>,
-    pub(super) told_after_shot: bool,
+    /// The pictures that `shoot` took.
+    pub(super) shots: Shots,
     /// The notes of a run that is watched for a command.
     pub(super) watch: Option<Box<Watch<'a>>>,
 }
@@ -127,12 +134,16 @@ impl<'a> Evaluator<'a> {
             vertical: None,
             settings: Settings::default(),
             sampled: false,
+            scaled: false,
             definitions: HashMap::new(),
             hot: Vec::new(),
             tools: Vec::new(),
+            interludes: Vec::new(),
             tool_origins: Vec::new(),
             output: Output::default(),
             deforms: Vec::new(),
+            skeletons: Vec::new(),
+            unread: Vec::new(),
             deformed: 0,
             animated: false,
             moving: Moving::default(),
@@ -142,8 +153,7 @@ impl<'a> Evaluator<'a> {
             reported: vec![false; sources.all.len()],
             depth: 0,
             repeating: 0,
-            shot: None,
-            told_after_shot: false,
+            shots: Shots::default(),
             watch: None,
         }
     }

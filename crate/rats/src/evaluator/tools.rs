@@ -200,7 +200,14 @@ pub static RESIZE: CommandSpec = row("resize", "resize a picture")
 options! {
     /// Options of `diff`, `and` and `xor`.
     SAVE_OPTIONS:
-    SAVE: Named = ("save", "", "writes the result", new_file("fn", "the new file's name"));
+    SAVE: Option<Named> = ("save", "", "writes the result",
+        new_file("fn", "the new file's name").optional("the command's, as `diff.png`"));
+}
+
+/// Returns the name under which a result is saved, if it is; `own` where the text gives none.
+fn name_to_save(options: &Options<'_>, own: &str) -> Option<String> {
+    let name = options.last(&SAVE)?;
+    Some(name.map_or_else(|| own.to_owned(), |name| text_of(&name)))
 }
 
 pub static DIFF: CommandSpec = row("diff", "difference of two pictures")
@@ -216,7 +223,7 @@ fn diff<'a>(
     b: Name<'a>,
 ) -> Outcome<Flow> {
     let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = options.last(&SAVE).map(|name| text_of(&name));
+    let save = name_to_save(options, "diff.png");
     job(run, command, Tool::Diff { a, b, save })
 }
 
@@ -233,7 +240,7 @@ fn and<'a>(
     b: Name<'a>,
 ) -> Outcome<Flow> {
     let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = options.last(&SAVE).map(|name| text_of(&name));
+    let save = name_to_save(options, "and.png");
     job(run, command, Tool::And { a, b, save })
 }
 
@@ -250,7 +257,7 @@ fn xor<'a>(
     b: Name<'a>,
 ) -> Outcome<Flow> {
     let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = options.last(&SAVE).map(|name| text_of(&name));
+    let save = name_to_save(options, "xor.png");
     job(run, command, Tool::Xor { a, b, save })
 }
 

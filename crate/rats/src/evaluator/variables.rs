@@ -1,5 +1,6 @@
 //! `var` and `seed`.
 
+use super::later;
 use super::state::{Evaluator, Flow};
 use crate::commands::build::{by_itself, choice, clay, plain, row, sets};
 use crate::commands::slot::{new, number, unread};
@@ -124,6 +125,7 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
                 "a variable holds a number, three numbers or a colour, no name",
             ));
         }
+        note_kept(run, name, &spelled, value)?;
         run.scope.set(name, value);
         if let Some((span, numbers)) = hot {
             make_hot(run, word, value, literal, numbers, span);
@@ -136,6 +138,41 @@ fn set<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         Some((change, span)) => animate(run, name, change, span),
         None => Ok(()),
     }
+}
+
+/// Notes that shapes which a picture has shown keep the value that a variable had, if it is one of
+/// their commands.
+fn note_kept(
+    run: &mut Evaluator<'_>,
+    name: Symbol,
+    spelled: &Name<'_>,
+    value: Value,
+) -> Outcome<()> {
+    let before = run.scope.get(name);
+    let is_shown = !run.shots.taken.is_empty() && !run.model.parts.is_empty();
+    if !is_shown || !run.is_own() || run.repeating > 0 || before.is_none_or(|old| old == value) {
+        return Ok(());
+    }
+    let sources = run.sources;
+    let syntax = &sources.all[run.file].syntax;
+    run.scope
+        .step(1 + syntax.items.len() as u64 / 16, &spelled.span)?;
+    let is_used = later::find(&syntax.block, &|command| {
+        let items = &syntax.items[command.items.clone()];
+        command.span.start < spelled.span.start
+            && command.spec.is_none_or(|spec| spec.name != "var")
+            && items.iter().any(|item| item.datum == Datum::Word(name))
+    });
+    if is_used.is_some() {
+        let word = spelled.text;
+        let message = format_args!("shapes made before this keep the old `{word}`");
+        run.note(
+            &spelled.span,
+            message,
+            "make them again, behind `reset data`",
+        );
+    }
+    Ok(())
 }
 
 /// Reads the name of the variable that is made or changed.

@@ -296,7 +296,7 @@ fn any_project_comes_back() {
                 target,
                 up,
                 fov: 45.5,
-                shift: [0.0; 2],
+                ..scene::Camera::default()
             }),
         };
         let fragment = link::encode(&shared).expect("a small project");

@@ -3,7 +3,7 @@
 use field::Skeleton;
 use field::{BlobScale, Kernel, Wave};
 use glam::DVec3;
-use rats::{Compiled, File, HotValue, Project, Severity, compile};
+use rats::{Act, Compiled, File, HotValue, Project, Severity, compile};
 use scene::{Digger, Fragile, LightKind, Scene, Settings, Shape};
 
 fn run(text: &str) -> Compiled {
@@ -230,6 +230,178 @@ fn camera() {
     assert_eq!(camera.fov, 30.0);
 }
 
+/// A window of other proportions than the frame's, or a vertical angle, makes pixels that are not
+/// square; what nearly fits does not.
+#[test]
+fn pixels_that_are_not_square() {
+    for (text, pixel) in [
+        ("framesize 200 100\ncp 0 0 8\nwindow -3 3 -3 3", 2.0),
+        ("framesize 200 100\ncp 0 0 8\nwindow -3 3 -1.5 1.5", 1.0),
+        ("framesize 640 480\nfov 50 38.5", 1.0),
+        ("framesize 640 480\nfov 50 50", 1.0),
+        ("fov 90 45", 0.41421356),
+        ("fov 90 45\nfov 90", 1.0),
+    ] {
+        let found = scene(text).camera.pixel;
+        assert!((found - pixel).abs() < 1e-6, "{text}: {found}");
+    }
+}
+
+/// Rays of a picture with the weight 0 are as good as parallel: what is near is drawn as large as
+/// what is far away, straight or aslant.
+#[test]
+fn a_weight_of_0_makes_rays_parallel() {
+    fn project(text: &str, place: DVec3) -> [f64; 2] {
+        let scene = scene(text);
+        let projection = scene.camera.projection(200, 100);
+        let view = projection.world_from_view.transpose() * (place - projection.eye);
+        let [x, y] = [view.x, view.y].map(|across| across / -view.z);
+        let [left, up] = projection.shift;
+        [
+            (x - left) / projection.half_width,
+            (y - up) / projection.half_height,
+        ]
+    }
+    let straight = "framesize 200 100\nvrp 1 2 3\nvpn 0 0 1\ncp 0 0 1 0\nwindow -4 4 -2 2";
+    let slanted = "framesize 200 100\nvrp 1 2 3\nvpn 0 0 1\ncp 0.5 -0.25 1 0\nwindow -4 4 -2 2";
+    let moved = "framesize 200 100\nvrp 1 2 3\nvpn 0 0 1\ncp 0 0 3 0\nwindow 0 8 -1 3";
+    for depth in [-8.0, 0.0, 8.0] {
+        for [x, y] in [[0.0, 0.0], [2.0, 1.0], [-3.0, -2.0]] {
+            let place = v(1.0 + x, 2.0 + y, 3.0 + depth);
+            let [a, b] = project(straight, place);
+            assert!(
+                (a - x / 4.0).abs() < 1e-3 && (b - y / 2.0).abs() < 1e-3,
+                "{a} {b}"
+            );
+            let [a, b] = project(moved, place);
+            let wanted = [(x - 4.0) / 4.0, (y - 1.0) / 2.0];
+            assert!(
+                (a - wanted[0]).abs() < 2e-3 && (b - wanted[1]).abs() < 2e-3,
+                "{a} {b}"
+            );
+            let [a, b] = project(slanted, place);
+            let wanted = [(x - 0.5 * depth) / 4.0, (y + 0.25 * depth) / 2.0];
+            assert!(
+                (a - wanted[0]).abs() < 4e-3 && (b - wanted[1]).abs() < 4e-3,
+                "{a} {b}"
+            );
+        }
+    }
+    // Without a window it is as wide as the angle of view makes it at the reference point.
+    let angle = "eyep 0 0 10\nfov 90\nframesize 200 100\ncp 0 0 1 0";
+    assert!((project(angle, v(10.0, 0.0, -3.0))[0] - 1.0).abs() < 1e-3);
+    let leaning = run("cp 3 0 1 0");
+    assert!(leaning.diagnostics[0].message.contains("lean"));
+}
+
+/// `sample` below 1 sends one ray for a block of pixels.
+#[test]
+fn fewer_rays_than_pixels() {
+    for (text, samples, block) in [
+        ("sample 0.5", 1, 2),
+        ("sample 1/4", 1, 4),
+        ("sample 0.3", 1, 4),
+        ("sample 0.0625", 1, 16),
+        ("sample 1", 1, 1),
+        ("sample adaptive", 4, 1),
+        ("sample adaptive 3", 3, 1),
+        ("sample 3 adaptive", 3, 1),
+        ("sample 0.5\nsample 2", 2, 1),
+    ] {
+        let settings = scene(text).settings;
+        assert_eq!(
+            (settings.samples, settings.block),
+            (samples, block),
+            "{text}"
+        );
+    }
+    assert_eq!(run("sample 3 adaptive").diagnostics, []);
+    for wrong in [
+        "sample 0",
+        "sample 0.05",
+        "sample 17",
+        "sample 1.5",
+        "sample",
+        "sample -1",
+    ] {
+        assert_eq!(
+            run(wrong).diagnostics[0].severity,
+            Severity::Error,
+            "{wrong}"
+        );
+    }
+}
+
+/// `report` with a word tells values.
+#[test]
+fn report_tells_values() {
+    fn report(what: &str) -> String {
+        let text = format!(
+            "var r = 0.5\nvar C = Red\nsurface s diff Red, radius r, blob -2, kernel gauss\n\
+             surface t diff Blue, shine 7\nlight White, position 1 2 3\neyep 0 0 7\n\
+             sphere s 1 0 0 0\nbox t 0 0 0 1 1 1\nreport {what}"
+        );
+        let compiled = run(&text);
+        let notes = compiled.diagnostics.into_iter().find(|d| d.line == 9);
+        notes.map(|d| d.message).unwrap_or_default()
+    }
+    for (word, wanted) in [
+        (
+            "surfaces",
+            "s: diffuse 1 0 0, ambient 0.15 0 0, radius 0.5, blobbiness 2, kernel gauss",
+        ),
+        ("surfaces", "t: diffuse 0 0 1, ambient 0 0 0.15, shine 7"),
+        ("lights", "1 1 1 point, position 1 2 3"),
+        ("cameras", "eyep 0 0 7, vrp 0 0 0, vup 0 1 0, fov 45"),
+        ("options", "framesize 128 128, sample 1"),
+        ("var", "C = rgb(1, 0, 0)\nr = 0.5"),
+        ("data", "2 shapes, 1 of them soft"),
+        ("fog", "no fog"),
+        ("all", "r = 0.5"),
+        ("", "there are here: 2 shapes, 2 materials"),
+    ] {
+        assert!(report(word).contains(wanted), "{word}: {}", report(word));
+    }
+}
+
+/// Acts of the program between pictures stand where the text has them.
+#[test]
+fn pauses_logs_and_stopwatches_are_handed_on() {
+    let compiled = run(
+        "surface s diff Red\nlog a.txt\nstopwatch start\nsphere s 1 0 0 0\n\
+         shoot\nstopwatch stop\npause now look\nfilename b\nshoot\nlog",
+    );
+    let acts: Vec<_> = compiled
+        .interludes
+        .iter()
+        .map(|i| (i.after, i.act.clone()))
+        .collect();
+    let wanted = [
+        (0, Act::Log(Some(String::from("a.txt")))),
+        (0, Act::Stopwatch { starts: true }),
+        (1, Act::Stopwatch { starts: false }),
+        (1, Act::Pause(String::from("now look"))),
+        (2, Act::Log(None)),
+    ];
+    assert_eq!(acts, wanted);
+    assert_eq!(
+        run("log model.rat").diagnostics[0].severity,
+        Severity::Error
+    );
+}
+
+/// Results are saved under the command's own name where the text gives none.
+#[test]
+fn results_have_names_of_their_own() {
+    fn save(text: &str) -> Option<String> {
+        run(text).tools[0].writes().map(str::to_owned)
+    }
+    assert_eq!(save("diff a.png b.png save").as_deref(), Some("diff.png"));
+    assert_eq!(save("and a.png b.png save").as_deref(), Some("and.png"));
+    assert_eq!(save("xor a.png b.png save c.tga").as_deref(), Some("c.tga"));
+    assert_eq!(save("diff a.png b.png"), None);
+}
+
 // ---- MATERIALS
 
 #[test]
@@ -427,6 +599,63 @@ fn instances_and_removal() {
     assert_eq!(found, [v(1.0, 0.0, 1.0), v(1.0, 0.0, 1.0)]);
 }
 
+/// Angles about x, then y, then z are three numbers alone.
+#[test]
+fn rotate_takes_three_angles() {
+    fn turn(how: &str) -> DVec3 {
+        centers(&format!("object A\nsphere s 1 1 2 3\nclose\n{how}"))[0]
+    }
+    for [x, y, z] in [[0.0, 0.0, 45.0], [30.0, 0.0, 0.0], [10.0, -70.0, 200.0]] {
+        let steps = format!("rotate 1 0 0 {x}\nrotate 0 1 0 {y} A\nrotate 0 0 1 {z}");
+        near(turn(&format!("rotate {x} {y} {z} A")), turn(&steps));
+        near(turn(&format!("rotate {x}, {y}, {z}")), turn(&steps));
+    }
+    near(turn("rotate 0 0 90 A"), v(-2.0, 1.0, 3.0));
+    near(turn("var A = 90\nrotate 0 0 1 A"), v(-2.0, 1.0, 3.0));
+    near(turn("rotate 0 0 0"), v(1.0, 2.0, 3.0));
+}
+
+/// The transforms of `instance` are those of the commands, for the copy alone.
+#[test]
+fn instances_are_moved_as_they_are_made() {
+    let model = "object A\nsphere s 1 1 2 3\nclose\n";
+    for (at_once, steps) in [
+        ("translate 1 0 0", "translate 1 0 0 B"),
+        (
+            "translate 1 0 0 rotate 0 0 1 90",
+            "translate 1 0 0 B\nrotate 0 0 1 90 B",
+        ),
+        (
+            "rotate 0 0 90 tr 1 0 0",
+            "rotate 0 0 90 B\ntranslate 1 0 0 B",
+        ),
+        (
+            "scale 2 2 2, scale 0.5 0.5 0.5, tr 0 1 0",
+            "translate 0 1 0 B",
+        ),
+    ] {
+        let wanted = scene(&format!("surface s diff Red\n{model}instance A B\n{steps}"));
+        for copy in ["B", ""] {
+            let text = format!("surface s diff Red\n{model}instance A {copy} {at_once}");
+            let found = scene(&text);
+            assert_eq!(found.elements.len(), 2, "{text}");
+            near(found.elements[0].shape.middle(), v(1.0, 2.0, 3.0));
+            let middles = [&found, &wanted].map(|scene| scene.elements[1].shape.middle());
+            near(middles[0], middles[1]);
+        }
+    }
+    // Short names are names, not the beginnings of options.
+    let short = scene(&format!(
+        "surface s diff Red\n{model}instance A T\ntranslate 1 0 0 T"
+    ));
+    assert_eq!(short.elements.len(), 2);
+    let failed = run(&format!(
+        "surface s diff Red\n{model}instance A rotate 0 0 0 30"
+    ));
+    assert_eq!(failed.diagnostics.len(), 1);
+    assert_eq!(failed.scene.elements.len(), 1);
+}
+
 #[test]
 fn chains() {
     let found = centers(
@@ -542,11 +771,134 @@ fn background_and_reset() {
 }
 
 #[test]
-fn the_picture_is_the_scene_at_the_first_shoot() {
+fn what_follows_the_last_shoot_is_in_its_picture() {
     let compiled = run("surface s diff Red\nsphere s 1 0 0 0\nshoot\nsphere s 1 1 0 0\neyep 1 1 1");
-    assert_eq!(compiled.scene.elements.len(), 1);
-    assert_eq!(compiled.scene.camera, scene::Camera::default());
-    assert_eq!(compiled.diagnostics.len(), 1);
+    assert_eq!(compiled.scene.elements.len(), 2);
+    assert_eq!(compiled.scene.camera.eye, v(1.0, 1.0, 1.0));
+    assert_eq!((compiled.diagnostics.len(), compiled.earlier.len()), (1, 0));
+    assert_eq!(compiled.diagnostics[0].severity, Severity::Note);
+    // Not behind a `reset`, which clears up after the picture.
+    let cleared = run("surface s diff Red\nsphere s 1 0 0 0\nshoot\nreset all");
+    assert_eq!(
+        (cleared.scene.elements.len(), cleared.diagnostics.len()),
+        (1, 0)
+    );
+    let lost = run("surface s diff Red\nsphere s 1 0 0 0\nshoot\nreset data\nsphere s 1 0 0 0");
+    assert_eq!(lost.scene.elements.len(), 1);
+    assert!(lost.diagnostics[0].message.contains("in no picture"));
+}
+
+/// Pictures of several `shoot`s show what stands before each, under the name that stands then.
+#[test]
+fn several_shoots_take_several_pictures() {
+    let compiled = run(
+        "surface s diff Red, rad 1, blob -1\nsphere s 1 0 0 0\nfilename one.tga\n\
+         eyep 0 0 9\nshoot\nsphere s 1 2 0 0\nsurface s diff Blue, rad 2, blob -1\n\
+         sphere s 1 4 0 0\nfilename two\nformat png\neyep 0 0 12\nshoot\n\
+         surface s diff Green, rad 1, blob -1\nreset data\nsphere s 1 0 1 0\nnosave on\nshoot",
+    );
+    let worst = compiled.diagnostics.iter().map(|d| d.severity).max();
+    assert_eq!(worst, Some(Severity::Note), "{:?}", compiled.diagnostics);
+    let [first, second] = &compiled.earlier[..] else {
+        panic!("{} pictures", compiled.earlier.len())
+    };
+    let names = [&first.output, &second.output, &compiled.output].map(|output| output.file());
+    assert_eq!(names, ["one.tga", "two.png", "two.png"]);
+    assert!(first.output.saved && second.output.saved && !compiled.output.saved);
+    let counts = [&first.scene, &second.scene, &compiled.scene].map(|s| s.elements.len());
+    assert_eq!(counts, [1, 3, 1]);
+    let eyes = [&first.scene, &second.scene].map(|scene| scene.camera.eye.z);
+    assert_eq!(eyes, [9.0, 12.0]);
+    let colour =
+        |scene: &Scene, index: usize| scene.finishes[scene.elements[index].finish as usize].diffuse;
+    let [red, blue] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    assert_eq!(colour(&first.scene, 0), red);
+    // Made after the first picture of the red material, so they keep it.
+    let second = &second.scene;
+    assert_eq!(
+        [0, 1, 2].map(|index| colour(second, index)),
+        [red, red, blue]
+    );
+    let green = colour(&compiled.scene, 0);
+    assert!(
+        green[0] == 0.0 && green[1] > 0.3 && green[2] == 0.0,
+        "{green:?}"
+    );
+}
+
+/// A material made again behind a `shoot` changes the shapes that stand there, once: in a row of
+/// shapes each has its own.
+#[test]
+fn a_material_made_again_behind_a_picture_changes_its_shapes() {
+    let compiled = run(
+        "surface s diff Red\nsphere s 1 0 0 0\nfilename a\nshoot\nfilename b\n\
+         surface s diff Blue\nsphere s 1 2 0 0\nsurface s diff White\nsphere s 1 4 0 0",
+    );
+    fn finishes(scene: &Scene) -> Vec<[f32; 3]> {
+        let elements = scene.elements.iter();
+        elements
+            .map(|e| scene.finishes[e.finish as usize].diffuse)
+            .collect()
+    }
+    assert_eq!(finishes(&compiled.scene).len(), 3);
+    let [red, blue, white] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]];
+    assert_eq!(finishes(&compiled.scene), [blue, blue, white]);
+    assert_ne!(finishes(&compiled.scene)[0], red);
+    let soft = run("surface s diff Red\nsphere s 1 0 0 0\nshoot\nfilename b\n\
+         surface s diff Blue, radius 1, blob -1\nsphere s 1 2 0 0\nshoot");
+    let said: Vec<_> = soft
+        .diagnostics
+        .iter()
+        .map(|d| (d.severity, d.line))
+        .collect();
+    assert!(said.contains(&(Severity::Warning, 5)), "{said:?}");
+    assert_eq!(finishes(&soft.scene), [red, blue]);
+}
+
+/// Shapes keep the variables that they were made with, which is said.
+#[test]
+fn a_variable_set_again_behind_a_picture_is_noted() {
+    let text = "var r = 1\nvar q = 1\nsurface s diff Red\nsphere s r 0 0 0\nshoot\nfilename b\n";
+    let notes = |more: &str| {
+        let compiled = run(&format!("{text}{more}shoot"));
+        let said = compiled.diagnostics.iter();
+        said.filter(|d| d.message.contains("keep the old")).count()
+    };
+    assert_eq!(notes("var r = 2\nsphere s r 3 0 0\n"), 1);
+    assert_eq!(notes("var r = 1\nvar q = 2\nsphere s q 3 0 0\n"), 0);
+    assert_eq!(notes("reset data\nvar r = 2\nsphere s r 3 0 0\n"), 0);
+}
+
+/// Pictures with an open shutter have moments of their own.
+#[test]
+fn each_picture_has_its_moments() {
+    let compiled = run(
+        "var x = 0 += 1\nsurface s diff Red\nshutter 1\nsphere s 1 x 0 0\nshoot\n\
+         filename b\nshutter 0\nsphere s 1 x 1 0\nshoot\nfilename c\nshutter 0.5\n\
+         sphere s 1 x 2 0\nshoot",
+    );
+    let scenes = [
+        &compiled.earlier[0].scene,
+        &compiled.earlier[1].scene,
+        &compiled.scene,
+    ];
+    let moments = scenes.map(|scene| scene.moments.len());
+    assert!(
+        moments[0] > 1 && moments[1] == 0 && moments[2] > 1,
+        "{moments:?}"
+    );
+    for (scene, count) in scenes.into_iter().zip([1, 2, 3]) {
+        assert!(
+            scene
+                .moments
+                .iter()
+                .all(|moment| moment.elements.len() == count)
+        );
+    }
+    fn last(scene: &Scene) -> Option<f64> {
+        scene.moments.last().map(|m| m.elements[0].shape.middle().x)
+    }
+    assert!(last(scenes[0]) > Some(0.8) && last(scenes[2]) < Some(0.5));
 }
 
 // ---- extensions

@@ -51,6 +51,35 @@ fn no_complaints() {
     }
 }
 
+/// Examples that are read as absolute, and no others, would be asked how their blobbiness is
+/// meant, and the change that the message proposes makes of them what they are.
+#[test]
+fn radii_that_go_with_blobbiness_are_asked_about() {
+    let mut asked = Vec::new();
+    for name in EXAMPLES {
+        let (text, compiled) = example(name);
+        let lines = text.lines().filter(|line| !line.starts_with("blobscale"));
+        let bare: String = lines.map(|line| format!("{line}\n")).collect();
+        let project = Project::single(bare);
+        let again = compile(&project);
+        let Some(found) = again.diagnostics.iter().find(|d| d.fix.is_some()) else {
+            continue;
+        };
+        asked.push(*name);
+        assert!(
+            found.message.contains("absolute"),
+            "{name}: {}",
+            found.message
+        );
+        let mended = compile(&project.apply(found.fix.as_slice()));
+        assert!(mended.scene.is_same_but_written(&compiled.scene), "{name}");
+        assert!(mended.diagnostics.iter().all(|d| d.fix.is_none()), "{name}");
+        let kept = compile(&Project::single(format!("{text}blobscale relative\n")));
+        assert!(kept.diagnostics.iter().all(|d| d.fix.is_none()), "{name}");
+    }
+    assert_eq!(asked, ["cowrie", "seahorse"]);
+}
+
 #[test]
 fn moving_a_slider_changes_one_value() {
     for name in EXAMPLES {

@@ -67,6 +67,31 @@ fn files() {
     assert!(compile(&Project::default()).diagnostics.is_empty());
 }
 
+/// Pictures are copies of the scene: their number and what they hold together are bounded.
+#[test]
+fn pictures() {
+    let balls = "surface s diff Red\nsphere s 1 0 0 0\n";
+    let many = run(format!("{balls}for i = 1 to {MAX_SHOTS} {{ shoot }}"));
+    assert_eq!(many.earlier.len(), MAX_SHOTS - 1);
+    fails(
+        format!("{balls}for i = 0 to {MAX_SHOTS} {{ shoot }}"),
+        "more than 128 pictures",
+    );
+    // The first one may hold as much as there can be.
+    let count = MAX_SHOT_WEIGHT / 8;
+    fails(
+        format!(
+            "surface s diff Red\nfor i = 1 to {count} {{ sphere s 1 0 0 0 }}\n\
+             for i = 1 to 9 {{ shoot }}"
+        ),
+        "together",
+    );
+    fails(
+        format!("for i = 0 to {MAX_INTERLUDES} {{ pause }}"),
+        "pauses, logs and times",
+    );
+}
+
 #[test]
 fn steps() {
     fails("for i = 1 to 1e12 { }", "steps");
@@ -320,7 +345,7 @@ fn long_lines_and_words() {
 #[test]
 fn a_tiny_weight_takes_no_eye_to_infinity() {
     fails("cp 1e12 0 5 1e-14", "further away than 1e12");
-    fails("cp 1e12 0 5 1e-300", "must not be 0");
+    fails("cp 1e12 0 5 1e-300", "lean");
     fails("cp 1 0 5 1e-12", "further away than 1e12");
     assert_eq!(errors("cp 1 0 5 1e-11"), "");
 }
@@ -360,10 +385,7 @@ fn a_large_image_in_a_loop() {
             text: String::from(text),
         }],
     };
-    let asset = rats::Asset {
-        name: String::from("big.png"),
-        bytes: cut_image(4096).into(),
-    };
+    let asset = rats::Asset::new("big.png", cut_image(4096));
     let compiled = rats::compile_at(&project, &[asset], 0.0);
     let said: Vec<_> = compiled.diagnostics.iter().map(|d| &d.message).collect();
     assert!(said.iter().any(|m| m.contains("steps")), "{said:?}");

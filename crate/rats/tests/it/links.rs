@@ -41,7 +41,7 @@ fn version_1_is_frozen() {
         target: glam::DVec3::ZERO,
         up: glam::DVec3::Z,
         fov: 50.0,
-        shift: [0.0; 2],
+        ..Camera::default()
     });
     assert_eq!(
         link::decode(FROZEN),
@@ -132,6 +132,14 @@ fn contents_that_are_no_project_are_refused() {
         odd.camera = Some(Camera {
             eye: glam::DVec3::splat(eye),
             fov,
+            ..Camera::default()
+        });
+        refused(odd);
+    }
+    for pixel in [0.0, -1.0, 1e4] {
+        let mut odd = good.clone();
+        odd.camera = Some(Camera {
+            pixel,
             ..Camera::default()
         });
         refused(odd);

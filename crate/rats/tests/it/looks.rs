@@ -144,10 +144,7 @@ fn layers_lie_upon_each_other() {
 fn png(name: &str, colour: [u8; 4]) -> Asset {
     let picture = picture::Picture::filled(4, 2, colour).expect("a small picture");
     let bytes = picture::file::encode(&picture, picture::Format::Png).expect("a PNG");
-    Asset {
-        name: name.to_owned(),
-        bytes: bytes.into(),
-    }
+    Asset::new(name, bytes)
 }
 
 #[test]
@@ -191,10 +188,7 @@ fn images_that_are_broken_or_huge_are_refused() {
     let bytes: std::sync::Arc<[u8]> = picture::file::encode(&large, picture::Format::Png)
         .expect("a PNG")
         .into();
-    let assets = ["a.png", "b.png"].map(|name| Asset {
-        name: name.to_owned(),
-        bytes: bytes.clone(),
-    });
+    let assets = ["a.png", "b.png"].map(|name| Asset::new(name, bytes.clone()));
     assert!(2 * u64::from(side * side) > rats::limits::MAX_IMAGE_PIXELS);
     let text = "texture A pigment a.png plain\ntexture B pigment b.png plain";
     let found = run(text, &assets, 0.0).diagnostics;

@@ -21,4 +21,6 @@ mod looks;
 mod motion;
 mod platforms;
 #[cfg(not(target_arch = "wasm32"))]
+mod skeleton_files;
+#[cfg(not(target_arch = "wasm32"))]
 mod strokes;

@@ -174,10 +174,7 @@ fn sculpture_may_start_from_a_file() {
         (2, 1)
     );
     let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-    let asset = Asset {
-        name: "cube.obj".into(),
-        bytes: tetrahedron.as_bytes().into(),
-    };
+    let asset = Asset::new("cube.obj", tetrahedron.as_bytes());
     let made = compile_at(&project, &[asset], 0.0);
     assert_eq!(made.diagnostics, []);
     assert_eq!(made.scene.elements.len(), 16);

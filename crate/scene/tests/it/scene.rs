@@ -7,6 +7,7 @@ use scene::{
     Body, Camera, Element, Flesh, Fragile, Frame, Light, LightKind, Quadric, Scene, Shape,
     SoftSurface,
 };
+use trials::{Random, count};
 
 fn soft(radius: f64) -> Flesh {
     Flesh {
@@ -45,7 +46,7 @@ fn the_middle_of_the_picture_looks_at_the_target() {
         target: DVec3::ZERO,
         up: DVec3::Z,
         fov: 50.0,
-        shift: [0.0; 2],
+        ..Camera::default()
     };
     let projection = camera.projection(640, 480);
     assert!(close(
@@ -77,6 +78,60 @@ fn the_angle_of_view_is_the_horizontal_one_and_pixels_are_square() {
         projection.direction(0.5, 0.0),
         DVec3::new(0.0, 0.5, -1.0).normalize()
     ));
+}
+
+/// Pixels that are not square stretch the picture upwards, and nothing else.
+#[test]
+fn pixels_that_are_not_square_stretch_the_picture() {
+    let square = Camera::default();
+    for pixel in [0.5, 1.25, 3.0] {
+        let camera = Camera { pixel, ..square };
+        let [a, b] = [square, camera].map(|camera| camera.projection(300, 200));
+        assert!(close(a.view(0.2, 0.5), b.view(0.2, 0.5)));
+        assert!((b.half_height / a.half_height - pixel).abs() < 1e-12);
+        assert_eq!((a.half_width, a.shift), (b.half_width, b.shift));
+    }
+    // What makes no sense is repaired.
+    for pixel in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
+        let view = Camera { pixel, ..square }.projection(3, 2).view(0.0, 0.0);
+        assert!(view.is_finite(), "{pixel}");
+    }
+}
+
+/// The rays of an eye far away pass the places that a parallel projection shows there, within the
+/// bound that is promised.
+#[test]
+fn a_far_eye_sees_as_parallel_rays_do() {
+    let mut numbers = Random::new(5);
+    for _ in 0..count(500) {
+        let normal = numbers.direction();
+        let right = normal.any_orthonormal_vector();
+        let up = normal.cross(right);
+        let lean = 1.2 * numbers.vector(1.0);
+        let half = numbers.decades(-2.0, 2.0);
+        let camera = Camera {
+            target: numbers.vector(3.0),
+            ..Camera::default()
+        };
+        let scale = 0.1 + numbers.unit();
+        let direction = DVec3::new(lean.x, lean.y, 1.0) * scale;
+        let far = camera.far([right, up, normal], direction, half);
+        let projection = far.projection(200, 100);
+        let [x, y, z] = [
+            numbers.range(-1.0, 1.0),
+            0.5 * numbers.range(-1.0, 1.0),
+            3.0 * numbers.range(-1.0, 1.0),
+        ];
+        let place = camera.target + half * (right * x + up * y + normal * z);
+        // Along the direction of the rays to the plane through the target.
+        let shown = [x - z * lean.x, y - z * lean.y];
+        let ray = projection.direction(0.5 + 0.5 * shown[0], 0.5 - shown[1]);
+        let from = place - far.eye;
+        let apart = (from - ray * from.dot(ray)).length() / half;
+        let bound = (1.0 + z.abs()) * (z.abs() * libm::hypot(shown[0], shown[1]) + 1e-6) / 11_459.0;
+        assert!(apart <= bound + 1e-9, "{apart} {bound}");
+        assert!((far.eye - camera.target).dot(normal) > 11_000.0 * half);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Refined curves against the closed forms of their limits, and graphs of every shape.
 use glam::{DVec3, DVec4};
-use skeleton::{Error, MOST_SEGMENTS, Node, Polyline, Scheme, Skeleton};
+use skeleton::{Error, MOST_CURVES, MOST_NODES, MOST_SEGMENTS, Node, Polyline, Scheme, Skeleton};
 use trials::{Random, count};
 
 const SCHEMES: [Scheme; 3] = [Scheme::Cubic, Scheme::Chaikin, Scheme::FourPoint];
@@ -350,12 +350,12 @@ fn mistakes_are_told_and_limits_hold() {
     assert_eq!(told(of(two(), vec![vec![0, 2]]), 3), Error::Unknown(0));
     assert_eq!(told(of(two(), vec![vec![0, 1]]), 7), Error::Levels(7));
     assert_eq!(
-        told(of(vec![node; 10_001], vec![]), 3),
-        Error::Nodes(10_001)
+        told(of(vec![node; MOST_NODES + 1], vec![]), 3),
+        Error::Nodes(MOST_NODES + 1)
     );
     assert_eq!(
-        told(of(two(), vec![vec![0, 1]; 10_001]), 3),
-        Error::Curves(10_001)
+        told(of(two(), vec![vec![0, 1]; MOST_CURVES + 1]), 3),
+        Error::Curves(MOST_CURVES + 1)
     );
     for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e101] {
         let position = DVec3::new(0.0, bad, 0.0);

@@ -1,15 +1,17 @@
 //! The dialog that shows the model as a mesh and saves it.
 
-use crate::page::{Dialog, Moment, Page};
+pub mod wish;
+
+use crate::page::{Moment, Page};
 use crate::panel::Panel;
-use crate::wish::{Wish, Wishes};
+use crate::wish::{Dialog, MeshWish, Wish, Wishes};
 use crate::{places, theme};
 use document::mesh_export::{self, Film, MOST_EDGES, Made, MeshExport, State};
 use document::session::Session;
 use document::{asset, work};
 use egui::{
-    Align, Button, Color32, ColorImage, DragValue, Layout, ProgressBar, Response, RichText,
-    ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
+    Align, Button, Color32, ColorImage, Context, DragValue, Layout, ProgressBar, Response,
+    RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, Vec2, vec2,
 };
 use glam::DVec3;
 use mesh::Format;
@@ -23,13 +25,6 @@ const TOLERANCES: [f64; 2] = [1e-4, 2e-2];
 const SIZES: [f64; 2] = [1.0, 5000.0];
 /// Most pixels of the view, so that it follows a hand where the processor draws it.
 const MOST_PIXELS: f32 = 480_000.0;
-
-/// Wishes about the model as a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MeshWish {
-    /// Write the mesh on show to files.
-    Save,
-}
 
 /// The view of the mesh.
 struct Show {
@@ -68,8 +63,6 @@ impl Show {
 pub struct MeshPanel {
     /// The mesh and its jobs.
     pub export: MeshExport,
-    /// The film that a motion is taken from. The app keeps it up to date.
-    pub film: Film,
     show: Show,
 }
 
@@ -79,7 +72,6 @@ impl MeshPanel {
     pub fn new(tools: Tools) -> Self {
         Self {
             export: MeshExport::new(tools),
-            film: Film { count: 1, rate: 1 },
             show: Show {
                 wireframe: false,
                 view: None,
@@ -108,7 +100,7 @@ impl MeshPanel {
     #[must_use]
     pub fn report(&self, page: &Page) -> Option<mesh_export::Report> {
         let is_open = page.dialog == Some(Dialog::Mesh);
-        is_open.then(|| self.export.report(&page.work.session, self.film))?
+        is_open.then(|| self.export.report(&page.work.session, page.film))?
     }
 }
 
@@ -145,7 +137,7 @@ impl Panel for MeshPanel {
                 ui.vertical(|ui| {
                     settled = self.settings(ui, session);
                     ui.separator();
-                    self.outcome(ui, session, wishes);
+                    self.outcome(ui, page, wishes);
                 });
             });
         } else {
@@ -162,7 +154,7 @@ impl Panel for MeshPanel {
             ui.separator();
             let outcome = ScrollArea::vertical().id_salt("mesh outcome");
             outcome.max_height(below).auto_shrink(false).show(ui, |ui| {
-                self.outcome(ui, session, wishes);
+                self.outcome(ui, page, wishes);
             });
         }
         if self.show.is_stale {
@@ -172,7 +164,7 @@ impl Panel for MeshPanel {
         // While a slider is dragged nothing is begun.
         if settled {
             let name = work::file_stem(&page.work.name);
-            self.export.follow(session, self.film, &name);
+            self.export.follow(session, page.film, &name);
         }
     }
 
@@ -183,6 +175,11 @@ impl Panel for MeshPanel {
         if page.dialog != Some(Dialog::Mesh) {
             self.export.stop();
         }
+    }
+
+    fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
+        self.export.forget();
+        (self.show.view, self.show.drawn) = (None, None);
     }
 }
 
@@ -332,6 +329,13 @@ impl MeshPanel {
             .checkbox(&mut self.export.order.union, "Join bodies that overlap")
             .on_hover_text("One shell instead of several that go through each other");
         places::note(ui.ctx(), "mesh union", union.rect);
+        let prove = ui
+            .checkbox(&mut self.export.order.prove, "Prove it")
+            .on_hover_text(
+                "Bounds of the field prove the distance from the surface and the topology, where \
+                that is possible. It takes about ten times as long",
+            );
+        places::note(ui.ctx(), "mesh prove", prove.rect);
         let scene = &session.compilation().scene;
         if self.export.order.format == Format::Glb && rig::has_skeleton(scene) {
             let title = if session.is_animated() {
@@ -351,10 +355,11 @@ impl MeshPanel {
     }
 
     /// Shows progress, or the button that saves the mesh and facts about it.
-    fn outcome(&mut self, ui: &mut Ui, session: &Session, wishes: &mut Wishes) {
+    fn outcome(&mut self, ui: &mut Ui, page: &Page, wishes: &mut Wishes) {
+        let (session, film) = (&page.work.session, page.film);
         let palette = theme::palette(ui.visuals());
         ui.spacing_mut().item_spacing.y = 4.0;
-        match self.export.state(session, self.film) {
+        match self.export.state(session, film) {
             State::Idle => {}
             State::Making(fraction) => {
                 let bar = ui.add(ProgressBar::new(fraction).desired_width(220.0));
@@ -366,7 +371,7 @@ impl MeshPanel {
                 let stop = ui.button("Stop");
                 places::note(ui.ctx(), "stop mesh", stop.rect);
                 if stop.clicked() {
-                    self.export.give_up(session, self.film);
+                    self.export.give_up(session, film);
                 }
             }
             State::Trouble(reason) => {
@@ -378,7 +383,7 @@ impl MeshPanel {
                 }
             }
             State::Done(facts, written) => {
-                let lines = lines(facts, self.export.growth(facts), written, self.film);
+                let lines = lines(facts, self.export.growth(facts), written, film);
                 let save = Button::new(RichText::new("Save").color(palette.on_accent).size(14.5))
                     .fill(palette.accent);
                 let height = ui.spacing().interact_size.y.max(30.0);
@@ -423,7 +428,9 @@ fn lines(facts: &MeshFacts, growth: f64, written: &Written, film: Film) -> Vec<S
         places => format!(", except in {} places", thousands(places)),
     };
     let error = millimetres(facts.error * growth);
-    lines.push(format!("proved: at most {error} off{unsure}"));
+    if !facts.is_measured {
+        lines.push(format!("proved: at most {error} off{unsure}"));
+    }
     if facts.samples > 0 {
         lines.push(format!(
             "measured at {} points: at most {} off",

@@ -1,36 +1,18 @@
 //! The film of an animated work: the strip below the picture, playback, and saving the frames.
 
 mod timeline;
+pub mod wish;
 
 use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
 use crate::scripts::request::Request;
 use crate::settings::Show;
-use crate::wish::Wishes;
+use crate::wish::{FilmWish, Wishes};
 use browser::recording::{Kind, Recording, VideoFormat};
-use document::player::{Playback, Player};
+use document::player::Player;
 use document::{asset, mesh_export, work};
 use egui::{Context, Ui};
-
-/// Wishes about the film.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FilmWish {
-    /// Play it, or pause it.
-    Play,
-    /// Show a frame.
-    SetFrame(u32),
-    /// Set the number of frames.
-    SetLength(u32),
-    /// Set the number of frames that are shown in a second.
-    SetRate(u16),
-    /// Choose what follows the last frame.
-    SetPlayback(Playback),
-    /// Write all frames to a file.
-    Save(Kind),
-    /// Stop writing them.
-    Stop,
-}
 
 /// A film that is being saved.
 struct Saving {
@@ -86,6 +68,7 @@ impl FilmPanel {
             FilmWish::Save(kind) => self.begin(kind, page, at),
             FilmWish::Stop => self.stop(page, "You stopped it."),
         }
+        page.film = self.length();
     }
 
     /// Begins to save all frames.
@@ -191,6 +174,7 @@ impl Panel for FilmPanel {
             self.player.pause();
         }
         self.player.follow(page.work.session.film_rate());
+        page.film = self.length();
         let has_draft = page.screen.has_draft && page.settings.show != Show::Traced;
         let ready = has_draft || page.is_finished();
         let frame = page.work.session.film_frame();
@@ -209,6 +193,7 @@ impl Panel for FilmPanel {
 
     fn forget(&mut self, page: &mut Page, _ctx: &Context) {
         self.player = Player::default();
+        page.film = self.length();
         if let Some(saving) = self.saving.take() {
             page.screen.forced = saving.forced;
         }

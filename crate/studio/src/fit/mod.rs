@@ -1,9 +1,11 @@
 //! The panel *Fit*: measured files, the mesh to fit, settings, and progress.
 
+pub mod wish;
+
 use crate::icon::{self, Icon};
 use crate::page::{Moment, Page, Tab};
 use crate::panel::Panel;
-use crate::wish::{TextWish, Wishes, WorkWish};
+use crate::wish::{FitWish, TextWish, Wishes, WorkWish};
 use crate::{places, screen, slider, theme};
 use document::fitting::{Fitting, Surface, Target};
 use egui::{Button, Context, Painter, Rect, RichText, Sense, Slider, Stroke, Ui, pos2, vec2};
@@ -12,26 +14,6 @@ use egui::{Button, Context, Painter, Rect, RichText, Sense, Slider, Stroke, Ui, 
 pub const HEIGHT: f32 = 326.0;
 /// Height of the plot on a wide page and on a narrow one.
 const PLOT: [f32; 2] = [74.0, 56.0];
-
-/// Wishes about the fit of a mesh.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FitWish {
-    /// Show the panel, or hide it.
-    Show(bool),
-    /// Take in a measured file.
-    Take {
-        /// The name of the file.
-        name: String,
-        /// The content of the file.
-        bytes: Vec<u8>,
-    },
-    /// Choose the mesh of a file, if the text shows it.
-    Choose(String),
-    /// Begin to fit what is chosen.
-    Start,
-    /// End the fit.
-    Stop,
-}
 
 /// The panel.
 pub struct FitPanel(pub Fitting);
@@ -114,6 +96,7 @@ impl Panel for FitPanel {
         if self.0.tick(&mut page.work.session, at.now) {
             page.work.session.compile();
         }
+        page.is_measuring = self.0.is_reading();
     }
 
     fn wait(&self, _page: &Page, now: f64) -> Option<f64> {
@@ -321,6 +304,10 @@ fn progress(fitting: &Fitting, ui: &mut Ui) {
             last.residual,
             100.0 * last.outliers
         ));
+        let count = last.left_out.len();
+        if count > 0 {
+            words.push(format!("{count} points left out, drawn in orange"));
+        }
     } else if fitting.is_running() {
         words.push(String::from("Preparing"));
     }

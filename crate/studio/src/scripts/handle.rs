@@ -13,11 +13,12 @@
 //!   and size is finished or was stopped; rejected while the lab keeps that picture waiting
 //! - `image()`: promise of a PNG `Blob` of the traced picture as it is now; rejected while there is
 //!   none
-//! - `mesh({format, tolerance, size, union, rig})`: promise of a `Uint8Array`: the model as a file
-//!   of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or `"ply"`,
-//!   `tolerance` the largest distance from the surface as a part of the longest side (0.0015),
-//!   `size` the longest side in millimetres (100), `union` whether bodies that overlap become one,
-//!   `rig` (GLB only) whether skeletons become joints and the film an animation
+//! - `mesh({format, tolerance, size, union, prove, rig})`: promise of a `Uint8Array`: the model as
+//!   a file of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or
+//!   `"ply"`, `tolerance` the largest distance from the surface as a part of the longest side
+//!   (0.0015), `size` the longest side in millimetres (100), `union` whether bodies that overlap
+//!   become one, `prove` whether what can be proved of the mesh is, which takes ten times as long
+//!   (false), `rig` (GLB only) whether skeletons become joints and the film an animation
 //! - `link()`: the full address that Share copies
 //! - `camera()`: `{eye, target, up, fov}` in use
 //! - `setCamera(camera)`: looks from there; `null` goes back to the camera of the text
@@ -287,8 +288,10 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
     if let Some(format) = part("format")? {
         let name = format.as_string().unwrap_or_default();
         let format = mesh::Format::of_name(&format!("model.{name}"));
-        order.format = format
-            .ok_or_else(|| js_sys::TypeError::new("format is one of stl, 3mf, glb, obj, ply"))?;
+        order.format = format.ok_or_else(|| {
+            let endings = mesh::Format::ENDINGS;
+            js_sys::TypeError::new(&format!("format is one of the endings {endings}"))
+        })?;
     }
     for (name, place) in [
         ("tolerance", &mut order.tolerance),
@@ -300,7 +303,11 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
                 number.ok_or_else(|| js_sys::TypeError::new("tolerance and size are numbers"))?;
         }
     }
-    for (name, place) in [("union", &mut order.union), ("rig", &mut order.rig)] {
+    for (name, place) in [
+        ("union", &mut order.union),
+        ("prove", &mut order.prove),
+        ("rig", &mut order.rig),
+    ] {
         if let Some(wanted) = part(name)? {
             *place = wanted.is_truthy();
         }

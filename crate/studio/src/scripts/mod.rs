@@ -5,9 +5,8 @@ pub mod handle;
 pub mod report;
 pub mod request;
 
-use crate::app::repaint_once;
-use crate::page::Page;
-use crate::panel::Panels;
+use crate::page::{Page, repaint_once};
+use crate::panels::Panels;
 use crate::places;
 use crate::render::pass_label;
 use crate::stage::StandIn;

@@ -1,7 +1,7 @@
 //! Requests from outside the window: from scripts of the page (`handle`) and from the browser
 //! itself.
 
-use crate::wish::Wish;
+use crate::wish::{Wish, WorkWish};
 use browser::recording::VideoFormat;
 use document::intake::Incoming;
 use document::mesh_export::{Order, Taker};
@@ -26,10 +26,20 @@ pub enum Request {
     HashChanged,
     /// Open these texts, and answer when they are compiled.
     Load(Project, Answer),
-    /// Take in files that the user dropped or chose.
+    /// Take in files of a script.
     Files(Vec<Incoming>),
     /// Carry out a wish.
     Wish(Wish),
+    /// Carry out the wish that something leads to which was begun a while ago, unless another work
+    /// was opened meanwhile.
+    Late {
+        /// [`document::work::Work::number`] of the work that it was begun for.
+        of: u64,
+        /// The subject of a sentence about it: “The mesh of the model”.
+        what: String,
+        /// The wish.
+        wish: Wish,
+    },
     /// Take note of the browser's encoders of videos.
     Videos(Vec<VideoFormat>),
     /// Look at the scene with this camera, or with that of the text if it is `None`.
@@ -76,9 +86,16 @@ impl Requests {
         std::mem::take(&mut *self.waiting.borrow_mut())
     }
 
-    /// Returns a function that asks for files to be taken in.
-    pub fn taker(&self) -> impl FnOnce(Vec<Incoming>) + 'static {
+    /// Returns a function that asks for files to be taken into the work of this number.
+    pub fn taker(&self, of: u64) -> impl FnOnce(Vec<Incoming>) + 'static {
         let requests = self.clone();
-        move |files| requests.ask(Request::Files(files))
+        move |files| {
+            let what = match &files[..] {
+                [file] => format!("The file {}", file.name),
+                _ => format!("The {} files", files.len()),
+            };
+            let wish = WorkWish::Take { files, show: true }.into();
+            requests.ask(Request::Late { of, what, wish });
+        }
     }
 }

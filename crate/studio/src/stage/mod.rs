@@ -3,16 +3,18 @@
 
 pub mod apart;
 pub mod draft;
+mod handles;
 pub mod hands;
 pub mod lamp;
 mod live;
 pub mod pencil;
 pub mod view;
+pub mod wish;
 
 use crate::page::{self, Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
-use crate::wish::{TextWish, Wishes, WorkWish};
+use crate::wish::{TextWish, ViewWish, Wishes, WorkWish};
 use crate::{places, screen};
 use apart::Apart;
 use document::{examples, picture, work};
@@ -25,30 +27,8 @@ use live::LiveMesh;
 use pencil::{Pencil, tool::Tool};
 use pool::Tools;
 use rats::TextEdit;
-use scene::Camera;
 use sketch::Sight;
 use view::{Grasp, Scenery};
-
-/// Wishes about the picture and the camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ViewWish {
-    /// Look at the scene with this camera, or with that of the text if it is `None`.
-    SetCamera(Option<Camera>),
-    /// Bring the whole model into view.
-    ShowAll,
-    /// Let a mesh of the surface follow the hand, which begins to drag.
-    Follow,
-    /// Choose no shape.
-    LetGo,
-    /// Take a tool for drawing in hand, or lay it down.
-    SetTool(Option<Tool>),
-    /// Stop the picture.
-    Cancel,
-    /// Trace the picture again.
-    Again,
-    /// Write the picture to a file.
-    Save,
-}
 
 /// The stand-in for a traced picture that is not there yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,8 +65,9 @@ pub struct Stage {
     pub pencil: Pencil,
     /// The file and byte of the editor's caret. The layout keeps it up to date.
     pub caret: Option<(usize, usize)>,
-    /// Measured points to draw over the picture. The layout keeps them up to date.
-    pub points: Vec<DVec3>,
+    /// Measured points to draw over the picture, and whether a fit left them out. The layout keeps
+    /// them up to date.
+    pub points: Vec<(DVec3, bool)>,
     /// The picture's place in device pixels.
     pub place: [f32; 2],
 }
@@ -261,7 +242,7 @@ impl Panel for Stage {
     }
 
     fn tick(&mut self, page: &mut Page, at: &Moment<'_>) {
-        if page.is_reading {
+        if page.is_reading() {
             self.live.give_way();
         }
         let is_drawn = self.draft.is_some() && self.stand_in.is_some();
@@ -289,15 +270,20 @@ fn is_blank(text: &str) -> bool {
 /// Whether neither a picture nor a file keeps workers busy.
 fn rests(page: &Page) -> bool {
     let is_tracing = matches!(page.renderer.phase(), Phase::Waiting | Phase::Tracing);
-    !is_tracing && !page.is_reading
+    !is_tracing && !page.is_reading()
 }
 
 /// Draws measured points over the picture.
-fn points(points: &[DVec3], painter: &Painter, sight: &Sight, rect: Rect) {
-    for point in points {
+fn points(points: &[(DVec3, bool)], painter: &Painter, sight: &Sight, rect: Rect) {
+    for (point, left_out) in points {
         if let Some(at) = sight.screen(*point).filter(|at| rect.contains(*at)) {
             let square = Rect::from_center_size(at, Vec2::splat(2.2));
-            painter.rect_filled(square, 0.0, Color32::from_rgb(90, 200, 255));
+            let colour = if *left_out {
+                Color32::from_rgb(255, 150, 60)
+            } else {
+                Color32::from_rgb(90, 200, 255)
+            };
+            painter.rect_filled(square, 0.0, colour);
         }
     }
 }

@@ -33,28 +33,55 @@ pub struct Editor {
     pub file: usize,
     /// The image or mesh on show instead, by its name.
     pub asset: Option<String>,
-    buffer: String,
-    synced: Option<(u64, usize)>,
-    colouring: Colouring,
-    folding: folding::Folding,
-    marks: Marks,
+    /// The file and bytes of the commands that are chosen in the picture, shown on a light ground.
+    pub lit: Option<(usize, Range<usize>)>,
+    buffer: Buffer,
+    cursor: Cursor,
+    look: Look,
+    cards: Cards,
+}
+
+/// The text that is edited, a copy of the session's.
+#[derive(Default)]
+struct Buffer {
+    text: String,
+    /// The session's revision and the file that it is of.
+    of: Option<(u64, usize)>,
+}
+
+/// The cursor.
+#[derive(Default)]
+struct Cursor {
+    /// The bytes to select at the next frame.
     jump: Option<Range<usize>>,
+    /// The byte to show at the next frame.
     place: Option<usize>,
     /// The cursor before the last frame's edits.
     before: Option<CCursorRange>,
-    /// The line of the cursor, from 1.
+    /// The line, from 1.
     line: usize,
+    /// Whether a letter was typed in the last frame, which may open the completions.
+    typed: bool,
+    /// The file and byte.
+    caret: Option<(usize, usize)>,
+}
+
+/// The text's colours, folds and underlines.
+#[derive(Default)]
+struct Look {
+    colouring: Colouring,
+    folding: folding::Folding,
+    marks: Marks,
+}
+
+/// Lists, cards, lines and fields that open beside the cursor or the pointer.
+#[derive(Default)]
+struct Cards {
     completions: completion::Popup,
     hover: hover::Hover,
     signature: signature::Line,
     tints: tint::Tints,
     rename: Option<rename::Rename>,
-    /// Whether a letter was typed in the last frame, which may open the completions.
-    typed: bool,
-    /// The file and byte of the cursor.
-    caret: Option<(usize, usize)>,
-    /// The file and bytes of the commands that are chosen in the picture, shown on a light ground.
-    pub lit: Option<(usize, Range<usize>)>,
 }
 
 impl Editor {
@@ -67,14 +94,14 @@ impl Editor {
     /// Selects a byte range of a file and scrolls to it, at the next frame.
     pub fn jump(&mut self, file: usize, range: Range<usize>) {
         self.open(file);
-        self.jump = Some(range);
+        self.cursor.jump = Some(range);
     }
 
     /// Takes the session's text again after an edit was refused, with the cursor where it was.
     pub fn resync(&mut self, ctx: &egui::Context) {
-        self.synced = None;
+        self.buffer.of = None;
         if let Some(mut state) = TextEdit::load_state(ctx, id()) {
-            state.cursor.set_char_range(self.before);
+            state.cursor.set_char_range(self.cursor.before);
             state.store(ctx, id());
         }
     }
@@ -82,24 +109,24 @@ impl Editor {
     /// Shows a byte of a file, without taking the focus from where it is.
     pub fn show_place(&mut self, file: usize, byte: usize) {
         self.open(file);
-        self.place = Some(byte);
+        self.cursor.place = Some(byte);
     }
 
     /// Returns the file and byte of the cursor; `None` until the text has had the focus.
     #[must_use]
     pub fn caret(&self) -> Option<(usize, usize)> {
-        self.caret
+        self.cursor.caret
     }
 
     /// Shows the first file from the top, when another work was opened.
     pub fn reset(&mut self, ctx: &egui::Context) {
         self.open(0);
-        self.completions.close();
-        self.folding.clear();
-        self.rename = None;
-        self.synced = None;
-        self.caret = None;
-        self.jump = None;
+        self.cards.completions.close();
+        self.look.folding.clear();
+        self.cards.rename = None;
+        self.buffer.of = None;
+        self.cursor.caret = None;
+        self.cursor.jump = None;
         ctx.data_mut(|data| data.remove::<egui::text_edit::TextEditState>(id()));
     }
 
@@ -109,11 +136,11 @@ impl Editor {
         self.file = self
             .file
             .min(session.project().files.len().saturating_sub(1));
-        if self.synced != Some((session.revision(), self.file)) {
-            session.text(self.file).clone_into(&mut self.buffer);
-            self.synced = Some((session.revision(), self.file));
+        if self.buffer.of != Some((session.revision(), self.file)) {
+            session.text(self.file).clone_into(&mut self.buffer.text);
+            self.buffer.of = Some((session.revision(), self.file));
         }
-        self.marks.update(
+        self.look.marks.update(
             session.revision(),
             session.project(),
             self.file,
@@ -121,15 +148,21 @@ impl Editor {
         );
         let palette = theme::palette(ui.visuals());
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);
-        self.before =
+        self.cursor.before =
             TextEdit::load_state(ui.ctx(), id()).and_then(|state| state.cursor.char_range());
         self.offer(ui, session);
-        let chosen = self.completions.keys(ui);
+        let chosen = self.cards.completions.keys(ui);
         let mut is_step = self.write(ui, chosen);
         self.ask(ui, session, wishes);
         let has_changed = self.keys(ui);
         let height = ui.available_height();
-        let lines = self.buffer.bytes().filter(|byte| *byte == b'\n').count() + 1;
+        let lines = self
+            .buffer
+            .text
+            .bytes()
+            .filter(|byte| *byte == b'\n')
+            .count()
+            + 1;
         let digits = lines.to_string().len().max(2);
         let gutter = digits as f32 * theme::CODE_SIZE * 0.6 + 26.0;
         let caret = ScrollArea::vertical()
@@ -139,22 +172,24 @@ impl Editor {
                 let caret = self.text(ui, palette, session, gutter, height, wishes);
                 let focused = ui.memory(|memory| memory.has_focus(id()));
                 if let (Some((caret, place)), true, true) = (caret, focused, hints) {
-                    self.signature.show(ui, session, place, self.line, caret);
+                    self.cards
+                        .signature
+                        .show(ui, session, place, self.cursor.line, caret);
                 }
                 if let Some((caret, place)) = caret {
                     let right = ui.max_rect().right() - 10.0;
                     let row = Rect::from_x_y_ranges(caret.left()..=right, caret.y_range());
-                    self.tints.show(ui, session, place, row, wishes);
+                    self.cards.tints.show(ui, session, place, row, wishes);
                 }
                 caret
             })
             .inner;
         if let Some((caret, _)) = caret {
-            let chosen = self.completions.show(ui, caret);
+            let chosen = self.cards.completions.show(ui, caret);
             is_step |= self.write(ui, chosen);
             self.show_rename(ui, session, caret, wishes);
         }
-        let (file, text) = (self.file, &self.buffer);
+        let (file, text) = (self.file, &self.buffer.text);
         if is_step {
             wishes.push(TextWish::step(rats::TextEdit::whole(file, text)));
         } else if has_changed || text != session.text(file) {
@@ -173,12 +208,18 @@ impl Editor {
         wishes: &mut Wishes,
     ) -> Option<(Rect, Place)> {
         let dark = ui.visuals().dark_mode;
-        let wanted = self.jump.as_ref().map(|range| range.start).or(self.place);
+        let wanted = self
+            .cursor
+            .jump
+            .as_ref()
+            .map(|range| range.start)
+            .or(self.cursor.place);
         if let Some(byte) = wanted {
-            let line = line_of(&self.buffer, byte);
-            self.folding.reveal(self.file, line);
+            let line = line_of(&self.buffer.text, byte);
+            self.look.folding.reveal(self.file, line);
         }
-        let (colouring, folding, file) = (&mut self.colouring, &mut self.folding, self.file);
+        let (colouring, folding, file) =
+            (&mut self.look.colouring, &mut self.look.folding, self.file);
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
             let job = colouring.job(text.as_str(), palette, dark, width);
             let job = folding::hide(job, &folding.update(file, text.as_str()));
@@ -191,7 +232,7 @@ impl Editor {
             bottom: 40,
         };
         let behind = ui.painter().add(egui::Shape::Noop);
-        let output = TextEdit::multiline(&mut self.buffer)
+        let output = TextEdit::multiline(&mut self.buffer.text)
             .id(id())
             .code_editor()
             // Escape closes what is open, and only then leaves the text.
@@ -199,7 +240,8 @@ impl Editor {
                 tab: true,
                 horizontal_arrows: true,
                 vertical_arrows: true,
-                escape: self.completions.is_open() || self.signature.is_open(self.line),
+                escape: self.cards.completions.is_open()
+                    || self.cards.signature.is_open(self.cursor.line),
             })
             .frame(egui::Frame::new().inner_margin(margin))
             .desired_width(f32::INFINITY)
@@ -209,23 +251,23 @@ impl Editor {
             .show(ui);
         let (galley, origin) = (output.galley.clone(), output.galley_pos);
         if output.response.response.changed() {
-            self.typed = ui.input(|input| {
+            self.cursor.typed = ui.input(|input| {
                 input.events.iter().any(writes_letters)
-                    || self.completions.is_open() && input.key_pressed(Key::Backspace)
+                    || self.cards.completions.is_open() && input.key_pressed(Key::Backspace)
             });
         }
         let mut state = output.state;
-        if let Some(range) = self.jump.take() {
-            let start = to_chars(&self.buffer, range.start);
-            let end = to_chars(&self.buffer, range.end);
+        if let Some(range) = self.cursor.jump.take() {
+            let start = to_chars(&self.buffer.text, range.start);
+            let end = to_chars(&self.buffer.text, range.end);
             let selected = CCursorRange::two(CCursor::new(start), CCursor::new(end));
             state.cursor.set_char_range(Some(selected));
             state.clone().store(ui.ctx(), id());
             place::focus(ui.ctx());
             let place = galley.pos_from_cursor(CCursor::new(start));
             ui.scroll_to_rect(place.translate(origin.to_vec2()), Some(Align::Center));
-        } else if let Some(byte) = self.place.take() {
-            let cursor = CCursor::new(to_chars(&self.buffer, byte));
+        } else if let Some(byte) = self.cursor.place.take() {
+            let cursor = CCursor::new(to_chars(&self.buffer.text, byte));
             state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
             state.clone().store(ui.ctx(), id());
             let place = galley.pos_from_cursor(cursor);
@@ -235,15 +277,16 @@ impl Editor {
                 .expand2(egui::vec2(0.0, 70.0));
             ui.scroll_to_rect(around, None);
         } else if let Some(range) = output.cursor_range {
-            let byte = to_bytes(&self.buffer, range.primary.index.0);
+            let byte = to_bytes(&self.buffer.text, range.primary.index.0);
             let byte = self.out_of_folds(ui, byte, &mut state);
-            self.caret = Some((self.file, byte));
-            self.line = line_of(&self.buffer, byte) + 1;
+            self.cursor.caret = Some((self.file, byte));
+            self.cursor.line = line_of(&self.buffer.text, byte) + 1;
         }
         if let Some((file, range)) = &self.lit
             && *file == self.file
         {
-            let chars = to_chars(&self.buffer, range.start)..to_chars(&self.buffer, range.end);
+            let chars =
+                to_chars(&self.buffer.text, range.start)..to_chars(&self.buffer.text, range.end);
             let light = palette.accent.gamma_multiply(0.22);
             let rows = marks::rows(&galley, chars).into_iter().map(|row| {
                 let row = row
@@ -253,17 +296,19 @@ impl Editor {
             });
             ui.painter().set(behind, egui::Shape::Vec(rows.collect()));
         }
-        self.marks.paint(ui.painter(), palette, &galley, origin);
+        self.look
+            .marks
+            .paint(ui.painter(), palette, &galley, origin);
         let focused = ui.memory(|memory| memory.has_focus(id()));
         let rows = self.line_numbers(ui, palette, &galley, origin, focused);
         let x = origin.x - gutter.min(120.0) + 9.0;
-        if let Some(line) = self.folding.show(ui, palette, self.file, &rows, x) {
+        if let Some(line) = self.look.folding.show(ui, palette, self.file, &rows, x) {
             self.fold(ui, line);
         }
         self.point(&output.response.response, session, &galley, origin, wishes);
         let caret = state.cursor.char_range()?.primary;
         let rect = galley.pos_from_cursor(caret).translate(origin.to_vec2());
-        let byte = to_bytes(&self.buffer, caret.index.0);
+        let byte = to_bytes(&self.buffer.text, caret.index.0);
         let file = self.file;
         Some((rect, Place { file, byte }))
     }
@@ -275,8 +320,8 @@ impl Editor {
             return false;
         }
         let folds = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F8));
-        if let (true, Some((_, byte))) = (folds, self.caret) {
-            self.fold(ui, line_of(&self.buffer, byte));
+        if let (true, Some((_, byte))) = (folds, self.cursor.caret) {
+            self.fold(ui, line_of(&self.buffer.text, byte));
         }
         let Some(mut state) = TextEdit::load_state(ui.ctx(), id()) else {
             return false;
@@ -303,12 +348,13 @@ impl Editor {
         let selected = state.cursor.char_range().map_or(0..0, |range| {
             range.as_sorted_char_range().start.0..range.as_sorted_char_range().end.0
         });
-        let selected = to_bytes(&self.buffer, selected.start)..to_bytes(&self.buffer, selected.end);
-        let (text, selected) = action(&self.buffer, selected);
-        self.buffer = text;
+        let selected =
+            to_bytes(&self.buffer.text, selected.start)..to_bytes(&self.buffer.text, selected.end);
+        let (text, selected) = action(&self.buffer.text, selected);
+        self.buffer.text = text;
         let selected = CCursorRange::two(
-            CCursor::new(to_chars(&self.buffer, selected.start)),
-            CCursor::new(to_chars(&self.buffer, selected.end)),
+            CCursor::new(to_chars(&self.buffer.text, selected.start)),
+            CCursor::new(to_chars(&self.buffer.text, selected.end)),
         );
         state.cursor.set_char_range(Some(selected));
         state.store(ui.ctx(), id());
@@ -336,7 +382,7 @@ impl Editor {
             let is_seen = rect.bottom() >= clip.top() && rect.top() <= clip.bottom();
             if starts && is_seen && rect.height() > 2.0 {
                 rows.push((line - 1, rect));
-                let here = focused && line == self.line;
+                let here = focused && line == self.cursor.line;
                 let colour = if here { palette.text } else { palette.comment };
                 painter.text(
                     pos2(origin.x - 14.0, rect.center().y),
@@ -345,7 +391,7 @@ impl Editor {
                     font.clone(),
                     colour.gamma_multiply(if here { 1.0 } else { 0.75 }),
                 );
-                if let Some(severity) = self.marks.of_line(line) {
+                if let Some(severity) = self.look.marks.of_line(line) {
                     painter.circle_filled(
                         pos2(origin.x - 7.0, rect.center().y),
                         2.5,
@@ -361,11 +407,11 @@ impl Editor {
 
     /// Folds or unfolds the block around a line, and takes the caret out of a folded one.
     fn fold(&mut self, ui: &Ui, line: usize) {
-        let shut = self.folding.toggle(self.file, line);
-        if let (Some(shut), Some((_, byte))) = (shut, self.caret)
-            && (shut.start + 1..shut.end).contains(&line_of(&self.buffer, byte))
+        let shut = self.look.folding.toggle(self.file, line);
+        if let (Some(shut), Some((_, byte))) = (shut, self.cursor.caret)
+            && (shut.start + 1..shut.end).contains(&line_of(&self.buffer.text, byte))
         {
-            self.place = Some(end_of_line(&self.buffer, shut.start));
+            self.cursor.place = Some(end_of_line(&self.buffer.text, shut.start));
         }
         ui.ctx().request_repaint();
     }
@@ -378,8 +424,8 @@ impl Editor {
         byte: usize,
         state: &mut egui::text_edit::TextEditState,
     ) -> usize {
-        let line = line_of(&self.buffer, byte);
-        let Some(fold) = self.folding.around(self.file, line) else {
+        let line = line_of(&self.buffer.text, byte);
+        let Some(fold) = self.look.folding.around(self.file, line) else {
             return byte;
         };
         let arrows = [
@@ -389,23 +435,23 @@ impl Editor {
             Key::ArrowRight,
         ];
         if !ui.input(|input| arrows.iter().any(|key| input.key_pressed(*key))) {
-            self.folding.reveal(self.file, line);
+            self.look.folding.reveal(self.file, line);
             ui.ctx().request_repaint();
             return byte;
         }
-        let lines = self.buffer.matches('\n').count() + 1;
-        let went_down = self.line <= fold.start + 1;
+        let lines = self.buffer.text.matches('\n').count() + 1;
+        let went_down = self.cursor.line <= fold.start + 1;
         let target = if went_down && fold.end < lines {
             fold.end
         } else {
             fold.start
         };
         let byte = if went_down && target == fold.end {
-            end_of_line(&self.buffer, target - 1) + 1
+            end_of_line(&self.buffer.text, target - 1) + 1
         } else {
-            end_of_line(&self.buffer, target)
+            end_of_line(&self.buffer.text, target)
         };
-        let cursor = CCursor::new(to_chars(&self.buffer, byte));
+        let cursor = CCursor::new(to_chars(&self.buffer.text, byte));
         state.cursor.set_char_range(Some(CCursorRange::one(cursor)));
         state.clone().store(ui.ctx(), id());
         byte

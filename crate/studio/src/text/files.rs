@@ -96,6 +96,7 @@ fn asset_tab(ui: &mut Ui, asset: &Asset, editor: &mut Editor, wishes: &mut Wishe
     };
     let (sign, what) = match asset::kind(&asset.name) {
         Some(asset::Kind::Image) => (Icon::Image, "Image"),
+        Some(asset::Kind::Skeleton) => (Icon::Mesh, "Skeleton"),
         _ => (Icon::Mesh, "Mesh"),
     };
     let text = RichText::new(format!("      {}", asset.name))

@@ -7,11 +7,12 @@
 pub mod item;
 pub mod large;
 pub mod strip;
+pub mod wish;
 
-use crate::page::{Dialog, Moment, Page};
+use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::screen;
-use crate::wish::{TextWish, Wishes, WorkWish};
+use crate::wish::{Dialog, TextWish, TrayWish, Wishes, WorkWish};
 use darkroom::{Bench, Done, Step};
 use document::asset::Asset;
 use document::desk::Desk;
@@ -29,21 +30,6 @@ use std::sync::Arc;
 const QUIET: f64 = 0.3;
 /// Seconds of work in a frame of the page after which no further step begins.
 const SLICE: f64 = 0.008;
-
-/// Wishes about results, by their numbers on the tray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TrayWish {
-    /// Show one large.
-    Show(usize),
-    /// Write one to a file.
-    Save(usize),
-    /// Go to the command that made one.
-    Find(usize),
-    /// Make one an image of the work.
-    Keep(usize),
-    /// Show only the head of the tray, or all of it.
-    Fold(bool),
-}
 
 /// Inputs of the jobs besides the traced picture.
 #[derive(Clone, Default, PartialEq)]

@@ -1,10 +1,9 @@
 //! Taking in files that were dropped on the page or opened: as new tabs if a work of the user's is
 //! open, else as a new work.
 
-use crate::notice::Notice;
 use crate::page::{Moment, Page};
 use crate::scripts::request::Request;
-use crate::wish::{FitWish, LabWish, TextWish, Wish, WorkWish};
+use crate::wish::{FitWish, LabWish, Notice, TextWish, Wish, WorkWish};
 use browser;
 use document::asset::Asset;
 use document::examples;
@@ -23,6 +22,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
     let text = example.text.is_none().then_some(&example.path);
     let paths = text.into_iter().chain(example.files);
     let own = example.text.map(str::to_owned);
+    let of = page.work.number();
     let inbox = Rc::new(RefCell::new((paths.clone().count(), own, Vec::new())));
     for path in paths {
         let (inbox, requests) = (inbox.clone(), page.parts.requests.clone());
@@ -33,10 +33,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
                 *text = bytes.and_then(|bytes| String::from_utf8(bytes).ok());
             } else {
                 let name = path.rsplit('/').next().unwrap_or(path).to_owned();
-                assets.extend(bytes.map(|bytes| Asset {
-                    name,
-                    bytes: bytes.into(),
-                }));
+                assets.extend(bytes.map(|bytes| Asset::await_mesh(name, bytes)));
             }
             if *missing == 0 {
                 let (text, assets) = (text.take(), std::mem::take(assets));
@@ -45,7 +42,11 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
                     text,
                     assets,
                 };
-                requests.ask(Request::Wish(wish.into()));
+                requests.ask(Request::Late {
+                    of,
+                    what: format!("The example {}", example.title),
+                    wish: wish.into(),
+                });
             }
         });
     }
@@ -78,6 +79,11 @@ pub(super) fn take_in(page: &mut Page, taken: Vec<Incoming>, show: bool, at: &Mo
     for (name, bytes) in measured {
         page.wish(FitWish::Take { name, bytes });
     }
+    let is_own = page.work.origin == Origin::Own;
+    let mut texts = texts;
+    let drawn = intake::write_text(&assets).filter(|_| texts.is_empty() && !is_own);
+    let is_drawn = drawn.is_some();
+    texts.extend(drawn);
     let outcome = if all.is_empty() {
         Ok(String::new())
     } else if texts.is_empty() || page.work.origin == Origin::Own {
@@ -99,6 +105,9 @@ pub(super) fn take_in(page: &mut Page, taken: Vec<Incoming>, show: bool, at: &Mo
             format!("Opened {all} as a new work.")
         })
     };
+    if is_drawn && outcome.is_ok() {
+        page.to_frame = Some(page.work.number());
+    }
     page.wishes.extend(report(outcome, &refused, at.now));
 }
 

@@ -23,6 +23,8 @@ pub struct Gallery {
     entries: Vec<Entry>,
     /// The work whose deletion waits for a second click.
     to_delete: Option<String>,
+    /// The example that was asked for last, whose files may be on their way.
+    pub(super) asked: Option<usize>,
 }
 
 impl Gallery {

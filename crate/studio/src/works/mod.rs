@@ -3,72 +3,23 @@
 
 mod arrivals;
 pub mod gallery;
+pub mod wish;
 
 use crate::page::{self, Moment, Page};
 use crate::stage::pencil::tool::Tool;
-use crate::wish::ViewWish;
-use document::asset::{self, Asset};
-use document::intake::Incoming;
+use crate::wish::{ViewWish, WorkWish};
+use document::asset;
 use document::project_file::{self, Project};
 use document::work::Origin;
 use document::{examples, share, work};
 use gallery::Gallery;
-
-/// Wishes about whole works.
-#[derive(Clone, Debug, PartialEq)]
-pub enum WorkWish {
-    /// Open an example, whose files may have to be fetched first.
-    OpenExample(usize),
-    /// Open an example whose files were fetched; its text is `None` if that did not come.
-    OpenFetched {
-        /// The number of the example.
-        index: usize,
-        /// The text.
-        text: Option<String>,
-        /// The images and meshes.
-        assets: Vec<Asset>,
-    },
-    /// Open a saved work.
-    OpenSaved(String),
-    /// Open a text as an example is opened.
-    OpenText {
-        /// The name of the work.
-        name: String,
-        /// The dataset.
-        text: String,
-    },
-    /// Begin an empty work.
-    New,
-    /// Begin an empty work to draw on.
-    DrawNew,
-    /// Go back to the user's own work, which a link has replaced.
-    GoBack,
-    /// Give the work another name.
-    Rename(String),
-    /// Delete a saved work.
-    Delete(String),
-    /// Compile and trace again after a failed start.
-    Enable,
-    /// Write all texts, images and meshes to one file.
-    Save,
-    /// Make a link, copy it, and put it into the address bar.
-    Share,
-    /// Choose files to take in.
-    PickFiles,
-    /// Take in files.
-    Take {
-        /// The files.
-        files: Vec<Incoming>,
-        /// Whether what was taken in is shown.
-        show: bool,
-    },
-}
 
 impl Gallery {
     /// Carries out a wish.
     pub fn act(&mut self, wish: WorkWish, page: &mut Page, at: &Moment<'_>) {
         match wish {
             WorkWish::OpenExample(index) => {
+                self.asked = Some(index);
                 let example = examples::ALL.get(index).filter(|e| e.files.is_empty());
                 match example.and_then(|example| example.text) {
                     Some(text) => {
@@ -78,6 +29,8 @@ impl Gallery {
                     None => arrivals::fetch_example(page, index),
                 }
             }
+            // Another one was asked for since.
+            WorkWish::OpenFetched { index, .. } if self.asked != Some(index) => {}
             WorkWish::OpenFetched {
                 index,
                 text: Some(text),
@@ -131,7 +84,10 @@ impl Gallery {
             }
             WorkWish::Save => save(page, at.now),
             WorkWish::Share => share(page, at),
-            WorkWish::PickFiles => browser::pick_files(page.parts.requests.taker()),
+            WorkWish::PickFiles => {
+                let of = page.work.number();
+                browser::pick_files(page.parts.requests.taker(of));
+            }
             WorkWish::Take { files, show } => arrivals::take_in(page, files, show, at),
         }
     }

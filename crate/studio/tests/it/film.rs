@@ -149,3 +149,25 @@ fn a_film_can_be_stopped_on_a_phone() {
     assert_eq!(browser::last_download(), None);
     window.place("slider frame");
 }
+
+#[test]
+fn a_film_ends_with_its_work() {
+    let mut window = Window::with_text(TEXT);
+    window.finish();
+    let slider = window.place("slider frame");
+    window.click(slider.center());
+    let menu = window.place("save film").center();
+    window.click(menu);
+    let choice = window.place("download gif").center();
+    window.click(choice);
+    window.harness.get_by_label_contains("of 24");
+    let other = TEXT.replace("Coral", "SkyBlue");
+    window.load(&other);
+    window.finish();
+    window.steps(20);
+    assert_eq!(browser::last_download(), None);
+    assert_eq!(window.text(), other);
+    // Nothing of the old film is left: neither its frame nor that it is being saved.
+    assert_eq!(window.parts.outbox.borrow().report.frame, Some(0));
+    window.place("save film");
+}

@@ -12,3 +12,4 @@ mod sliders;
 mod software;
 mod tray;
 mod window;
+mod works;

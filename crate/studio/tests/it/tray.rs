@@ -250,3 +250,21 @@ fn many_jobs_are_done_in_many_frames_and_not_all_results_are_held() {
     }
     panic!("the jobs do not end");
 }
+
+#[test]
+fn jobs_end_with_their_work() {
+    let jobs = "for i = 1 to 300 { show color Gold }";
+    let mut window = Window::with_text(&format!("{jobs}\n{SCENE}"));
+    // Frames go by before they are done.
+    wait_for(&mut window, "colour.png");
+    window.load(&format!("table 1 2 3\n{SCENE}"));
+    assert!(!has(&window, "result colour.png"), "at once");
+    wait_for(&mut window, "table.png");
+    window.steps(30);
+    window.harness.get_by_label("Results 1");
+    assert!(!has(&window, "result colour.png"));
+    // Without jobs nothing is left of them.
+    window.load(SCENE);
+    window.steps(30);
+    assert!(!has(&window, "tray"));
+}

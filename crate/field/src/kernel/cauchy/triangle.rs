@@ -59,7 +59,7 @@ pub fn jet<R: Real>(triangle: &Triangle<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R>
         let h = ax * y - ay * x - R::lift(edge.offset);
         let w2 = c2 + h * h;
         let w = w2.sqrt();
-        // One division for 1/w and 1/(w+|h|): 1−|k| = c²/(w(w+|h|)).
+        // A single division for 1/w and 1/(w+|h|): 1−|k| = c²/(w(w+|h|)).
         let rim = w + h.abs();
         let i_both = one / (w * rim);
         let iw = i_both * rim;

@@ -33,15 +33,15 @@ use crate::{Jet, Real};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone<S> {
     /// Half the length c.
-    half: S,
+    pub(crate) half: S,
     /// r₁, the radius at the middle.
-    middle: S,
+    pub(crate) middle: S,
     /// k.
-    slope: S,
-    /// 1/α.
-    upright: S,
-    /// `r(−c)` and `r(−c)·α^{−3/2}`.
-    scales: [S; 2],
+    pub(crate) slope: S,
+    /// 1/α; of compact kernels `1/(1−k²)`.
+    pub(crate) upright: S,
+    /// `r(−c)` and `r(−c)·α^{−3/2}`; of compact kernels both are the former.
+    pub(crate) scales: [S; 2],
 }
 
 /// Largest change of the radius over the length. Steeper ones are short compared with their radii.
@@ -67,6 +67,21 @@ impl Cone<f64> {
     }
 }
 
+impl Cone<f64> {
+    /// Prepares a cone for a compact kernel, from half its length and the radii of its support at
+    /// its start and its end, in units of the smaller one.
+    pub fn of_support(half: f64, [start, end]: [f64; 2]) -> Self {
+        let slope = (end - start) / (2.0 * half);
+        Self {
+            half,
+            middle: 0.5 * (start + end),
+            slope,
+            upright: 1.0 / (1.0 - slope * slope),
+            scales: [start, start],
+        }
+    }
+}
+
 impl<S: Copy> Cone<S> {
     /// Converts the cone to another number type.
     pub fn cast<Q>(&self, f: impl Fn(S) -> Q) -> Cone<Q> {
@@ -88,7 +103,7 @@ pub fn jet<R: Real>(cone: &Cone<R::Scalar>, p: [R; 3]) -> Jet<R> {
     let (limit, square) = (reach * reach, x * x + y * y + z * z);
     let (far, near) = (limit.lt(square), square.lt(limit * R::splat(1.0 + 1e-6)));
     let zero = Jet::zero();
-    // The other of the two is not used.
+    // A lane takes one of the two, and leaves the other.
     let closed = if R::any(near) { beside(cone, p) } else { zero };
     let rule = if R::any(far) { afar(cone, p) } else { zero };
     Jet {

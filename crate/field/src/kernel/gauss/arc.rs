@@ -49,7 +49,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     let rho = (centred * centred + y * y).sqrt();
     // ρ − r, without subtracting large squares.
     let gap = (two * radius * x + x * x + y * y) / (rho + radius).max(tiny);
-    // On the axis any azimuth will do, but it must be the same everywhere.
+    // The azimuth may be any on the axis, but must be the same everywhere.
     let axis = rho.lt(tiny);
     let azimuth = R::select(axis, R::splat(0.0), direction(beside, centred));
     let reciprocal = R::splat(1.0) / rho.max(tiny);
@@ -66,7 +66,7 @@ pub fn jet<R: Real>(arc: &Arc<R::Scalar>, [x, y, z]: [R; 3]) -> Jet<R> {
     };
     let end_x = -(radius * R::lift(arc.versine));
     let end_y = radius * R::lift(arc.sine);
-    // The other end is further away, as y ≥ 0.
+    // The end with y ≥ 0 is the nearer one.
     let near_end = beyond(end_x, end_y);
     let sums = if R::Scalar::decide(R::Scalar::splat(0.0).lt(arc.side)) {
         piece(coupling, near_end, -azimuth, [-half_angle, half_angle])
@@ -154,7 +154,7 @@ fn piece<R: Real>(coupling: R, ends: R, from: R, [low, high]: [R; 2]) -> [R; 3] 
     // |u| ≤ 3π/2: a quarter of the mean is in the first octant, and twice doubled again.
     let (mean_sine, mean_cosine) = double(double((quarter * mean).sin_cos_octant()));
     for &(node, weight) in legendre::choose::<R>(&SINGLE, &DOUBLE) {
-        // At most π/4, since the piece is at most a half circle. The two nodes ± share it.
+        // The angle is at most π/4, as a piece is at most a half circle; the nodes ± share it.
         let (sine, cosine) = (spread * R::splat(node)).sin_cos_octant();
         let weight = R::splat(weight);
         let (a, b) = (mean_sine * cosine, mean_cosine * sine);

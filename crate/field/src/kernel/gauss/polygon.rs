@@ -96,8 +96,8 @@ fn large<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
         let weight = bell * span;
         in_plane = [in_plane[0] - ay * weight, in_plane[1] + ax * weight];
     }
-    // No more than rounding: with the foot at a corner the frames of its edges see it at places an
-    // ulp apart, and the angles' sum, like that of ΔS, may be anything.
+    // The angles' sum may be rounding alone: with the foot at a corner the frames of its edges see
+    // it at places an ulp apart, and the sum, like that of ΔS, may be anything.
     let rounding = R::splat(if R::DOUBLE { 1e-14 } else { 2e-6 });
     let outside = angles.abs().lt(rounding);
     let angles = R::select(outside, zero, angles);
@@ -238,7 +238,7 @@ fn small<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
     for edge in edges {
         let [ax, ay] = edge.along.map(R::lift);
         let (start, length) = (R::lift(edge.start), R::lift(edge.length));
-        // Of the origin, the inward distance: twice the triangle's area by the edge's length.
+        // The origin's inward distance: twice the triangle's area by the edge's length.
         let altitude = -R::lift(edge.offset);
         let (qx, qy) = (ax * x + ay * y, ax * y - ay * x);
         let mut sums = [zero; 3];
@@ -264,7 +264,7 @@ fn small<R: Real>(edges: &[Edge<R::Scalar>], [x, y, z]: [R; 3]) -> Jet<R> {
                 ];
             }
         }
-        // Both rules are twice as long as their intervals, in units of those.
+        // The rules are on [−1, 1], twice as long as their intervals.
         let area = half * half * altitude * length;
         value = value + area * sums[0];
         let [gx, gy] = [area * sums[1], area * sums[2]];

@@ -1,6 +1,6 @@
 //! The metaballs kernel over a planar polygon, or a triangle.
 //!
-//! As for [polynomials](crate::kernel::polynomial::polygon), Green's theorem makes the field a sum
+//! Green's theorem, as for [polynomials](crate::kernel::polynomial::polygon), makes the field a sum
 //! over the edges' parts inside the disc `s² + z² ≤ 1` around the point's foot, `Σ h·∫ Φ/s² dt`,
 //! and an angle of those outside. With q = u² = s²+z², and H(q) the kernel, the radial primitive is
 //! `Φ = ½∫H dq` from q = z². An edge's part inside has up to three pieces: the middle one, u < ⅓,

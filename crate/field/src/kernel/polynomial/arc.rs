@@ -83,7 +83,7 @@ impl<R: Real> FromCircle<R> {
         let top = distance * distance - self.near;
         let inside = top.max(zero);
         let rest = self.spread - inside;
-        // On the axis of a circle out of reach the window is empty, not whole.
+        // The window is empty, not whole, on the axis of a circle out of reach.
         let open = zero.lt(R::select(zero.lt(inside), rest, R::splat(1.0)));
         let half = direction(inside.sqrt(), rest.max(zero).sqrt());
         Window {
@@ -385,7 +385,7 @@ fn integral<R: Real>(
     } = Moments::new(h);
     let h2 = h * h;
     let p = around.v.max(R::splat(0.0));
-    // In units in which sin a is sin a/h.
+    // Coordinates in units in which sin a is sin a/h.
     let (x, y) = (
         R::splat(2.0) * h2 * around.bend[0],
         R::splat(2.0) * h * around.bend[1],

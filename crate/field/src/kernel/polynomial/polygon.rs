@@ -117,7 +117,7 @@ pub fn jet<R: Real>([c2, c3]: [f64; 2], edges: &[Edge<R::Scalar>], [x, y, z]: [R
     let q = c2 * sixth * squares + c3 * eighth * cubes;
     let q1 = d2 * quarter * (disc2 + middle) + d3 * sixth * squares;
     let weight = R::select(inside, double_area, disc2 * angle + linear);
-    // Or, counted from outside.
+    // The same, counted from outside.
     let around = disc2 * whole_turns(angle + seen);
     let outer = R::both(zero.lt(far), middle.lt(tiny));
     let value = R::select(outer, around * q - rim, value + weight * q);

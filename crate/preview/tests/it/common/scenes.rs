@@ -88,7 +88,7 @@ pub fn look(eye: [f64; 3], target: [f64; 3], fov: f64) -> Camera {
         target: target.into(),
         up: DVec3::Y,
         fov,
-        shift: [0.0; 2],
+        ..Camera::default()
     }
 }
 

@@ -7,13 +7,14 @@
 mod cage;
 mod knob;
 
+use crate::stage::handles::Handles;
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Handle};
 use document::session::Session;
 use egui::{Color32, Key, Modifiers, Painter, Rect, Response, Stroke, Ui};
 use field::Skeleton;
 use glam::DVec3;
-use scene::{Camera, Origin, Scene};
+use scene::{Origin, Scene};
 use sketch::Sight;
 use std::ops::Range;
 
@@ -31,9 +32,7 @@ pub struct Hands {
     count: usize,
     /// The file and byte of the caret at the last frame.
     caret: Option<(usize, usize)>,
-    handles: Vec<Handle>,
-    /// Key of the handles: revision, frame of the film, element; and the camera.
-    made: Option<((u64, u32, usize), Camera)>,
+    handles: Handles,
     /// The knob that is held, and the place to which it is dragged.
     drag: Option<(usize, DVec3)>,
     /// The deformation whose control points are shown.
@@ -60,7 +59,6 @@ impl Hands {
         self.cage.let_go();
         self.chosen = None;
         self.handles.clear();
-        self.made = None;
     }
 
     /// Forgets everything, when another work was opened.
@@ -128,9 +126,15 @@ impl Hands {
         }
         let Some(chosen) = chosen else { return };
         let held = ui.input(|input| input.pointer.any_down());
-        self.prepare(session, &sight, chosen, held);
+        let handles = self.handles.of(session, &sight, chosen, held);
+        let handles = &handles[..handles.len().min(MOST_KNOBS)];
         paint(&painter, &sight, scene, chosen);
-        self.knobs(ui, &painter, rect, &sight, around.touch, wishes);
+        let place = Place {
+            painter: &painter,
+            rect,
+            sight: &sight,
+        };
+        knobs(handles, &mut self.drag, ui, &place, around.touch, wishes);
     }
 
     /// Chooses the shape whose command the caret has come to.
@@ -156,7 +160,6 @@ impl Hands {
             .is_some_and(|element| is_in_line(element.origin));
         if !stays {
             self.handles.clear();
-            self.made = None;
             let mut elements = scene.elements.iter();
             self.chosen = elements.position(|element| is_at(element.origin));
             if self.chosen.is_none() {
@@ -193,55 +196,44 @@ impl Hands {
             });
         }
     }
+}
 
-    /// Brings the handles up to date.
-    fn prepare(&mut self, session: &Session, sight: &Sight, chosen: usize, held: bool) {
-        let key = (session.revision(), session.film_frame(), chosen);
-        let camera = session.camera();
-        // While the picture turns, knobs may stay where they are on the shape: making them anew
-        // costs as much as compiling.
-        let fresh = self
-            .made
-            .is_some_and(|(made, from)| made == key && (held || from == camera));
-        if !fresh {
-            self.handles = handles::handles(
-                session.project(),
-                session.assets(),
-                session.film_frame(),
-                session.compilation(),
-                chosen,
-                &sight.projection.world_from_view,
-            );
-            self.handles.truncate(MOST_KNOBS);
-            self.made = Some((key, camera));
-        }
-    }
+/// The place of knobs.
+struct Place<'a> {
+    painter: &'a Painter,
+    rect: Rect,
+    sight: &'a Sight,
+}
 
-    /// Shows the knobs of the chosen shape, and carries out what the user does to them.
-    fn knobs(
-        &mut self,
-        ui: &mut Ui,
-        painter: &Painter,
-        rect: Rect,
-        sight: &Sight,
-        touch: bool,
-        wishes: &mut Wishes,
-    ) {
-        // Points come last, above the others, which have room to move away.
-        let (points, others): (Vec<usize>, Vec<usize>) = (0..self.handles.len())
-            .partition(|index| self.handles[*index].kind == handles::Kind::Point);
-        for index in others.into_iter().chain(points) {
-            let handle = &self.handles[index];
-            let Some(at) = sight.screen(handle.place).filter(|at| rect.contains(*at)) else {
-                continue;
-            };
-            let answer = knob::show(ui, painter, rect, index, at, handle, touch);
-            let at = (index, handle.place);
-            if let Some(target) = knob::follow(&answer, at, &mut self.drag, sight, wishes) {
-                let grain = sight.point(handle.place);
-                let edits = handles::drag(handle, target, grain);
-                wishes.push(TextWish::Edit { edits, step: false });
-            }
+/// Shows the knobs of the chosen shape, and carries out what the user does to them. `drag` is the
+/// knob that is held, and the place to which it is dragged.
+fn knobs(
+    handles: &[Handle],
+    drag: &mut Option<(usize, DVec3)>,
+    ui: &mut Ui,
+    place: &Place<'_>,
+    touch: bool,
+    wishes: &mut Wishes,
+) {
+    let Place {
+        painter,
+        rect,
+        sight,
+    } = *place;
+    // Points come last, above the others, which have room to move away.
+    let (points, others): (Vec<usize>, Vec<usize>) =
+        (0..handles.len()).partition(|index| handles[*index].kind == handles::Kind::Point);
+    for index in others.into_iter().chain(points) {
+        let handle = &handles[index];
+        let Some(at) = sight.screen(handle.place).filter(|at| rect.contains(*at)) else {
+            continue;
+        };
+        let answer = knob::show(ui, painter, rect, index, at, handle, touch);
+        let at = (index, handle.place);
+        if let Some(target) = knob::follow(&answer, at, drag, sight, wishes) {
+            let grain = sight.point(handle.place);
+            let edits = handles::drag(handle, target, grain);
+            wishes.push(TextWish::Edit { edits, step: false });
         }
     }
 }

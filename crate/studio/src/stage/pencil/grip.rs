@@ -1,5 +1,6 @@
 //! A node that is held: it follows the pointer, and so does its mirrored one.
 
+use crate::stage::handles::Handles;
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Editable, Handle, Kind};
 use document::session::Session;
@@ -8,31 +9,6 @@ use glam::DVec3;
 use rats::TextEdit;
 use sketch::Drawn;
 use sketch::Sight;
-
-/// The handles of an element, kept for a revision of the text and a frame of the film.
-#[derive(Default)]
-pub struct Handles {
-    made: Option<(u64, u32, usize)>,
-    all: Vec<Handle>,
-}
-
-impl Handles {
-    fn of(&mut self, session: &Session, sight: &Sight, element: usize) -> &[Handle] {
-        let key = (session.revision(), session.film_frame(), element);
-        if self.made != Some(key) {
-            self.all = handles::handles(
-                session.project(),
-                session.assets(),
-                session.film_frame(),
-                session.compilation(),
-                element,
-                &sight.projection.world_from_view,
-            );
-            self.made = Some(key);
-        }
-        &self.all
-    }
-}
 
 /// Returns the handle of a skeleton's node, and that of its radius if it has one of its own.
 fn of_node(all: &[Handle], node: usize) -> Option<(&Handle, Option<&Handle>)> {
@@ -122,7 +98,7 @@ impl Grip {
         let other = drawn
             .to_world
             .transform_point3(own * DVec3::new(-1.0, 1.0, 1.0));
-        let handles = handles.of(session, sight, drawn.element);
+        let handles = handles.of(session, sight, drawn.element, true);
         let grain = 0.5 * sight.point(self.target);
         let (point, _) = of_node(handles, self.node)?;
         if let Editable::Fixed { why } = &point.edit {
@@ -147,7 +123,7 @@ pub fn widen(
     factor: f64,
     wishes: &mut Wishes,
 ) -> Option<String> {
-    let handles = handles.of(session, sight, drawn.element);
+    let handles = handles.of(session, sight, drawn.element, true);
     let mut edits = Vec::new();
     for &node in nodes {
         let (point, radius) = of_node(handles, node)?;

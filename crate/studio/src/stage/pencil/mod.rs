@@ -10,6 +10,7 @@ mod paint;
 pub mod tool;
 
 use crate::places;
+use crate::stage::handles::Handles;
 use crate::wish::{TextWish, ViewWish, Wish, Wishes};
 use document::session::Session;
 use egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, pos2};
@@ -47,7 +48,7 @@ pub struct Pencil {
     chosen: Option<(usize, usize)>,
     /// The node under the pointer.
     over: Option<(usize, usize)>,
-    grip: grip::Handles,
+    grip: Handles,
     /// The alternative to the last stroke.
     alternative: Option<Alternative>,
     /// Places on the picture where no stroke begins.
@@ -105,7 +106,7 @@ impl Default for Pencil {
             gesture: None,
             chosen: None,
             over: None,
-            grip: grip::Handles::default(),
+            grip: Handles::default(),
             alternative: None,
             off: Vec::new(),
         }

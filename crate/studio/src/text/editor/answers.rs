@@ -18,21 +18,21 @@ impl Editor {
         caret: Rect,
         wishes: &mut Wishes,
     ) {
-        let Some(rename) = &mut self.rename else {
+        let Some(rename) = &mut self.cards.rename else {
             return;
         };
         if !rename.show(ui, session, caret, wishes) {
-            self.rename = None;
+            self.cards.rename = None;
             place::focus(ui.ctx());
         }
     }
 
     /// Place of the caret.
     pub(super) fn place(&self) -> Option<Place> {
-        let caret = self.before?.primary.index.0;
+        let caret = self.cursor.before?.primary.index.0;
         Some(Place {
             file: self.file,
-            byte: to_bytes(&self.buffer, caret),
+            byte: to_bytes(&self.buffer.text, caret),
         })
     }
 
@@ -40,17 +40,17 @@ impl Editor {
     pub(super) fn offer(&mut self, ui: &Ui, session: &Session) {
         let focused = ui.memory(|memory| memory.has_focus(id()));
         let now = browser::now(ui.ctx());
-        let typed = std::mem::take(&mut self.typed);
+        let typed = std::mem::take(&mut self.cursor.typed);
         match self.place() {
             Some(place) if focused => {
                 if typed {
-                    self.completions.follow(&self.buffer, place, now);
+                    self.cards.completions.follow(&self.buffer.text, place, now);
                 }
-                self.completions.update(ui, session, place, now);
+                self.cards.completions.update(ui, session, place, now);
             }
             // A click into the list takes the focus for a moment.
             _ if !ui.input(|input| input.pointer.any_down() || input.pointer.any_released()) => {
-                self.completions.close();
+                self.cards.completions.close();
             }
             _ => {}
         }
@@ -61,10 +61,10 @@ impl Editor {
         let Choice::Take(item, range) = chosen else {
             return false;
         };
-        if self.buffer.get(range.clone()).is_none() {
+        if self.buffer.text.get(range.clone()).is_none() {
             return false;
         }
-        self.buffer.replace_range(range.clone(), &item.insert);
+        self.buffer.text.replace_range(range.clone(), &item.insert);
         self.put_caret(ui.ctx(), range.start + item.insert.len());
         place::focus(ui.ctx());
         true
@@ -73,10 +73,10 @@ impl Editor {
     /// Puts the caret at a byte.
     pub(super) fn put_caret(&mut self, ctx: &egui::Context, byte: usize) {
         let mut state = TextEdit::load_state(ctx, id()).unwrap_or_default();
-        let caret = CCursorRange::one(CCursor::new(to_chars(&self.buffer, byte)));
+        let caret = CCursorRange::one(CCursor::new(to_chars(&self.buffer.text, byte)));
         state.cursor.set_char_range(Some(caret));
         state.store(ctx, id());
-        self.before = Some(caret);
+        self.cursor.before = Some(caret);
     }
 
     /// Acts on keys that ask about the text: completions, manual, definition, renaming, layout.
@@ -86,7 +86,7 @@ impl Editor {
             ui.input_mut(|input| input.consume_shortcut(&shortcut))
         };
         // The card under the pointer comes before the caret.
-        if let Some(command) = self.hover.take_command()
+        if let Some(command) = self.cards.hover.take_command()
             && pressed(Modifiers::NONE, Key::F1)
         {
             wishes.push(Wish::Manual(command.to_owned()));
@@ -99,7 +99,7 @@ impl Editor {
             return;
         }
         if pressed(Modifiers::CTRL, Key::Space) || pressed(Modifiers::COMMAND, Key::Space) {
-            self.completions.ask(place);
+            self.cards.completions.ask(place);
             ui.ctx().request_repaint();
         } else if pressed(Modifiers::NONE, Key::F1) {
             let card = assist::hover(session.project(), place.file, place.byte);
@@ -109,16 +109,16 @@ impl Editor {
             self.go_to_definition(session, place, wishes);
         } else if pressed(Modifiers::NONE, Key::F2) {
             match rename::Rename::open(session, place) {
-                Ok(field) => self.rename = Some(field),
+                Ok(field) => self.cards.rename = Some(field),
                 Err(trouble) => wishes.push(Wish::Tell(trouble)),
             }
         } else if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::F) {
             self.format(session, wishes);
-        } else if self.signature.is_open(self.line)
+        } else if self.cards.signature.is_open(self.cursor.line)
             && ui.input(|input| input.key_pressed(Key::Escape))
         {
             // The key goes on: it also lets go of what is chosen in the picture.
-            self.signature.close(self.line);
+            self.cards.signature.close(self.cursor.line);
         }
     }
 
@@ -143,8 +143,8 @@ impl Editor {
         let formatted = assist::format(text);
         if formatted != text {
             let lines = formatted.split_inclusive('\n');
-            let before = lines.take(self.line.saturating_sub(1));
-            self.place = Some(before.map(str::len).sum());
+            let before = lines.take(self.cursor.line.saturating_sub(1));
+            self.cursor.place = Some(before.map(str::len).sum());
             wishes.push(TextWish::step(rats::TextEdit::whole(self.file, formatted)));
         }
     }
@@ -164,13 +164,16 @@ impl Editor {
         };
         let inside = Rect::from_min_size(origin, galley.size()).expand(4.0);
         // While a list is open at the caret, nothing else opens beside it.
-        if !inside.contains(pointer) || self.completions.is_open() || self.rename.is_some() {
+        if !inside.contains(pointer)
+            || self.cards.completions.is_open()
+            || self.cards.rename.is_some()
+        {
             return;
         }
         let char = galley.cursor_from_pos(pointer - origin).index.0;
         let place = Place {
             file: self.file,
-            byte: to_bytes(&self.buffer, char),
+            byte: to_bytes(&self.buffer.text, char),
         };
         if response.ctx.input(|input| input.modifiers.command) {
             response.ctx.set_cursor_icon(egui::CursorIcon::PointingHand);
@@ -179,6 +182,8 @@ impl Editor {
             }
             return;
         }
-        self.hover.show(response, session, &self.marks, char, place);
+        self.cards
+            .hover
+            .show(response, session, &self.look.marks, char, place);
     }
 }

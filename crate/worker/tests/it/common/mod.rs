@@ -92,10 +92,7 @@ pub fn compile_text(text: &str) -> Scene {
     let project = Project {
         files: files.collect(),
     };
-    let assets = MESHES.map(|(name, text)| Asset {
-        name: name.into(),
-        bytes: text.as_bytes().into(),
-    });
+    let assets = MESHES.map(|(name, text)| Asset::new(name, text.as_bytes()));
     let compiled = rats::compile_at(&project, &assets, 0.0);
     let mut errors = compiled.diagnostics.iter();
     assert_eq!(errors.find(|d| d.severity == rats::Severity::Error), None);

@@ -1,0 +1,397 @@
+//! The mesh of one function for files: in seconds, with its error measured on both sides.
+//!
+//! [Cells](crate::grow) of the size that curvature asks for give a fine mesh which is closed and
+//! does not cut itself. It is [decimated](crate::decimate), then measured: points of all its
+//! triangles are looked for on the surface, and points of the surface on it. Where it cuts itself
+//! or is too far from the surface it is decimated once more with more care, at last with finer
+//! cells.
+
+use crate::certify::{at, project_exactly};
+use crate::decimate::{Decimated, Decimation};
+use crate::forest::{Forest, NONE, Side};
+use crate::grow::{FINEST, HIDING, LEVELS, grow};
+use crate::lattice::Lattice;
+use crate::march::{Raw, march};
+use crate::measure::{Measured, along_ray, root_of, spread};
+use crate::options::{MeshError, Options, Phase, Progress};
+use crate::parallel::{LARGE, map_by, map_told};
+use crate::refine::crossing;
+use crate::space::Space;
+use crate::surface::{LARGEST, LEAST_CELLS, MOST_CROSSINGS, SurfaceMesh, check};
+use field::{Implicit, THRESHOLD};
+use glam::DVec3;
+use mesh::{Aabb, Bvh, TriangleMesh, closest_point, self_intersections};
+
+/// Attempts to decimate a fine mesh.
+const ATTEMPTS: usize = 4;
+/// Shares of the progress at which the work on each of the fine meshes begins.
+const FINE_MESHES: [f32; 3] = [0.3, 0.7, 0.9];
+/// Share of the tolerance that is left to a place in the next attempt.
+const LESS: f64 = 0.4;
+/// Shares below which a vertex is kept.
+const KEPT: f64 = 0.1;
+/// Most places of the surface that are looked for on the mesh, besides the fine mesh's vertices.
+const PLACES: usize = 8000;
+/// Largest distance by a first-order estimate, in tolerances, that is taken for true.
+const SURE: f64 = 0.4;
+
+/// Places where points of triangles are looked for on the surface.
+const SAMPLES: [[f64; 3]; 7] = [
+    [1.0 / 3.0; 3],
+    [0.5, 0.5, 0.0],
+    [0.0, 0.5, 0.5],
+    [0.5, 0.0, 0.5],
+    [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
+    [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+    [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
+];
+
+/// Meshes the surface of a function within a domain, which it must not leave but where it is to be
+/// cut off. Nothing is proved: the error is measured.
+///
+/// # Errors
+/// See [`MeshError`]; [`MeshError::Failed`] also where the error stays larger than the tolerance.
+pub fn approximate(
+    function: &dyn Implicit,
+    domain: &Aabb,
+    options: &Options,
+    progress: &mut Progress<'_>,
+) -> Result<SurfaceMesh, MeshError> {
+    let Options {
+        tolerance,
+        max_triangles,
+        threads,
+    } = *options;
+    check(domain)?;
+    // Not so for NaN.
+    let is_sound = tolerance > 0.0 && tolerance.is_finite();
+    if !is_sound {
+        return Err(MeshError::NotFinite("the tolerance".into()));
+    }
+    let size = domain.size().max_element();
+    let tolerance = tolerance.min(LARGEST * size);
+    let most = max_triangles.saturating_mul(2).max(LEAST_CELLS);
+    let mut grown = None;
+    for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
+        let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
+        let mut space = Space::new(function, forest, tolerance / size);
+        let mut lattice = Lattice::default();
+        let sizes = [tolerance, hiding];
+        let mut progress = progress.part(start, start + 0.1).in_phase(Phase::Cells);
+        match grow(
+            &mut space,
+            &mut lattice,
+            sizes,
+            most,
+            threads,
+            &mut progress,
+        ) {
+            Err(MeshError::TooMany { .. }) => {}
+            result => {
+                result?;
+                grown = Some((space, lattice, sizes));
+                break;
+            }
+        }
+    }
+    let (mut space, mut lattice, sizes) = grown.ok_or_else(too_rough)?;
+    if crossing(&space.forest).is_empty() {
+        let mut cells = space.forest.cells.iter();
+        let is_inside = cells.any(|cell| cell.child == NONE && cell.side == Side::Inside);
+        return Err(if is_inside {
+            MeshError::AllInside
+        } else {
+            MeshError::Nothing
+        });
+    }
+    for (i, start) in FINE_MESHES.into_iter().enumerate() {
+        let end = FINE_MESHES.get(i + 1).copied().unwrap_or(1.0);
+        let mut progress = progress.part(start, end);
+        if i > 0 {
+            let progress = &mut progress.part(0.0, 0.5).in_phase(Phase::Cells);
+            match grow(&mut space, &mut lattice, sizes, most, threads, progress) {
+                Err(MeshError::TooMany { .. }) => break,
+                result => result?,
+            }
+        }
+        let mut progress = progress.part(0.5, 1.0).in_phase(Phase::Triangles);
+        progress.at(0.0)?;
+        let raw = march(&space, &lattice, Some(tolerance), threads, &mut progress)?;
+        if raw.triangles.is_empty() {
+            return Err(MeshError::Nothing);
+        }
+        if is_flat(&raw, tolerance) {
+            break;
+        }
+        let fine = Fine {
+            space: &space,
+            raw: &raw,
+            domain,
+            tolerance,
+            threads,
+        };
+        match fine.coarsen(&mut progress)? {
+            Ok((mesh, measured)) => {
+                if mesh.triangles.len() > max_triangles {
+                    return Err(MeshError::TooMany {
+                        limit: max_triangles,
+                        fitting: Some(
+                            tolerance * 1.2 * mesh.triangles.len() as f64 / max_triangles as f64,
+                        ),
+                    });
+                }
+                let forest = &space.forest;
+                return Ok(SurfaceMesh {
+                    error: measured.largest[0].max(measured.largest[1]),
+                    mesh,
+                    unproved: 0,
+                    measured,
+                    crossings: 0,
+                    undecided: Vec::new(),
+                    finest: forest.size(forest.deepest).max_element(),
+                    cells: crossing(forest).len(),
+                    raw_triangles: raw.triangles.len(),
+                    is_cut: raw.is_lid.contains(&true),
+                    evaluations: space.evaluations(),
+                });
+            }
+            Err(places) => refine(&mut space, &places),
+        }
+    }
+    Err(too_rough())
+}
+
+/// Why no mesh of a measured error was made.
+fn too_rough() -> MeshError {
+    MeshError::Failed("the surface is too rough for a mesh whose error is only measured".into())
+}
+
+/// Change of the function over the tolerance, in thresholds, below which it is flat.
+const FLAT: f64 = 1e-10;
+
+/// Whether the function is flat at many places where it is the threshold, as where bodies lie on
+/// each other: then its signs are those of roundings.
+fn is_flat(raw: &Raw, tolerance: f64) -> bool {
+    let steep = raw.vertices.iter();
+    // Not so for NaN.
+    let steep = steep.filter(|v| v.gradient.length() * tolerance >= FLAT * THRESHOLD);
+    20 * steep.count() < 19 * raw.vertices.len()
+}
+
+/// Splits the leaves at some places.
+fn refine(space: &mut Space<'_>, places: &[DVec3]) {
+    let mut leaves: Vec<u32> = places.iter().map(|p| space.forest.leaf_at(*p)).collect();
+    leaves.sort_unstable();
+    leaves.dedup();
+    for node in leaves {
+        let cell = space.forest.cells[node as usize];
+        if cell.child == NONE && cell.level < space.forest.deepest {
+            if let Some(part) = space.narrow(&cell) {
+                space.forest.cells[node as usize].part = space.add(part, cell.part);
+            }
+            space.forest.split(node);
+        }
+    }
+}
+
+/// A cube by its centre and half its side.
+fn cube(center: DVec3, half: f64) -> Aabb {
+    Aabb {
+        min: center - half,
+        max: center + half,
+    }
+}
+
+/// A fine mesh that is to become a coarser one.
+struct Fine<'a> {
+    space: &'a Space<'a>,
+    raw: &'a Raw,
+    domain: &'a Aabb,
+    tolerance: f64,
+    threads: usize,
+}
+
+/// Result of a measurement.
+struct Found {
+    measured: Measured,
+    /// Places that are too far, and how far around them the mesh is to blame.
+    far: Vec<(DVec3, f64)>,
+}
+
+impl Fine<'_> {
+    /// A coarser mesh with its measured error, which is within the tolerance; or the places where
+    /// the fine mesh itself is too far from the surface.
+    fn coarsen(
+        &self,
+        progress: &mut Progress<'_>,
+    ) -> Result<Result<(TriangleMesh, Measured), Vec<DVec3>>, MeshError> {
+        let count = self.raw.vertices.len();
+        let mut shares = vec![1.0; count];
+        let mut is_guarded = vec![false; count];
+        let points = self
+            .raw
+            .vertices
+            .iter()
+            .map(|v| Aabb::of_points([v.position]));
+        let points = Bvh::new(&points.collect::<Vec<Aabb>>());
+        let mut left = Vec::new();
+        for attempt in 0..ATTEMPTS {
+            let [start, end] = [0, 1].map(|i| (attempt + i) as f32 / ATTEMPTS as f32);
+            let progress = &mut progress.part(start, end);
+            let decimation = Decimation::new(
+                self.space,
+                self.raw,
+                self.threads,
+                self.tolerance,
+                &shares,
+                &is_guarded,
+            )?;
+            let Decimated { mesh, sources } = decimation.run(&mut progress.part(0.0, 0.7))?;
+            progress.at(0.7)?;
+            let crossings = self_intersections(&mesh, MOST_CROSSINGS)
+                .map_err(|error| MeshError::Failed(error.to_string()))?;
+            if !crossings.is_free() {
+                let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
+                for i in faces {
+                    let corners = mesh.corners(*i as usize);
+                    let bounds = Aabb::of_points(corners);
+                    let reach = 0.5 * bounds.size().max_element();
+                    for i in points.overlapping(&cube(bounds.center(), reach)) {
+                        is_guarded[i as usize] = true;
+                    }
+                    for corner in mesh.triangles[*i as usize] {
+                        is_guarded[sources[corner as usize] as usize] = true;
+                    }
+                }
+                if attempt >= 1 {
+                    is_guarded.fill(true);
+                }
+                continue;
+            }
+            let Found { measured, far } = self.measure(&mesh, progress)?;
+            if far.is_empty() {
+                return Ok(Ok((mesh, measured)));
+            }
+            for (place, reach) in &far {
+                for i in points.overlapping(&cube(*place, *reach)) {
+                    let share = &mut shares[i as usize];
+                    *share = if *share * LESS < KEPT {
+                        0.0
+                    } else {
+                        *share * LESS
+                    };
+                }
+            }
+            left = far.into_iter().map(|(place, _)| place).collect();
+        }
+        if left.is_empty() {
+            return Err(MeshError::Failed("the mesh cuts itself".into()));
+        }
+        Ok(Err(left))
+    }
+
+    /// Measures both distances.
+    fn measure(
+        &self,
+        mesh: &TriangleMesh,
+        progress: &mut Progress<'_>,
+    ) -> Result<Found, MeshError> {
+        let (tolerance, threads) = (self.tolerance, self.threads);
+        let mut measured = Measured::default();
+        let mut far = Vec::new();
+
+        // From the mesh.
+        let numbers: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        let there = map_by(LARGE, threads, &numbers, progress, |i| {
+            self.farthest(mesh.corners(*i as usize))
+        })?;
+        for (i, worst) in there.into_iter().enumerate() {
+            let Some((place, distance)) = worst else {
+                continue;
+            };
+            measured.add(0, &[distance]);
+            measured.samples[0] += SAMPLES.len() - 1;
+            // Not so for NaN.
+            let is_within = distance <= tolerance;
+            if !is_within {
+                let corners = mesh.corners(i);
+                let reach = corners.map(|corner| corner.distance(place));
+                far.push((place, reach.into_iter().fold(0.0, f64::max)));
+            }
+        }
+
+        // From the surface.
+        let bvh = Bvh::new(&mesh.triangle_boxes());
+        let vertices = self.raw.vertices.iter();
+        let on = vertices.filter(|v| v.value.abs() <= 0.1 * tolerance * v.gradient.length());
+        let mut places: Vec<DVec3> = on.map(|v| v.position).collect();
+        let fine = (0..self.raw.triangles.len()).filter(|i| !self.raw.is_lid[*i]);
+        let fine = spread(fine.collect(), PLACES);
+        let others = map_by(LARGE, threads, &fine, progress, |i| {
+            let corners = self.raw.triangles[*i].map(|v| self.raw.vertices[v as usize].position);
+            let [a, b, c] = corners;
+            let reach = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            let found = project_exactly(self.space, (a + b + c) / 3.0, reach, tolerance)?;
+            let is_in = self.space.forest.contains(found.position);
+            is_in.then_some(found.position)
+        })?;
+        places.extend(others.into_iter().flatten());
+        let back = map_told(threads, &places, progress, |p| {
+            root_of(bvh.nearest(*p, f64::INFINITY, |i| {
+                closest_point(&mesh.corners(i as usize), *p).distance_squared(*p)
+            }))
+        })?;
+        measured.add(1, &back);
+        let missed = places.iter().zip(&back).filter(|(_, d)| **d > tolerance);
+        far.extend(missed.map(|(place, distance)| (*place, 2.0 * distance)));
+        Ok(Found { measured, far })
+    }
+
+    /// The sample of a triangle that is farthest from the surface, and its distance: infinite if no
+    /// surface was found within the tolerance. `None` for lids.
+    fn farthest(&self, corners: [DVec3; 3]) -> Option<(DVec3, f64)> {
+        let is_lid = (0..3).any(|k| {
+            [self.domain.min[k], self.domain.max[k]]
+                .iter()
+                .any(|side| corners.iter().all(|p| p[k] == *side))
+        });
+        if is_lid {
+            return None;
+        }
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let samples = SAMPLES.map(|[u, v, w]| {
+            let place = a * u + b * v + c * w;
+            (place, self.distance(place, normal))
+        });
+        samples
+            .into_iter()
+            .reduce(|one, other| if other.1 <= one.1 { one } else { other })
+    }
+
+    /// The distance of a point from the surface; infinite if it is more than the tolerance.
+    fn distance(&self, place: DVec3, normal: DVec3) -> f64 {
+        let vertex = at(self.space, place);
+        let first = vertex.value.abs() / vertex.gradient.length();
+        if first <= SURE * self.tolerance {
+            return first;
+        }
+        let uphill = vertex.gradient.normalize_or_zero();
+        let toward = if vertex.value > 0.0 { -uphill } else { uphill };
+        let reach = (1.05 * first).clamp(1e-3 * self.tolerance, self.tolerance);
+        let mut least = f64::INFINITY;
+        for direction in [toward, normal, -normal] {
+            // A little more than the first estimate, then the whole tolerance by halves.
+            let [near, far] = [reach, 0.5 * self.tolerance].map(|first| {
+                let most = self.tolerance - first;
+                along_ray(self.space, place, direction, first, most.max(0.0))
+            });
+            let found = near.into_iter().chain(far).fold(f64::INFINITY, f64::min);
+            least = least.min(found);
+            if least <= self.tolerance {
+                return least;
+            }
+        }
+        least
+    }
+}

@@ -1,0 +1,209 @@
+//! Meshes whose error is measured: sound at any tolerance, and the same on any number of threads.
+
+use crate::judges::{Distances, assert_embedded, assert_manifold, crossings, of_mesh};
+use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
+use glam::DVec3;
+use mesh::{Aabb, Topology};
+use mesher::{
+    MeshError, Options, Progress, SurfaceMesh, Tolerance, Wishes, approximate, box_of, mesh_scene,
+};
+use oracle::Reference;
+use oracle::reference::Near;
+use std::ops::ControlFlow;
+use trials::{Random, count};
+
+fn primitive(skeleton: Skeleton, kernel: Kernel, radius: f64) -> Primitive {
+    let shaping = Shaping {
+        kernel,
+        radius,
+        blobbiness: 2.0,
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: 1e-3,
+        taper: None,
+    };
+    Primitive::new(skeleton, &shaping, None).unwrap()
+}
+
+/// A thin tail between a large and a small ball.
+fn tail(kernel: Kernel) -> Sum {
+    let (base, apex) = (DVec3::ZERO, DVec3::new(5.0, 1.0, 0.5));
+    let parts = [
+        (Skeleton::Point { center: base }, 2.0),
+        (Skeleton::Point { center: apex }, 0.6),
+        (Skeleton::Segment { base, apex }, 0.03),
+    ];
+    let parts = parts.map(|(skeleton, radius)| primitive(skeleton, kernel, radius));
+    parts.into_iter().collect()
+}
+
+fn build(sum: &Sum, options: &Options) -> Result<SurfaceMesh, MeshError> {
+    build_in(
+        sum,
+        &box_of(sum.support().expect("it is no plane")),
+        options,
+    )
+}
+
+fn build_in(sum: &Sum, domain: &Aabb, options: &Options) -> Result<SurfaceMesh, MeshError> {
+    build_for(sum, domain, options, usize::MAX).0
+}
+
+/// The mesh, unless it is cancelled after so many steps, and how many there were.
+fn build_for(
+    sum: &Sum,
+    domain: &Aabb,
+    options: &Options,
+    steps: usize,
+) -> (Result<SurfaceMesh, MeshError>, usize) {
+    let mut step = 0;
+    let result = approximate(
+        sum,
+        domain,
+        options,
+        &mut Progress::new(&mut |_| {
+            step += 1;
+            if step > steps {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        }),
+    );
+    (result, step)
+}
+
+#[test]
+fn thin_tail_is_unbroken_at_any_tolerance() {
+    let mut random = Random::new(3);
+    for kernel in [Kernel::Gauss, Kernel::Cauchy, Kernel::Quartic] {
+        let sum = tail(kernel);
+        for tolerance in [0.1, 0.03, 0.005] {
+            let name = format!("{kernel:?} {tolerance}");
+            let surface = build(&sum, &Options::new(tolerance)).unwrap();
+            let mesh = &surface.mesh;
+            assert_manifold(&name, mesh);
+            assert_embedded(&name, mesh);
+            let genera = Topology::of(mesh).unwrap().genera;
+            assert_eq!(genera, [0], "{name}");
+            println!(
+                "{name}: {} of {} triangles, {:?}",
+                mesh.triangles.len(),
+                surface.raw_triangles,
+                surface.measured.largest.map(|d| d / tolerance),
+            );
+            assert!(surface.error <= tolerance, "{name}: {}", surface.error);
+            let mut reference = Reference::new(sum.primitives.clone());
+            reference.patience = 3000;
+            let mut sure = 0;
+            for _ in 0..count(100) {
+                let (_, point) = of_mesh(&mut random, mesh);
+                match reference.surface_near(point, 1.001 * tolerance) {
+                    Near::Within(_) => sure += 1,
+                    Near::Unknown => {}
+                    Near::Beyond => panic!("{name}: {point} is too far"),
+                }
+            }
+            assert!(2 * sure > count(100), "{name}: {sure}");
+            let near = Distances::new(mesh);
+            for _ in 0..count(100) {
+                let from = DVec3::new(5.0, 1.0, 0.5) * random.unit();
+                let way = random.direction();
+                for t in crossings(&sum, from, way, 4.0, 1e-3 * tolerance) {
+                    let off = near.to(from + way * t);
+                    assert!(off <= 1.001 * tolerance, "{name}: {off}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let sum = tail(Kernel::Cauchy);
+    let options = Options::new(0.03);
+    let one = build(&sum, &options).unwrap();
+    let three = build(
+        &sum,
+        &Options {
+            threads: 3,
+            ..options
+        },
+    )
+    .unwrap();
+    assert_eq!(one.mesh, three.mesh);
+    assert_eq!(one.measured, three.measured);
+}
+
+#[test]
+fn what_the_box_cuts_off_is_closed() {
+    let sum = tail(Kernel::Gauss);
+    let mut domain = box_of(sum.support().unwrap());
+    domain.min.x = 0.5;
+    domain.max.y = 0.7;
+    let surface = build_in(&sum, &domain, &Options::new(0.02)).unwrap();
+    assert!(surface.is_cut);
+    assert_manifold("cut", &surface.mesh);
+    assert_embedded("cut", &surface.mesh);
+    let bounds = surface.mesh.bounds();
+    assert_eq!(bounds.min.x, 0.5);
+    assert_eq!(bounds.max.y, 0.7);
+}
+
+#[test]
+fn a_break_cancels_at_any_step() {
+    let sum = tail(Kernel::Gauss);
+    let domain = box_of(sum.support().unwrap());
+    let options = Options::new(0.1);
+    let (_, steps) = build_for(&sum, &domain, &options, usize::MAX);
+    assert!(steps > 10);
+    for last in (0..steps).step_by(1 + steps / count(8)) {
+        let (result, _) = build_for(&sum, &domain, &options, last);
+        assert_eq!(result.unwrap_err(), MeshError::Cancelled);
+    }
+}
+
+#[test]
+fn limits_hold() {
+    let sum = tail(Kernel::Gauss);
+    let options = Options {
+        max_triangles: 100,
+        ..Options::new(0.01)
+    };
+    assert!(matches!(
+        build(&sum, &options),
+        Err(MeshError::TooMany { limit: 100, fitting: Some(fitting) }) if fitting > 0.01
+    ));
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let result = build(&sum, &Options::new(tolerance));
+        assert!(matches!(result, Err(MeshError::NotFinite(_))));
+    }
+}
+
+#[test]
+fn bodies_on_each_other_end_with_words() {
+    let ball = "sphere s 1 0 0 0\n";
+    let text = format!(
+        "surface s diffuse White blob -2\nbody A\n{ball}close\nbody B\n{ball}close\ncontact A B\n"
+    );
+    let project = rats::Project {
+        files: vec![rats::File {
+            name: "same.rat".into(),
+            text,
+        }],
+    };
+    let scene = rats::compile_at(&project, &[], 0.0).scene;
+    assert_eq!(scene.surfaces().len(), 2);
+    let wishes = Wishes {
+        tolerance: Tolerance::Relative(1e-2),
+        prove: false,
+        ..Wishes::default()
+    };
+    let progress = &mut |_| ControlFlow::Continue(());
+    let result = mesh_scene(&scene, &wishes, &mut Progress::new(progress));
+    // As the one takes away what the other has, nothing is left of either.
+    assert!(
+        matches!(result, Err(MeshError::Nothing | MeshError::Flat { .. })),
+        "{result:?}"
+    );
+}

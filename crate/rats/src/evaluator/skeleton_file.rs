@@ -1,0 +1,356 @@
+//! `skeleton sn, name file …`: skeletons that people have in files.
+
+use super::model::{Group, Part};
+use super::skeleton::{SCHEMES, check_reach, weigh};
+use super::state::{Evaluator, Flow};
+use crate::assets;
+use crate::commands::build::{options, plain, word_of};
+use crate::commands::slot::{
+    Named, Placed, SN, Slot, Word, existing, file, length, new, number, whole, word,
+};
+use crate::commands::{Names, OptionSpec, Parameter};
+use crate::compiled::Unread;
+use crate::given::Options;
+use crate::limits::MAX_SKELETON_FILES;
+use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
+use crate::suggest;
+use crate::syntax::Command;
+use field::{BlobScale, Kernel, Primitive, Shaping, THRESHOLD};
+use glam::{DAffine3, DVec3};
+use limbs::{Cap, Graph, Recipe};
+use scene::{Curves, Element, Form, Function, Shape};
+use skeleton::{Node, Scheme, Skeleton};
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Kernel of limbs whose material names none. With [`BLOBBINESS`] their surface stands at their
+/// radius, and where eight of them meet at 1.3 of it.
+const KERNEL: Kernel = Kernel::Compact6;
+/// Blobbiness of limbs whose material has none.
+const BLOBBINESS: f64 = 8.0;
+/// Remarks of a file that are quoted.
+const MOST_REMARKS: usize = 8;
+/// Limbs that cost as much as a step.
+const LIMBS_PER_STEP: usize = 4;
+
+/// Name of a skeleton.
+pub(super) const NAME: Slot<Named> = new("name", Names::Object, "the skeleton's name");
+/// File of a skeleton.
+pub(super) const FILE: Slot<Named> = file("fn", "the name of a file with limbs");
+
+/// Operands of this form of the command.
+pub(super) const PARAMETERS: &[Parameter] = plain![SN, NAME, FILE];
+
+/// Shapes of free ends.
+const END_SHAPES: &[OptionSpec] = &[
+    word_of(
+        "round",
+        "the surface reaches a free end and its radius beyond",
+    ),
+    word_of("flat", "the surface ends at the free end itself"),
+];
+
+options! {
+    /// Options of `skeleton` with a file.
+    FILE_OPTIONS:
+    SCALE: f64 = ("scale", "1", "of a file: factor on all its lengths",
+        number("S", "the factor").from(1e-9, 1e9));
+    THICKEN: f64 = ("thicken", "0", "of a file: length that is added to all radii",
+        length("R", "the length that is added to all radii"));
+    MERGE: f64 = ("merge", "", "of a file: joins lines that run within D of each other",
+        length("D", "the distance within which lines are joined").at_least(0.0));
+    SIMPLIFY: f64 = ("simplify", "",
+        "of a file: fewer limbs, whose centrelines and radii move by at most E",
+        length("E", "the most that lines and radii move").at_least(0.0));
+    ENDS: Word = ("ends", "round", "of a file: shape of free ends",
+        word("shape", END_SHAPES, "`round` or `flat`"));
+    MATERIALS: Vec<Named> = ("materials", "",
+        "of a file: materials of its types or elements, `soma A axon B`; the first is for all \
+         others",
+        existing("type SN", Names::Node, "a type of the file, and its material").many());
+    BONDS: () = ("bonds", "", "of a molecule: joins atoms that are bound by limbs");
+    RADII: Named = ("radius", "the usual ones", "name of the file's array or column of radii",
+        existing("NAME", Names::Node, "the name of the array or column"));
+    FILE_SUBDIVIDE: u32 = ("subdivide", "0", "how often limbs are refined, through their nodes",
+        whole("n", 0, skeleton::MOST_LEVELS, "how often limbs are refined"));
+    FILE_SCHEME: Word = ("scheme", "fourpoint", "how limbs are refined",
+        word("name", SCHEMES, "the scheme's name"));
+    FILE_LOCAL: Placed<f64> = ("local", "", "as of a skeleton with a block",
+        length("D", "the length along the limbs within which flesh \
+            blends").at_least(1e-6).with_place());
+}
+
+/// Adds the skeleton of a file as one object.
+pub(super) fn add<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    [sn, name, file]: &[Name<'a>; 3],
+) -> Outcome<Flow> {
+    let material = run.material(sn)?;
+    let others = options.last(&MATERIALS).unwrap_or_default();
+    let asset = run.asset(file)?;
+    run.scope.step(assets::cost(asset), &command.word_span)?;
+    let scale = options.last(&SCALE).unwrap_or(1.0);
+    let recipe = Recipe {
+        radii: options.last(&RADII).map(|name| name.text.to_owned()),
+        bonds: options.has(&BONDS),
+        merge: options.last(&MERGE).map(|within| within / scale),
+        simplify: options.last(&SIMPLIFY).map(|within| within / scale),
+    };
+    let own = Unread {
+        name: asset.name.clone(),
+        recipe,
+    };
+    let is_new = !run.skeletons.contains(&own);
+    if is_new && run.skeletons.len() >= MAX_SKELETON_FILES {
+        let message = format!("there are more than {MAX_SKELETON_FILES} skeletons of files");
+        let hint = "read one once, and copy it by `instance`";
+        return Err(Problem::new(&file.span, message).hint(hint));
+    }
+    let read = asset.skeleton(&own.recipe);
+    if is_new {
+        run.skeletons.push(own.clone());
+    }
+    let Some(read) = read else {
+        let message = format!("`{}` is still being read", file.text);
+        if is_new {
+            run.unread.push(own);
+        }
+        return Err(Problem::new(&file.span, message));
+    };
+    let read = read.map_err(|error| Problem::new(&file.span, format!("{}: {error}", file.text)))?;
+    run.scope.step(
+        (read.limbs.len() / LIMBS_PER_STEP) as u64,
+        &command.word_span,
+    )?;
+    let mut graph = Graph {
+        nodes: read.nodes.clone(),
+        limbs: read.limbs.clone(),
+        groups: read.groups.clone(),
+        ..Graph::default()
+    };
+    graph.scale(scale);
+    if graph.nodes.iter().any(|node| node.is_guessed) {
+        let radius = run.palette.surfaces[material].flesh.radius;
+        if radius <= 0.0 {
+            let message = format!("`{}` gives no radii above 0", file.text);
+            return Err(Problem::new(&file.span, message).hint(format!(
+                "give the material `{}` a radius, or name the array of radii: `radius NAME`",
+                sn.text
+            )));
+        }
+        graph.give_radius(radius);
+    }
+    if let Some(by) = options.last(&THICKEN) {
+        graph.thicken(by);
+    }
+    let mut remarks: Vec<String> = read.remarks.iter().map(ToString::to_string).collect();
+    remarks.extend(graph.remarks.iter().map(ToString::to_string));
+    tell_remarks(run, file, &remarks);
+    if graph.limbs.is_empty() && graph.nodes.is_empty() {
+        return Err(Problem::new(&file.span, "nothing is left of this skeleton"));
+    }
+    let own = find_materials(run, &graph, material, &others)?;
+    let is_flat = options.last(&ENDS) == Some("flat");
+    if run.settings.soft {
+        lengthen(run, &mut graph, material, is_flat);
+    }
+    run.model.open(run.file, name, Group::Object)?;
+    run.repeating += 1;
+    let mut used: Vec<usize> = own.clone();
+    used.sort_unstable();
+    used.dedup();
+    let mut result = Ok(());
+    for material in used {
+        result = add_material(run, command, options, sn, &graph, (material, &own));
+        if result.is_err() {
+            break;
+        }
+    }
+    run.repeating -= 1;
+    run.model.close();
+    result.map(|()| Flow::Next)
+}
+
+/// Says what was left out of a file, changed or guessed.
+fn tell_remarks(run: &mut Evaluator<'_>, file: &Name<'_>, remarks: &[String]) {
+    if remarks.is_empty() {
+        return;
+    }
+    let mut text = remarks[..remarks.len().min(MOST_REMARKS)].join("; ");
+    if remarks.len() > MOST_REMARKS {
+        text += &format!("; and {} more", remarks.len() - MOST_REMARKS);
+    }
+    run.warn(&file.span, format_args!("{}: {text}", file.text), "");
+}
+
+/// Returns the material of each group of a graph.
+fn find_materials<'a>(
+    run: &mut Evaluator<'a>,
+    graph: &Graph,
+    otherwise: usize,
+    given: &[Name<'a>],
+) -> Outcome<Vec<usize>> {
+    let mut own = vec![otherwise; graph.groups.len()];
+    for pair in given.chunks(2) {
+        let [kind, sn] = pair else {
+            let message = format!("a material is missing behind `{}`", pair[0].text);
+            return Err(Problem::new(&pair[0].span, message)
+                .hint("write a type of the file and its material: `materials soma A axon B`"));
+        };
+        let material = run.material(sn)?;
+        let mut is_there = false;
+        for (group, own) in graph.groups.iter().zip(&mut own) {
+            if group.name.eq_ignore_ascii_case(kind.text) {
+                *own = material;
+                is_there = true;
+            }
+        }
+        if !is_there {
+            let names = graph.groups.iter().map(|group| group.name.as_str());
+            let hint = suggest::hint(kind.text, names.clone()).unwrap_or_else(|| {
+                let names: Vec<&str> = names.take(20).collect();
+                format!("its types are {}", names.join(", "))
+            });
+            let message = format!("the file has no type `{}`", kind.text);
+            run.warn(&kind.span, message, hint);
+        }
+    }
+    Ok(own)
+}
+
+/// Moves free ends such that the surface ends a radius beyond them, or at them where they are flat.
+fn lengthen(run: &Evaluator<'_>, graph: &mut Graph, material: usize, is_flat: bool) {
+    if run.settings.blob_scale != BlobScale::Relative {
+        return;
+    }
+    let flesh = &run.palette.surfaces[material].flesh;
+    let shaping = Shaping {
+        kernel: flesh.kernel.unwrap_or(KERNEL),
+        radius: 1.0,
+        blobbiness: flesh.blobbiness.unwrap_or(BLOBBINESS),
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: run.settings.influence,
+        taper: None,
+    };
+    let Some(reach) = measure_reach(&shaping) else {
+        return;
+    };
+    graph.lengthen_free_ends(|cap| match (cap, is_flat) {
+        (Cap::Round, false) => 1.0 - reach,
+        _ => -reach,
+    });
+}
+
+/// Returns the distance in radii that the surface reaches beyond the end of a long limb, by
+/// bisection; `None` if it is none from 0 to 4.
+fn measure_reach(shaping: &Shaping) -> Option<f64> {
+    const LONG: f64 = 100.0;
+    let skeleton = field::Skeleton::Segment {
+        base: DVec3::X * -LONG,
+        apex: DVec3::ZERO,
+    };
+    let limb = Primitive::new(skeleton, shaping, None)?;
+    let [at_end, beyond] = [0.0, 4.0].map(|x| limb.value::<f64>([x, 0.0, 0.0]));
+    if at_end < THRESHOLD || beyond >= THRESHOLD {
+        return None;
+    }
+    let (mut low, mut high) = (0.0, 4.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        match limb.value::<f64>([middle, 0.0, 0.0]) >= THRESHOLD {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    Some(low)
+}
+
+/// Adds the limbs and balls of one material; `own` are the materials of the graph's groups.
+fn add_material<'a>(
+    run: &mut Evaluator<'a>,
+    command: &'a Command,
+    options: &Options<'a>,
+    sn: &Name<'a>,
+    graph: &Graph,
+    (material, own): (usize, &[usize]),
+) -> Outcome<()> {
+    let flesh = &run.palette.surfaces[material].flesh;
+    let soft = match flesh.blobbiness {
+        Some(_) => material,
+        None => run.palette.add_soft(sn, material, BLOBBINESS)?,
+    };
+    let part = graph.part(|limb| own.get(limb.group as usize) == Some(&material));
+    if !part.limbs.is_empty() {
+        let curves = make_curves(&part, options)
+            .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
+        let curves = match options.last(&FILE_LOCAL) {
+            Some((reach, span)) => {
+                let radii = part.nodes.iter().map(|node| node.radius);
+                check_reach(reach, radii.fold(0.0, f64::max), &span)?;
+                curves.within(reach)
+            }
+            None => curves,
+        };
+        let shape = Shape::Function(Box::new(Function {
+            form: Form::Skeleton(Arc::new(curves)),
+            to_world: DAffine3::IDENTITY,
+        }));
+        let element = Element {
+            flesh: Some(soft as u32),
+            finish: soft as u32,
+            body: run.model.body(),
+            kernel: KERNEL,
+            origin: run.origin(command),
+            ..Element::new(shape)
+        };
+        let part = Part {
+            tapers: false,
+            limbs: weigh(run, &element),
+            element,
+            growth: 1.0,
+            moved: None,
+            repeated: true,
+            removed: false,
+            nodes: Some(Rc::new(Vec::new())),
+            moves: false,
+        };
+        run.model.push(part, &command.span)?;
+        run.palette.surfaces[soft].used = true;
+    }
+    let balls = graph.nodes.iter().filter(|node| node.is_ball);
+    for ball in balls.filter(|ball| own.get(ball.group as usize) == Some(&material)) {
+        run.add_of(
+            command,
+            soft,
+            Shape::sphere(ball.position, ball.radius),
+            KERNEL,
+        )?;
+    }
+    Ok(())
+}
+
+/// Returns the lines of a graph as curves through their nodes.
+fn make_curves(graph: &Graph, options: &Options<'_>) -> Result<Curves, skeleton::Error> {
+    let nodes = graph.nodes.iter().map(|node| Node {
+        position: node.position,
+        radius: node.radius,
+    });
+    let curves = graph.chains().into_iter().map(|chain| {
+        let nodes = chain.nodes.into_iter().map(|node| node as usize);
+        nodes.collect()
+    });
+    let skeleton = Skeleton {
+        nodes: nodes.collect(),
+        curves: curves.collect(),
+    };
+    let scheme = match options.last(&FILE_SCHEME) {
+        Some("chaikin") => Scheme::Chaikin,
+        Some("cubic") => Scheme::Cubic,
+        _ => Scheme::FourPoint,
+    };
+    Curves::new(skeleton, scheme, options.last(&FILE_SUBDIVIDE).unwrap_or(0))
+}
