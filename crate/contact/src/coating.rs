@@ -43,33 +43,35 @@ fn contact(own: &dyn Implicit, other: &dyn Implicit, balls: [Ball; 2]) -> Option
     if low.cmpgt(high).any() {
         return None;
     }
-    let depth = |point: DVec3| {
-        let [a, b] = [own, other].map(|f| f.jet(point).value);
-        a.min(b)
-    };
-    let mut best = (f64::NEG_INFINITY, low);
-    let mut look = |point: DVec3| {
-        let value = depth(point);
-        if value > best.0 {
-            best = (value, point);
-        }
-        best.1
-    };
-    let all = PLACES * PLACES * PLACES;
-    let mut at = low;
-    for number in 0..all {
+    let functions = [own, other];
+    let steps = f64::from(PLACES - 1);
+    let places = (0..PLACES * PLACES * PLACES).map(|number| {
         let axes = [number, number / PLACES, number / (PLACES * PLACES)];
         let part = DVec3::from_array(axes.map(|i| f64::from(i % PLACES)));
-        at = look(low + (high - low) * part / f64::from(PLACES - 1));
-    }
-    let mut step = (high - low) / f64::from(PLACES - 1);
+        low + (high - low) * part / steps
+    });
+    let mut best = places.fold((f64::NEG_INFINITY, low), |best, place| {
+        deeper(functions, best, place)
+    });
+    let mut step = (high - low) / steps;
     for _ in 0..HALVINGS {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             for side in [-1.0, 1.0] {
-                at = look(at + side * step * axis);
+                best = deeper(functions, best, best.1 + side * step * axis);
             }
         }
         step *= 0.5;
     }
-    Some(at)
+    Some(best.1)
+}
+
+/// Returns a place with the lesser one of two fields there, or the best one before, if that is
+/// deeper.
+fn deeper(functions: [&dyn Implicit; 2], best: (f64, DVec3), place: DVec3) -> (f64, DVec3) {
+    let [a, b] = functions.map(|function| function.jet(place).value);
+    if a.min(b) > best.0 {
+        (a.min(b), place)
+    } else {
+        best
+    }
 }

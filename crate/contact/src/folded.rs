@@ -35,10 +35,6 @@ impl Folded {
     /// Computes value and gradient from those of both fields.
     fn combine<R: Real>(&self, (first, second): (Jet<R>, Option<Jet<R>>)) -> Jet<R> {
         let Some(second) = second else { return first };
-        let pick = |mask: R::Mask, yes: Jet<R>, no: Jet<R>| Jet {
-            value: R::select(mask, yes.value, no.value),
-            gradient: core::array::from_fn(|i| R::select(mask, yes.gradient[i], no.gradient[i])),
-        };
         let second = pick(first.value.lt(second.value), first, second);
         let (deformed, slope) = self.bulge.jet(second.value);
         let pressed = first.plus(Jet {
@@ -99,6 +95,14 @@ impl Folded {
             },
         };
         (bounds, at_center)
+    }
+}
+
+/// Returns one of two values and gradients.
+fn pick<R: Real>(mask: R::Mask, yes: Jet<R>, no: Jet<R>) -> Jet<R> {
+    Jet {
+        value: R::select(mask, yes.value, no.value),
+        gradient: core::array::from_fn(|i| R::select(mask, yes.gradient[i], no.gradient[i])),
     }
 }
 

@@ -1,17 +1,19 @@
 //! Local convolution: of a skeleton only the stretch near a point counts, so that its folds do not
 //! blend.
 //!
-//! A skeleton is cut into short pieces. Around each piece j there is a *stretch*: the part of the
+//! A skeleton is cut into short pieces, each of one primitive or of some that follow one another.
+//! Around each piece j there is a *stretch*: the part of the
 //! skeleton within an arc length D of it, which runs through branches into every curve that meets
 //! there, and fades towards its ends, see [`window`]. The field at a point is the mean of the
 //! fields of all stretches, weighted by how near their pieces are:
 //!
-//! `F = Σⱼ ωⱼWⱼ / Σⱼ ωⱼ`, `Wⱼ = Σᵢ wᵢⱼfᵢ`, `ωⱼ = lⱼ·(fⱼ/lⱼ)⁸`,
+//! `F = Σⱼ ωⱼWⱼ / Σⱼ ωⱼ`, `Wⱼ = Σᵢ wᵢⱼfᵢ`, `ωⱼ = lⱼ·(rⱼfⱼ/lⱼ)⁸`,
 //!
-//! with fᵢ the field of the piece i, lᵢ its length, and wᵢⱼ the window's mean over the piece i, a
-//! constant. So each piece keeps its closed form, its taper and its bounds, F is as smooth as they
-//! are, and it is never above the largest of the Wⱼ: what is far along the skeleton blends with
-//! nothing. Its gradient is `∇F = Σᵢ (Σⱼ ω̂ⱼwᵢⱼ + 8ω̂ᵢ(Wᵢ−F)/fᵢ)·∇fᵢ`, where `ω̂ⱼ = ωⱼ/Σω`.
+//! with fᵢ the field of the piece i, lᵢ its length, rᵢ its radius, and wᵢⱼ the window's mean over
+//! the piece i, a constant. Thanks to the radius a thin limb weighs at its surface what a thick one
+//! does there. So each piece keeps its closed form, its taper and its bounds, F is as smooth as
+//! they are, and it is never above the largest of the Wⱼ: what is far along the skeleton blends
+//! with nothing. Its gradient is `∇F = Σᵢ (Σⱼ ω̂ⱼwᵢⱼ + 8ω̂ᵢ(Wᵢ−F)/fᵢ)·∇fᵢ`, where `ω̂ⱼ = ωⱼ/Σω`.
 //!
 //! Of folds that touch there is a second field, of what is far along the skeleton from the pieces
 //! that count at a point, see [`Local::two`]:
@@ -36,7 +38,7 @@ mod tree;
 pub mod window;
 
 pub use bounds::{Bounds, Two};
-pub use build::{Limb, LocalError, MOST_LINKS};
+pub use build::{Limb, LimbPiece, LocalError, MOST_LINKS};
 
 use crate::term::Evaluate;
 use crate::{Ball, Bound, Enclosure, Implicit, Jet, Part, Primitive, THRESHOLD, Variation};
@@ -68,9 +70,10 @@ pub struct Local {
 
 #[derive(Clone, Debug)]
 struct Piece {
-    primitive: Primitive,
-    bound: Bound,
+    parts: Vec<(Primitive, Bound)>,
     length: f64,
+    /// Radius over length: the factor on the field in the weight.
+    thickness: f64,
     /// The runs of its stretch.
     links: Range<u32>,
     /// The pieces near it.
@@ -83,6 +86,25 @@ struct Run {
     first: u32,
     count: u32,
     weights: u32,
+}
+
+impl Piece {
+    /// Computes the field.
+    fn jet<R: Evaluate>(&self, point: [R; 3]) -> Jet<R> {
+        let [(first, _), others @ ..] = &self.parts[..] else {
+            return Jet::zero();
+        };
+        (others.iter()).fold(first.jet(point), |sum, (primitive, _)| {
+            sum.plus(primitive.jet(point))
+        })
+    }
+
+    /// Returns an upper bound on the field in a ball.
+    fn most(&self, ball: &Ball) -> f64 {
+        let bounds = self.parts.iter().map(|(_, bound)| bound);
+        let most = bounds.map(|bound| bound.magnitude(bound.nearness(ball.center, ball.radius)));
+        most.sum()
+    }
 }
 
 impl Local {
@@ -105,11 +127,9 @@ impl Local {
     /// level of [`Local::with_folds`], of F₂.
     #[must_use]
     pub fn two<R: Evaluate>(&self, point: [R; 3]) -> (Jet<R>, Option<Jet<R>>) {
-        let lanes = |k: usize| point.map(|x| x.lane(k));
-        let first = DVec3::from_array(lanes(0));
-        let radius = (1..R::LANES)
-            .map(|k| first.distance(DVec3::from_array(lanes(k))))
-            .fold(0.0, f64::max);
+        let mut lanes = (0..R::LANES).map(|k| DVec3::from_array(point.map(|x| x.lane(k))));
+        let first = lanes.next().unwrap_or_default();
+        let radius = lanes.fold(0.0, |most: f64, other| most.max(first.distance(other)));
         let ball = Ball {
             center: first,
             radius: radius * (1.0 + 1e-12),
@@ -171,16 +191,19 @@ impl Implicit for Local {
     }
 
     fn support_at(&self, level: f64) -> Option<Ball> {
-        // Where no piece has more than its share of the level; a stretch has as many as it links.
+        // Where no primitive has more than its share of the level; a stretch has all those of the
+        // pieces that it links.
         let most = (0..self.pieces.len() as u32).map(|piece| {
-            let counts = self.links(piece).iter().map(|run| run.count);
-            counts.sum::<u32>()
+            let linked = self.links(piece).iter();
+            let linked = linked.flat_map(|run| run.first..run.first + run.count);
+            let parts = linked.map(|other| self.pieces[other as usize].parts.len());
+            parts.sum::<usize>()
         });
-        let share = level / f64::from(most.max()?);
+        let share = level / most.max()? as f64;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for piece in &self.pieces {
-            let (center, around) = piece.primitive.skeleton.bounding_sphere()?;
-            let reach = around + piece.bound.distance_of(share);
+        for (primitive, bound) in self.pieces.iter().flat_map(|piece| &piece.parts) {
+            let (center, around) = primitive.skeleton.bounding_sphere()?;
+            let reach = around + bound.distance_of(share);
             (low, high) = (low.min(center - reach), high.max(center + reach));
         }
         Some(Ball {

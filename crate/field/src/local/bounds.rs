@@ -8,10 +8,9 @@
 //! `|Cov(g, W)| ≤ E|a||b| + |E a||E b|`, and so on. Here b is the difference from the mean of all
 //! stretches by their shares at the ball's centre, and a that from the mean of g there: at the
 //! centre both have the mean 0.
-use super::cells::{Far, Rows, Slots};
+use super::cells::{Far, Rows, Slots, Terms};
 use super::mean::{CUT, POWER, power, ramp, shares};
 use super::{Local, Piece};
-use crate::bound::Nearness;
 use crate::ripple::times;
 use crate::{Ball, Enclosure, Jet, THRESHOLD, Variation};
 use glam::DVec3;
@@ -37,7 +36,7 @@ pub struct Two {
     pub first: Bounds,
     /// Bounds on F₂; `None` if it is nowhere above its level.
     pub second: Option<Bounds>,
-    /// Both at the ball's centre, if finding the bounds finds them.
+    /// F and F₂ at the ball's centre, if finding the bounds finds them.
     pub at_center: Option<(Jet<f64>, Option<Jet<f64>>)>,
 }
 
@@ -104,22 +103,26 @@ pub(super) struct Nearby<'a> {
     local: &'a Local,
     ball: Ball,
     slots: &'a Slots,
+    calm: &'a [Option<[f32; 2]>],
     known: Vec<u8>,
-    near: Vec<(Nearness, f64)>,
+    /// Upper bounds on fields in the ball.
+    most: Vec<f64>,
     /// Fields at the ball's centre, and bounds on them in the ball.
     jets: Vec<Jet<f64>>,
     close: Vec<Close>,
 }
 
 impl<'a> Nearby<'a> {
-    pub fn new(local: &'a Local, ball: Ball, slots: &'a Slots) -> Self {
-        let count = slots.count();
+    /// Prepares looks at pieces in a ball that is within that of the terms.
+    pub fn new(local: &'a Local, ball: Ball, terms: &'a Terms) -> Self {
+        let count = terms.slots.count();
         Self {
             local,
             ball,
-            slots,
+            slots: &terms.slots,
+            calm: &terms.calm,
             known: vec![0; count],
-            near: vec![(Nearness::at(0.0), 0.0); count],
+            most: vec![0.0; count],
             jets: vec![Jet::zero(); count],
             close: vec![Close::default(); count],
         }
@@ -132,41 +135,56 @@ impl<'a> Nearby<'a> {
     /// Returns an upper bound on the field of a piece.
     fn most_at(&mut self, number: u32, slot: usize) -> f64 {
         if self.known[slot] == 0 {
-            let bound = &self.piece(number).bound;
-            let near = bound.nearness(self.ball.center, self.ball.radius);
-            self.near[slot] = (near, bound.magnitude(near));
+            self.most[slot] = self.piece(number).most(&self.ball);
             self.known[slot] = 1;
         }
-        self.near[slot].1
+        self.most[slot]
     }
 
     /// Looks closely at a piece.
     fn look(&mut self, number: u32, slot: usize, leads: bool) {
-        let most = self.most_at(number, slot);
-        if self.known[slot] == 1 {
-            let Ball { center, radius } = self.ball;
-            let Piece {
-                primitive, bound, ..
-            } = self.piece(number);
-            let near = self.near[slot].0;
-            let jet = primitive.jet(center.to_array());
-            let (slope, curvature) = (bound.slope(near), bound.curvature(near));
-            let steep = DVec3::from_array(jet.gradient).length();
-            let change = steep * radius + 0.5 * curvature * radius * radius;
-            let change = change.min(slope * radius) + 1e-12 * jet.value;
-            let mut low = (jet.value - change).max(bound.least(center, radius));
-            if leads && low < 0.5 * jet.value {
-                low = low.max(jet.value * bound.remains(center, radius));
-            }
-            self.close[slot] = Close {
-                low: low.max(0.0),
-                most: most.min(jet.value + change),
-                slope,
-                curvature,
-            };
-            self.jets[slot] = jet;
-            self.known[slot] = 2;
+        if self.known[slot] == 2 {
+            return;
         }
+        let Ball { center, radius } = self.ball;
+        let piece = self.piece(number);
+        let jet = piece.jet(center.to_array());
+        let (mut most, mut least) = (f64::INFINITY, 0.0);
+        let [slope, curvature] = match self.calm[slot] {
+            Some(bounds) => bounds.map(f64::from),
+            None => {
+                let mut sums = [0.0; 4];
+                for (_, bound) in &piece.parts {
+                    let near = bound.nearness(center, radius);
+                    let magnitude = bound.magnitude(near);
+                    let least = bound.least(center, radius);
+                    let own = [bound.slope(near), bound.curvature(near), magnitude, least];
+                    sums = core::array::from_fn(|i| sums[i] + own[i]);
+                }
+                [most, least] = [sums[2], sums[3]];
+                [sums[0], sums[1]]
+            }
+        };
+        let steep = DVec3::from_array(jet.gradient).length() * (1.0 + 1e-12);
+        let slope = slope.min(steep + curvature * radius);
+        let change = steep * radius + 0.5 * curvature * radius * radius;
+        let change = change.min(slope * radius) + 1e-12 * jet.value;
+        let mut low = (jet.value - change).max(least);
+        if leads && low < 0.5 * jet.value {
+            let parts = piece.parts.iter();
+            let parts = parts.map(|(_, bound)| bound.remains(center, radius));
+            low = low.max(jet.value * parts.fold(1.0, f64::min));
+        }
+        let most = most.min(jet.value + change);
+        self.close[slot] = Close {
+            low: low.max(0.0),
+            most,
+            slope,
+            curvature,
+        };
+        self.jets[slot] = jet;
+        self.most[slot] = most;
+        self.known[slot] = 2;
     }
 
     /// Returns the least and the largest weights of pieces, in units of the largest one's scale.
@@ -178,9 +196,10 @@ impl<'a> Nearby<'a> {
                 let slot = self.slots.of(piece);
                 self.look(piece, slot, true);
                 let Close { low, most, .. } = self.close[slot];
-                let length = self.piece(piece).length;
-                densest = densest.max(most / length);
-                (length, [low / length, most / length])
+                let own = self.piece(piece);
+                let [low, most] = [low, most].map(|field| field * own.thickness);
+                densest = densest.max(most);
+                (own.length, [low, most])
             })
             .collect();
         let scale = if densest > 0.0 { densest.recip() } else { 0.0 };
@@ -207,11 +226,11 @@ impl<'a> Nearby<'a> {
     }
 
     /// Returns an upper bound on the field of a stretch whose pieces have been looked at.
-    fn known_most_of(&self, piece: u32) -> f64 {
+    fn recall_most_of(&self, piece: u32) -> f64 {
         let runs = self.local.links(piece).iter();
         let most = runs.flat_map(|run| {
-            let near = &self.near[self.slots.of(run.first)..];
-            (self.local.weights(run).iter().zip(near)).map(|(weight, (_, most))| weight * most)
+            let most = &self.most[self.slots.of(run.first)..];
+            (self.local.weights(run).iter().zip(most)).map(|(weight, most)| weight * most)
         });
         most.sum()
     }
@@ -229,40 +248,45 @@ impl<'a> Nearby<'a> {
         sum
     }
 
+    /// Returns the gradient of the logarithm of a piece's weight at the ball's centre, 0 if the
+    /// weight is 0.
+    fn rise(&self, slot: usize) -> DVec3 {
+        let Jet { value, gradient } = self.jets[slot];
+        if value > 0.0 {
+            DVec3::from_array(gradient) * (POWER / value)
+        } else {
+            DVec3::ZERO
+        }
+    }
+
     /// Returns bounds on the shares of some pieces with parts of their weights.
-    fn shared(&self, items: &[(u32, f64)]) -> Vec<Share> {
+    fn enclose_shares(&self, items: &[(u32, f64)]) -> Vec<Share> {
         let slots: Vec<usize> = items
             .iter()
             .map(|(piece, _)| self.slots.of(*piece))
             .collect();
         let parts = items.iter().zip(&slots).map(|((piece, part), slot)| {
-            let length = self.piece(*piece).length;
-            (self.jets[*slot].value / length, length * part)
+            let own = self.piece(*piece);
+            let density = self.jets[*slot].value * own.thickness;
+            (density, own.length * part)
         });
         let parts: Vec<(f64, f64)> = parts.collect();
         let at_center = shares(&parts);
-        let rise = |slot: usize| {
-            let Jet { value, gradient } = self.jets[slot];
-            if value > 0.0 {
-                DVec3::from_array(gradient) * (POWER / value)
-            } else {
-                DVec3::ZERO
-            }
-        };
         let mean: DVec3 = (at_center.iter().zip(&slots))
-            .map(|(share, slot)| rise(*slot) * *share)
+            .map(|(share, slot)| self.rise(*slot) * *share)
             .sum();
         let densest = items
             .iter()
             .zip(&slots)
             .filter(|((_, part), _)| *part > 0.0);
         let densest = densest
-            .map(|((piece, _), slot)| self.close[*slot].most / self.piece(*piece).length)
+            .map(|((piece, _), slot)| self.close[*slot].most * self.piece(*piece).thickness)
             .fold(0.0, f64::max);
         let weights = items.iter().zip(&slots).map(|((piece, part), slot)| {
-            let length = self.piece(*piece).length;
+            let own = self.piece(*piece);
             let Close { low, most, .. } = self.close[*slot];
-            [low, most].map(|field| times(length * part, power(field / (length * densest))))
+            let scale = own.thickness / densest;
+            [low, most].map(|field| times(own.length * part, power(field * scale)))
         });
         let weights: Vec<[f64; 2]> = weights.collect();
         let least: f64 = weights.iter().map(|[low, _]| low).sum();
@@ -282,7 +306,7 @@ impl<'a> Nearby<'a> {
             let once = once.min(most / close.low);
             let twice = twice.min(most / (close.low * close.low));
             let bend = POWER * (close.curvature / close.low + (close.slope / close.low).powi(2));
-            let differs = rise(*slot).distance(mean) + radius * bend;
+            let differs = self.rise(*slot).distance(mean) + radius * bend;
             let steep = POWER * once * close.slope;
             let steeper = 2.0 * POWER * POWER * twice * close.slope * close.slope;
             let apart = mean.length();
@@ -393,9 +417,14 @@ impl Change {
     }
 }
 
+/// Returns a bound, infinity in place of what is no number.
+fn or_infinity(bound: f64) -> f64 {
+    if bound.is_nan() { f64::INFINITY } else { bound }
+}
+
 /// Computes bounds on a mean by shares in a ball: from the mean by the shares at the centre, and
 /// the differences of each function from that. The value is that at the centre, give or take.
-fn bound(
+fn enclose_mean(
     (mean, changes): (&Change, &[Change]),
     shares: &[Share],
     at_center: &Jet<f64>,
@@ -431,11 +460,10 @@ fn bound(
         + 2.0 * (t1g + times(ea, qg))
         + (tgb + times(tg, eb))
         + (t2b + 2.0 * times(ea, t1b) + times(t2, eb) + 2.0 * times(ea * ea, eb));
-    let or_none = |bound: f64| if bound.is_nan() { f64::INFINITY } else { bound };
-    let (slope, curvature) = (or_none(slope), or_none(curvature) * (1.0 + 1e-9));
+    let (slope, curvature) = (or_infinity(slope), or_infinity(curvature) * (1.0 + 1e-9));
     let steep = DVec3::from_array(at_center.gradient).length();
-    let slope = slope.min(or_none(steep + radius * curvature)) * (1.0 + 1e-9) + LEFT_OUT;
-    let change = (slope * radius).min(or_none((steep + 0.5 * curvature * radius) * radius));
+    let slope = slope.min(or_infinity(steep + radius * curvature)) * (1.0 + 1e-9) + LEFT_OUT;
+    let change = (slope * radius).min(or_infinity((steep + 0.5 * curvature * radius) * radius));
     let change = change + LEFT_OUT * at_center.value.abs();
     Bounds {
         value: [-1.0, 1.0].map(|side| at_center.value + side * change),
@@ -455,7 +483,7 @@ impl Local {
             return all;
         }
         let terms = self.terms_in(&ball);
-        let mut near = Nearby::new(self, ball, &terms.slots);
+        let mut near = Nearby::new(self, ball, &terms);
         let stretches = terms.lead.iter().map(|piece| near.most_of(*piece));
         stretches.fold(0.0, f64::max)
     }
@@ -475,7 +503,7 @@ impl Local {
             };
         }
         let terms = self.terms_in(&ball);
-        let mut near = Nearby::new(self, ball, &terms.slots);
+        let mut near = Nearby::new(self, ball, &terms);
         let weights = near.weights(&terms.lead);
         let floor = weights.iter().map(|[low, _]| *low).fold(0.0, f64::max) * CUT;
         // The others count as 0 everywhere in the ball.
@@ -490,10 +518,10 @@ impl Local {
             range[1] = range[1].max(near.most_of(*piece));
         }
         range[0] = if range[0].is_finite() { range[0] } else { 0.0 };
-        let shares = near.shared(&items);
+        let shares = near.enclose_shares(&items);
         let (mean, changes) = near.compare(&items, &shares);
         let jet = near.mean_of((&mean, &changes), &items, &shares);
-        let mut first = bound((&mean, &changes), &shares, &jet, ball.radius);
+        let mut first = enclose_mean((&mean, &changes), &shares, &jet, ball.radius);
         let margin = LEFT_OUT * range[1];
         first.value = [
             first.value[0].max(range[0] - margin),
@@ -504,7 +532,7 @@ impl Local {
                 near.least_of(*piece);
             }
             let rows = far.rows(self, &terms.lead);
-            self.bound_second((far, rows), &terms.lead, &near, (&items, &shares))
+            self.enclose_second((far, rows), &terms.lead, &near, (&items, &shares))
         });
         let level = self.level.unwrap_or(f64::INFINITY);
         Two {
@@ -518,7 +546,7 @@ impl Local {
 
     /// Computes bounds on F₂, and its value and gradient at the centre, from the shares of those
     /// that lead and count.
-    fn bound_second(
+    fn enclose_second(
         &self,
         (far, rows): (&Far, &Rows),
         lead: &[u32],
@@ -542,7 +570,7 @@ impl Local {
         let most: Vec<f64> = far
             .pieces
             .iter()
-            .map(|piece| near.known_most_of(*piece))
+            .map(|piece| near.recall_most_of(*piece))
             .collect();
         let mut high = 0.0f64;
         // The mean by the shares at the centre of the means of all classes.
@@ -555,7 +583,7 @@ impl Local {
             let items: Vec<(u32, f64)> = pairs.map(|(piece, apart)| (*piece, *apart)).collect();
             let counted = items.iter().zip(&most);
             high = counted.fold(high, |high, ((_, apart), most)| high.max(apart * most));
-            let shares = near.shared(&items);
+            let shares = near.enclose_shares(&items);
             let (own, changes) = near.compare(&items, &shares);
             let jet = near.mean_of((&own, &changes), &items, &shares);
             let Bounds {
@@ -563,7 +591,7 @@ impl Local {
                 slope,
                 curvature,
                 ..
-            } = bound((&own, &changes), &shares, &jet, radius);
+            } = enclose_mean((&own, &changes), &shares, &jet, radius);
             // Bounds on the derivatives of the ramp.
             let [once, twice] = match level {
                 level if low >= level => [1.0, 0.0],
@@ -599,7 +627,7 @@ impl Local {
         });
         let changes: Vec<Change> = changes.collect();
         let jet = near.mean_of((&mean, &changes), items, shares);
-        let mut bounds = bound((&mean, &changes), shares, &jet, radius);
+        let mut bounds = enclose_mean((&mean, &changes), shares, &jet, radius);
         let margin = LEFT_OUT * high;
         bounds.value = [bounds.value[0].max(0.0), bounds.value[1].min(high) + margin];
         (bounds, jet)

@@ -11,14 +11,24 @@ use glam::DVec3;
 /// The most pairs of pieces within three times the reach of each other.
 pub const MOST_LINKS: usize = 1 << 23;
 
-/// A segment of a skeleton, for [`Local::new`].
+/// A limb of a skeleton between two of its points, for [`Local::new`].
 #[derive(Clone, Debug)]
 pub struct Limb {
     /// Numbers of the points at its ends, which it shares with its neighbours.
     pub ends: [u32; 2],
-    /// Pieces, one after the other along the segment, as primitives with their lengths. Their
-    /// fields are positive.
-    pub pieces: Vec<(Primitive, f64)>,
+    /// Pieces, one after the other along the limb.
+    pub pieces: Vec<LimbPiece>,
+}
+
+/// A piece of a limb.
+#[derive(Clone, Debug)]
+pub struct LimbPiece {
+    /// Primitives, one after the other along the limb. Their fields are positive.
+    pub primitives: Vec<Primitive>,
+    /// Length of all of them.
+    pub length: f64,
+    /// Mean radius of the primitives.
+    pub radius: f64,
 }
 
 /// Reasons why there is no local convolution.
@@ -35,15 +45,18 @@ impl Limb {
         let [a, b] = self.ends;
         (a.max(b) as usize) < points
             && !self.pieces.is_empty()
-            && self.pieces.iter().all(|(primitive, length)| {
-                let bound = Bound::new(primitive);
-                length.is_finite() && *length > 0.0 && !bound.carves() && !bound.has_profile()
+            && self.pieces.iter().all(|piece| {
+                let mut bounds = piece.primitives.iter().map(Bound::new);
+                let is_plain = bounds.all(|bound| !bound.carves() && !bound.has_profile());
+                let mut sizes = [piece.length, piece.radius].into_iter();
+                let is_sound = sizes.all(|size| size.is_finite() && size > 0.0);
+                is_sound && is_plain && !piece.primitives.is_empty()
             })
     }
 }
 
 impl Local {
-    /// Makes the local convolution of segments between points, with the reach D.
+    /// Makes the local convolution of limbs between points, with the reach D.
     ///
     /// # Errors
     /// If a number is not usable or too many pieces are within reach of each other.
@@ -62,22 +75,24 @@ impl Local {
         let mut around: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
         for limb in limbs {
             let mut before = limb.ends[0];
-            for (i, (primitive, length)) in limb.pieces.iter().enumerate() {
+            for (i, piece) in limb.pieces.iter().enumerate() {
                 let after = if i + 1 == limb.pieces.len() {
                     limb.ends[1]
                 } else {
                     around.push(Vec::new());
                     graph.add()
                 };
-                graph.join([before, after], *length);
+                graph.join([before, after], piece.length);
                 for node in [before, after] {
                     around[node as usize].push(ends.len() as u32);
                 }
                 ends.push([before, after]);
                 pieces.push(Piece {
-                    bound: Bound::new(primitive),
-                    primitive: primitive.clone(),
-                    length: *length,
+                    parts: (piece.primitives.iter())
+                        .map(|primitive| (primitive.clone(), Bound::new(primitive)))
+                        .collect(),
+                    length: piece.length,
+                    thickness: piece.radius / piece.length,
                     links: 0..0,
                     near: 0..0,
                 });

@@ -12,6 +12,9 @@ const FINEST: f64 = 1.0 / 24.0;
 const DEEPEST: u32 = 10;
 /// Half side, as a part of the reach, above which nearly everything matters in a cell.
 const COARSE: f64 = 0.8;
+/// Distance of a piece from a ball, in the ball's radii, from which on bounds on its derivatives
+/// are about the same in all smaller ones.
+const FAR_AWAY: f64 = 5.0;
 /// Most pairs of pieces that are looked at one by one.
 const MOST_PAIRS: usize = 1 << 16;
 
@@ -36,8 +39,10 @@ struct Cell {
 pub(super) struct Terms {
     /// Pieces with a weight in F.
     pub lead: Vec<u32>,
-    /// All pieces of stretches around those that have a weight in F or F₂.
+    /// Pieces of all stretches around pieces that have a weight in F or F₂.
     pub slots: Slots,
+    /// Bounds on slope and curvature in all of the ball, of pieces that are far away from it.
+    pub calm: Vec<Option<[f32; 2]>>,
     /// Pieces with a weight in F₂, if it may be above its level.
     pub far: Option<Far>,
 }
@@ -46,12 +51,12 @@ pub(super) struct Terms {
 #[derive(Clone, Debug)]
 pub(super) struct Far {
     pub pieces: Vec<u32>,
-    /// Those of the pieces that lead from which another fold may be above half of the level.
+    /// Leading pieces from which another fold may be above half of the level.
     from: Vec<u32>,
     rows: OnceLock<Rows>,
 }
 
-/// How much far pieces count for each of those that lead. Many have the same row.
+/// Weights of far pieces as other folds, one row for each leading piece. Many have the same row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     width: usize,
@@ -205,18 +210,16 @@ impl Local {
 
     /// Returns the terms that matter in a ball, among those of a larger one.
     fn choose(&self, among: Option<&Arc<Terms>>, ball: Ball) -> Arc<Terms> {
-        let all: Vec<u32>;
-        let all_slots: Slots;
-        let (before, slots) = match among {
-            Some(terms) => (&terms.lead, &terms.slots),
+        let all: Terms;
+        let terms = match among {
+            Some(terms) => &**terms,
             None => {
-                let count = self.pieces.len() as u32;
-                all = (0..count).collect();
-                all_slots = Slots::new(vec![[0, count]]);
-                (&all, &all_slots)
+                all = self.all_terms();
+                &all
             }
         };
-        let mut near = Nearby::new(self, ball, slots);
+        let before = &terms.lead;
+        let mut near = Nearby::new(self, ball, terms);
         let weights = near.weights(before);
         let floor = weights.iter().map(|[low, _]| *low).fold(0.0, f64::max) * CUT;
         let lead = before.iter().zip(&weights);
@@ -234,20 +237,13 @@ impl Local {
                 .map(|pieces| self.choose_far(pieces, &lead, &mut near, level))
             })
             .filter(|(pieces, _)| !pieces.is_empty());
-        if let Some(terms) = among
-            && lead.len() == terms.lead.len()
-            && far
-                .as_ref()
-                .map(|(pieces, from)| [pieces.len(), from.len()])
-                == (terms.far.as_ref()).map(|far| [far.pieces.len(), far.from.len()])
-        {
-            return Arc::clone(terms);
-        }
         let runs = (lead.iter().chain(far.iter().flat_map(|far| &far.0)))
             .flat_map(|piece| self.links(*piece))
             .map(|Run { first, count, .. }| [*first, first + count]);
+        let slots = Slots::new(runs.collect());
         Arc::new(Terms {
-            slots: Slots::new(runs.collect()),
+            calm: self.find_calm(&slots, &ball),
+            slots,
             lead,
             far: far.map(|(pieces, from)| Far {
                 pieces,
@@ -255,6 +251,34 @@ impl Local {
                 rows: OnceLock::new(),
             }),
         })
+    }
+
+    /// Returns terms of all pieces, of which no more is known.
+    fn all_terms(&self) -> Terms {
+        let count = self.pieces.len() as u32;
+        Terms {
+            lead: (0..count).collect(),
+            slots: Slots::new(vec![[0, count]]),
+            calm: vec![None; count as usize],
+            far: None,
+        }
+    }
+
+    /// Returns bounds on slope and curvature in a ball of pieces that are far away from it.
+    fn find_calm(&self, slots: &Slots, ball: &Ball) -> Vec<Option<[f32; 2]>> {
+        let calm = slots.pieces().map(|piece| {
+            let mut sum = [0.0; 2];
+            for (_, bound) in &self.pieces[piece as usize].parts {
+                let near = bound.nearness(ball.center, ball.radius);
+                if near.distance < FAR_AWAY * ball.radius {
+                    return None;
+                }
+                sum[0] += bound.slope(near);
+                sum[1] += bound.curvature(near);
+            }
+            Some(sum.map(|x| (x * (1.0 + 1e-6)) as f32 + f32::MIN_POSITIVE))
+        });
+        calm.collect()
     }
 
     /// Returns those of some pieces that have a weight in F₂, and those of the leading ones from
@@ -273,18 +297,26 @@ impl Local {
         let weights = near.weights(&pieces);
         let mut from = Vec::new();
         let mut matters = vec![false; pieces.len()];
+        // Many of those that lead are as far from all.
+        let mut before: (Vec<f64>, bool) = (Vec::new(), false);
         for own in lead {
-            let parts = || self.apart(*own, &pieces);
-            let mut fields = parts().zip(&most).map(|(apart, most)| apart * most);
-            if fields.all(|field| field < 0.49 * level) {
+            let parts: Vec<f64> = self.apart(*own, &pieces).collect();
+            if parts == before.0 {
+                from.extend(before.1.then_some(*own));
                 continue;
             }
-            from.push(*own);
-            let floor = parts().zip(&weights).map(|(apart, [low, _])| apart * low);
-            let floor = floor.fold(0.0, f64::max) * CUT;
-            for (matters, (apart, [_, most])) in matters.iter_mut().zip(parts().zip(&weights)) {
-                *matters |= apart > 0.0 && apart * most >= floor;
+            let fields = parts.iter().zip(&most).map(|(apart, most)| apart * most);
+            let presses = fields.fold(0.0, f64::max) >= 0.49 * level;
+            if presses {
+                let weights = parts.iter().zip(&weights);
+                let floor = weights.clone().map(|(apart, [low, _])| apart * low);
+                let floor = floor.fold(0.0, f64::max) * CUT;
+                for (matters, (apart, [_, most])) in matters.iter_mut().zip(weights) {
+                    *matters |= *apart > 0.0 && apart * most >= floor;
+                }
             }
+            from.extend(presses.then_some(*own));
+            before = (parts, presses);
         }
         let mut matters = matters.into_iter();
         pieces.retain(|_| matters.next().unwrap_or(true));

@@ -1,6 +1,6 @@
 //! The fields at a point: weighted means of the fields of stretches.
-use super::Local;
 use super::cells::{Far, Slots, Terms};
+use super::{Local, Piece};
 use crate::term::Evaluate;
 use crate::{Jet, Real, THRESHOLD};
 
@@ -76,6 +76,11 @@ pub(super) fn ramp<R: Real>(x: R, level: f64) -> (R, R) {
     (x * part, part + x * slope)
 }
 
+/// Whether a share is above 0 at any of some points.
+fn counts<R: Real>(share: R) -> bool {
+    R::any(R::splat(0.0).lt(share))
+}
+
 /// Computes `8·share/f`, 0 where nothing is shared.
 fn sharpness<R: Real>(share: R, field: R) -> R {
     let zero = R::splat(0.0);
@@ -110,7 +115,7 @@ impl Local {
         }
     }
 
-    /// Returns densities of pieces, with their lengths as parts.
+    /// Returns densities of pieces, `r·f/l`, with their lengths as parts.
     pub(super) fn densities<R: Real>(
         &self,
         pieces: &[u32],
@@ -118,9 +123,10 @@ impl Local {
         jets: &[Jet<R>],
     ) -> Vec<(R, f64)> {
         let all = pieces.iter().map(|piece| {
-            let length = self.pieces[*piece as usize].length;
-            let inverse = R::splat(length.recip());
-            (jets[slots.of(*piece)].value * inverse, length)
+            let Piece {
+                length, thickness, ..
+            } = self.pieces[*piece as usize];
+            (jets[slots.of(*piece)].value * R::splat(thickness), length)
         });
         all.collect()
     }
@@ -133,7 +139,7 @@ impl Local {
     ) -> (Jet<R>, Option<Jet<R>>) {
         let pieces = terms.slots.pieces();
         let jets: Vec<Jet<R>> = pieces
-            .map(|piece| self.pieces[piece as usize].primitive.jet(point))
+            .map(|piece| self.pieces[piece as usize].jet(point))
             .collect();
         let shares = shares(&self.densities(&terms.lead, &terms.slots, &jets));
         let first = self.first(terms, &shares, &jets).jet(&jets);
@@ -144,17 +150,16 @@ impl Local {
 
     fn first<R: Real>(&self, terms: &Terms, shares: &[R], jets: &[Jet<R>]) -> Mean<R> {
         let (slots, zero) = (&terms.slots, R::splat(0.0));
-        let counts = |share: &R| R::any(zero.lt(*share));
         let mut value = zero;
         let mut stretches = vec![zero; shares.len()];
         let all = terms.lead.iter().zip(shares).zip(&mut stretches);
-        for ((piece, share), stretch) in all.filter(|((_, share), _)| counts(share)) {
+        for ((piece, share), stretch) in all.filter(|((_, share), _)| counts(**share)) {
             *stretch = self.stretch(*piece, slots, jets);
             value = value + *share * *stretch;
         }
         let mut factors = vec![zero; jets.len()];
         let all = terms.lead.iter().zip(shares).zip(&stretches);
-        for ((piece, share), stretch) in all.filter(|((_, share), _)| counts(share)) {
+        for ((piece, share), stretch) in all.filter(|((_, share), _)| counts(**share)) {
             self.add_stretch((*piece, *share), slots, &mut factors);
             let own = slots.of(*piece);
             let sharp = sharpness(*share, jets[own].value);
@@ -194,10 +199,9 @@ impl Local {
                 .map(|((density, length), apart)| (*density, length * apart))
                 .collect();
             let shares = shares(&parts);
-            let counts = |share: &R| R::any(zero.lt(*share));
             let mut mean = zero;
             let all = far.pieces.iter().zip(&shares).zip(&mut stretches).zip(row);
-            for (((piece, share), stretch), apart) in all.filter(|(((_, s), _), _)| counts(s)) {
+            for (((piece, share), stretch), apart) in all.filter(|(((_, s), _), _)| counts(**s)) {
                 let own = *stretch.get_or_insert_with(|| self.stretch(*piece, slots, jets));
                 mean = mean + *share * (R::splat(*apart) * own);
             }
@@ -207,7 +211,7 @@ impl Local {
             let times = *total * slope;
             let all = far.pieces.iter().zip(&shares).zip(&stretches).zip(row);
             for (((piece, share), stretch), apart) in all {
-                let Some(stretch) = stretch.filter(|_| counts(share)) else {
+                let Some(stretch) = stretch.filter(|_| counts(*share)) else {
                     continue;
                 };
                 let (own, apart) = (slots.of(*piece), R::splat(*apart));

@@ -31,17 +31,21 @@ enum Node {
 
 impl Group {
     fn of(piece: &Piece) -> Option<Self> {
-        let (center, radius) = piece.primitive.skeleton.bounding_sphere()?;
-        let [mass, width] = piece.bound.far();
-        Some(Self {
-            ball: Ball {
-                center,
-                radius: radius * (1.0 + 1e-12),
-            },
-            mass,
-            width,
-            kernel: piece.primitive.kernel,
-        })
+        let groups = piece.parts.iter().map(|(primitive, bound)| {
+            let (center, radius) = primitive.skeleton.bounding_sphere()?;
+            let [mass, width] = bound.far();
+            Some(Self {
+                ball: Ball {
+                    center,
+                    radius: radius * (1.0 + 1e-12),
+                },
+                mass,
+                width,
+                kernel: primitive.kernel,
+            })
+        });
+        let groups = groups.collect::<Option<Vec<_>>>()?;
+        groups.into_iter().reduce(Self::join)
     }
 
     fn join(self, other: Self) -> Self {
@@ -97,10 +101,8 @@ impl Tree {
                 }
                 Node::Halves(second) => waiting.extend([*second, number + 1]),
                 Node::Leaf([from, to]) => {
-                    for piece in &pieces[*from as usize..*to as usize] {
-                        let near = piece.bound.nearness(ball.center, ball.radius);
-                        sum += piece.bound.magnitude(near);
-                    }
+                    let pieces = &pieces[*from as usize..*to as usize];
+                    sum += pieces.iter().map(|piece| piece.most(ball)).sum::<f64>();
                 }
             }
         }

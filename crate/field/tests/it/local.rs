@@ -1,7 +1,7 @@
 //! Local convolution: against its definition, by quadrature; its bounds, by sampling; and how
 //! smooth it is.
 
-use field::local::{Limb, LocalError, Two};
+use field::local::{Limb, LimbPiece, LocalError, Two};
 use field::{Ball, BlobScale, Implicit, Jet, Kernel, Local, Primitive, Shaping, Skeleton, Taper};
 use glam::DVec3;
 use oracle::quadrature;
@@ -45,18 +45,23 @@ impl Figure {
         self.points[a].0.distance(self.points[b].0)
     }
 
+    /// The radius at a part of a segment.
+    fn radius(&self, [a, b]: [usize; 2], part: f64) -> f64 {
+        let [start, end] = [a, b].map(|i| self.points[i].1);
+        start + (end - start) * part
+    }
+
     fn primitive(&self, [a, b]: [usize; 2], from: f64, to: f64) -> Primitive {
         let [(base, start), (apex, end)] = [self.points[a], self.points[b]];
-        let radius = |part: f64| start + (end - start) * part;
         let shaping = Shaping {
             kernel: self.kernel,
-            radius: radius(from),
+            radius: self.radius([a, b], from),
             blobbiness: 2.0,
             blob_scale: BlobScale::Relative,
             strength: 1.0,
             influence: 1e-3,
             taper: (start != end).then_some(Taper {
-                radius: radius(to),
+                radius: self.radius([a, b], to),
                 blobbiness: 2.0,
             }),
         };
@@ -86,10 +91,14 @@ impl Figure {
                 pieces: (0..PIECES)
                     .map(|i| {
                         let [from, to] = [i, i + 1].map(|i| i as f64 / PIECES as f64);
-                        (
-                            self.primitive(*ends, from, to),
-                            self.length(*ends) / PIECES as f64,
-                        )
+                        // A piece of two primitives is as one of their sum.
+                        let middle = 0.5 * (from + to);
+                        let halves = [[from, middle], [middle, to]];
+                        LimbPiece {
+                            primitives: halves.map(|[a, b]| self.primitive(*ends, a, b)).to_vec(),
+                            length: self.length(*ends) / PIECES as f64,
+                            radius: self.radius(*ends, middle),
+                        }
                     })
                     .collect(),
             })
@@ -172,7 +181,8 @@ impl Figure {
         let weights = pieces.iter().map(|p| {
             let length = self.length(self.segments[p.segment]) * (p.to - p.from);
             let primitive = self.primitive(self.segments[p.segment], p.from, p.to);
-            length * (quadrature::value(&primitive, point) / length).powi(8)
+            let radius = self.radius(self.segments[p.segment], 0.5 * (p.from + p.to));
+            length * (quadrature::value(&primitive, point) * radius / length).powi(8)
         });
         let weights: Vec<f64> = weights.collect();
         let stretches = pieces.iter();
@@ -305,7 +315,11 @@ fn pieces_without_length_are_refused() {
     let points: Vec<DVec3> = figure.points.iter().map(|p| p.0).collect();
     let limb = Limb {
         ends: [0, 1],
-        pieces: vec![(figure.primitive([0, 1], 0.0, 1.0), 0.0)],
+        pieces: vec![LimbPiece {
+            primitives: vec![figure.primitive([0, 1], 0.0, 1.0)],
+            length: 0.0,
+            radius: 0.3,
+        }],
     };
     let made = Local::new(&points, &[limb], 1.0).map(|_| ());
     assert_eq!(made, Err(LocalError::Unusable));

@@ -19,11 +19,12 @@ pub(super) struct SkeletonTerms {
 #[derive(Clone, Debug)]
 struct Part {
     length: f64,
-    primitive: [Primitive; 1],
+    radius: f64,
+    primitives: Vec<Primitive>,
     bounds: Pieces,
     /// Weights of all pieces in the stretch around this one.
     weights: Vec<f64>,
-    /// How much the stretches around the others count as another fold here.
+    /// Weights of the stretches around all pieces as other folds here.
     apart: Vec<f64>,
 }
 
@@ -32,6 +33,22 @@ struct Part {
 struct Field {
     value: f64,
     gradient: DVec3,
+}
+
+impl Part {
+    /// Returns the base of the weight of a value of the field.
+    fn density(&self, field: f64) -> f64 {
+        field * self.radius / self.length
+    }
+
+    /// Returns the field at a point.
+    fn sum(&self, point: DVec3) -> Field {
+        let jets = self.primitives.iter().map(|p| p.jet(point.to_array()));
+        jets.fold(NOTHING, |sum, jet| Field {
+            value: sum.value + jet.value,
+            gradient: sum.gradient + DVec3::from_array(jet.gradient),
+        })
+    }
 }
 
 /// Share of the largest weight below which a weight is not looked at.
@@ -82,9 +99,9 @@ impl SkeletonTerms {
         let mut lengths = Vec::new();
         for (number, limb) in limbs.iter().enumerate() {
             let mut from = 0.0;
-            for (_, length) in &limb.pieces {
-                places.push((number, from, from + length));
-                from += length;
+            for piece in &limb.pieces {
+                places.push((number, from, from + piece.length));
+                from += piece.length;
             }
             let [a, b] = limb.ends.map(|end| end as usize);
             if a.max(b) >= n || from.is_nan() || from <= 0.0 {
@@ -116,23 +133,24 @@ impl SkeletonTerms {
             }
             least
         };
-        let primitives = limbs.iter().flat_map(|limb| &limb.pieces);
-        let pieces = primitives.zip(&places).map(|((primitive, length), place)| {
+        let pieces = limbs.iter().flat_map(|limb| &limb.pieces);
+        let pieces = pieces.zip(&places).map(|(own, place)| {
             let middle = (place.0, 0.5 * (place.1 + place.2));
             let weights = places.iter().map(|other| {
-                let far = |x: f64| distance(middle, (other.0, other.1 + x));
-                mean(far, reach, other.2 - other.1)
+                let length = other.2 - other.1;
+                mean(|x| distance(middle, (other.0, other.1 + x)), reach, length)
             });
             let apart = places.iter().map(|other| {
                 let far = distance(middle, (other.0, 0.5 * (other.1 + other.2)));
                 step(far / reach - 2.0)
             });
             Part {
-                length: *length,
+                length: own.length,
+                radius: own.radius,
                 weights: weights.collect(),
                 apart: apart.collect(),
-                bounds: Pieces::new(core::slice::from_ref(primitive)),
-                primitive: [primitive.clone()],
+                bounds: Pieces::new(&own.primitives),
+                primitives: own.primitives.clone(),
             }
         });
         Ok(Self {
@@ -143,20 +161,13 @@ impl SkeletonTerms {
 
     /// Evaluates the field at a point.
     pub fn sample(&self, point: DVec3) -> Evaluation {
-        let fields = self.pieces.iter().map(|piece| {
-            let jet = piece.primitive[0].jet(point.to_array());
-            Field {
-                value: jet.value,
-                gradient: DVec3::from_array(jet.gradient),
-            }
-        });
-        let fields: Vec<Field> = fields.collect();
+        let fields: Vec<Field> = self.pieces.iter().map(|piece| piece.sum(point)).collect();
         let densities = self.pieces.iter().zip(&fields);
-        let densest = densities.map(|(piece, field)| field.value / piece.length);
+        let densest = densities.map(|(piece, field)| piece.density(field.value));
         let densest = densest.fold(f64::MIN_POSITIVE, f64::max);
         let weights = self.pieces.iter().zip(&fields).map(|(piece, field)| {
-            let density = field.value / piece.length / densest;
-            let slope = 8.0 * density.powi(7) * field.gradient / densest;
+            let density = piece.density(field.value) / densest;
+            let slope = 8.0 * density.powi(7) * piece.radius * field.gradient / densest;
             Field {
                 value: piece.length * density.powi(8),
                 gradient: slope,
@@ -233,9 +244,9 @@ impl SkeletonTerms {
     /// Returns the least and the largest value in a ball.
     pub fn range(&mut self, center: DVec3, radius: f64) -> Range {
         let extents = self.pieces.iter_mut().map(|piece| {
-            let here = piece.primitive[0].jet(center.to_array());
-            let steep = DVec3::from_array(here.gradient).length();
-            let extent = piece.bounds.extent(&piece.primitive, center, radius, None);
+            let here = piece.sum(center);
+            let steep = here.gradient.length();
+            let extent = piece.bounds.extent(&piece.primitives, center, radius, None);
             let change = (steep + 0.5 * extent.curvature * radius) * radius;
             let change = change.min(extent.slope * radius) + 1e-12 * here.value;
             Range {
@@ -245,14 +256,12 @@ impl SkeletonTerms {
         });
         let fields: Vec<Range> = extents.collect();
         let densities = self.pieces.iter().zip(&fields);
-        let densest = densities.map(|(piece, range)| range.high / piece.length);
+        let densest = densities.map(|(piece, range)| piece.density(range.high));
         let densest = densest.fold(f64::MIN_POSITIVE, f64::max);
         let weights = self.pieces.iter().zip(&fields).map(|(piece, range)| {
-            let of = |field: f64| piece.length * (field / piece.length / densest).powi(8);
-            Range {
-                low: of(range.low),
-                high: of(range.high),
-            }
+            let [low, high] = [range.low, range.high]
+                .map(|field| piece.length * (piece.density(field) / densest).powi(8));
+            Range { low, high }
         });
         let weights: Vec<Range> = weights.collect();
         let stretches = self.pieces.iter().map(|piece| {
@@ -267,12 +276,8 @@ impl SkeletonTerms {
             sum
         });
         let stretches: Vec<Range> = stretches.collect();
-        let slack = |range: Range| Range {
-            low: range.low - FIELD_ERROR * (1.0 + range.high),
-            high: range.high + FIELD_ERROR * (1.0 + range.high),
-        };
         let pairs = weights.iter().copied().zip(stretches.iter().copied());
-        let first = slack(spread(pairs.collect()));
+        let first = slacken(spread(pairs.collect()));
         let Some(fold) = &self.fold else {
             return first;
         };
@@ -294,7 +299,7 @@ impl SkeletonTerms {
             let [low, high] = [far.low, far.high].map(|x| x * step(2.0 * x / fold.start - 1.0));
             (*weight, Range { low, high })
         });
-        let second = slack(spread(seconds.collect()));
+        let second = slacken(spread(seconds.collect()));
         let second = Range {
             low: second.low.min(first.low),
             high: second.high.min(first.high),
@@ -319,6 +324,15 @@ const NOTHING: Field = Field {
     value: 0.0,
     gradient: DVec3::ZERO,
 };
+
+/// Returns a range with room for rounding.
+fn slacken(range: Range) -> Range {
+    let slack = FIELD_ERROR * (1.0 + range.high);
+    Range {
+        low: range.low - slack,
+        high: range.high + slack,
+    }
+}
 
 /// Returns the mean of some functions by weights; 0 if all weights are.
 fn average(all: impl Iterator<Item = (Field, Field)>) -> Field {
