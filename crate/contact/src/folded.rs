@@ -6,9 +6,10 @@ use field::{Ball, Enclosure, Implicit, Jet, Local, Part, Real, THRESHOLD, Variat
 use glam::DVec3;
 use wide::f32x8;
 
-/// The function `f₁ + g(f₂)`: f₁ is the local convolution of a skeleton at a point, f₂ that of what
-/// is far from there along the skeleton ([`Local::two`]) or f₁ if that is less, and g the
-/// deformation of [`Bulge::jet`].
+/// The function `f₁ + g(f₂)` of the local convolution F of a skeleton at a point and that, F₂, of
+/// what is far from there along the skeleton ([`Local::two`]): `f₁ = max(F, ρ(F₂))` and `f₂ = min(F,
+/// F₂)`, with g the deformation of [`Bulge::jet`]. ρ(x) is x but for what is far below T, where the
+/// bulge begins: 0 up to there, c, x from (c+T)/2 on, and `x·(3t² − 2t³)`, t = 2(x−c)/(T−c), between.
 ///
 /// Where both are above T this is `T + f₁ − f₂`, which is T on the sheet f₁ = f₂ between two folds.
 /// As that is no surface, but the inside of one body, the value there is `(f₁+T)/2` where that is
@@ -35,7 +36,13 @@ impl Folded {
     /// Computes value and gradient from those of both fields.
     fn combine<R: Real>(&self, (first, second): (Jet<R>, Option<Jet<R>>)) -> Jet<R> {
         let Some(second) = second else { return first };
+        let (ramped, slope) = self.ramp(second.value);
+        let ramped = Jet {
+            value: ramped,
+            gradient: second.gradient.map(|g| slope * g),
+        };
         let second = pick(first.value.lt(second.value), first, second);
+        let first = pick(first.value.lt(ramped.value), ramped, first);
         let (deformed, slope) = self.bulge.jet(second.value);
         let pressed = first.plus(Jet {
             value: deformed,
@@ -50,10 +57,21 @@ impl Folded {
         pick(inside, least, pressed)
     }
 
+    /// Computes ρ and its slope.
+    fn ramp<R: Real>(&self, x: R) -> (R, R) {
+        let [zero, one] = [0.0, 1.0].map(R::splat);
+        let start = self.bulge.start();
+        let rate = 2.0 / (THRESHOLD - start);
+        let t = (R::splat(rate) * (x - R::splat(start))).max(zero).min(one);
+        let part = t * t * (R::splat(3.0) - t - t);
+        let slope = R::splat(6.0 * rate) * t * (one - t);
+        (x * part, part + x * slope)
+    }
+
     /// Bounds in a ball, not narrowed by the value at its centre, and both fields there.
     fn bounds(&self, ball: Ball) -> (Bounds, Option<Jet<f64>>) {
         let Two {
-            first,
+            mut first,
             second,
             at_center,
         } = self.local.enclose_two(ball);
@@ -61,17 +79,30 @@ impl Folded {
         let Some(mut second) = second else {
             return (first, at_center);
         };
-        let [low, high] = first.value;
-        let crossing = second.value[1] > low;
-        second.value = [second.value[0].min(low), second.value[1].min(high)];
-        if crossing {
-            // The gradient of the lesser one is either's.
-            second.jump = second.jump.max(first.slope + second.slope);
-            second.slope = second.slope.max(first.slope);
-            second.curvature = second.curvature.max(first.curvature);
+        let (own, other) = (first, second);
+        let mut crease = 0.0;
+        if other.value[1] > own.value[0] {
+            // Either may be the larger one. Bounds on the derivatives of ρ where it is not x.
+            let rate = 2.0 / (THRESHOLD - self.bulge.start());
+            let [once, twice] = match self.ramp(other.value[0]).0 == other.value[0] {
+                true => [1.0, 0.0],
+                false => [1.0 + 1.5 * rate, (3.0 + 6.0 * rate) * rate],
+            };
+            let ramped = other.value.map(|x| self.ramp(x).0);
+            first.value = [0, 1].map(|i| own.value[i].max(ramped[i]));
+            second.value = [0, 1].map(|i| own.value[i].min(other.value[i]));
+            second.slope = own.slope.max(other.slope);
+            second.curvature = own.curvature.max(other.curvature);
+            if ramped[1] > own.value[0] {
+                first.slope = own.slope.max(once * other.slope);
+                let bend = product(twice, other.slope * other.slope);
+                first.curvature = own.curvature.max(once * other.curvature + bend);
+            }
+            crease = first.slope + second.slope;
         }
+        let [low, high] = first.value;
         let spread = self.bulge.spread(second.value);
-        // f₂ ≤ f₁, so that g lowers nothing but what is inside.
+        // If g lowers f₁, f₂ is above T, and f₁ no less.
         let inside = second.value[1] > THRESHOLD;
         let lowest = if inside && low > THRESHOLD {
             0.5 * (low + THRESHOLD)
@@ -91,7 +122,7 @@ impl Folded {
             // Inside there is a crease beside the sheet.
             jump: match inside {
                 true => 2.0 * slope,
-                false => first.jump + product(spread.slope, second.jump),
+                false => (1.0 + spread.slope) * crease,
             },
         };
         (bounds, at_center)

@@ -221,8 +221,21 @@ impl SkeletonTerms {
             });
             let seconds: Vec<_> = seconds.collect();
             let mut second = average(seconds.into_iter());
+            let mut first = first;
+            let middle = 0.5 * (fold.start + 1.0);
+            let t = ((second.value - fold.start) / (middle - fold.start)).clamp(0.0, 1.0);
+            let larger = second.value * step(t);
             if first.value < second.value {
+                let slope = step(t) + second.value * 6.0 * t * (1.0 - t) / (middle - fold.start);
+                let ramped = slope * second.gradient;
                 second = first;
+                if first.value < larger {
+                    first = Field {
+                        value: larger,
+                        gradient: ramped,
+                    };
+                    (value, gradient) = (first.value, first.gradient);
+                }
             }
             if second.value >= fold.start {
                 value += fold.value(second.value);
@@ -300,9 +313,15 @@ impl SkeletonTerms {
             (*weight, Range { low, high })
         });
         let second = slacken(spread(seconds.collect()));
+        // The ramp rises.
+        let [low, high] = [second.low, second.high].map(|x| {
+            let t = 2.0 * (x - fold.start) / (1.0 - fold.start);
+            x * step(t)
+        });
+        let (own, first) = (first, first.or(Range { low, high }));
         let second = Range {
-            low: second.low.min(first.low),
-            high: second.high.min(first.high),
+            low: second.low.min(own.low),
+            high: second.high.min(own.high),
         };
         let pressed = fold.range(Range {
             low: second.low,

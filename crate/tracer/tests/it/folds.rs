@@ -195,7 +195,6 @@ fn normals_do_not_jump() {
             let distance = 1e-5 * radius;
             let both = [point, point + numbers.direction() * distance];
             let normals = both.map(|p| DVec3::from_array(function.jet(p).gradient).normalize());
-            if std::env::var("DBG").is_ok() && normals[0].distance(normals[1]).to_degrees() > 0.3 { let l = local.as_ref().map(|l| both.map(|p| l.two(p.to_array()))); println!("{both:?} {l:?} {normals:?}"); }
             let turn = normals[0].distance(normals[1]).to_degrees();
             found += 1;
             if local
