@@ -137,10 +137,9 @@ impl Scene {
             return self.slice(element, function);
         };
         let Ok(local) = local else { return Vec::new() };
-        let local = Arc::new(local);
         vec![match self.fold(element.body) {
             Some(bulge) => Arc::new(contact::Folded::new(local, bulge)),
-            None => local,
+            None => Arc::new(local),
         }]
     }
 }

@@ -1,7 +1,7 @@
 //! `skeleton sn, name file …`: skeletons that people have in files.
 
 use super::model::{Group, Part};
-use super::skeleton::{SCHEMES, check_reach, weigh};
+use super::skeleton::{SCHEMES, keep_apart, weigh};
 use super::skeleton_radii;
 use super::state::{Evaluator, Flow};
 use crate::assets;
@@ -316,11 +316,7 @@ fn add_material<'a>(
         let curves = make_curves(&part, options)
             .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
         let curves = match options.last(&FILE_LOCAL) {
-            Some((reach, span)) => {
-                let radii = part.nodes.iter().map(|node| node.radius);
-                check_reach(reach, radii.fold(0.0, f64::max), &span)?;
-                curves.within(reach)
-            }
+            Some(reach) => keep_apart(run, curves, reach)?,
             None => curves.with_flat(flat_nodes(&part)),
         };
         let shape = Shape::Function(Box::new(Function {

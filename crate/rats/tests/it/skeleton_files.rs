@@ -158,6 +158,10 @@ fn skeleton_of_a_file_is_an_object() {
     assert_eq!(messages(&compiled), []);
     assert_eq!(compiled.scene.elements.len(), 3);
     assert_eq!(compiled.scene.surfaces().len(), 2);
+    let thin = compile("skeleton s, N n.swc local 0.8", "n.swc", LIMB);
+    let (severity, message) = &messages(&thin)[0];
+    assert_eq!(*severity, Severity::Warning);
+    assert!(message.ends_with("thinner than that"), "{message}");
 }
 
 #[test]
