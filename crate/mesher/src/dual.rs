@@ -1,0 +1,258 @@
+//! The mesh that is dual to cells: a vertex for each leaf that the surface crosses, in the middle
+//! of its part there and put onto it, and a polygon for each edge of leaves whose ends are on
+//! different sides, through the leaves around it (Ju, Losasso, Schaefer and Warren 2002).
+//!
+//! It is closed where the surface does not reach the end of the box, and a manifold where the
+//! polygons around each leaf make one ring: other leaves are split.
+
+use crate::certify::{Vertex, descend, sag};
+use crate::forest::{NONE, Side};
+use crate::grow::{Corners, Sizes, each_crossed_edge, grow, on_edge, split_all};
+use crate::march::Raw;
+use crate::options::{MeshError, Progress};
+use crate::parallel::map_told;
+use crate::refine::crossing;
+use crate::space::Space;
+use glam::DVec3;
+
+/// Most times that leaves are split for the sake of the mesh's topology.
+const ROUNDS: usize = 12;
+/// Newton's steps that put a vertex onto the surface.
+const STEPS: usize = 3;
+/// Distance from its leaf's centre that a vertex may have along an axis, in sides of the leaf.
+const ROOM: f64 = 0.6;
+
+/// A polygon around an edge of leaves.
+struct Polygon {
+    /// Leaves in the order of the corners, the last one twice if it is a triangle.
+    leaves: [u32; 4],
+    /// Where the surface crosses the edge.
+    place: DVec3,
+}
+
+impl Polygon {
+    fn corners(&self) -> &[u32] {
+        let is_triangle = self.leaves[2] == self.leaves[3];
+        &self.leaves[..if is_triangle { 3 } else { 4 }]
+    }
+}
+
+/// Divides the cells that are not known yet, and makes the mesh; `None` where the surface reaches
+/// the end of the box, or touches itself too closely for leaves to tell it apart.
+///
+/// # Errors
+/// If there are too many cells, or if the caller cancels.
+pub fn dual(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Option<Raw>, MeshError> {
+    let mut crossed = Vec::new();
+    for round in 0..ROUNDS {
+        let start = round as f32 / ROUNDS as f32;
+        grow(space, corners, crossed, sizes, &mut progress.part(start, 1.0))?;
+        if is_cut(space) {
+            return Ok(None);
+        }
+        let Some((polygons, missing)) = polygons(space, corners, sizes.threads, progress)? else {
+            return Ok(None);
+        };
+        crossed = missing;
+        if !crossed.is_empty() {
+            continue;
+        }
+        let mut mesh = Mesh::new(space, &polygons, sizes, progress)?;
+        let bad = mesh.triangulate(&polygons);
+        if bad.is_empty() {
+            return Ok(Some(mesh.raw));
+        }
+        let deepest = space.forest.deepest;
+        if bad.iter().any(|i| space.forest.cells[*i as usize].level >= deepest) {
+            return Ok(None);
+        }
+        split_all(space, &bad, sizes.threads, progress)?;
+    }
+    Ok(None)
+}
+
+/// Whether the end of the box is inside somewhere.
+fn is_cut(space: &Space<'_>) -> bool {
+    let forest = &space.forest;
+    let span = forest.span(0);
+    forest.cells.iter().any(|cell| {
+        let (low, own) = (forest.corner(cell), forest.span(cell.level));
+        let is_end = (0..3).any(|k| low[k] == 0 || low[k] + own == forest.counts[k] * span);
+        cell.child == NONE && cell.side == Side::Inside && is_end
+    })
+}
+
+/// The polygons, and leaves around them that are not known to be crossed; `None` if one reaches the
+/// end of the box.
+fn polygons(
+    space: &Space<'_>,
+    corners: &Corners,
+    threads: usize,
+    progress: &mut Progress<'_>,
+) -> Result<Option<(Vec<Polygon>, Vec<u32>)>, MeshError> {
+    let forest = &space.forest;
+    let cells = crossing(forest);
+    let found = map_told(threads, &cells, progress, |node| {
+        let mut found = Vec::new();
+        let mut is_open = false;
+        each_crossed_edge(forest, corners, *node, |ring, ends| {
+            let [Some(a), Some(b), Some(c), Some(d)] = ring else {
+                is_open = true;
+                return;
+            };
+            let level = |i: u32| forest.cells[i as usize].level;
+            let finest = [a, b, c, d].into_iter().filter(|i| level(*i) == level(*node));
+            // Each comes once, with the first of the smallest leaves.
+            if finest.min() != Some(*node) {
+                return;
+            }
+            let mut leaves = [a, b, c, d];
+            if let Some(i) = (0..4).find(|i| leaves[*i] == leaves[(i + 1) % 4]) {
+                // The same leaf twice comes last.
+                leaves.rotate_left((i + 2) % 4);
+            }
+            found.push(Polygon {
+                leaves,
+                place: on_edge(ends),
+            });
+        });
+        (!is_open).then_some(found)
+    })?;
+    let found: Option<Vec<Vec<Polygon>>> = found.into_iter().collect();
+    Ok(found.map(|found| {
+        let polygons: Vec<Polygon> = found.into_iter().flatten().collect();
+        let all = polygons.iter().flat_map(|polygon| polygon.leaves);
+        let missing = all.filter(|i| forest.cells[*i as usize].side != Side::Crossing);
+        let mut missing: Vec<u32> = missing.collect();
+        missing.sort_unstable();
+        missing.dedup();
+        (polygons, missing)
+    }))
+}
+
+/// The mesh with its leaves.
+struct Mesh {
+    raw: Raw,
+    /// The leaf of each vertex, in ascending order.
+    leaves: Vec<u32>,
+}
+
+impl Mesh {
+    /// The vertices.
+    fn new(
+        space: &Space<'_>,
+        polygons: &[Polygon],
+        sizes: &Sizes,
+        progress: &mut Progress<'_>,
+    ) -> Result<Self, MeshError> {
+        let forest = &space.forest;
+        let all = polygons.iter().flat_map(|polygon| polygon.leaves);
+        let mut leaves: Vec<u32> = all.collect();
+        leaves.sort_unstable();
+        leaves.dedup();
+        let mut sums = vec![(DVec3::ZERO, 0.0); leaves.len()];
+        for polygon in polygons {
+            for leaf in polygon.corners() {
+                if let Ok(i) = leaves.binary_search(leaf) {
+                    sums[i] = (sums[i].0 + polygon.place, sums[i].1 + 1.0);
+                }
+            }
+        }
+        let size = |leaf: u32| forest.size(forest.cells[leaf as usize].level);
+        let middles = leaves.iter().zip(&sums).map(|(leaf, (sum, count))| {
+            let longest = 0.5 * size(*leaf).max_element();
+            (*sum / *count, longest)
+        });
+        let middles: Vec<(DVec3, f64)> = middles.collect();
+        let mut vertices = descend(
+            space,
+            &middles,
+            STEPS,
+            sizes.tolerance,
+            sizes.threads,
+            progress,
+        )?;
+        // A vertex that has left its leaf could make triangles cut others.
+        let away = (0..leaves.len()).filter(|i| {
+            let center = forest.center(&forest.cells[leaves[*i] as usize]);
+            let off = (vertices[*i].position - center).abs();
+            off.cmpgt(ROOM * size(leaves[*i])).any()
+        });
+        let away: Vec<usize> = away.collect();
+        let middles: Vec<(DVec3, f64)> = away.iter().map(|i| middles[*i]).collect();
+        let back = descend(space, &middles, 0, sizes.tolerance, sizes.threads, progress)?;
+        for (i, vertex) in away.into_iter().zip(back) {
+            vertices[i] = vertex;
+        }
+        let raw = Raw {
+            vertices,
+            ..Raw::default()
+        };
+        Ok(Self { raw, leaves })
+    }
+
+    /// Makes triangles of the polygons, and returns the leaves at which they are no manifold.
+    fn triangulate(&mut self, polygons: &[Polygon]) -> Vec<u32> {
+        let number = |leaf: &u32| match self.leaves.binary_search(leaf) {
+            Ok(i) | Err(i) => i as u32,
+        };
+        let vertices = &self.raw.vertices;
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        for polygon in polygons {
+            let [a, b, c, d] = polygon.leaves.each_ref().map(number);
+            if c == d {
+                triangles.push([a, b, c]);
+                continue;
+            }
+            // Along the lower arc.
+            let height = |i: u32, j: u32| sag(&vertices[i as usize], &vertices[j as usize]);
+            if height(a, c) <= height(b, d) {
+                triangles.extend([[a, b, c], [a, c, d]]);
+            } else {
+                triangles.extend([[a, b, d], [b, c, d]]);
+            }
+        }
+        let bad = find_pinched(&triangles);
+        self.raw.is_lid = vec![false; triangles.len()];
+        self.raw.triangles = triangles;
+        let bad = bad.into_iter().map(|i| self.leaves[i as usize]);
+        bad.collect()
+    }
+}
+
+/// The vertices of triangles whose edges do not all have two sides, or around which the triangles
+/// make more than one ring; in ascending order.
+fn find_pinched(triangles: &[[u32; 3]]) -> Vec<u32> {
+    // For each corner of a triangle its vertex and the next two.
+    let corners = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
+    let mut corners: Vec<[u32; 3]> = corners.collect();
+    corners.sort_unstable();
+    let mut bad = Vec::new();
+    for own in corners.chunk_by(|one, other| one[0] == other[0]) {
+        let mut at = own[0][1];
+        let mut length = 0;
+        // Each next vertex comes once, and the ring closes after all triangles.
+        let is_ring = own.windows(2).all(|pair| pair[0][1] != pair[1][1])
+            && loop {
+                let Ok(i) = own.binary_search_by_key(&at, |corner| corner[1]) else {
+                    break false;
+                };
+                (at, length) = (own[i][2], length + 1);
+                if at == own[0][1] {
+                    break length == own.len();
+                }
+                if length > own.len() {
+                    break false;
+                }
+            };
+        if !is_ring {
+            bad.push(own[0][0]);
+        }
+    }
+    bad
+}
