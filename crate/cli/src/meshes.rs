@@ -162,7 +162,11 @@ impl Mesh {
         }
         let write_seconds = start.elapsed().as_secs_f64();
         let shift = mesh::shift_of(&model.bounds(), self.size / longest);
-        let notes = model.notes.iter().cloned().chain(mesh::describe_shift(shift));
+        let notes = model
+            .notes
+            .iter()
+            .cloned()
+            .chain(mesh::describe_shift(shift));
         let notes: Vec<String> = notes.collect();
         for note in &notes {
             eprintln!("{note}");

@@ -2,7 +2,9 @@
 use crate::far_field::{Cell, FarField, power};
 use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
-use crate::{Ball, Bound, Cut, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD};
+use crate::{
+    Ball, Bound, Cut, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD,
+};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 use wide::f32x8;

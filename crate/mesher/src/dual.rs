@@ -16,7 +16,7 @@ use crate::space::Space;
 use glam::DVec3;
 
 /// Most times that leaves are split for the sake of the mesh's topology.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 24;
 /// Newton's steps that put a vertex onto the surface.
 const STEPS: usize = 3;
 /// Distance from its leaf's centre that a vertex may have along an axis, in sides of the leaf.
@@ -26,7 +26,7 @@ const ROOM: f64 = 0.6;
 struct Polygon {
     /// Leaves in the order of the corners, the last one twice if it is a triangle.
     leaves: [u32; 4],
-    /// Where the surface crosses the edge.
+    /// The place where the surface crosses the edge.
     place: DVec3,
 }
 
@@ -51,7 +51,13 @@ pub fn dual(
     let mut crossed = Vec::new();
     for round in 0..ROUNDS {
         let start = round as f32 / ROUNDS as f32;
-        grow(space, corners, crossed, sizes, &mut progress.part(start, 1.0))?;
+        grow(
+            space,
+            corners,
+            crossed,
+            sizes,
+            &mut progress.part(start, 1.0),
+        )?;
         if is_cut(space) {
             return Ok(None);
         }
@@ -62,13 +68,20 @@ pub fn dual(
         if !crossed.is_empty() {
             continue;
         }
-        let mut mesh = Mesh::new(space, &polygons, sizes, progress)?;
-        let bad = mesh.triangulate(&polygons);
+        let rings = polygons.iter().map(Polygon::corners);
+        let mut bad = find_pinched(rings);
         if bad.is_empty() {
-            return Ok(Some(mesh.raw));
+            let mut mesh = Mesh::new(space, &polygons, sizes, progress)?;
+            bad = mesh.triangulate(&polygons);
+            if bad.is_empty() {
+                return Ok(Some(mesh.raw));
+            }
         }
         let deepest = space.forest.deepest;
-        if bad.iter().any(|i| space.forest.cells[*i as usize].level >= deepest) {
+        if bad
+            .iter()
+            .any(|i| space.forest.cells[*i as usize].level >= deepest)
+        {
             return Ok(None);
         }
         split_all(space, &bad, sizes.threads, progress)?;
@@ -105,8 +118,9 @@ fn polygons(
                 is_open = true;
                 return;
             };
-            let level = |i: u32| forest.cells[i as usize].level;
-            let finest = [a, b, c, d].into_iter().filter(|i| level(*i) == level(*node));
+            let level = forest.cells[*node as usize].level;
+            let all = [a, b, c, d].into_iter();
+            let finest = all.filter(|i| forest.cells[*i as usize].level == level);
             // Each comes once, with the first of the smallest leaves.
             if finest.min() != Some(*node) {
                 return;
@@ -217,7 +231,7 @@ impl Mesh {
                 triangles.extend([[a, b, d], [b, c, d]]);
             }
         }
-        let bad = find_pinched(&triangles);
+        let bad = find_pinched(triangles.iter().map(|t| &t[..]));
         self.raw.is_lid = vec![false; triangles.len()];
         self.raw.triangles = triangles;
         let bad = bad.into_iter().map(|i| self.leaves[i as usize]);
@@ -225,11 +239,14 @@ impl Mesh {
     }
 }
 
-/// The vertices of triangles whose edges do not all have two sides, or around which the triangles
+/// The vertices of polygons whose edges do not all have two sides, or around which the polygons
 /// make more than one ring; in ascending order.
-fn find_pinched(triangles: &[[u32; 3]]) -> Vec<u32> {
-    // For each corner of a triangle its vertex and the next two.
-    let corners = triangles.iter().flat_map(|[a, b, c]| [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
+fn find_pinched<'a>(polygons: impl Iterator<Item = &'a [u32]>) -> Vec<u32> {
+    // For each corner of a polygon its vertex, the next one, and the one before.
+    let corners = polygons.flat_map(|own| {
+        let count = own.len();
+        (0..count).map(move |i| [own[i], own[(i + 1) % count], own[(i + count - 1) % count]])
+    });
     let mut corners: Vec<[u32; 3]> = corners.collect();
     corners.sort_unstable();
     let mut bad = Vec::new();
@@ -255,4 +272,44 @@ fn find_pinched(triangles: &[[u32; 3]]) -> Vec<u32> {
         }
     }
     bad
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pinch_is_found() {
+        // A pyramid over a square.
+        let base = [[4, 3, 2, 1]];
+        let sides = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+        let polygons = |sides: &[[u32; 3]], bases: &[[u32; 4]]| {
+            let sides = sides.iter().map(|own| own.to_vec());
+            let all = sides.chain(bases.iter().map(|own| own.to_vec()));
+            all.collect::<Vec<Vec<u32>>>()
+        };
+        let find = |all: &[Vec<u32>]| find_pinched(all.iter().map(|own| &own[..]));
+        let whole = polygons(&sides, &base);
+        assert!(find(&whole).is_empty());
+        // Open along two edges.
+        assert_eq!(find(&polygons(&sides[..3], &base)), [0, 1, 4]);
+        // Another one that shares the tip.
+        let second = polygons(&sides, &base).into_iter();
+        let second = second.map(|own| {
+            own.iter()
+                .map(|i| if *i == 0 { 0 } else { i + 4 })
+                .collect()
+        });
+        let both: Vec<Vec<u32>> = whole.iter().cloned().chain(second).collect();
+        assert_eq!(find(&both), [0]);
+        // Another one that shares an edge.
+        let other = polygons(&sides, &base).into_iter();
+        let other = other.map(|own| {
+            own.iter()
+                .map(|i| if *i < 2 { *i } else { i + 4 })
+                .collect()
+        });
+        let both: Vec<Vec<u32>> = whole.into_iter().chain(other).collect();
+        assert_eq!(find(&both), [0, 1]);
+    }
 }

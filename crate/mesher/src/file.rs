@@ -392,7 +392,7 @@ impl Fine<'_> {
         Ok(Found { measured, far })
     }
 
-    /// For each triangle the sample that is farthest from the surface, and its distance: infinite
+    /// Measures all triangles: for each the sample that is farthest from the surface, and its distance: infinite
     /// if no surface was found within the tolerance. `None` for lids.
     fn farthest_of_all(
         &self,
@@ -420,7 +420,14 @@ impl Fine<'_> {
                 let first = sample.value.abs() / sample.gradient.length();
                 let is_sure = first <= SURE * tolerance;
                 let place = sample.position;
-                (place, if is_sure { first } else { self.distance(place, normal) })
+                (
+                    place,
+                    if is_sure {
+                        first
+                    } else {
+                        self.distance(place, normal)
+                    },
+                )
             });
             distances.reduce(|one, other| if other.1 <= one.1 { one } else { other })
         })

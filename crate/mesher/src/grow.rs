@@ -187,7 +187,7 @@ impl Bounded {
     }
 
     /// The bounds on values with the function at the cell's centre, which may be single.
-    fn narrowed(&self, jet: &Jet<f64>, size: DVec3) -> [f64; 2] {
+    fn narrow(&self, jet: &Jet<f64>, size: DVec3) -> [f64; 2] {
         let radius = 0.5 * size.length() * (1.0 + 1e-9);
         // A box is a part of the ball.
         let linear = (0.5 * DVec3::from_array(jet.gradient).abs() * size).element_sum();
@@ -202,7 +202,7 @@ impl Bounded {
     }
 }
 
-/// What is to become of a cell.
+/// Verdict on a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Leaf(Side),
@@ -216,7 +216,10 @@ fn is_simple(inside: [bool; 8]) -> bool {
     for [a, b] in EDGES {
         if inside[a] == inside[b] {
             let (old, new) = (group[a], group[b]);
-            group.iter_mut().filter(|g| **g == old).for_each(|g| *g = new);
+            group
+                .iter_mut()
+                .filter(|g| **g == old)
+                .for_each(|g| *g = new);
         }
     }
     let count = (0..8).filter(|i| group.contains(i)).count();
@@ -282,7 +285,9 @@ fn look(
     let mean = normals.sum::<DVec3>().normalize_or_zero();
     let mut is_fine = found.iter().all(|vertex| vertex.normal().dot(mean) >= EVEN);
     for (i, one) in found.iter().enumerate() {
-        is_fine &= found[..i].iter().all(|other| sag(one, other) <= SAG * tolerance);
+        is_fine &= found[..i]
+            .iter()
+            .all(|other| sag(one, other) <= SAG * tolerance);
     }
     if is_fine {
         Fate::Leaf(Side::Crossing)
@@ -298,12 +303,12 @@ pub fn on_edge([a, b]: [&Vertex; 2]) -> DVec3 {
     a.position + way * crossing_share([a.value, b.value], slopes)
 }
 
-/// How cells are divided.
+/// Sizes and limits of cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Sizes {
     /// The tolerance.
     pub tolerance: f64,
-    /// One of [`HIDING`].
+    /// Trust in bounds: one of [`HIDING`].
     pub hiding: f64,
     /// Most cells.
     pub most: usize,
@@ -391,15 +396,15 @@ pub fn each_crossed_edge(
         if !is_out {
             ring.reverse();
         }
-        let is_least = |i: u32| forest.cells[i as usize].child == NONE;
-        if ring.iter().flatten().all(|i| is_least(*i)) {
+        let mut around = ring.iter().flatten();
+        if around.all(|i| forest.cells[*i as usize].child == NONE) {
             let [low, high] = [low, high].map(|i| ends[i]);
             each(ring, if is_out { [low, high] } else { [high, low] });
         }
     }
 }
 
-/// The same for tetrahedra: values at the vertices of all tetrahedra of cells that the surface
+/// Does the same for tetrahedra: finds values at the vertices of all tetrahedra of cells that the surface
 /// crosses, and cells beside them that it crosses, too.
 ///
 /// # Errors
@@ -418,7 +423,14 @@ pub fn grow_tetrahedra(
         fraction += 0.3 * (1.0 - fraction);
         progress.at(fraction)?;
         let cells = crossing(&space.forest);
-        lattice.extend(space, &cells, false, sizes.tolerance, sizes.threads, progress)?;
+        lattice.extend(
+            space,
+            &cells,
+            false,
+            sizes.tolerance,
+            sizes.threads,
+            progress,
+        )?;
         left = follow(space, lattice, &cells, sizes.threads, progress)?;
         if left.is_empty() {
             return Ok(());
@@ -540,7 +552,7 @@ fn decide(
     let mut near: Vec<(usize, Vertex)> = Vec::new();
     for ((i, (_, center)), jet) in open.iter().zip(&centers).zip(&jets) {
         let (own, cell) = (&bounded[*i], cell_of(space, *i));
-        let sure = side(own.narrowed(jet, space.forest.size(cell.level)));
+        let sure = side(own.narrow(jet, space.forest.size(cell.level)));
         if !is_crossed && sure != Side::Crossing {
             fates[*i] = Fate::Leaf(sure);
         } else if own.is_tame || cell.level >= space.forest.deepest {
@@ -597,4 +609,46 @@ fn follow(
     found.sort_unstable();
     found.dedup();
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_join_corners_that_differ_along_one_axis() {
+        let mut seen = Vec::new();
+        for (n, [low, high]) in EDGES.into_iter().enumerate() {
+            assert_eq!(low ^ high, 1 << (n / 4));
+            assert!(low < high);
+            seen.push([low, high]);
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen.len(), 12);
+    }
+
+    /// A surface that crosses each edge once at most is a disc in a cell where walks along edges
+    /// reach all corners on a side.
+    #[test]
+    fn simple_cells_have_one_piece_on_each_side() {
+        let reach = |inside: &[bool; 8], from: usize| {
+            let mut seen = [false; 8];
+            let mut open = vec![from];
+            while let Some(i) = open.pop() {
+                if !core::mem::replace(&mut seen[i], true) {
+                    let beside = [1, 2, 4].map(|bit| i ^ bit);
+                    open.extend(beside.into_iter().filter(|j| inside[*j] == inside[i]));
+                }
+            }
+            seen
+        };
+        for bits in 1..255_u32 {
+            let inside: [bool; 8] = core::array::from_fn(|i| bits >> i & 1 == 1);
+            let own = reach(&inside, inside.iter().position(|is| *is).unwrap());
+            let other = reach(&inside, inside.iter().position(|is| !*is).unwrap());
+            let all = (0..8).all(|i| own[i] || other[i]);
+            assert_eq!(is_simple(inside), all, "{bits:08b}");
+        }
+    }
 }

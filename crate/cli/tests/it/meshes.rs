@@ -134,11 +134,18 @@ fn far_models_are_moved_and_what_is_left_out_is_named() {
     assert!(known["shift"][1].as_f64().unwrap() > 1e8);
     let written = mesh::read(&out, &std::fs::read(&out).unwrap()).unwrap();
     let topology = mesh::Topology::of(&written).unwrap();
-    assert_eq!((topology.genera, topology.repairs.is_none()), (vec![0], true));
+    assert_eq!(
+        (topology.genera, topology.repairs.is_none()),
+        (vec![0], true)
+    );
     let mut heights: Vec<u64> = written.positions.iter().map(|p| p.y.to_bits()).collect();
     heights.sort_unstable();
     heights.dedup();
-    assert!(4 * heights.len() > written.positions.len(), "{}", heights.len());
+    assert!(
+        4 * heights.len() > written.positions.len(),
+        "{}",
+        heights.len()
+    );
     let crossings = mesh::self_intersections(&written, 10).unwrap();
     assert!(crossings.is_free());
 }

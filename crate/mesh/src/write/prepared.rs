@@ -64,7 +64,8 @@ impl Prepared<'_> {
 
 impl Export {
     /// The meshes as every format has them: in millimetres from [`Export::shift`], rounded to 32
-    /// bits. What shall be proved of a file (that nothing intersects, say) is to be proved of these.
+    /// bits. What shall be proved of a file (that nothing intersects, say) is to be proved of
+    /// these.
     ///
     /// # Errors
     /// As [`Export::write`].

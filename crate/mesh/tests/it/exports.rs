@@ -465,7 +465,10 @@ fn what_is_far_away_keeps_its_shape() {
             let wanted = mesh.corners(i).map(|p| p * 50.0 - shift);
             for (own, wanted) in back.corners(i).iter().zip(wanted) {
                 let own = *own - moved;
-                assert!(own.distance(wanted) <= 1e-4 + within, "{format:?}: {own} {wanted}");
+                assert!(
+                    own.distance(wanted) <= 1e-4 + within,
+                    "{format:?}: {own} {wanted}"
+                );
             }
         }
     }
