@@ -5,7 +5,7 @@
 //! It is closed where the surface does not reach the end of the box, and a manifold where the
 //! polygons around each leaf make one ring: other leaves are split.
 
-use crate::certify::{Vertex, descend, sag};
+use crate::certify::{descend, sag};
 use crate::forest::{NONE, Side};
 use crate::grow::{Corners, Sizes, each_crossed_edge, grow, on_edge, split_all};
 use crate::march::Raw;

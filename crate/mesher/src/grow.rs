@@ -277,7 +277,8 @@ fn look(
             count += 1;
         }
     }
-    places[count..].fill(places[0]);
+    let first = places[0];
+    places[count..].fill(first);
     let jets = space.jets(cell.part, &places, tolerance);
     let found: [Vertex; 8] = core::array::from_fn(|i| Vertex::new(places[i], &jets[i]));
     let found = &found[..count];
