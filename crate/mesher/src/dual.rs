@@ -17,6 +17,8 @@ use glam::DVec3;
 
 /// Most times that leaves are split for the sake of the mesh's topology.
 const ROUNDS: usize = 24;
+/// Most leaves that are split at once for its sake.
+const MOST_PINCHED: usize = 5000;
 /// Newton's steps that put a vertex onto the surface.
 const STEPS: usize = 3;
 /// Distance from its leaf's centre that a vertex may have along an axis, in sides of the leaf.
@@ -77,11 +79,9 @@ pub fn dual(
                 return Ok(Some(mesh.raw));
             }
         }
-        let deepest = space.forest.deepest;
-        if bad
-            .iter()
-            .any(|i| space.forest.cells[*i as usize].level >= deepest)
-        {
+        let cells = &space.forest.cells;
+        let mut levels = bad.iter().map(|i| cells[*i as usize].level);
+        if bad.len() > MOST_PINCHED || levels.any(|level| level >= space.forest.deepest) {
             return Ok(None);
         }
         split_all(space, &bad, sizes.threads, progress)?;
@@ -113,18 +113,11 @@ fn polygons(
     let found = map_told(threads, &cells, progress, |node| {
         let mut found = Vec::new();
         let mut is_open = false;
-        each_crossed_edge(forest, corners, *node, |ring, ends| {
+        each_crossed_edge(forest, corners, *node, true, |ring, ends| {
             let [Some(a), Some(b), Some(c), Some(d)] = ring else {
                 is_open = true;
                 return;
             };
-            let level = forest.cells[*node as usize].level;
-            let all = [a, b, c, d].into_iter();
-            let finest = all.filter(|i| forest.cells[*i as usize].level == level);
-            // Each comes once, with the first of the smallest leaves.
-            if finest.min() != Some(*node) {
-                return;
-            }
             let mut leaves = [a, b, c, d];
             if let Some(i) = (0..4).find(|i| leaves[*i] == leaves[(i + 1) % 4]) {
                 // The same leaf twice comes last.

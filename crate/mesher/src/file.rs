@@ -10,7 +10,7 @@ use crate::certify::{Vertex, at, descend};
 use crate::decimate::{Decimated, Decimation};
 use crate::dual::dual;
 use crate::forest::{Forest, NONE, Side};
-use crate::grow::{Corners, FINEST, HIDING, LEVELS, Sizes, grow_tetrahedra};
+use crate::grow::{Corners, FINEST, FLAT, HIDING, LEVELS, Sizes, grow_tetrahedra};
 use crate::lattice::Lattice;
 use crate::march::{Raw, march};
 use crate::measure::{Measured, along_ray, root_of, spread};
@@ -193,9 +193,6 @@ fn march_all(
 fn too_rough() -> MeshError {
     MeshError::Failed("the surface is too rough for a mesh whose error is only measured".into())
 }
-
-/// Change of the function over the tolerance, in thresholds, below which it is flat.
-const FLAT: f64 = 1e-10;
 
 /// Whether the function is flat at many places where it is the threshold, as where bodies lie on
 /// each other: then its signs are those of roundings.
@@ -392,8 +389,8 @@ impl Fine<'_> {
         Ok(Found { measured, far })
     }
 
-    /// Measures all triangles: for each the sample that is farthest from the surface, and its distance: infinite
-    /// if no surface was found within the tolerance. `None` for lids.
+    /// Measures all triangles: the sample of each that is farthest from the surface, and its
+    /// distance: infinite if no surface was found within the tolerance. `None` for lids.
     fn farthest_of_all(
         &self,
         mesh: &TriangleMesh,

@@ -36,6 +36,8 @@ pub const LEVELS: u32 = 6;
 /// Largest distance of the function from its interpolant in a cell, over that along the edges from
 /// its centre.
 const BEND: f64 = 3.0;
+/// Change of the function over the tolerance, in thresholds, below which it is flat.
+pub const FLAT: f64 = 1e-10;
 /// Bound on the relative error of values in single precision.
 const SINGLE: f64 = 1e-5;
 /// Cells that are looked at between two reports.
@@ -85,43 +87,46 @@ impl Hasher for Mix {
 pub struct Corners {
     numbers: HashMap<Key, u32, BuildHasherDefault<Mix>>,
     vertices: Vec<Vertex>,
+    /// Number of each cell's list of corners; [`NONE`] if it has none.
+    lists: Vec<u32>,
+    corners: Vec<[u32; 8]>,
 }
 
 impl Corners {
-    /// The function at a corner; `None` if it was not evaluated there.
-    pub fn at(&self, key: Key) -> Option<&Vertex> {
-        let number = self.numbers.get(&key)?;
-        self.vertices.get(*number as usize)
-    }
-
     /// The function at the corners of a cell; `None` if it was not evaluated there.
-    pub fn of(&self, forest: &Forest, cell: &Cell) -> Option<[&Vertex; 8]> {
-        let keys = corner_keys(forest, cell);
-        let mut all = [self.at(keys[0])?; 8];
-        for (own, key) in all.iter_mut().zip(keys) {
-            *own = self.at(key)?;
-        }
-        Some(all)
+    pub fn of(&self, node: u32) -> Option<[&Vertex; 8]> {
+        let list = *self.lists.get(node as usize)?;
+        let corners = self.corners.get(list as usize)?;
+        Some(corners.map(|i| &self.vertices[i as usize]))
     }
 
     /// Evaluates the function at the corners of leaves, where that was not done.
     fn extend(
         &mut self,
         space: &Space<'_>,
-        leaves: &[Cell],
+        leaves: &[u32],
         tolerance: f64,
         threads: usize,
         progress: &mut Progress<'_>,
     ) -> Result<(), MeshError> {
-        let (mut keys, mut places) = (Vec::new(), Vec::new());
-        for cell in leaves {
-            for key in corner_keys(&space.forest, cell) {
-                let next = (self.vertices.len() + keys.len()) as u32;
-                if *self.numbers.entry(key).or_insert(next) == next {
-                    keys.push(key);
-                    places.push((cell.part, space.forest.position(unpack(key))));
-                }
+        let forest = &space.forest;
+        let mut places = Vec::new();
+        self.lists.resize(forest.cells.len(), NONE);
+        for node in leaves {
+            if self.lists[*node as usize] != NONE {
+                continue;
             }
+            let cell = &forest.cells[*node as usize];
+            let corners = corner_keys(forest, cell).map(|key| {
+                let next = (self.vertices.len() + places.len()) as u32;
+                let number = *self.numbers.entry(key).or_insert(next);
+                if number == next {
+                    places.push((cell.part, forest.position(unpack(key))));
+                }
+                number
+            });
+            self.lists[*node as usize] = self.corners.len() as u32;
+            self.corners.push(corners);
         }
         let jets = space.jets_in_parts(&places, tolerance, threads, progress)?;
         let found = places.iter().zip(&jets);
@@ -131,7 +136,7 @@ impl Corners {
 }
 
 /// The corners of a cell.
-pub fn corner_keys(forest: &Forest, cell: &Cell) -> [Key; 8] {
+fn corner_keys(forest: &Forest, cell: &Cell) -> [Key; 8] {
     let (low, span) = (forest.corner(cell), forest.span(cell.level));
     core::array::from_fn(|i| pack([0, 1, 2].map(|k| low[k] + span * (i as u32 >> k & 1))))
 }
@@ -236,7 +241,7 @@ fn look(
     is_crossed: bool,
 ) -> Fate {
     let forest = &space.forest;
-    let (can_split, is_usual) = (cell.level < forest.deepest, cell.level >= forest.usual);
+    let is_usual = cell.level >= forest.usual;
     // A value that is no number counts as outside.
     let own = middle.value > 0.0;
     let inside = corners.map(|corner| corner.value > 0.0);
@@ -260,6 +265,11 @@ fn look(
         return Fate::Split;
     }
     if beyond == 8 || !is_simple(inside) {
+        let all = corners.iter().map(|corner| corner.gradient.length());
+        let slope = all.fold(middle.gradient.length(), f64::max);
+        // Where the function is flat its signs are those of roundings. Not so for NaN.
+        let is_steep = slope * tolerance >= FLAT * THRESHOLD;
+        let can_split = cell.level < forest.deepest && (is_steep || !is_usual);
         return if can_split {
             Fate::Split
         } else {
@@ -332,21 +342,14 @@ pub fn grow(
     let mut left = crossed;
     let mut fraction = 0.0;
     loop {
-        let before = space.forest.cells.len();
-        divide(space, corners, &left, sizes, progress)?;
+        let mut fresh = divide(space, corners, &left, sizes, progress)?;
         fraction += 0.3 * (1.0 - fraction);
         progress.at(fraction)?;
         let forest = &space.forest;
-        // Cells that are crossed since the last look.
-        let fresh = (before as u32..forest.cells.len() as u32).chain(left);
-        let fresh: Vec<u32> = if fraction < 0.4 {
-            crossing(forest)
-        } else {
-            fresh.filter(|i| is_crossing(forest, *i)).collect()
-        };
+        fresh.retain(|i| is_crossing(forest, *i));
         let found = map_told(sizes.threads, &fresh, progress, |node| {
             let mut found = Vec::new();
-            each_crossed_edge(forest, corners, *node, |ring, _| {
+            each_crossed_edge(forest, corners, *node, false, |ring, _| {
                 let beside = ring.into_iter().flatten();
                 found.extend(beside.filter(|i| !is_crossing(forest, *i)));
             });
@@ -368,18 +371,20 @@ fn is_crossing(forest: &Forest, node: u32) -> bool {
 
 /// Calls a function with the leaves around each edge of a leaf whose ends are on different sides,
 /// unless finer leaves have parts of that edge, and with the edge's ends, the inner one first. The
-/// leaves are in the order in which they surround the way outward; `None` where the box ends.
+/// leaves are in the order in which they surround the way outward; `None` where the box ends. If
+/// `once`, only the first of the smallest leaves around an edge is called for it.
 pub fn each_crossed_edge(
     forest: &Forest,
     corners: &Corners,
     node: u32,
+    once: bool,
     mut each: impl FnMut([Option<u32>; 4], [&Vertex; 2]),
 ) {
     let cell = &forest.cells[node as usize];
-    let Some(ends) = corners.of(forest, cell) else {
+    let Some(ends) = corners.of(node) else {
         return;
     };
-    for (n, [low, high]) in EDGES.into_iter().enumerate() {
+    'edges: for (n, [low, high]) in EDGES.into_iter().enumerate() {
         let is_out = ends[low].value > 0.0;
         if is_out == (ends[high].value > 0.0) {
             continue;
@@ -387,26 +392,37 @@ pub fn each_crossed_edge(
         let axis = n / 4;
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let [at_u, at_v] = [u, v].map(|k| (low >> k & 1) as i64);
+        let mut ring = [None; 4];
+        let mut is_first = true;
         // Counter-clockwise around the axis.
-        let mut ring = [[-1, -1], [0, -1], [0, 0], [-1, 0]].map(|[x, y]| {
+        for (own, [x, y]) in ring.iter_mut().zip([[-1, -1], [0, -1], [0, 0], [-1, 0]]) {
             let mut direction = [0; 3];
             direction[u] = x + at_u;
             direction[v] = y + at_v;
-            forest.neighbor(cell, direction)
-        });
+            *own = if direction == [0; 3] {
+                is_first = false;
+                Some(node)
+            } else {
+                forest.neighbor(cell, direction)
+            };
+            let Some(other) = own.map(|i| &forest.cells[i as usize]) else {
+                continue;
+            };
+            let is_before = once && is_first && other.level == cell.level;
+            if other.child != NONE || is_before {
+                continue 'edges;
+            }
+        }
         if !is_out {
             ring.reverse();
         }
-        let mut around = ring.iter().flatten();
-        if around.all(|i| forest.cells[*i as usize].child == NONE) {
-            let [low, high] = [low, high].map(|i| ends[i]);
-            each(ring, if is_out { [low, high] } else { [high, low] });
-        }
+        let [low, high] = [low, high].map(|i| ends[i]);
+        each(ring, if is_out { [low, high] } else { [high, low] });
     }
 }
 
-/// Does the same for tetrahedra: finds values at the vertices of all tetrahedra of cells that the surface
-/// crosses, and cells beside them that it crosses, too.
+/// Does the same for tetrahedra: finds values at the vertices of all tetrahedra of cells that the
+/// surface crosses, and cells beside them that it crosses, too.
 ///
 /// # Errors
 /// If there are too many cells, or if the caller cancels.
@@ -440,18 +456,20 @@ pub fn grow_tetrahedra(
 }
 
 /// Looks at some leaves that the surface is known to cross, then at all that are not known, and
-/// splits those that need it, until there are none.
+/// splits those that need it, until there are none. Returns all that were looked at.
 fn divide(
     space: &mut Space<'_>,
     corners: &mut Corners,
     crossed: &[u32],
     sizes: &Sizes,
     progress: &mut Progress<'_>,
-) -> Result<(), MeshError> {
+) -> Result<Vec<u32>, MeshError> {
     let mut open = crossed.to_vec();
+    let mut looked = Vec::new();
     let mut is_crossed = true;
     let mut fresh = 0;
     loop {
+        looked.extend_from_slice(&open);
         for batch in open.chunks(BATCH) {
             progress.again()?;
             let fates = decide(space, corners, batch, sizes, is_crossed, progress)?;
@@ -483,7 +501,7 @@ fn divide(
         open = new.map(|(i, _)| i).collect();
         fresh = cells.len() as u32;
         if open.is_empty() {
-            return Ok(());
+            return Ok(looked);
         }
     }
 }
@@ -564,12 +582,12 @@ fn decide(
         }
     }
     // By all samples.
-    let cells: Vec<Cell> = near.iter().map(|(i, _)| cell_of(space, *i)).collect();
-    corners.extend(space, &cells, tolerance, threads, progress)?;
+    let nodes: Vec<u32> = near.iter().map(|(i, _)| leaves[*i]).collect();
+    corners.extend(space, &nodes, tolerance, threads, progress)?;
     let (space, corners) = (&*space, &*corners);
     let found = map_told(threads, &near, progress, |(i, middle)| {
         let cell = cell_of(space, *i);
-        match corners.of(&space.forest, &cell) {
+        match corners.of(leaves[*i]) {
             Some(ends) => look(space, &cell, middle, ends, tolerance, is_crossed),
             None => Fate::Split,
         }
