@@ -63,10 +63,10 @@ pub fn dual(
         if is_cut(space) {
             return Ok(None);
         }
-        let Some((polygons, missing)) = polygons(space, corners, sizes.threads, progress)? else {
+        let Some(polygons) = polygons(space, corners, sizes.threads, progress)? else {
             return Ok(None);
         };
-        crossed = missing;
+        crossed = find_missing(space, &polygons);
         if !crossed.is_empty() {
             continue;
         }
@@ -100,14 +100,13 @@ fn is_cut(space: &Space<'_>) -> bool {
     })
 }
 
-/// The polygons, and leaves around them that are not known to be crossed; `None` if one reaches the
-/// end of the box.
+/// The polygons; `None` if one reaches the end of the box.
 fn polygons(
     space: &Space<'_>,
     corners: &Corners,
     threads: usize,
     progress: &mut Progress<'_>,
-) -> Result<Option<(Vec<Polygon>, Vec<u32>)>, MeshError> {
+) -> Result<Option<Vec<Polygon>>, MeshError> {
     let forest = &space.forest;
     let cells = crossing(forest);
     let found = map_told(threads, &cells, progress, |node| {
@@ -131,15 +130,17 @@ fn polygons(
         (!is_open).then_some(found)
     })?;
     let found: Option<Vec<Vec<Polygon>>> = found.into_iter().collect();
-    Ok(found.map(|found| {
-        let polygons: Vec<Polygon> = found.into_iter().flatten().collect();
-        let all = polygons.iter().flat_map(|polygon| polygon.leaves);
-        let missing = all.filter(|i| forest.cells[*i as usize].side != Side::Crossing);
-        let mut missing: Vec<u32> = missing.collect();
-        missing.sort_unstable();
-        missing.dedup();
-        (polygons, missing)
-    }))
+    Ok(found.map(|found| found.into_iter().flatten().collect()))
+}
+
+/// The leaves of polygons that are not known to be crossed, in ascending order.
+fn find_missing(space: &Space<'_>, polygons: &[Polygon]) -> Vec<u32> {
+    let all = polygons.iter().flat_map(|polygon| polygon.leaves);
+    let missing = all.filter(|i| space.forest.cells[*i as usize].side != Side::Crossing);
+    let mut missing: Vec<u32> = missing.collect();
+    missing.sort_unstable();
+    missing.dedup();
+    missing
 }
 
 /// The mesh with its leaves.
