@@ -559,6 +559,12 @@ impl Bound {
         [self.whole, self.width]
     }
 
+    /// Width of the kernel, a length: the least, if it varies along the bone.
+    #[must_use]
+    pub fn kernel_width(&self) -> f64 {
+        1.0 / self.finest
+    }
+
     /// Whether the term can be above zero.
     #[must_use]
     pub fn adds(&self) -> bool {
