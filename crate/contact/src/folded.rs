@@ -7,9 +7,10 @@ use glam::DVec3;
 use wide::f32x8;
 
 /// The function `f₁ + g(f₂)` of the local convolution F of a skeleton at a point and that, F₂, of
-/// what is far from there along the skeleton ([`Local::two`]): `f₁ = max(F, ρ(F₂))` and `f₂ = min(F,
-/// F₂)`, with g the deformation of [`Bulge::jet`]. ρ(x) is x but for what is far below T, where the
-/// bulge begins: 0 up to there, c, x from (c+T)/2 on, and `x·(3t² − 2t³)`, t = 2(x−c)/(T−c), between.
+/// what is far from there along the skeleton ([`Local::two`]): `f₁ = max(F, ρ(F₂))` and
+/// `f₂ = min(F, F₂)`, with g the deformation of [`Bulge::jet`]. ρ(x) is x but for what is far below
+/// T, where the bulge begins: 0 up to there, c, x from (c+T)/2 on, and `x·(3t² − 2t³)`,
+/// t = 2(x−c)/(T−c), between.
 ///
 /// Where both are above T this is `T + f₁ − f₂`, which is T on the sheet f₁ = f₂ between two folds.
 /// As that is no surface, but the inside of one body, the value there is `(f₁+T)/2` where that is

@@ -371,6 +371,15 @@ fn steps(
     None
 }
 
+/// Returns the part of the space for a point, with the point.
+fn place(space: &Space<'_>, point: DVec3) -> (u32, DVec3) {
+    let ball = Ball {
+        center: point,
+        radius: 0.0,
+    };
+    (space.part_for(ball), point)
+}
+
 /// The function where Newton's steps along gradients lead from each of some positions, none longer
 /// than the length beside it: eight at a time, as well as places within the tolerance need it.
 ///
@@ -384,14 +393,7 @@ pub fn descend(
     threads: usize,
     progress: &mut Progress<'_>,
 ) -> Result<Vec<Vertex>, MeshError> {
-    let place = |point: DVec3| {
-        let ball = Ball {
-            center: point,
-            radius: 0.0,
-        };
-        (space.part_for(ball), point)
-    };
-    let mut places = map_told(threads, goals, progress, |(point, _)| place(*point))?;
+    let mut places = map_told(threads, goals, progress, |(point, _)| place(space, *point))?;
     let mut left = steps;
     loop {
         let jets = space.jets_in_parts(&places, tolerance, threads, progress)?;
@@ -405,7 +407,7 @@ pub fn descend(
             let way = vertex.gradient * (-vertex.value / vertex.gradient.length_squared());
             let next = vertex.position + way.clamp_length_max(*longest);
             if next.is_finite() {
-                *own = place(next);
+                *own = place(space, next);
             }
         }
     }

@@ -6,7 +6,7 @@
 //! polygons around each leaf make one ring: other leaves are split.
 
 use crate::certify::{descend, sag};
-use crate::forest::{NONE, Side};
+use crate::forest::{Forest, NONE, Side};
 use crate::grow::{Corners, Sizes, each_crossed_edge, grow, on_edge, split_all};
 use crate::march::Raw;
 use crate::options::{MeshError, Progress};
@@ -171,9 +171,11 @@ impl Mesh {
                 }
             }
         }
-        let size = |leaf: u32| forest.size(forest.cells[leaf as usize].level);
+        fn size(forest: &Forest, leaf: u32) -> DVec3 {
+            forest.size(forest.cells[leaf as usize].level)
+        }
         let middles = leaves.iter().zip(&sums).map(|(leaf, (sum, count))| {
-            let longest = 0.5 * size(*leaf).max_element();
+            let longest = 0.5 * size(forest, *leaf).max_element();
             (*sum / *count, longest)
         });
         let middles: Vec<(DVec3, f64)> = middles.collect();
@@ -189,7 +191,7 @@ impl Mesh {
         let away = (0..leaves.len()).filter(|i| {
             let center = forest.center(&forest.cells[leaves[*i] as usize]);
             let off = (vertices[*i].position - center).abs();
-            off.cmpgt(ROOM * size(leaves[*i])).any()
+            off.cmpgt(ROOM * size(forest, leaves[*i])).any()
         });
         let away: Vec<usize> = away.collect();
         let middles: Vec<(DVec3, f64)> = away.iter().map(|i| middles[*i]).collect();
@@ -206,20 +208,21 @@ impl Mesh {
 
     /// Makes triangles of the polygons, and returns the leaves at which they are no manifold.
     fn triangulate(&mut self, polygons: &[Polygon]) -> Vec<u32> {
-        let number = |leaf: &u32| match self.leaves.binary_search(leaf) {
-            Ok(i) | Err(i) => i as u32,
-        };
         let vertices = &self.raw.vertices;
         let mut triangles: Vec<[u32; 3]> = Vec::new();
         for polygon in polygons {
-            let [a, b, c, d] = polygon.leaves.each_ref().map(number);
+            let [a, b, c, d] = polygon
+                .leaves
+                .map(|leaf| self.leaves.partition_point(|own| *own < leaf) as u32);
             if c == d {
                 triangles.push([a, b, c]);
                 continue;
             }
             // Along the lower arc.
-            let height = |i: u32, j: u32| sag(&vertices[i as usize], &vertices[j as usize]);
-            if height(a, c) <= height(b, d) {
+            let [one, other] = [[a, c], [b, d]]
+                .map(|ends| ends.map(|i| &vertices[i as usize]))
+                .map(|[from, to]| sag(from, to));
+            if one <= other {
                 triangles.extend([[a, b, c], [a, c, d]]);
             } else {
                 triangles.extend([[a, b, d], [b, c, d]]);
@@ -277,12 +280,13 @@ mod tests {
         // A pyramid over a square.
         let base = [[4, 3, 2, 1]];
         let sides = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
-        let polygons = |sides: &[[u32; 3]], bases: &[[u32; 4]]| {
+        fn polygons(sides: &[[u32; 3]], bases: &[[u32; 4]]) -> Vec<Vec<u32>> {
             let sides = sides.iter().map(|own| own.to_vec());
-            let all = sides.chain(bases.iter().map(|own| own.to_vec()));
-            all.collect::<Vec<Vec<u32>>>()
-        };
-        let find = |all: &[Vec<u32>]| find_pinched(all.iter().map(|own| &own[..]));
+            sides.chain(bases.iter().map(|own| own.to_vec())).collect()
+        }
+        fn find(all: &[Vec<u32>]) -> Vec<u32> {
+            find_pinched(all.iter().map(|own| &own[..]))
+        }
         let whole = polygons(&sides, &base);
         assert!(find(&whole).is_empty());
         // Open along two edges.

@@ -547,7 +547,6 @@ fn decide(
         ..
     } = *sizes;
     let mut fates = vec![Fate::Split; leaves.len()];
-    let cell_of = |space: &Space<'_>, i: usize| space.forest.cells[leaves[i] as usize];
     // By bounds.
     let bounded = map_told(threads, leaves, progress, |node| {
         Bounded::new(space, &space.forest.cells[*node as usize], hiding)
@@ -563,14 +562,14 @@ fn decide(
     }
     // By the function at their centres.
     let centers = open.iter().map(|i| {
-        let cell = cell_of(space, *i);
+        let cell = space.forest.cells[leaves[*i] as usize];
         (cell.part, space.forest.center(&cell))
     });
     let centers: Vec<(u32, DVec3)> = centers.collect();
     let jets = space.jets_in_parts(&centers, tolerance, threads, progress)?;
     let mut near: Vec<(usize, Vertex)> = Vec::new();
     for ((i, (_, center)), jet) in open.iter().zip(&centers).zip(&jets) {
-        let (own, cell) = (&bounded[*i], cell_of(space, *i));
+        let (own, cell) = (&bounded[*i], space.forest.cells[leaves[*i] as usize]);
         let sure = side(own.narrow(jet, space.forest.size(cell.level)));
         if !is_crossed && sure != Side::Crossing {
             fates[*i] = Fate::Leaf(sure);
@@ -586,7 +585,7 @@ fn decide(
     corners.extend(space, &nodes, tolerance, threads, progress)?;
     let (space, corners) = (&*space, &*corners);
     let found = map_told(threads, &near, progress, |(i, middle)| {
-        let cell = cell_of(space, *i);
+        let cell = space.forest.cells[leaves[*i] as usize];
         match corners.of(leaves[*i]) {
             Some(ends) => look(space, &cell, middle, ends, tolerance, is_crossed),
             None => Fate::Split,
@@ -651,7 +650,7 @@ mod tests {
     /// reach all corners on a side.
     #[test]
     fn simple_cells_have_one_piece_on_each_side() {
-        let reach = |inside: &[bool; 8], from: usize| {
+        fn reach(inside: &[bool; 8], from: usize) -> [bool; 8] {
             let mut seen = [false; 8];
             let mut open = vec![from];
             while let Some(i) = open.pop() {
@@ -661,7 +660,7 @@ mod tests {
                 }
             }
             seen
-        };
+        }
         for bits in 1..255_u32 {
             let inside: [bool; 8] = core::array::from_fn(|i| bits >> i & 1 == 1);
             let own = reach(&inside, inside.iter().position(|is| *is).unwrap());

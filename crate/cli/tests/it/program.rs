@@ -627,9 +627,9 @@ fn animate_follows_the_variables() {
             "{}",
             String::from_utf8_lossy(&output.stderr)
         );
-        let bytes = |path: &str| std::fs::read(path).expect("written");
         let film = folder.path(&format!("film.{ending}"));
-        assert!(bytes(&merged) == bytes(&film), "{ending}");
+        let [merged, film] = [merged, film].map(|path| std::fs::read(path).expect("written"));
+        assert!(merged == film, "{ending}");
     }
     let still = folder.write("still.rat", BALL);
     let film = folder.path("still.png");

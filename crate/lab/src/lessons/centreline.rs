@@ -3,7 +3,6 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::contour::Grid;
 use crate::lesson::{Figure, Words};
 use crate::plot::{self, number};
 use crate::sample::{self, Window};
@@ -11,6 +10,7 @@ use crate::tools::{self, Stage, heading, reading, remark, slider};
 use egui::{Color32, CursorIcon, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use field::{Kernel, Primitive, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
+use picture::contour::Grid;
 use widgets::theme;
 
 /// Samples of the fields, columns and rows.

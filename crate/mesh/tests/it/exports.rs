@@ -440,10 +440,12 @@ fn what_is_far_away_keeps_its_shape() {
     let far = DVec3::new(500_000.0, 4_649_776.0, 12.0);
     let mut mesh = sphere(4);
     mesh.positions.iter_mut().for_each(|p| *p += far);
-    let part = |mesh: &TriangleMesh| Part {
-        name: "ball".into(),
-        mesh: mesh.clone(),
-    };
+    fn part(mesh: &TriangleMesh) -> Part {
+        Part {
+            name: "ball".into(),
+            mesh: mesh.clone(),
+        }
+    }
     let export = Export {
         name: "far".into(),
         parts: vec![part(&mesh)],

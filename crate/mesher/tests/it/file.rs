@@ -120,7 +120,9 @@ fn thin_tail_is_unbroken_at_any_tolerance() {
 
 /// The edges of a cube as limbs that taper.
 fn frame(kernel: Kernel, blobbiness: f64) -> Sum {
-    let corner = |i: usize| DVec3::from([1, 2, 4].map(|bit| if i & bit == 0 { 0.0 } else { 1.0 }));
+    fn corner(i: usize) -> DVec3 {
+        DVec3::from([1, 2, 4].map(|bit| if i & bit == 0 { 0.0 } else { 1.0 }))
+    }
     let limbs = (0..8_usize).flat_map(|i| [1, 2, 4].map(|bit| (i, i | bit)));
     let limbs = limbs.filter(|(i, j)| i != j).filter_map(|(i, j)| {
         let shaping = Shaping {
