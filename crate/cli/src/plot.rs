@@ -334,7 +334,7 @@ impl Plane {
         let names = axes(self.axis).map(|axis| ["x", "y", "z"][axis]);
         let mut text = chart.begin(names[0], names[1]);
         let unit = [0, 1].map(|i| (high[i] - low[i]) / (SIDE - 1) as f64);
-        for (level, colour) in LEVELS.into_iter().zip(COLOURS) {
+        for (i, (level, colour)) in LEVELS.into_iter().zip(COLOURS).enumerate() {
             let width = if level == 1.0 { 2.5 } else { 1.0 };
             let mut path = String::new();
             for piece in grid.line(level * THRESHOLD as f32) {
@@ -347,7 +347,7 @@ impl Plane {
                 text,
                 "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
             );
-            let y = MARGINS[1] + 16.0 * f64::from(level.log2() + 5.0);
+            let y = MARGINS[1] + 16.0 * (i + 1) as f64;
             let _ = writeln!(
                 text,
                 "<text x=\"{}\" y=\"{y:.1}\" fill=\"{colour}\" \
@@ -466,14 +466,14 @@ fn round_numbers([low, high]: [f64; 2]) -> Vec<f64> {
     if !(rough > 0.0 && rough.is_finite()) {
         return Vec::new();
     }
-    let power = 10.0_f64.powf(rough.log10().floor());
+    let power = libm::pow(10.0, libm::floor(libm::log10(rough)));
     let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
     let step = step
         .into_iter()
         .find(|step| *step >= rough)
         .unwrap_or(rough);
     let numbers = (low / step).ceil() as i64..=(high / step).floor() as i64;
-    let digits = (-power.log10().floor()).max(0.0) as i32;
+    let digits = (-libm::floor(libm::log10(power))).max(0.0) as i32;
     let unit = 10.0_f64.powi(digits);
     // Rounded, so that 0.1 + 0.2 is written 0.3.
     numbers
