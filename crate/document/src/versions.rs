@@ -117,11 +117,11 @@ mod tests {
 
     #[test]
     fn versions_are_few_small_and_reach_back_to_the_first() {
-        for size in [10, 200_000] {
+        for length in [10, 200_000] {
             let mut versions = Versions::default();
             for minute in 0..2000 {
                 let now = f64::from(minute) * PAUSE;
-                let before = text(&format!("{minute}{}", "x".repeat(size)));
+                let before = text(&format!("{minute}{}", "x".repeat(length)));
                 assert!(versions.note(before, None, now));
             }
             let all = versions.all();
