@@ -8,8 +8,10 @@ const MOST: usize = 150_000;
 /// Most elements of a scene that is made of a part of a text only, as that has errors: perhaps its
 /// loops were stopped.
 const PART: usize = 20_000;
-/// Most elements that may share a place, on average over the scene.
-const SHARED: f64 = 2000.0;
+/// Most elements that are traced at once wherever they are.
+const FEW: usize = 2000;
+/// Most elements that may share a place, on average over the box around the scene's flesh.
+const SHARED: f64 = 250.0;
 
 /// Whether a scene has so many elements, or so many at each place, that a picture may take hours.
 /// `is_part`: its text has errors.
@@ -19,7 +21,7 @@ pub fn is_heavy(scene: &Scene, is_part: bool) -> bool {
     if is_part && count > PART {
         return true;
     }
-    if count > MOST || (count as f64) < SHARED {
+    if count > MOST || count < FEW {
         return count > MOST;
     }
     let shapes = scene.elements.iter().map(|element| &element.shape);

@@ -104,7 +104,7 @@ fn text_side(page: &Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes)
     let room = if ui.available_height() < 480.0 {
         46.0
     } else {
-        72.0
+        130.0
     };
     Panel::bottom("problems")
         .resizable(true)

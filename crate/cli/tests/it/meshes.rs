@@ -125,7 +125,7 @@ fn far_models_are_moved_and_what_is_left_out_is_named() {
         sphere warm 1 500000 4649776 0\nsphere warm 1 500001.5 4649776 0\n\
         line bare <500000 4649776 0> <500001 4649776 0>\n";
     let file = folder.write("far.rat", far);
-    let out = folder.path("far.stl");
+    let out = folder.path("far.obj");
     let arguments = ["mesh", &file, "-o", &out, "--relative", "5e-3"];
     let known = mesh(&[&arguments[..], &["--json"]].concat());
     let said = known["diagnostics"].to_string();
