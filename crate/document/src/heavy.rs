@@ -11,7 +11,7 @@ const PART: usize = 20_000;
 /// Most elements that are traced at once wherever they are.
 const FEW: usize = 2000;
 /// Most elements that may share a place, on average over the box around the scene's flesh.
-const SHARED: f64 = 250.0;
+const SHARED: f64 = 2000.0;
 
 /// Whether a scene has so many elements, or so many at each place, that a picture may take hours.
 /// `is_part`: its text has errors.
@@ -29,9 +29,9 @@ pub fn is_heavy(scene: &Scene, is_part: bool) -> bool {
         return false;
     };
     let whole = whole.max(f64::MIN_POSITIVE);
-    let shares = shapes.filter_map(|shape| shape.bounding_sphere());
-    let sum: f64 = shares
-        .map(|(_, radius)| cube((radius / whole).min(1.0)))
+    let boxes = shapes.filter_map(|shape| shape.bounds(shape.radius()));
+    let sum: f64 = boxes
+        .map(|(low, high)| cube((0.5 * low.distance(high) / whole).min(1.0)))
         .sum();
     sum > SHARED
 }
