@@ -18,11 +18,11 @@ const SHARED: f64 = 2000.0;
 #[must_use]
 pub fn is_heavy(scene: &Scene, is_part: bool) -> bool {
     let count = scene.elements.len();
-    if is_part && count > PART {
+    if count > MOST || is_part && count > PART {
         return true;
     }
-    if count > MOST || count < FEW {
-        return count > MOST;
+    if count < FEW {
+        return false;
     }
     let shapes = scene.elements.iter().map(|element| &element.shape);
     let Some((_, whole)) = extent(shapes.clone()) else {
