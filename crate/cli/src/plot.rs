@@ -18,6 +18,8 @@ const SAMPLES: usize = 400;
 const SIDE: usize = 240;
 /// Levels of the lines on a plane, in thresholds; the surface is at 1.
 const LEVELS: [f32; 7] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
+/// Most that is drawn of kernels, some of which are endless at 0, and of a field, in thresholds.
+const TOPS: [f64; 2] = [1.2, 8.0];
 /// Colours of curves.
 const COLOURS: [&str; 9] = [
     "#c97a00", "#2288c4", "#007f5c", "#8f8200", "#3b47b8", "#c2410c", "#a33e7a", "#3a424c",
@@ -77,7 +79,7 @@ impl Plot {
             let table = tabulate_kernels(names)?;
             let text = match is_table {
                 true => table.write(),
-                false => table.draw("distance ÷ width", "kernel", None),
+                false => table.draw("distance ÷ width", "kernel", TOPS[0], None),
             };
             return self.save(&text, true);
         }
@@ -94,7 +96,10 @@ impl Plot {
                 let table = tabulate_line(&loaded, &surfaces, ends);
                 match is_table {
                     true => table.write(),
-                    false => table.draw("distance along the line", "field", Some(THRESHOLD)),
+                    false => {
+                        let top = TOPS[1] * THRESHOLD;
+                        table.draw("distance along the line", "field", top, Some(THRESHOLD))
+                    }
                 }
             }
             (None, Some(plane)) => {
@@ -128,14 +133,12 @@ impl Plot {
 /// # Errors
 /// If there is no kernel of a name.
 fn tabulate_kernels(names: &[String]) -> Result<Table, String> {
-    let named = |name: &String| {
-        let all = Kernel::ALL.map(Kernel::name).join(", ");
-        let unknown = || format!("there is no kernel `{name}`; the kernels are {all}");
-        Kernel::named(name).ok_or_else(unknown)
-    };
     let kernels = match names {
         [] => Kernel::ALL.to_vec(),
-        _ => names.iter().map(named).collect::<Result<_, _>>()?,
+        _ => names
+            .iter()
+            .map(|name| find_kernel(name))
+            .collect::<Result<_, _>>()?,
     };
     let rows = (0..=SAMPLES).map(|i| {
         let u = 3.0 * i as f64 / SAMPLES as f64;
@@ -146,6 +149,17 @@ fn tabulate_kernels(names: &[String]) -> Result<Table, String> {
     Ok(Table {
         names: std::iter::once(String::from("u")).chain(names).collect(),
         rows: rows.collect(),
+    })
+}
+
+/// Returns the kernel of a name.
+///
+/// # Errors
+/// If there is none.
+fn find_kernel(name: &str) -> Result<Kernel, String> {
+    Kernel::named(name).ok_or_else(|| {
+        let all = Kernel::ALL.map(Kernel::name).join(", ");
+        format!("there is no kernel `{name}`; the kernels are {all}")
     })
 }
 
@@ -187,12 +201,12 @@ impl Table {
         text + "\n"
     }
 
-    /// Returns a drawing of all columns over the first, with a dashed line at a height.
-    fn draw(&self, across: &str, up: &str, line: Option<f64>) -> String {
+    /// Returns a drawing of all columns over the first, up to `top`, with a dashed line at `line`.
+    fn draw(&self, across: &str, up: &str, top: f64, line: Option<f64>) -> String {
         let values = self.rows.iter().flat_map(|row| &row[1..]).copied();
         let finite = values.filter(|value| value.is_finite());
-        let most = finite.clone().chain(line).fold(0.0, f64::max);
-        let least = finite.fold(0.0, f64::min);
+        let most = finite.clone().chain(line).fold(0.0, f64::max).min(top);
+        let least = finite.fold(0.0, f64::min).max(-top);
         let last = self.rows.last().map_or(1.0, |row| row[0]);
         let chart = Chart {
             x: [0.0, last],
@@ -320,7 +334,7 @@ impl Plane {
         let names = axes(self.axis).map(|axis| ["x", "y", "z"][axis]);
         let mut text = chart.begin(names[0], names[1]);
         let unit = [0, 1].map(|i| (high[i] - low[i]) / (SIDE - 1) as f64);
-        for (level, colour) in LEVELS.into_iter().zip(COLOURS) {
+        for (i, (level, colour)) in LEVELS.into_iter().zip(COLOURS).enumerate() {
             let width = if level == 1.0 { 2.5 } else { 1.0 };
             let mut path = String::new();
             for piece in grid.line(level * THRESHOLD as f32) {
@@ -333,10 +347,11 @@ impl Plane {
                 text,
                 "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
             );
-            let y = MARGINS[1] + 16.0 * f64::from(level.log2() + 5.0);
+            let y = MARGINS[1] + 16.0 * (i + 1) as f64;
             let _ = writeln!(
                 text,
-                "<text x=\"{}\" y=\"{y:.1}\" fill=\"{colour}\" text-anchor=\"end\">{level} T</text>",
+                "<text x=\"{}\" y=\"{y:.1}\" fill=\"{colour}\" \
+                 text-anchor=\"end\">{level} T</text>",
                 SIZE[0] - 4.0
             );
         }
@@ -387,7 +402,13 @@ impl Chart {
         let mut text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"sans-serif\" font-size=\"13\">\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n"
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
+             <clipPath id=\"chart\">\
+             <rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+            MARGINS[0],
+            MARGINS[1],
+            width - MARGINS[0] - MARGINS[2],
+            height - MARGINS[1] - MARGINS[3]
         );
         for at in round_numbers(self.x) {
             let [[x, low], [_, high]] = self.y.map(|y| self.pixel([at, y]));
@@ -433,7 +454,8 @@ impl Chart {
             is_drawn = y.is_finite();
         }
         format!(
-            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" {more}/>\n"
+            "<path clip-path=\"url(#chart)\" d=\"{path}\" fill=\"none\" stroke=\"{colour}\" \
+             stroke-width=\"2\" {more}/>\n"
         )
     }
 }
@@ -444,14 +466,14 @@ fn round_numbers([low, high]: [f64; 2]) -> Vec<f64> {
     if !(rough > 0.0 && rough.is_finite()) {
         return Vec::new();
     }
-    let power = 10.0_f64.powf(rough.log10().floor());
+    let power = libm::pow(10.0, libm::floor(libm::log10(rough)));
     let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
     let step = step
         .into_iter()
         .find(|step| *step >= rough)
         .unwrap_or(rough);
     let numbers = (low / step).ceil() as i64..=(high / step).floor() as i64;
-    let digits = (-power.log10().floor()).max(0.0) as i32;
+    let digits = (-libm::floor(libm::log10(power))).max(0.0) as i32;
     let unit = 10.0_f64.powi(digits);
     // Rounded, so that 0.1 + 0.2 is written 0.3.
     numbers

@@ -627,9 +627,9 @@ fn animate_follows_the_variables() {
             "{}",
             String::from_utf8_lossy(&output.stderr)
         );
-        let bytes = |path: &str| std::fs::read(path).expect("written");
         let film = folder.path(&format!("film.{ending}"));
-        assert!(bytes(&merged) == bytes(&film), "{ending}");
+        let [merged, film] = [merged, film].map(|path| std::fs::read(path).expect("written"));
+        assert!(merged == film, "{ending}");
     }
     let still = folder.write("still.rat", BALL);
     let film = folder.path("still.png");
@@ -685,9 +685,10 @@ fn a_skeleton_is_drawn_without_a_dataset() {
     let picture = picture::file::decode(&bytes, format).expect("a picture");
     // Flesh is seen, framed: in the middle of the picture, and not at its edge.
     let corner = picture.pixel(0, 0);
-    let differ = |x: u32, y: u32| picture.pixel(x, y) != corner;
     let seen = (0..80).flat_map(|x| (0..60).map(move |y| (x, y)));
-    let seen: Vec<(u32, u32)> = seen.filter(|&(x, y)| differ(x, y)).collect();
+    let seen: Vec<(u32, u32)> = seen
+        .filter(|&(x, y)| picture.pixel(x, y) != corner)
+        .collect();
     assert!(seen.len() > 150, "{} pixels", seen.len());
     assert!(
         seen.iter()
@@ -712,27 +713,40 @@ fn plots_are_numbers_and_drawings() {
     }
     fn rows(text: &str) -> Vec<Vec<f64>> {
         let rows = text.lines().skip(1);
-        rows.map(|row| row.split(',').map(|n| n.parse().expect("a number")).collect())
-            .collect()
+        rows.map(|row| {
+            row.split(',')
+                .map(|n| n.parse().expect("a number"))
+                .collect()
+        })
+        .collect()
     }
     let table = folder.path("plot.csv");
     let text = plot(&["--kernels", "gauss", "-o", &table]).expect("a kernel");
     assert!(text.starts_with("u,gauss\n"), "{text}");
     for row in rows(&text) {
-        assert!((row[1] - (-row[0] * row[0]).exp()).abs() < 1e-12, "{row:?}");
+        assert!(
+            (row[1] - libm::exp(-row[0] * row[0])).abs() < 1e-12,
+            "{row:?}"
+        );
     }
     // Along a line from the middle of a ball outwards the field falls below 1 at its radius, 1.
     let line = ["--line", "0", "0", "0", "2", "0", "0"];
     let text = plot(&[&[ball.as_str()], &line[..], &["-o", &table]].concat()).expect("a line");
     for row in rows(&text) {
-        assert!((row[0] - 1.0).abs() < 1e-9 || (row[1] > 1.0) == (row[0] < 1.0), "{row:?}");
+        assert!(
+            (row[0] - 1.0).abs() < 1e-9 || (row[1] > 1.0) == (row[0] < 1.0),
+            "{row:?}"
+        );
     }
     // So it is on a plane.
     let window = ["--plane", "z=0", "--window", "-2", "-2", "2", "2"];
     let text = plot(&[&[ball.as_str()], &window[..], &["-o", &table]].concat()).expect("a plane");
     for row in rows(&text) {
-        let distance = row[0].hypot(row[1]);
-        assert!((distance - 1.0).abs() < 1e-5 || (row[2] > 1.0) == (distance < 1.0), "{row:?}");
+        let distance = libm::hypot(row[0], row[1]);
+        assert!(
+            (distance - 1.0).abs() < 1e-5 || (row[2] > 1.0) == (distance < 1.0),
+            "{row:?}"
+        );
     }
     let drawing = folder.path("plot.svg");
     let text = plot(&["--kernels", "-o", &drawing]).expect("a drawing");
@@ -743,7 +757,9 @@ fn plots_are_numbers_and_drawings() {
         vec!["--kernels", "nosuch", "-o", &drawing],
         vec![&ball, "-o", &drawing],
         vec![&ball, "--plane", "w=0", "-o", &drawing],
-        vec![&ball, "--plane", "z=0", "--window", "1", "0", "0", "1", "-o", &drawing],
+        vec![
+            &ball, "--plane", "z=0", "--window", "1", "0", "0", "1", "-o", &drawing,
+        ],
         vec!["--kernels", "-o", "plot.txt"],
     ] {
         assert_eq!(plot(&wrong), None, "{wrong:?}");
