@@ -115,6 +115,7 @@ mod blob_march;
 mod blob_set;
 mod body;
 mod cast;
+mod cells;
 mod clusters;
 mod exposure;
 mod far_march;

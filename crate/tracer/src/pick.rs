@@ -1,5 +1,6 @@
 //! Picking of the element that is seen in a direction.
-use crate::function::{RayQuery, crossings, range};
+use crate::cells::search::Search;
+use crate::function::range;
 use crate::picture::Hit;
 use crate::ray::Ray;
 use crate::solids::Solids;
@@ -76,16 +77,13 @@ impl Picker {
             let Some(range) = range(*support, &ray, limit, FURTHEST) else {
                 continue;
             };
-            let along = RayQuery {
-                ray,
-                range,
-                resolution: PICK_RESOLUTION,
-            };
             let mut found = None;
-            crossings(surface.function(), &along, |t, _| {
+            let asked = (PICK_RESOLUTION, false);
+            let mut search = Search::new(surface.function(), ray, asked, |t, _| {
                 found = Some(t);
                 false
             });
+            search.march(None, range);
             if let Some(t) = found {
                 limit = t;
                 let point = ray.at(t);

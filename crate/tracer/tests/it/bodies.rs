@@ -627,3 +627,37 @@ fn very_many_bodies_take_as_long_as_one() {
     assert!(evaluations[1] <= 2 * evaluations[0], "{evaluations:?}");
     assert!(seconds[1] <= 3.0 * seconds[0], "{seconds:?}");
 }
+
+/// Cells are made by the rays that come first: hits must not depend on which these are.
+#[test]
+fn hits_do_not_depend_on_the_order_of_rays() {
+    let mut hits = 0;
+    for seed in 0..count(6) as u64 {
+        let scene = match seed % 2 {
+            0 => with_functions(seed),
+            _ => in_contact(seed),
+        };
+        let rays = rays(&mut Random::new(seed), 12);
+        let trace = |order: &dyn Fn(usize) -> usize| {
+            let picture = Picture::new(&scene, [64; 2]);
+            let mut found = vec![Vec::new(); rays.len()];
+            for i in (0..rays.len()).map(order) {
+                let (origin, direction) = rays[i];
+                let hits = picture.hits(origin, direction).into_iter();
+                found[i] = hits.map(|hit| (hit.t.to_bits(), hit.body)).collect();
+            }
+            found
+        };
+        let last = rays.len() - 1;
+        let found = trace(&|i| i);
+        assert_eq!(found, trace(&|i| last - i));
+        // Alone, each ray finds the same.
+        for (i, (origin, direction)) in rays.iter().enumerate().step_by(7) {
+            let alone = Picture::new(&scene, [64; 2]).hits(*origin, *direction);
+            let alone: Vec<_> = alone.iter().map(|h| (h.t.to_bits(), h.body)).collect();
+            assert_eq!(found[i], alone);
+        }
+        hits += found.iter().map(Vec::len).sum::<usize>();
+    }
+    assert!(hits > count(300), "{hits}");
+}
