@@ -172,6 +172,9 @@ impl Implicit for Blend {
     }
 
     fn support_at(&self, level: f64) -> Option<Ball> {
+        if let Some(function) = self.single() {
+            return function.support_at(level);
+        }
         // Outside all balls no function has more than its share of the level.
         let functions = self.parts.iter().map(|part| &*part.function);
         let sum: Option<&dyn Implicit> = match self.sum.primitives.len() {

@@ -301,11 +301,7 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
 
     /// Bounds on the function in a ball as [`Implicit::variation`] gives them, and value and
     /// gradient at its centre, where finding the bounds finds these, too.
-    fn variation_with_jet(
-        &self,
-        part: Option<&Part>,
-        ball: Ball,
-    ) -> (Variation, Option<Jet<f64>>) {
+    fn variation_with_jet(&self, part: Option<&Part>, ball: Ball) -> (Variation, Option<Jet<f64>>) {
         (self.variation(part, ball), None)
     }
 }

@@ -145,11 +145,7 @@ impl Implicit for Placed {
         self.shrink(self.function.variation(part, self.own_ball(ball)))
     }
 
-    fn variation_with_jet(
-        &self,
-        part: Option<&Part>,
-        ball: Ball,
-    ) -> (Variation, Option<Jet<f64>>) {
+    fn variation_with_jet(&self, part: Option<&Part>, ball: Ball) -> (Variation, Option<Jet<f64>>) {
         let (own, jet) = self.function.variation_with_jet(part, self.own_ball(ball));
         (self.shrink(own), jet.map(|jet| self.world(jet)))
     }

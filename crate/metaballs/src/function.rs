@@ -5,7 +5,7 @@ use crate::profile::{CUT, profile};
 use crate::triangle::Triangle;
 use core::fmt;
 use field::real::Scalar;
-use field::{Implicit, Jet, Part, Real, Slack, Variation};
+use field::{Implicit, Jet, Part, Real, Slack, THRESHOLD, Variation};
 use glam::DVec3;
 use mesh::limits::MAX_TRIANGLES;
 use mesh::{Aabb, Bvh};
@@ -200,7 +200,8 @@ impl Metaballs {
 
     /// Returns the facets that may act in a ball, in the order in which they are added up.
     fn near_ball(&self, field::Ball { center, radius }: field::Ball) -> impl Iterator<Item = u32> {
-        self.bvh.overlapping(&self.around(center - radius, center + radius))
+        self.bvh
+            .overlapping(&self.around(center - radius, center + radius))
     }
 
     /// Returns a box around the points from which a facet must be looked for, a little wider than
@@ -334,8 +335,12 @@ impl Implicit for Metaballs {
     }
 
     fn support(&self) -> Option<field::Ball> {
-        // n facets at the distance ln n/k beyond their ρ make 1 at most.
-        let count = self.bvh.len() as f64;
+        self.support_at(THRESHOLD)
+    }
+
+    fn support_at(&self, level: f64) -> Option<field::Ball> {
+        // n facets at the distance ln(n/a)/k beyond their ρ make a at most.
+        let count = (self.bvh.len() as f64 / level).max(1.0);
         let beyond = Real::ln(count).min(CUT) / self.sharpness;
         let Aabb { min, max } = self.bvh.bounds();
         Some(field::Ball {

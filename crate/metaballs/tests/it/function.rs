@@ -395,7 +395,11 @@ fn parts_are_the_whole_function_in_their_balls() {
                 let whole = balls.jet(p);
                 assert_eq!(balls.jet_of(part, p), whole, "{kind:?} {p}");
                 let lanes = p.to_array().map(|x| f32x8::splat(x as f32));
-                assert_eq!(balls.jet8_of(part, lanes), balls.jet8(lanes), "{kind:?} {p}");
+                assert_eq!(
+                    balls.jet8_of(part, lanes),
+                    balls.jet8(lanes),
+                    "{kind:?} {p}"
+                );
                 // Clearances hold within the part's ball.
                 let own = balls.clearance_of(part, p).expect("a ball");
                 for _ in 0..10 {

@@ -50,13 +50,13 @@ use search::{Bend, Search, jet_of};
 use std::sync::{Arc, OnceLock};
 
 /// Most halvings of the cube.
-const DEEPEST: u32 = 9;
+const DEEPEST: u32 = 8;
 /// Most bytes that the cells of a world take, 256 MB.
 const MOST_BYTES: usize = 256 << 20;
 /// What may be left out of a narrowed function, in units of T.
 const SLACK: f64 = 1e-11;
 /// Largest change of the gradient in a flat cell, as a share of that at its middle.
-const FLAT: f64 = 0.5;
+const FLAT: f64 = 1.0;
 /// Step of differences of gradients, over a cell's radius.
 const STEP: f64 = 1e-3;
 /// Rounding of a gradient, as a share of the steepest.
@@ -191,11 +191,7 @@ impl Cells {
     }
 
     /// Searches a ray for crossings in a range of its parameters, which must be within the ball.
-    pub fn search<T: FnMut(f64, bool) -> bool>(
-        &self,
-        search: &mut Search<'_, T>,
-        range: [f64; 2],
-    ) {
+    pub fn search<T: FnMut(f64, bool) -> bool>(&self, search: &mut Search<'_, T>, range: [f64; 2]) {
         let cube = Cube {
             center: self.center,
             half: self.half,
@@ -483,7 +479,8 @@ mod tests {
                 };
                 let state = cells.examine(&sum, cube, above);
                 for _ in 0..20 {
-                    let offset = cube.half * DVec3::from_array([0; 3].map(|_| random.range(-1.0, 1.0)));
+                    let offset =
+                        cube.half * DVec3::from_array([0; 3].map(|_| random.range(-1.0, 1.0)));
                     let jet = sum.jet(cube.center + offset);
                     let value = jet.value - THRESHOLD;
                     match &state {
@@ -511,7 +508,10 @@ mod tests {
                 cube = cube.part(random.below(8));
             }
         }
-        assert!(decided > count(20) && quadratic > count(10), "{decided} {linear} {quadratic}");
+        assert!(
+            decided > count(20) && quadratic > count(10),
+            "{decided} {linear} {quadratic}"
+        );
     }
 
     #[test]
@@ -530,6 +530,9 @@ mod tests {
                 missed += usize::from(entries.is_empty());
             }
         }
-        assert!(entered > count(100) && missed > count(20), "{entered} {missed}");
+        assert!(
+            entered > count(100) && missed > count(20),
+            "{entered} {missed}"
+        );
     }
 }

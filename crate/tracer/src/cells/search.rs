@@ -378,7 +378,11 @@ impl<'a, T: FnMut(f64, bool) -> bool> Search<'a, T> {
             let halved = high - low < 0.5 * width;
             width = high - low;
             let is_newton = newton > low && newton < high && (halved || step.abs() < 0.25 * width);
-            let next = if is_newton { newton } else { 0.5 * (low + high) };
+            let next = if is_newton {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
             if next == x || next <= low || next >= high {
                 break;
             }
