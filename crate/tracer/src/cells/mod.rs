@@ -4,8 +4,8 @@
 //! go, and front to back along them. A cell is one of
 //!
 //! - *outside* or *inside*: the function is proved to be below, or above, the threshold;
-//! - *flat*: in it the function is near the first terms of its Taylor series about the cell's middle
-//!   c: `f(c) + ∇f(c)·x`, from which it differs by at most `C·|x|²/2 + J·|x|`, where C bounds the
+//! - *flat*: the function is near the first terms of its Taylor series about the cell's middle c:
+//!   `f(c) + ∇f(c)·x`, from which it differs by at most `C·|x|²/2 + J·|x|`, where C bounds the
 //!   curvature and J the jumps of the gradient ([`field::Variation`]); or, where that is not
 //!   enough, these and `xᵀHx/2`, from which second derivatives differ by at most `2.74·R + M·|x|`,
 //!   where M bounds the third derivative of all that has one, and R the second one of the rest.
@@ -53,7 +53,7 @@ use std::sync::{Arc, OnceLock};
 const DEEPEST: u32 = 8;
 /// Most bytes that the cells of a world take, 256 MB.
 const MOST_BYTES: usize = 256 << 20;
-/// What may be left out of a narrowed function, in units of T.
+/// Largest sum of terms that narrowing leaves out, in units of T.
 const SLACK: f64 = 1e-11;
 /// Largest change of the gradient in a flat cell, as a share of that at its middle.
 const FLAT: f64 = 1.0;
@@ -85,7 +85,7 @@ struct Cell {
     parts: OnceLock<Box<[Cell; 8]>>,
 }
 
-/// What is known of the function in a cell.
+/// State of a cell: knowledge of the function in it.
 #[derive(Debug)]
 enum State {
     Outside,
@@ -109,8 +109,8 @@ pub(crate) struct Flat {
     pub gradient: DVec3,
     /// The second derivative, or 0.
     pub hessian: DMat3,
-    /// By no more than this, and `third` times the distance, second derivatives along any line
-    /// differ from that.
+    /// Bound on the difference of second derivatives along any line from that, beside `third`
+    /// times the distance from the middle.
     pub second: f64,
     pub third: f64,
     /// Bounds without the Taylor series.
@@ -138,7 +138,7 @@ impl Flat {
     }
 }
 
-/// What a cell has of the one that it is a part of.
+/// Knowledge that a cell inherits from the one that it is a part of.
 #[derive(Clone, Copy)]
 struct Above<'a> {
     /// The function as it is narrowed there.
@@ -458,7 +458,7 @@ mod tests {
         assert!(hits > count(200), "{hits}");
     }
 
-    /// All that cells say of the function holds at random places.
+    /// Claims of cells about the function hold at random places.
     #[test]
     fn cells_keep_their_word() {
         let mut random = Random::new(42);

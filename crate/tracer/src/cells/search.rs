@@ -99,7 +99,7 @@ pub(crate) struct Search<'a, T> {
     /// Halvings that are left.
     left: u32,
     pub evaluations: u64,
-    /// Is told each crossing, and whether the ray enters there; returns whether to go on.
+    /// Takes each crossing, and whether the ray enters there; returns whether to go on.
     tell: T,
 }
 
