@@ -126,6 +126,29 @@ test('hostile texts do not stop the page', async () => {
   assert.deepEqual(sinew.troubles, []);
 });
 
+test('a link to very many shapes is refused before it is traced', async () => {
+  await sinew.load(OWN);
+  await sinew.finished();
+  const loop = '# theirs\nlight White point, position 4 3 5\nsurface s diffuse Red, blobbiness -1\n';
+  for (const balls of ['190000 { sphere s 0.01, i 0 0 }', '20000 { sphere s 1, 0 0 0 }']) {
+    await sinew.load(`${loop}for i = 1 to ${balls}\n`);
+    const link = await sinew.link();
+    const other = await browser.open({ fragment: link.slice(link.indexOf('#')) });
+    const { phase, elements } = await other.until(({ phase, elements }) => elements > 0 && phase !== 'waiting');
+    assert.equal(phase, 'cancelled', `${elements} elements`);
+    await other.place('trace all the same');
+    await other.keep(`heavy ${elements}`);
+    // The page answers at once, and goes on with another text.
+    await other.load(OWN);
+    await other.finished();
+    assert.equal((await other.places())['trace all the same'], undefined);
+    assert.deepEqual(other.troubles, []);
+    await other.close();
+  }
+  await sinew.load(OWN);
+  await sinew.finished();
+});
+
 test('whatever the pages and their scripts name is there', async () => {
   const base = new URL('.', sinew.page.url());
   const get = async (name) => {
@@ -133,7 +156,7 @@ test('whatever the pages and their scripts name is there', async () => {
     assert.equal(response.status(), 200, name);
     return response.text();
   };
-  const names = new Set(['index.html', 'reference.html', 'figures.html', 'worker.js', 'tools_worker.js']);
+  const names = new Set(['index.html', 'reference.html', 'figures.html', 'neurons.html', 'worker.js', 'tools_worker.js']);
   // The set grows while it is gone through.
   for (const name of names) {
     const text = await get(name);

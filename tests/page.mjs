@@ -122,6 +122,15 @@ export class Sinew {
     await this.page.context().close();
   }
 
+  /** Opens the page in another tab of the same profile. */
+  async beside(before) {
+    const page = await this.page.context().newPage();
+    await before?.(page);
+    const sinew = new Sinew(page, this.kind, this.size);
+    await sinew.goto(new URL('.', this.page.url()).href);
+    return sinew;
+  }
+
   text() {
     return this.page.evaluate(() => sinew.text());
   }

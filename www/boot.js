@@ -1,4 +1,5 @@
-// Loads the program, and says so in words if it cannot run. Everything else is Rust.
+// Loads the program, and says so in words if it cannot run. Nearly everything else is Rust.
+import { open } from './keep.js';
 import init from './studio.js';
 
 const loading = document.getElementById('loading');
@@ -13,6 +14,7 @@ function fail(reason) {
 }
 
 try {
+  await open();
   await init();
   await window.sinew.ready;
   loading.className = 'done';

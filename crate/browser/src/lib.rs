@@ -17,6 +17,7 @@ mod native;
 pub mod recording;
 #[cfg(target_arch = "wasm32")]
 pub mod software;
+pub mod voice;
 #[cfg(target_arch = "wasm32")]
 mod web;
 

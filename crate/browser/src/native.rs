@@ -73,6 +73,47 @@ pub fn store() -> Box<dyn Store> {
     Box::<BTreeMap<String, String>>::default()
 }
 
+/// Shows the elements of a description to assistive technology, of which tests have none.
+pub fn show_elements(_text: &str) {}
+
+/// Fetches what is large of a saved work.
+pub fn fetch_work(_id: &str, done: impl FnOnce() + 'static) {
+    come(done);
+}
+
+thread_local! {
+    static CLAIMED: RefCell<Option<String>> = const { RefCell::new(None) };
+    static TAKEN: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Asks to be the only tab that writes a work.
+pub fn claim_work(id: Option<&str>) {
+    CLAIMED.set(id.map(str::to_owned));
+}
+
+/// Returns the work that was claimed last, for tests.
+#[must_use]
+pub fn last_claim() -> Option<String> {
+    CLAIMED.with_borrow(Clone::clone)
+}
+
+/// Takes a work over from the tab that writes it.
+pub fn take_work_over(id: &str) {
+    TAKEN.set(Some(id.to_owned()));
+}
+
+/// Takes the work that was taken over last, for tests.
+#[must_use]
+pub fn last_takeover() -> Option<String> {
+    TAKEN.take()
+}
+
+/// Whether something waits to be written.
+#[must_use]
+pub fn is_storing() -> bool {
+    false
+}
+
 /// Saves a file for the user.
 pub fn download(name: &str, _mime: &str, bytes: &[u8]) {
     DOWNLOAD.set(Some((name.to_owned(), bytes.to_vec())));
@@ -165,6 +206,12 @@ pub fn set_stopped(has_stopped: bool) {
 #[must_use]
 pub fn has_storage() -> bool {
     true
+}
+
+/// Whether the user's system asks for something: nothing in tests.
+#[must_use]
+pub fn is_wanted(_query: &str) -> bool {
+    false
 }
 
 /// Sets the title of the browser's tab.

@@ -3,8 +3,8 @@
 use document::intake::{self, Incoming};
 use document::storage::Store;
 use egui_wgpu::wgpu;
-use std::collections::BTreeMap;
 use std::sync::Arc;
+use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
 use wasm_bindgen_futures::JsFuture;
 
@@ -108,41 +108,113 @@ pub fn push_hash(hash: &str) {
     }
 }
 
-/// Returns the local storage, or memory where the browser allows none.
-#[must_use]
-pub fn store() -> Box<dyn Store> {
-    match window().local_storage() {
-        Ok(Some(storage)) => Box::new(Local(storage)),
-        _ => Box::<BTreeMap<String, String>>::default(),
-    }
+#[wasm_bindgen(raw_module = "./keep.js")]
+extern "C" {
+    fn get(key: &str) -> Option<String>;
+    #[wasm_bindgen(catch)]
+    fn set(key: &str, value: &str) -> Result<(), JsValue>;
+    fn remove(key: &str);
+    fn keys() -> Vec<String>;
+    fn lasts() -> bool;
+    #[wasm_bindgen(js_name = isWriting)]
+    fn is_writing() -> bool;
+    #[wasm_bindgen(catch, js_name = fetchWork)]
+    async fn fetch_kept(id: &str) -> Result<JsValue, JsValue>;
+    fn claim(id: Option<&str>);
+    #[wasm_bindgen(js_name = takeOver)]
+    fn take_over(id: &str);
+    fn listen(listener: &Closure<dyn Fn(String, String)>);
 }
 
-struct Local(web_sys::Storage);
+#[wasm_bindgen(raw_module = "./voice.js")]
+extern "C" {
+    #[wasm_bindgen(js_name = showElements)]
+    fn show_in_page(text: &str);
+    #[wasm_bindgen(js_name = listenToElements)]
+    fn listen_in_page(listener: &Closure<dyn Fn(String, String, String)>);
+}
 
-impl Store for Local {
+/// Shows the elements of a description ([`crate::voice`]) to assistive technology.
+pub fn show_elements(text: &str) {
+    show_in_page(text);
+}
+
+/// Calls a function with what is done with elements: their number, the deed and a value.
+pub fn listen_to_elements(listener: impl Fn(u64, &str, &str) + 'static) {
+    let listener = Closure::<dyn Fn(String, String, String)>::new(
+        move |element: String, deed: String, value: String| {
+            if let Ok(element) = element.parse() {
+                listener(element, &deed, &value);
+            }
+        },
+    );
+    listen_in_page(&listener);
+    listener.forget();
+}
+
+/// Returns the browser's storage, or memory where it allows none.
+#[must_use]
+pub fn store() -> Box<dyn Store> {
+    Box::new(Keeper)
+}
+
+/// The storage that the script `keep.js` keeps.
+struct Keeper;
+
+impl Store for Keeper {
     fn get(&self, key: &str) -> Option<String> {
-        self.0.get_item(key).ok().flatten()
+        get(key)
     }
 
     fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
-        self.0.set_item(key, value).map_err(|_| {
+        set(key, value).map_err(|_| {
             String::from(
                 "The browser's storage is full, so your latest changes live in this tab only. \
-                    Delete old works in the gallery, or keep a link.",
+                    Delete old works, or save the project as a file.",
             )
         })
     }
 
     fn remove(&mut self, key: &str) {
-        let _ = self.0.remove_item(key);
+        remove(key);
     }
 
     fn keys(&self) -> Vec<String> {
-        let count = self.0.length().unwrap_or(0);
-        (0..count)
-            .filter_map(|index| self.0.key(index).ok().flatten())
-            .collect()
+        keys()
     }
+}
+
+/// Fetches what is large of a saved work, and calls back when it can be opened.
+pub fn fetch_work(id: &str, done: impl FnOnce() + 'static) {
+    let id = id.to_owned();
+    wasm_bindgen_futures::spawn_local(async move {
+        // What cannot be fetched was told to the listener.
+        let _ = fetch_kept(&id).await;
+        done();
+    });
+}
+
+/// Asks to be the only tab that writes a work, and lets go of the one before.
+pub fn claim_work(id: Option<&str>) {
+    claim(id);
+}
+
+/// Takes a work over from the tab that writes it.
+pub fn take_work_over(id: &str) {
+    take_over(id);
+}
+
+/// Whether something waits to be written.
+#[must_use]
+pub fn is_storing() -> bool {
+    is_writing()
+}
+
+/// Calls a function with what the storage tells: its kind, and the work or the sentence.
+pub fn listen_to_storage(listener: impl Fn(String, String) + 'static) {
+    let listener = Closure::<dyn Fn(String, String)>::new(listener);
+    listen(&listener);
+    listener.forget();
 }
 
 /// Saves a file for the user.
@@ -260,7 +332,14 @@ pub fn set_stopped(has_stopped: bool) {
 /// Whether the storage outlives the page.
 #[must_use]
 pub fn has_storage() -> bool {
-    matches!(window().local_storage(), Ok(Some(_)))
+    lasts()
+}
+
+/// Whether the user's system asks for something, in the words of a media query.
+#[must_use]
+pub fn is_wanted(query: &str) -> bool {
+    let asked = window().match_media(query).ok().flatten();
+    asked.is_some_and(|asked| asked.matches())
 }
 
 /// Sets the title of the browser's tab.

@@ -161,11 +161,21 @@ impl Mesh {
             }
         }
         let write_seconds = start.elapsed().as_secs_f64();
-        for note in &model.notes {
+        let shift = mesh::shift_of(&model.bounds(), self.size / longest);
+        let notes = model
+            .notes
+            .iter()
+            .cloned()
+            .chain(mesh::describe_shift(shift));
+        let notes: Vec<String> = notes.collect();
+        for note in &notes {
             eprintln!("{note}");
         }
         if self.json {
             let summary = json!({
+                "diagnostics": loaded.compiled.diagnostics,
+                "notes": notes,
+                "shift": shift.to_array(),
                 "tolerance": model.tolerance,
                 "millimetres": self.size / longest,
                 "evaluations": model.evaluations,

@@ -2,21 +2,21 @@
 use crate::Bulge;
 use crate::squashed::product;
 use field::local::{Bounds, Two};
-use field::{Ball, Enclosure, Implicit, Jet, Local, Part, THRESHOLD, Variation};
+use field::{Ball, Enclosure, Implicit, Jet, Local, Part, Real, THRESHOLD, Variation};
 use glam::DVec3;
-use std::sync::Arc;
 use wide::f32x8;
 
-/// The function `f₁ + g(f₂)`: f₁ is the largest stretch of a skeleton at a point, f₂ the largest
-/// one more than 2D away from it along the skeleton ([`Local::two`]), and g the deformation of
-/// [`Bulge::jet`].
+/// The function `f₁ + g(f₂)` of the local convolution F of a skeleton at a point and that, F₂, of
+/// what is far from there along the skeleton ([`Local::two`]): `f₁ = max(F, ρ(F₂))` and `f₂ = min(F,
+/// F₂)`, with g the deformation of [`Bulge::jet`]. ρ(x) is x but for what is far below T, where the
+/// bulge begins: 0 up to there, c, x from (c+T)/2 on, and `x·(3t² − 2t³)`, t = 2(x−c)/(T−c), between.
 ///
 /// Where both are above T this is `T + f₁ − f₂`, which is T on the sheet f₁ = f₂ between two folds.
 /// As that is no surface, but the inside of one body, the value there is `(f₁+T)/2` where that is
 /// more.
 #[derive(Clone, Debug)]
 pub struct Folded {
-    local: Arc<Local>,
+    local: Local,
     bulge: Bulge,
     height: f64,
 }
@@ -24,32 +24,96 @@ pub struct Folded {
 impl Folded {
     /// Makes the function of a skeleton with a bulge beside its folds.
     #[must_use]
-    pub fn new(local: Arc<Local>, bulge: Bulge) -> Self {
+    pub fn new(local: Local, bulge: Bulge) -> Self {
         Self {
-            local,
+            // Below its start the bulge is 0.
+            local: local.with_folds(bulge.start()),
             height: bulge.height(),
             bulge,
         }
     }
 
-    /// Bounds in a ball, not narrowed by the value at its centre.
-    fn bounds(&self, ball: Ball) -> Bounds {
-        let Two { first, second } = self.local.enclose_two(ball, Some(self.bulge.start()));
+    /// Computes value and gradient from those of both fields.
+    fn combine<R: Real>(&self, (first, second): (Jet<R>, Option<Jet<R>>)) -> Jet<R> {
         let Some(second) = second else { return first };
+        let (ramped, slope) = self.ramp(second.value);
+        let ramped = Jet {
+            value: ramped,
+            gradient: second.gradient.map(|g| slope * g),
+        };
+        let second = pick(first.value.lt(second.value), first, second);
+        let first = pick(first.value.lt(ramped.value), ramped, first);
+        let (deformed, slope) = self.bulge.jet(second.value);
+        let pressed = first.plus(Jet {
+            value: deformed,
+            gradient: second.gradient.map(|g| slope * g),
+        });
+        let [half, threshold] = [0.5, THRESHOLD].map(R::splat);
+        let least = Jet {
+            value: half * (first.value + threshold),
+            gradient: first.gradient.map(|g| half * g),
+        };
+        let inside = R::both(threshold.lt(second.value), pressed.value.lt(least.value));
+        pick(inside, least, pressed)
+    }
+
+    /// Computes ρ and its slope.
+    fn ramp<R: Real>(&self, x: R) -> (R, R) {
+        let [zero, one] = [0.0, 1.0].map(R::splat);
+        let start = self.bulge.start();
+        let rate = 2.0 / (THRESHOLD - start);
+        let t = (R::splat(rate) * (x - R::splat(start))).max(zero).min(one);
+        let part = t * t * (R::splat(3.0) - t - t);
+        let slope = R::splat(6.0 * rate) * t * (one - t);
+        (x * part, part + x * slope)
+    }
+
+    /// Bounds in a ball, not narrowed by the value at its centre, and both fields there.
+    fn bounds(&self, ball: Ball) -> (Bounds, Option<Jet<f64>>) {
+        let Two {
+            mut first,
+            second,
+            at_center,
+        } = self.local.enclose_two(ball);
+        let at_center = at_center.map(|two| self.combine(two));
+        let Some(mut second) = second else {
+            return (first, at_center);
+        };
+        let (own, other) = (first, second);
+        let mut crease = 0.0;
+        if other.value[1] > own.value[0] {
+            // Either may be the larger one. Bounds on the derivatives of ρ where it is not x.
+            let rate = 2.0 / (THRESHOLD - self.bulge.start());
+            let [once, twice] = match self.ramp(other.value[0]).0 == other.value[0] {
+                true => [1.0, 0.0],
+                false => [1.0 + 1.5 * rate, (3.0 + 6.0 * rate) * rate],
+            };
+            let ramped = other.value.map(|x| self.ramp(x).0);
+            first.value = [0, 1].map(|i| own.value[i].max(ramped[i]));
+            second.value = [0, 1].map(|i| own.value[i].min(other.value[i]));
+            second.slope = own.slope.max(other.slope);
+            second.curvature = own.curvature.max(other.curvature);
+            if ramped[1] > own.value[0] {
+                first.slope = own.slope.max(once * other.slope);
+                let bend = product(twice, other.slope * other.slope);
+                first.curvature = own.curvature.max(once * other.curvature + bend);
+            }
+            crease = first.slope + second.slope;
+        }
+        let [low, high] = first.value;
         let spread = self.bulge.spread(second.value);
-        // f₂ ≤ f₁, so that g lowers nothing but what is inside.
-        let inside = second.value[1] > THRESHOLD && first.value[1] > THRESHOLD;
-        let low = first.value[0];
+        // If g lowers f₁, f₂ is above T, and f₁ no less.
+        let inside = second.value[1] > THRESHOLD;
         let lowest = if inside && low > THRESHOLD {
             0.5 * (low + THRESHOLD)
         } else {
             low
         };
         let slope = first.slope + product(spread.slope, second.slope);
-        Bounds {
+        let bounds = Bounds {
             value: [
                 (low + spread.value[0]).max(lowest),
-                first.value[1] + spread.value[1].max(0.0),
+                high + spread.value[1].max(0.0),
             ],
             slope,
             curvature: first.curvature
@@ -58,49 +122,49 @@ impl Folded {
             // Inside there is a crease beside the sheet.
             jump: match inside {
                 true => 2.0 * slope,
-                false => first.jump + product(spread.slope, second.jump),
+                false => (1.0 + spread.slope) * crease,
             },
-        }
+        };
+        (bounds, at_center)
+    }
+}
+
+/// Returns one of two values and gradients.
+fn pick<R: Real>(mask: R::Mask, yes: Jet<R>, no: Jet<R>) -> Jet<R> {
+    Jet {
+        value: R::select(mask, yes.value, no.value),
+        gradient: core::array::from_fn(|i| R::select(mask, yes.gradient[i], no.gradient[i])),
     }
 }
 
 impl Implicit for Folded {
     fn jet(&self, point: DVec3) -> Jet<f64> {
-        // Below its start the bulge is 0.
-        let (first, second) = self.local.two_above(point, self.bulge.start());
-        let Some(second) = second else { return first };
-        let (deformed, slope) = self.bulge.jet(second.value);
-        if first.value > THRESHOLD && second.value > THRESHOLD {
-            let half = 0.5 * (first.value - THRESHOLD);
-            let apart = first.value - second.value;
-            if apart < half {
-                return Jet {
-                    value: THRESHOLD + half,
-                    gradient: first.gradient.map(|g| 0.5 * g),
-                };
-            }
-        }
-        first.plus(Jet {
-            value: deformed,
-            gradient: second.gradient.map(|g| slope * g),
-        })
+        self.combine(self.local.two(point.to_array()))
     }
 
     fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
-        field::local::narrow(self.jet(DVec3::from_array(point.map(f64::from))))
+        self.combine(self.local.two(point))
     }
 
     fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
-        field::local::lanes(points, |point| self.jet32(point))
+        self.combine(self.local.two(points))
     }
 
     fn enclose(&self, ball: Ball) -> Enclosure {
-        let bounds = self.bounds(ball).enclosure();
-        bounds.about(&self.jet(ball.center), ball.radius)
+        let (bounds, at_center) = self.bounds(ball);
+        match at_center {
+            Some(jet) => bounds.enclosure().about(&jet, ball.radius),
+            None => bounds.enclosure(),
+        }
     }
 
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
-        self.bounds(ball).variation()
+        self.bounds(ball).0.variation()
+    }
+
+    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        let (bounds, at_center) = self.bounds(ball);
+        (bounds.variation(), at_center)
     }
 
     fn most(&self, ball: Ball) -> f64 {

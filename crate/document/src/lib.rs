@@ -2,9 +2,10 @@
 //! they make, its way to storage, links and files, and the jobs that are done on it.
 //!
 //! - [`session`]: texts, undo steps ([`history`]), compiling, the present scene and camera
-//! - [`work`]: the open work and its origin; [`storage`] keeps works,
+//! - [`work`]: the open work and its origin; [`storage`] keeps works and their [`versions`],
 //!   [`share`] makes links of them, [`project_file`] files,
 //!   [`intake`] sorts files from outside, [`examples`] lists ours
+//! - [`heavy`]: scenes whose pictures are not begun unasked
 //! - [`player`]: the frames of a film; [`desk`]: the files that jobs on pictures find
 //! - [`reading`], [`fitting`], [`mesh_export`]: jobs of the tools workers
 
@@ -12,6 +13,7 @@ pub mod asset;
 pub mod desk;
 pub mod examples;
 pub mod fitting;
+pub mod heavy;
 pub mod history;
 pub mod intake;
 pub mod mesh_export;
@@ -24,4 +26,6 @@ pub mod session;
 pub mod share;
 pub mod size;
 pub mod storage;
+mod typed;
+pub mod versions;
 pub mod work;

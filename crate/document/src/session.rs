@@ -7,6 +7,7 @@
 
 use crate::asset::{self, Asset, MAX_ALL, MAX_ASSETS};
 use crate::history::{History, Snapshot};
+use crate::typed;
 use rats::{Compiled, Diagnostic, Project, Recipe, Severity, TextEdit, Unread};
 use scene::{Camera, Scene};
 use serde::{Deserialize, Serialize};
@@ -131,6 +132,8 @@ pub struct Session {
     compiled: Compiled,
     /// The scene to draw.
     good: Option<Arc<Scene>>,
+    /// Whether it is of a text before.
+    is_old: bool,
     /// Pickers of that scene and of its draft.
     pickers: [OnceCell<Picker>; 2],
     camera: Option<Camera>,
@@ -143,6 +146,11 @@ pub struct Session {
     unread: Vec<Unread>,
     compile_seconds: f64,
     film_frame: u32,
+    /// The file and byte at which a word is being typed.
+    typing: Option<(usize, usize)>,
+    /// The messages that are not about that word.
+    shown: Vec<Diagnostic>,
+    messages_number: u64,
 }
 
 impl Session {
@@ -156,6 +164,7 @@ impl Session {
             history: History::default(),
             compiled: Compiled::default(),
             good: None,
+            is_old: false,
             pickers: Default::default(),
             camera: None,
             revision: 0,
@@ -166,6 +175,9 @@ impl Session {
             unread: Vec::new(),
             compile_seconds: 0.0,
             film_frame: 0,
+            typing: None,
+            shown: Vec::new(),
+            messages_number: 0,
         };
         session.open(kept);
         session
@@ -485,12 +497,69 @@ impl Session {
             .count()
     }
 
+    /// Returns the messages of the last [`Session::compile`] but those about the word that is being
+    /// typed.
+    #[must_use]
+    pub fn messages(&self) -> &[Diagnostic] {
+        &self.shown
+    }
+
+    /// Whether there is an error among [`Session::messages`].
+    #[must_use]
+    pub fn shows_errors(&self) -> bool {
+        let shown = self.shown.iter();
+        shown.map(|shown| shown.severity).max() == Some(Severity::Error)
+    }
+
+    /// Returns a number that rises when other messages are shown.
+    #[must_use]
+    pub fn messages_number(&self) -> u64 {
+        self.messages_number
+    }
+
+    /// Sets the file and byte at which a word is being typed, which is no mistake yet.
+    pub fn set_typing(&mut self, typing: Option<(usize, usize)>) {
+        if self.typing != typing {
+            self.typing = typing;
+            self.choose_shown();
+        }
+    }
+
+    /// Chooses the messages that are shown.
+    fn choose_shown(&mut self) {
+        let file = self.typing.and_then(|(file, byte)| {
+            let file = self.project.files.get(file)?;
+            Some((file.name.as_str(), typed::Word::at(&file.text, byte)))
+        });
+        let shown: Vec<Diagnostic> = self
+            .compiled
+            .diagnostics
+            .iter()
+            .filter(|message| {
+                !file
+                    .as_ref()
+                    .is_some_and(|(name, word)| message.file == *name && word.is_meant(message))
+            })
+            .cloned()
+            .collect();
+        if shown != self.shown {
+            self.shown = shown;
+            self.messages_number += 1;
+        }
+    }
+
     /// Returns the scene to draw, seen by [`Session::camera`]: that of the last text without
     /// errors, or while there was none that of the first text, as far as it was understood. `None`
     /// before a text was compiled.
     #[must_use]
     pub fn scene(&self) -> Option<&Arc<Scene>> {
         self.good.as_ref()
+    }
+
+    /// Whether the scene to draw is of a text before the present one, which has errors.
+    #[must_use]
+    pub fn has_old_scene(&self) -> bool {
+        self.is_old
     }
 
     /// Returns the picker of the scene to draw, or of its draft, in which shapes have not melted
@@ -661,8 +730,10 @@ impl Session {
         }
         self.stale = false;
         self.compiled = compiled;
+        self.choose_shown();
         self.compile_seconds = pool::clock::stopwatch() - start;
-        if self.errors() == 0 || self.good.is_none() {
+        self.is_old = self.errors() > 0 && self.good.is_some();
+        if !self.is_old {
             let scene = &self.compiled.scene;
             let good = self.good.replace(scene.clone());
             if !good.is_some_and(|good| good.is_same_but_written(scene)) {
@@ -731,6 +802,35 @@ mod tests {
         edit(&mut session, &format!("{TEXT}sphere a 1, 2 0 0\n"), 2.0);
         assert_eq!(session.scene().unwrap().elements.len(), 2);
         assert_eq!(session.generation(), generation + 1);
+    }
+
+    #[test]
+    fn a_word_that_is_typed_is_no_mistake_before_the_caret_leaves_it() {
+        let mut session = Session::of_text(TEXT);
+        let end = TEXT.len();
+        for (typed, caret, shown) in [
+            ("sph", 3, 0),
+            ("sphree", 6, 0),
+            ("sphree", 2, 0),
+            ("sphree ", 7, 1),
+            // Operands are missing, but may follow.
+            ("sphere a", 8, 0),
+            ("sphere a 1, 2 0", 15, 0),
+            ("sphere a 1, 2 0\n", 16, 1),
+            ("sphere ä", 9, 0),
+            ("sphere ä\n", 10, 1),
+        ] {
+            session.set_typing(Some((0, end + caret)));
+            edit(&mut session, &format!("{TEXT}{typed}"), 1.0);
+            assert!(session.errors() > 0, "{typed}");
+            let messages = session.messages();
+            assert_eq!(messages.len().min(1), shown, "{typed}: {messages:?}");
+            assert_eq!(session.shows_errors(), shown > 0);
+            let number = session.messages_number();
+            session.set_typing(None);
+            assert_eq!(session.messages(), session.diagnostics(), "{typed}");
+            assert_eq!(session.messages_number() > number, shown == 0);
+        }
     }
 
     #[test]

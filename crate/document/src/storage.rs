@@ -1,32 +1,32 @@
-//! The user's work in the browser's local storage.
+//! The user's work in the browser's storage.
 //!
 //! Every work is a record under its own key, so that a shared link or an example never overwrites a
 //! work of the user's: it becomes a record of its own, and only once it is edited. Two tabs that
-//! edit the same record do not overwrite each other either: a tab whose record was changed by
-//! another goes on under a new key. A record that cannot be read, because it is damaged or from a
-//! newer version, is left alone.
+//! edit the same record do not overwrite each other either: a tab whose record another one writes,
+//! or has changed, goes on with a copy under a new key. A record that cannot be read, because it is
+//! damaged or from a newer version, is left alone.
 //!
-//! Images and meshes of a work are a record beside it, written only when they change. Local storage
-//! is small, so only the names are kept of those beyond [`MAX_KEPT`].
+//! Undo steps, earlier versions, images and meshes of a work are texts beside its record, which the
+//! [`Store`] may keep elsewhere; if they are refused, the record is safe.
 
-use crate::asset::{self, Asset};
+use crate::asset::Asset;
 use crate::session::Kept;
+use crate::versions::Versions;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use rats::Project;
 use serde::{Deserialize, Serialize};
 
 /// Version of the records; newer ones are not touched.
 pub const VERSION: u32 = 1;
 /// Seconds after an edit until it is written.
 pub const DELAY: f64 = 0.5;
-/// Most bytes of undo steps that are written with a record.
-const HISTORY_BYTES: usize = 512 * 1024;
-
-/// Most bytes of images and meshes that are kept with a work. Browsers give a page about 5 MB, and
-/// writing bytes as text takes a third more.
-pub const MAX_KEPT: usize = 1_500_000;
+/// Most bytes of undo steps that are written, and of those where there is little room.
+const HISTORY_BYTES: [usize; 2] = [1 << 20, 128 << 10];
 
 const ASSETS: &str = "sinew/assets/";
+const HISTORY: &str = "sinew/history/";
+const VERSIONS: &str = "sinew/versions/";
 const DOCUMENT: &str = "sinew/document/";
 const CURRENT: &str = "sinew/current";
 const SETTINGS: &str = "sinew/settings";
@@ -98,9 +98,16 @@ pub struct Shelf {
     /// Key of the open record, and its stamp when this tab last read or wrote it.
     open: Option<(String, String)>,
     pending: Option<(String, Kept)>,
+    /// Whether another tab writes the open record.
+    is_theirs: bool,
+    /// The name of the copy that the open work has become.
+    copy: Option<String>,
     /// The images and meshes that were written last, and the record they belong to.
     assets: Option<(String, Vec<Asset>)>,
-    /// Warning about images and meshes that were not kept.
+    /// Earlier versions of the open work, and its texts when they were last read or written.
+    versions: Versions,
+    present: Option<Project>,
+    /// Warning about what was not kept.
     warning: Option<String>,
 }
 
@@ -114,7 +121,11 @@ impl Shelf {
             writes: 0,
             open: None,
             pending: None,
+            is_theirs: false,
+            copy: None,
             assets: None,
+            versions: Versions::default(),
+            present: None,
             warning: None,
         }
     }
@@ -151,25 +162,40 @@ impl Shelf {
     /// Opens a saved work, to which later edits are written. Returns its name and content.
     pub fn open(&mut self, id: &str) -> Option<(String, Kept)> {
         let (stamp, mut record) = self.read(id)?;
+        self.begin();
         self.open = Some((id.to_owned(), stamp));
-        self.pending = None;
         record.kept.assets = self.read_assets(id);
+        // Records had their undo steps inside.
+        if let Some(history) = self.read_beside(HISTORY, id) {
+            record.kept.history = history;
+        }
+        self.versions = self.read_beside(VERSIONS, id).unwrap_or_default();
+        self.present = Some(record.kept.project.clone());
         // If this is refused, the next start opens another record; nothing is lost.
         let _ = self.store.set(CURRENT, id);
         Some((record.name, record.kept))
     }
 
-    /// Takes the warning about images and meshes that are not kept.
+    /// Reads what is kept beside a record.
+    fn read_beside<T: for<'a> Deserialize<'a>>(&self, kind: &str, id: &str) -> Option<T> {
+        let json = self.store.get(&format!("{kind}{id}"))?;
+        serde_json::from_str(&json).ok()
+    }
+
+    /// Writes what is kept beside a record.
+    fn write_beside<T: Serialize>(&mut self, kind: &str, id: &str, value: &T) -> bool {
+        let json = serde_json::to_string(value);
+        json.is_ok_and(|json| self.store.set(&format!("{kind}{id}"), &json).is_ok())
+    }
+
+    /// Takes the warning about what is not kept.
     pub fn take_warning(&mut self) -> Option<String> {
         self.warning.take()
     }
 
     /// Reads the images and meshes of a work. Leaves a warning about those that were too large.
     fn read_assets(&mut self, id: &str) -> Vec<Asset> {
-        let kept = self.store.get(&format!("{ASSETS}{id}"));
-        let kept: Vec<KeptAsset> = kept
-            .and_then(|json| serde_json::from_str(&json).ok())
-            .unwrap_or_default();
+        let kept: Vec<KeptAsset> = self.read_beside(ASSETS, id).unwrap_or_default();
         let (mut assets, mut lost) = (Vec::new(), Vec::new());
         for KeptAsset { name, bytes } in kept {
             match bytes.and_then(|text| STANDARD.decode(text).ok()) {
@@ -204,40 +230,31 @@ impl Shelf {
             self.store.remove(&key);
             return;
         }
-        let mut left = MAX_KEPT;
+        let mut kept: Vec<KeptAsset> = assets
+            .iter()
+            .map(|asset| KeptAsset {
+                name: asset.name.clone(),
+                bytes: Some(STANDARD.encode(&asset.bytes[..])),
+            })
+            .collect();
         let mut lost = Vec::new();
-        let mut kept: Vec<KeptAsset> = Vec::new();
-        for Asset { name, bytes, .. } in assets {
-            let fits = bytes.len() <= left;
-            if fits {
-                left -= bytes.len();
-            } else {
-                lost.push(name.clone());
-            }
-            kept.push(KeptAsset {
-                name: name.clone(),
-                bytes: fits.then(|| STANDARD.encode(bytes)),
-            });
-        }
-        let write = |store: &mut dyn Store, kept: &[KeptAsset]| {
-            serde_json::to_string(kept)
-                .map_err(|error| error.to_string())
-                .and_then(|json| store.set(&key, &json))
-        };
-        if write(&mut *self.store, &kept).is_err() {
-            lost = assets.iter().map(|asset| asset.name.clone()).collect();
-            for asset in &mut kept {
-                asset.bytes = None;
-            }
-            // Only their names are kept. If that fails, too, the texts are still safe.
-            let _ = write(&mut *self.store, &kept);
+        while !self.write_beside(ASSETS, id, &kept) {
+            // The largest is left out, so that only its name is kept.
+            let largest = kept
+                .iter_mut()
+                .filter(|asset| asset.bytes.is_some())
+                .max_by_key(|asset| asset.bytes.as_ref().map_or(0, String::len));
+            let Some(largest) = largest else {
+                break;
+            };
+            largest.bytes = None;
+            lost.push(largest.name.clone());
         }
         if !lost.is_empty() {
             self.warning = Some(format!(
-                "{} cannot be kept: this browser keeps {} of images and meshes with a work. \
-                    It stays until you close the page; the text is kept.",
-                lost.join(", "),
-                asset::size(MAX_KEPT)
+                "This browser has no room for {}. It stays until you close the page; \
+                    the text is kept. Save the project as a file to keep all.",
+                lost.join(", ")
             ));
         }
     }
@@ -252,6 +269,45 @@ impl Shelf {
     pub fn begin(&mut self) {
         self.open = None;
         self.pending = None;
+        self.is_theirs = false;
+        self.versions = Versions::default();
+        self.present = None;
+    }
+
+    /// Closes the record, so that the next edit of these texts begins a new one, of which they are
+    /// the first version.
+    pub fn begin_from(&mut self, project: Project) {
+        self.begin();
+        self.present = Some(project);
+    }
+
+    /// Sets whether another tab writes the open record, so that what is edited here is a copy.
+    pub fn set_theirs(&mut self, is_theirs: bool) {
+        self.is_theirs = is_theirs;
+    }
+
+    /// Whether another tab writes the open record.
+    #[must_use]
+    pub fn is_theirs(&self) -> bool {
+        self.is_theirs
+    }
+
+    /// Whether another tab has written the open record since this one read or wrote it.
+    #[must_use]
+    pub fn is_behind(&self) -> bool {
+        let open = self.open.as_ref();
+        open.is_some_and(|(id, known)| self.stamp(id).is_some_and(|stamp| stamp != *known))
+    }
+
+    /// Takes the name of the copy that the open work has become, as another tab writes the record.
+    pub fn take_copy(&mut self) -> Option<String> {
+        self.copy.take()
+    }
+
+    /// Returns the earlier versions of the open work.
+    #[must_use]
+    pub fn versions(&self) -> &Versions {
+        &self.versions
     }
 
     /// Takes a work, which the next [`Shelf::flush`] writes.
@@ -270,46 +326,76 @@ impl Shelf {
     /// # Errors
     /// If the browser refuses; the text is then in the open page only.
     pub fn flush(&mut self, now: f64) -> Result<(), String> {
-        let Some((name, kept)) = self.pending.clone() else {
+        let Some((mut name, kept)) = self.pending.clone() else {
             return Ok(());
         };
         self.writes += 1;
         let stamp = format!("{}.{}", self.tab, self.writes);
-        let id = match &self.open {
-            Some((id, known)) if self.stamp(id).is_none_or(|stamp| stamp == *known) => id.clone(),
-            _ => stamp.clone(),
+        let known = match &self.open {
+            Some((id, known)) => {
+                let is_ours = self.stamp(id).is_none_or(|stamp| stamp == *known);
+                if !is_ours || self.is_theirs {
+                    name.push_str(" copy");
+                    self.copy = Some(name.clone());
+                    None
+                } else {
+                    Some(id.clone())
+                }
+            }
+            None => None,
         };
-        let record = |history: usize| {
-            let record = Record {
-                version: VERSION,
-                name: name.clone(),
-                saved: now,
-                kept: Kept {
-                    history: kept.history.within(history),
-                    ..kept.clone()
-                },
-            };
-            serde_json::to_string(&record)
-                .map(|json| format!("{stamp}\n{json}"))
-                .map_err(|error| error.to_string())
+        let id = known.unwrap_or_else(|| stamp.clone());
+        // Or another tab has deleted all of it.
+        let is_new = self.stamp(&id).is_none();
+        if is_new {
+            self.assets = None;
+        }
+        let Kept {
+            project,
+            camera,
+            history,
+            assets,
+        } = kept;
+        let record = Record {
+            version: VERSION,
+            name,
+            saved: now,
+            kept: Kept {
+                project,
+                camera,
+                ..Kept::default()
+            },
         };
-        let key = format!("{DOCUMENT}{id}");
-        // If space is short, the text matters more than its undo steps.
-        self.store
-            .set(&key, &record(HISTORY_BYTES)?)
-            .or_else(|_| self.store.set(&key, &record(0)?))?;
+        let json = serde_json::to_string(&record).map_err(|error| error.to_string())?;
+        let text = format!("{stamp}\n{json}");
+        self.store.set(&format!("{DOCUMENT}{id}"), &text)?;
         self.store.set(CURRENT, &id)?;
-        self.write_assets(&id, &kept.assets);
-        self.open = Some((id, stamp));
+        self.open = Some((id.clone(), stamp));
+        self.is_theirs = false;
         self.pending = None;
+        let mut sizes = HISTORY_BYTES.iter();
+        if !sizes.any(|bytes| self.write_beside(HISTORY, &id, &history.within(*bytes))) {
+            self.store.remove(&format!("{HISTORY}{id}"));
+        }
+        self.write_assets(&id, &assets);
+        let before = self.present.replace(record.kept.project);
+        let is_noted =
+            before.is_some_and(|before| self.versions.note(before, self.present.as_ref(), now));
+        if is_noted || is_new && !self.versions.all().is_empty() {
+            let versions = std::mem::take(&mut self.versions);
+            // Where there is no room, the last ones that were written stay.
+            self.write_beside(VERSIONS, &id, &versions);
+            self.versions = versions;
+        }
         Ok(())
     }
 
     /// Deletes a saved work, unless it is open.
     pub fn delete(&mut self, id: &str) {
         if self.open_id() != Some(id) {
-            self.store.remove(&format!("{DOCUMENT}{id}"));
-            self.store.remove(&format!("{ASSETS}{id}"));
+            for kind in [DOCUMENT, ASSETS, HISTORY, VERSIONS] {
+                self.store.remove(&format!("{kind}{id}"));
+            }
         }
     }
 
@@ -412,6 +498,74 @@ mod tests {
     }
 
     #[test]
+    fn undo_steps_inside_an_old_record_are_found_and_move_out_of_it() {
+        let mut store = Common::default();
+        let mut mine = work("new");
+        mine.history.record(&work("old").project, 0.0);
+        let record = Record {
+            version: VERSION,
+            name: String::from("shell"),
+            saved: 1.0,
+            kept: mine,
+        };
+        let json = serde_json::to_string(&record).unwrap();
+        store
+            .set("sinew/document/x", &format!("stamp\n{json}"))
+            .unwrap();
+        let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
+        let (_, kept) = shelf.open("x").unwrap();
+        assert!(kept.history.can_undo());
+        shelf.put("shell", kept);
+        shelf.flush(2.0).unwrap();
+        let text = store.get("sinew/document/x").unwrap();
+        assert!(text.contains("new") && !text.contains("old"), "{text}");
+        let (_, mut again) = shelf.open("x").unwrap();
+        assert_eq!(
+            again.history.undo(&again.project).unwrap().files[0].text,
+            "old"
+        );
+    }
+
+    /// Returns the texts of the versions of the open work.
+    fn versions(shelf: &Shelf) -> Vec<&str> {
+        let all = shelf.versions().all().iter();
+        all.map(|version| version.project.files[0].text.as_str())
+            .collect()
+    }
+
+    #[test]
+    fn texts_before_a_change_are_versions_of_the_work_and_of_its_copies() {
+        let store = Common::default();
+        let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
+        shelf.begin_from(work("an example").project);
+        shelf.put("shell", work("mine"));
+        shelf.flush(1e6).unwrap();
+        shelf.put("shell", work("mine and more"));
+        shelf.flush(2e6).unwrap();
+        let id = shelf.open_id().unwrap().to_owned();
+        let mut again = Shelf::new(Box::new(store.clone()), String::from("b"));
+        again.open(&id).unwrap();
+        assert_eq!(versions(&again), ["an example", "mine"]);
+        again.set_theirs(true);
+        again.put("shell", work("x"));
+        again.flush(3e6).unwrap();
+        let copy = again.open_id().unwrap().to_owned();
+        assert_ne!(copy, id);
+        again.open(&copy).unwrap();
+        assert_eq!(versions(&again), ["an example", "mine", "mine and more"]);
+        again.begin();
+        assert!(versions(&again).is_empty());
+        again.delete(&id);
+        again.delete(&copy);
+        let left: Vec<_> = store
+            .keys()
+            .into_iter()
+            .filter(|key| key != CURRENT)
+            .collect();
+        assert!(left.is_empty(), "{left:?}");
+    }
+
+    #[test]
     fn beginning_something_else_keeps_the_own_work() {
         let mut shelf = Shelf::new(Box::<BTreeMap<_, _>>::default(), String::from("a"));
         shelf.put("mine", work("mine"));
@@ -437,8 +591,12 @@ mod tests {
         second.open(&id).unwrap();
         second.put("shell", work("two"));
         second.flush(2.0).unwrap();
+        assert!(first.is_behind() && !second.is_behind());
         first.put("shell", work("three"));
         first.flush(3.0).unwrap();
+        assert_eq!(first.take_copy().as_deref(), Some("shell copy"));
+        assert_eq!((first.take_copy(), second.take_copy()), (None, None));
+        assert!(!first.is_behind());
         let mut texts: Vec<_> = first
             .entries()
             .iter()
@@ -507,16 +665,16 @@ mod tests {
     #[test]
     fn an_image_that_cannot_be_kept_is_named_and_the_text_is_safe() {
         for (limit, sizes, lost) in [
-            (None, &[3, MAX_KEPT][..], "1.png"),
-            (Some(2000), &[3, 9000], "0.png, 1.png"),
+            (2000, [3, 9000], "1.png"),
+            (2000, [8000, 9000], "1.png, 0.png"),
         ] {
-            let store = Common(Rc::default(), limit);
+            let store = Common(Rc::default(), Some(limit));
             let mut shelf = Shelf::new(Box::new(store.clone()), String::from("a"));
-            shelf.put("a", with_assets(sizes));
+            shelf.put("a", with_assets(&sizes));
             shelf.flush(1.0).unwrap();
             let warning = shelf.take_warning().unwrap();
-            assert!(warning.starts_with(lost), "{warning}");
-            shelf.put("b", with_assets(sizes));
+            assert!(warning.contains(&format!(" {lost}. ")), "{warning}");
+            shelf.put("b", with_assets(&sizes));
             shelf.flush(2.0).unwrap();
             assert_eq!(shelf.take_warning(), None, "said once");
             let id = shelf.open_id().unwrap().to_owned();
@@ -524,7 +682,11 @@ mod tests {
             let (name, kept) = again.open(&id).unwrap();
             assert_eq!((name.as_str(), text(&kept)), ("b", "text"));
             assert_eq!(kept.assets.len(), 2 - lost.split(", ").count());
-            assert!(again.take_warning().unwrap().starts_with(lost));
+            let warning = again.take_warning().unwrap();
+            assert!(
+                lost.split(", ").all(|name| warning.contains(name)),
+                "{warning}"
+            );
         }
     }
 

@@ -220,7 +220,37 @@ impl Work {
         {
             return Some(trouble);
         }
-        self.shelf.borrow_mut().take_warning()
+        let mut shelf = self.shelf.borrow_mut();
+        if let Some(name) = shelf.take_copy() {
+            self.name = name;
+            return Some(format!(
+                "Another tab writes this work, so what you change here is a copy: {}.",
+                self.name
+            ));
+        }
+        shelf.take_warning()
+    }
+
+    /// Makes the open work a copy of its own, which another tab does not write.
+    ///
+    /// # Errors
+    /// If the browser refuses.
+    pub fn copy(&mut self, now: f64) -> Result<(), String> {
+        self.shelf.borrow_mut().set_theirs(true);
+        self.keep(now);
+        self.flush()?;
+        if let Some(name) = self.shelf.borrow_mut().take_copy() {
+            self.name = name;
+        }
+        Ok(())
+    }
+
+    /// Returns the id of the open work if it is the user's own and has been written.
+    #[must_use]
+    pub fn own_id(&self) -> Option<String> {
+        let own = self.origin == Origin::Own;
+        let shelf = self.shelf.borrow();
+        shelf.open_id().filter(|_| own).map(str::to_owned)
     }
 
     /// Puts a changed work on the shelf, from where it is written even if the program stops, and
@@ -285,9 +315,7 @@ impl Work {
     /// Writes the open work before another one is opened. Returns its id if it is the user's own.
     fn leave(&mut self) -> Result<Option<String>, String> {
         self.flush()?;
-        let own = self.origin == Origin::Own;
-        let shelf = self.shelf.borrow();
-        Ok(shelf.open_id().filter(|_| own).map(str::to_owned))
+        Ok(self.own_id())
     }
 
     fn begin_example(&mut self, index: usize, text: &str, assets: Vec<Asset>) {
@@ -310,7 +338,7 @@ impl Work {
     }
 
     fn begin(&mut self, name: String, origin: Origin, kept: Kept) {
-        self.shelf.borrow_mut().begin();
+        self.shelf.borrow_mut().begin_from(kept.project.clone());
         self.name = name;
         self.origin = origin;
         self.before = None;

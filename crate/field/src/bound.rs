@@ -521,6 +521,17 @@ impl Bound {
         density * sum
     }
 
+    /// Returns a part of f at a ball's centre below which f falls nowhere in the ball: kernels fall
+    /// with distance, and no part of the skeleton is further away than `middle` and `extent` tell.
+    #[must_use]
+    pub fn remains(&self, center: DVec3, radius: f64) -> f64 {
+        let nearest = self.place.nearness(center, 0.0).distance * (1.0 - 1e-12);
+        let farthest = center.distance(self.middle) + self.extent + radius;
+        let least = self.kernel.value(farthest * self.finest);
+        let part = least / self.kernel.at_most(nearest * self.width) * (1.0 - 1e-9);
+        if part.is_nan() { 0.0 } else { part.min(1.0) }
+    }
+
     /// Returns a distance from the skeleton beyond which `|f|` is at most `share`.
     #[must_use]
     pub fn distance_of(&self, share: f64) -> f64 {
@@ -553,6 +564,12 @@ impl Bound {
     #[must_use]
     pub fn far(&self) -> [f64; 2] {
         [self.whole, self.width]
+    }
+
+    /// Width of the kernel, a length: the least, if it varies along the bone.
+    #[must_use]
+    pub fn kernel_width(&self) -> f64 {
+        1.0 / self.finest
     }
 
     /// Whether the term can be above zero.

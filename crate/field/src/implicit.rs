@@ -293,6 +293,13 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         Variation::rough(self.enclose(ball))
     }
 
+    /// Returns the least width of a kernel among the terms that matter in a ball, within that of
+    /// the part if there is one: on shorter ways none of them changes much. `None` if the function
+    /// has no such terms, or they have finer details.
+    fn least_width(&self, _part: Option<&Part>, _ball: Ball) -> Option<f64> {
+        None
+    }
+
     /// The function's logarithm, where bounds on it are much sharper than those on the function
     /// itself; `None` if they are not, or not known.
     fn logarithm(&self) -> Option<crate::Logarithm<'_>> {

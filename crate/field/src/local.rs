@@ -1,59 +1,51 @@
 //! Local convolution: of a skeleton only the stretch near a point counts, so that its folds do not
 //! blend.
 //!
-//! Along each segment of the skeleton planes sweep from one end to the other, see
-//! [`planes`](self::planes). A point lies in some of them; each is a *place* on the skeleton. The
-//! field of a place is that of the skeleton within an arc length D of it, which runs through
-//! branches into every curve that meets there, and fades towards its ends, see
-//! [`window`](self::window). The field at the point is the largest of those of its places, of the
-//! skeleton's free ends and of its branches:
+//! A skeleton is cut into short pieces, each of one primitive or of some that follow one another.
+//! Around each piece j there is a *stretch*: the part of the
+//! skeleton within an arc length D of it, which runs through branches into every curve that meets
+//! there, and fades towards its ends, see [`window`]. The field at a point is the mean of the
+//! fields of all stretches, weighted by how near their pieces are:
 //!
-//! `F(p) = max W(s, p)`, `W(s, p) = Σᵢ wᵢ(s)·fᵢ(p)`, wᵢ(s) the window's mean over the piece i, fᵢ
-//! the piece's field.
+//! `F = Σⱼ ωⱼWⱼ / Σⱼ ωⱼ`, `Wⱼ = Σᵢ wᵢⱼfᵢ`, `ωⱼ = lⱼ·(rⱼfⱼ/lⱼ)⁸`,
 //!
-//! So each piece keeps its closed form, its taper and its bounds. Pieces are to be short compared
-//! with D.
+//! with fᵢ the field of the piece i, lᵢ its length, rᵢ its radius, and wᵢⱼ the window's mean over
+//! the piece i, a constant. Thanks to the radius a thin limb weighs at its surface what a thick one
+//! does there. So each piece keeps its closed form, its taper and its bounds, F is as smooth as
+//! they are, and it is never above the largest of the Wⱼ: what is far along the skeleton blends
+//! with nothing. Its gradient is `∇F = Σᵢ (Σⱼ ω̂ⱼwᵢⱼ + 8ω̂ᵢ(Wᵢ−F)/fᵢ)·∇fᵢ`, where `ω̂ⱼ = ωⱼ/Σω`.
 //!
-//! **Continuity.** While one place leads, F has a continuous gradient `∇F = W_p + W_s∇s` within the
-//! planes of a segment. Where two places tie, and where planes change from one segment to the next
-//! (or at a branch), the gradient jumps: by `W_s` times the jump of ∇s there, as W_s counts only
-//! what is in the fading parts of the window. The value is continuous but where a place vanishes
-//! that leads: where planes of a bend meet, at its centre of curvature or beyond it.
-//! [`Local::enclose`] knows all of these: bounds that do not hold are infinite.
+//! Of folds that touch there is a second field, of what is far along the skeleton from the pieces
+//! that count at a point, see [`Local::two`]:
 //!
-//! Bounds, in a ball of radius r for the places `s₀ ≤ s ≤ s₁` whose planes meet it: with
-//! `d·(p−r(u)) = 0` we have `∇u = −d/g`, `g = ∂(d·(p−r))/∂u`, and
-//! `|∇²u| ≤ (|g_u||∇u|² + 2|d_u||∇u|)/|g|`; wᵢ changes by at most `1.5/δ`, and its derivative by
-//! `6/δ²`, and only where a piece is in a fading part.
+//! `F₂ = Σⱼ ω̂ⱼ·r(F₂ⱼ)`, `F₂ⱼ = Σₖ vⱼₖωₖ·vⱼₖWₖ / Σₖ vⱼₖωₖ`,
 //!
-//! - `build.rs`: making it; [`graph`]: distances along a skeleton;
-//! - [`planes`]: the places whose planes hold a point; [`window`]: weights of pieces;
-//!   `stretch.rs`: the field;
-//! - `survey.rs`: bounds on the fields of the places of a ball; `leaders.rs`: on the largest of
-//!   them; `groups.rs`: on the sum of all;
-//! - `cells.rs`: an octree that knows which places may lead where; `near.rs`: pieces, each
-//!   evaluated once for all places.
+//! where vⱼₖ rises from 0 to 1 as the distance of the two pieces along the skeleton does from 2D
+//! to 3D, and r(x) is x from the level on below which F₂ is of no interest, and 0 up to half of it.
+//!
+//! Weights below 2⁻⁴⁰ of the largest count as 0. So in a small part of space few pieces matter.
+//!
+//! - `build.rs`: making it; [`graph`]: distances along a skeleton; [`window`]: weights of pieces;
+//! - `mean.rs`: the fields; `bounds.rs`: bounds on them in balls; `tree.rs`: on the sum of all
+//!   pieces;
+//! - `cells.rs`: an octree that knows which pieces matter where.
+mod bounds;
 mod build;
 mod cells;
 pub mod graph;
-mod groups;
-mod leaders;
-mod near;
-pub mod planes;
-mod stretch;
-mod survey;
+mod mean;
+mod tree;
 pub mod window;
 
-pub use build::{Limb, LocalError, MOST_LINKS};
-pub use leaders::Two;
-pub use survey::Bounds;
+pub use bounds::{Bounds, Two};
+pub use build::{Limb, LimbPiece, LocalError, MOST_LINKS};
 
-use crate::{Ball, Bound, Enclosure, Implicit, Jet, Primitive, Real, THRESHOLD, Variation};
+use crate::term::Evaluate;
+use crate::{Ball, Bound, Enclosure, Implicit, Jet, Part, Primitive, THRESHOLD, Variation};
 use cells::Cells;
+use core::ops::Range;
 use glam::DVec3;
-use groups::{Group, Node};
-use planes::Swept;
-use stretch::Stretch;
+use tree::Tree;
 use wide::f32x8;
 use window::Window;
 
@@ -64,134 +56,134 @@ use window::Window;
 pub struct Local {
     window: Window,
     pieces: Vec<Piece>,
-    segments: Vec<Segment>,
-    links: Vec<Link>,
-    /// Ends and branches: a segment, and which of its ends.
-    nodes: Vec<(u32, usize)>,
-    /// Points within twice the reach of each point of the skeleton, in order, with their distances.
-    near: Vec<Vec<(u32, f64)>>,
-    /// Tree of all pieces, halved again and again: a group is followed by its first half, and knows
-    /// where its second one starts.
-    tree: Vec<(Group, Node)>,
-    /// Numbers of all terms: segments, whose places sweep along them, then ends and branches.
-    terms: Vec<u32>,
-    /// The terms that matter in parts of space.
+    /// Runs of pieces in the stretches around each piece, and the pieces' weights.
+    runs: Vec<Run>,
+    weights: Vec<f64>,
+    /// Pieces within 3D of each piece, in order, and how much they count as another fold: less
+    /// than 1.
+    near: Vec<(u32, f64)>,
+    /// Value of F₂ below which it is of no interest; `None` if all of it is of none.
+    level: Option<f64>,
+    tree: Tree,
     cells: Cells,
 }
 
 #[derive(Clone, Debug)]
 struct Piece {
-    primitive: Primitive,
-    bound: Bound,
-}
-
-#[derive(Clone, Debug)]
-struct Segment {
-    ends: [u32; 2],
-    next: [Option<u32>; 2],
-    swept: Swept,
+    parts: Vec<(Primitive, Bound)>,
     length: f64,
-    /// The links to its own pieces and to all others within reach.
-    links: core::ops::Range<usize>,
-    /// A ball around all pieces within reach, and bounds on their fields.
-    group: Group,
+    /// Radius over length: the factor on the field in the weight.
+    thickness: f64,
+    /// The runs of its stretch.
+    links: Range<u32>,
+    /// The pieces near it.
+    near: Range<u32>,
 }
 
-/// Link from a segment to a piece.
+/// Pieces one after the other, with their weights in a stretch.
 #[derive(Clone, Copy, Debug)]
-struct Link {
-    piece: u32,
-    length: f64,
-    /// Distances of both ends of the piece from both ends of the segment; for a piece of the
-    /// segment itself, distances of its ends from the segment's start.
-    distances: [[f64; 2]; 2],
-    own: bool,
+struct Run {
+    first: u32,
+    count: u32,
+    weights: u32,
 }
 
-/// A place on the skeleton.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// The segment.
-    pub segment: u32,
-    /// Arc length from its start.
-    pub along: f64,
-}
+impl Piece {
+    /// Computes the field.
+    fn jet<R: Evaluate>(&self, point: [R; 3]) -> Jet<R> {
+        let [(first, _), others @ ..] = &self.parts[..] else {
+            return Jet::zero();
+        };
+        (others.iter()).fold(first.jet(point), |sum, (primitive, _)| {
+            sum.plus(primitive.jet(point))
+        })
+    }
 
-/// Fields below this are not looked at closely.
-const FAINT: f64 = 0.05;
+    /// Returns an upper bound on the field in a ball.
+    fn most(&self, ball: &Ball) -> f64 {
+        let bounds = self.parts.iter().map(|(_, bound)| bound);
+        let most = bounds.map(|bound| bound.magnitude(bound.nearness(ball.center, ball.radius)));
+        most.sum()
+    }
+}
 
 impl Local {
-    /// The reach D.
+    /// Returns the reach D.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.window.reach
     }
-}
 
-impl Bounds {
-    /// Returns the bounds as an enclosure, whose curvature is infinite where the gradient jumps.
+    /// Returns the same function with a field of other folds, which is of no interest where it is
+    /// below a level > 0.
     #[must_use]
-    pub fn enclosure(&self) -> Enclosure {
-        Enclosure {
-            value: self.value,
-            slope: self.slope,
-            curvature: if self.jump > 0.0 {
-                f64::INFINITY
-            } else {
-                self.curvature
-            },
-        }
+    pub fn with_folds(mut self, level: f64) -> Self {
+        self.level = Some(level);
+        self.cells.clear();
+        self
     }
 
-    /// Returns the bounds as mesher and tracer read them.
+    /// Computes value and gradient of F and, if there is another fold whose field may be above the
+    /// level of [`Local::with_folds`], of F₂.
     #[must_use]
-    pub fn variation(&self) -> Variation {
-        // Where the value jumps, nothing is known of derivatives.
-        let is_tame = self.slope.is_finite() && self.curvature.is_finite();
-        let curvature = if is_tame { self.curvature } else { 0.0 };
-        Variation {
-            range: self.enclosure(),
-            curvature,
-            third: 0.0,
-            rough: curvature,
-            jump: if is_tame { self.jump } else { f64::INFINITY },
-            step: 0.0,
-        }
+    pub fn two<R: Evaluate>(&self, point: [R; 3]) -> (Jet<R>, Option<Jet<R>>) {
+        let mut lanes = (0..R::LANES).map(|k| DVec3::from_array(point.map(|x| x.lane(k))));
+        let first = lanes.next().unwrap_or_default();
+        let radius = lanes.fold(0.0, |most: f64, other| most.max(first.distance(other)));
+        let ball = Ball {
+            center: first,
+            radius: radius * (1.0 + 1e-12),
+        };
+        self.two_of(&self.terms_in(&ball), point)
+    }
+
+    /// Returns the runs of the stretch around a piece.
+    fn links(&self, piece: u32) -> &[Run] {
+        let Range { start, end } = self.pieces[piece as usize].links;
+        &self.runs[start as usize..end as usize]
+    }
+
+    /// Returns the weights of a run's pieces.
+    fn weights(&self, run: &Run) -> &[f64] {
+        &self.weights[run.weights as usize..][..run.count as usize]
     }
 }
 
 impl Implicit for Local {
     fn jet(&self, point: DVec3) -> Jet<f64> {
-        let [first, _] = self.two_at(point, None);
-        first.map_or_else(Jet::zero, |stretch| stretch.jet)
+        self.two(point.to_array()).0
     }
 
     fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
-        narrow(self.jet(DVec3::from_array(point.map(f64::from))))
+        self.two(point).0
     }
 
     fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
-        lanes(points, |point| self.jet32(point))
+        self.two(points).0
     }
 
     fn enclose(&self, ball: Ball) -> Enclosure {
-        let bounds = self.enclose_two(ball, None).first.enclosure();
-        bounds.about(&self.jet(ball.center), ball.radius)
+        self.enclose_two(ball).first.enclosure()
     }
 
-    fn variation(&self, _part: Option<&crate::Part>, ball: Ball) -> Variation {
-        self.enclose_two(ball, None).first.variation()
+    fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
+        self.enclose_two(ball).first.variation()
+    }
+
+    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        let two = self.enclose_two(ball);
+        (two.first.variation(), two.at_center.map(|jets| jets.0))
     }
 
     fn most(&self, ball: Ball) -> f64 {
-        self.everything(&ball)
+        self.most_in(ball)
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
-        let [Some(Stretch { place, .. }), _] = self.two_at(point, None) else {
-            return;
-        };
-        out.push((0, self.stretch_at(place, point).value));
+        let value = self.jet(point).value;
+        if value > 0.0 {
+            out.push((0, value));
+        }
     }
 
     fn support(&self) -> Option<Ball> {
@@ -199,39 +191,24 @@ impl Implicit for Local {
     }
 
     fn support_at(&self, level: f64) -> Option<Ball> {
-        // Where no piece has more than its share of the level; a stretch has as many as a segment
-        // has links.
-        let most = self.segments.iter().map(|s| s.links.len()).max()?;
-        let share = level / most as f64;
+        // Where no primitive has more than its share of the level; a stretch has all those of the
+        // pieces that it links.
+        let most = (0..self.pieces.len() as u32).map(|piece| {
+            let linked = self.links(piece).iter();
+            let linked = linked.flat_map(|run| run.first..run.first + run.count);
+            let parts = linked.map(|other| self.pieces[other as usize].parts.len());
+            parts.sum::<usize>()
+        });
+        let share = level / most.max()? as f64;
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for piece in &self.pieces {
-            let (center, around) = piece.primitive.skeleton.bounding_sphere()?;
-            let reach = around + piece.bound.distance_of(share);
+        for (primitive, bound) in self.pieces.iter().flat_map(|piece| &piece.parts) {
+            let (center, around) = primitive.skeleton.bounding_sphere()?;
+            let reach = around + bound.distance_of(share);
             (low, high) = (low.min(center - reach), high.max(center + reach));
         }
         Some(Ball {
             center: 0.5 * (low + high),
             radius: 0.5 * low.distance(high),
         })
-    }
-}
-
-/// Converts a jet to single precision.
-#[must_use]
-pub fn narrow(jet: Jet<f64>) -> Jet<f32> {
-    Jet {
-        value: jet.value as f32,
-        gradient: jet.gradient.map(|x| x as f32),
-    }
-}
-
-/// Computes jets at eight points, one after the other.
-#[must_use]
-pub fn lanes(points: [f32x8; 3], jet: impl Fn([f32; 3]) -> Jet<f32>) -> Jet<f32x8> {
-    let points = points.map(|x| x.to_array());
-    let jets: [Jet<f32>; 8] = core::array::from_fn(|i| jet(core::array::from_fn(|k| points[k][i])));
-    Jet {
-        value: f32x8::from_lanes(|i| f64::from(jets[i].value)),
-        gradient: core::array::from_fn(|k| f32x8::from_lanes(|i| f64::from(jets[i].gradient[k]))),
     }
 }

@@ -3,7 +3,9 @@ use crate::bound::Nearness;
 use crate::far_field::{Cell, FarField, power};
 use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
-use crate::{Ball, Bound, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD};
+use crate::{
+    Ball, Bound, Cut, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD,
+};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 use wide::f32x8;
@@ -41,6 +43,8 @@ pub struct Sum {
 
 /// Fewest terms with an expansion for which a hierarchy pays.
 const MANY: usize = 64;
+/// Least size of a term, in thresholds, at which its kernel's width matters.
+const MATTERS: f64 = 0.05;
 /// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
 const ROOM: f64 = 1.25;
 
@@ -305,6 +309,24 @@ impl Implicit for Sum {
             None => terms.iter().for_each(add),
         }
         all
+    }
+
+    fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
+        let terms = self.bounds();
+        let width = |least: Option<f64>, term: &TermBounds| {
+            let bound = &term.bound;
+            let near = bound.nearness(ball.center, ball.radius);
+            if bound.magnitude(near) < MATTERS * THRESHOLD {
+                return least;
+            }
+            let own = (!bound.has_profile()).then(|| bound.kernel_width());
+            Some(least?.at_most(own?))
+        };
+        let none = Some(f64::INFINITY);
+        match part {
+            Some(part) => (part.terms.iter()).fold(none, |all, i| width(all, &terms[*i as usize])),
+            None => terms.iter().fold(none, width),
+        }
     }
 
     fn logarithm(&self) -> Option<Logarithm<'_>> {

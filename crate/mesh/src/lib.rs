@@ -54,4 +54,6 @@ pub use report::Topology;
 pub use simplify::{Level, levels_of_detail, simplify, simplify_part};
 pub use terra::terra;
 pub use triangle_mesh::{Group, Material, TriangleMesh};
-pub use write::{Export, ExportedFile, Joint, Part, Pose, Rig};
+pub use write::{
+    Export, ExportedFile, Joint, Part, Pose, Rig, describe_shift, shift_of,
+};

@@ -12,6 +12,8 @@
 //! are as near to as that. (Terms whose second derivative jumps add their curvature times ρ²/2 and
 //! ρ.)
 
+use crate::options::{MeshError, Progress};
+use crate::parallel::map_told;
 use crate::space::{SLACK, Space};
 use field::{Ball, Jet, THRESHOLD, Variation};
 use glam::DVec3;
@@ -367,6 +369,46 @@ fn steps(
         vertex = vertex_at(next);
     }
     None
+}
+
+/// The function where Newton's steps along gradients lead from each of some positions, none longer
+/// than the length beside it: eight at a time, as well as places within the tolerance need it.
+///
+/// # Errors
+/// If the caller cancels.
+pub fn descend(
+    space: &Space<'_>,
+    goals: &[(DVec3, f64)],
+    steps: usize,
+    tolerance: f64,
+    threads: usize,
+    progress: &mut Progress<'_>,
+) -> Result<Vec<Vertex>, MeshError> {
+    let place = |point: DVec3| {
+        let ball = Ball {
+            center: point,
+            radius: 0.0,
+        };
+        (space.part_for(ball), point)
+    };
+    let mut places = map_told(threads, goals, progress, |(point, _)| place(*point))?;
+    let mut left = steps;
+    loop {
+        let jets = space.jets_in_parts(&places, tolerance, threads, progress)?;
+        let found = places.iter().zip(&jets);
+        let found: Vec<Vertex> = found.map(|((_, p), jet)| Vertex::new(*p, jet)).collect();
+        if left == 0 {
+            return Ok(found);
+        }
+        left -= 1;
+        for ((own, vertex), (_, longest)) in places.iter_mut().zip(&found).zip(goals) {
+            let way = vertex.gradient * (-vertex.value / vertex.gradient.length_squared());
+            let next = vertex.position + way.clamp_length_max(*longest);
+            if next.is_finite() {
+                *own = place(next);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -3,13 +3,12 @@
 //! the coarse one and its edges near the arcs that the surface's normals tell. The function is
 //! evaluated where vertices move, nowhere else.
 
-use crate::certify::Vertex;
+use crate::certify::{Vertex, descend};
 use crate::guard::{Corner, Guard};
 use crate::improve::sine;
 use crate::march::Raw;
 use crate::options::{MeshError, Progress};
 use crate::space::Space;
-use field::Ball;
 use glam::{DMat3, DVec3};
 use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId, closest_point};
 
@@ -429,25 +428,19 @@ impl<'a> Decimation<'a> {
             let way = sum / count - own;
             own + (way - normal * way.dot(normal))
         });
-        let goals: Vec<DVec3> = goals.collect();
-        let mut goals: Vec<(u32, DVec3)> = goals.into_iter().map(|p| (self.part(p), p)).collect();
-        let (mut jets, limit) = (Vec::new(), 4.0 * self.tolerance);
-        for step in 0..3 {
-            jets = self
-                .space
-                .jets_in_parts(&goals, self.tolerance, self.threads, progress)?;
-            for ((number, place), jet) in goals.iter_mut().zip(&jets).filter(|_| step < 2) {
-                let vertex = Vertex::new(*place, jet);
-                let way = vertex.gradient * (-vertex.value / vertex.gradient.length_squared());
-                let next = *place + way.clamp_length_max(limit);
-                *number = self.part(next);
-                *place = next;
-            }
-        }
-        for ((v, (_, place)), jet) in narrow.into_iter().zip(goals).zip(&jets) {
-            let vertex = Vertex::new(place, jet);
+        let limit = 4.0 * self.tolerance;
+        let goals: Vec<(DVec3, f64)> = goals.map(|place| (place, limit)).collect();
+        let found = descend(
+            self.space,
+            &goals,
+            2,
+            self.tolerance,
+            self.threads,
+            progress,
+        )?;
+        for (v, vertex) in narrow.into_iter().zip(found) {
             let is_on = vertex.value.abs() <= ON * self.tolerance * vertex.gradient.length();
-            if is_on && self.space.forest.contains(place) {
+            if is_on && self.space.forest.contains(vertex.position) {
                 self.move_one(v, &vertex);
             }
         }
@@ -460,14 +453,6 @@ impl<'a> Decimation<'a> {
         let is_free = !self.is_fixed[i] && !self.is_lid[i] && self.shares[i] > 0.0;
         let mut faces = self.mesh.vertex_faces(v);
         is_free && faces.any(|f| sine(self.positions(self.corners(f))) < NARROW)
-    }
-
-    /// The part of the function that serves at a place.
-    fn part(&self, place: DVec3) -> u32 {
-        self.space.part_for(Ball {
-            center: place,
-            radius: 0.0,
-        })
     }
 
     /// Moves a vertex if that makes better triangles which are as near to the surface.

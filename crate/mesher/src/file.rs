@@ -6,10 +6,11 @@
 //! or is too far from the surface it is decimated once more with more care, at last with finer
 //! cells.
 
-use crate::certify::{at, project_exactly};
+use crate::certify::{Vertex, at, descend};
 use crate::decimate::{Decimated, Decimation};
+use crate::dual::dual;
 use crate::forest::{Forest, NONE, Side};
-use crate::grow::{FINEST, HIDING, LEVELS, grow};
+use crate::grow::{Corners, FINEST, FLAT, HIDING, LEVELS, Sizes, grow_tetrahedra};
 use crate::lattice::Lattice;
 use crate::march::{Raw, march};
 use crate::measure::{Measured, along_ray, root_of, spread};
@@ -34,6 +35,11 @@ const KEPT: f64 = 0.1;
 const PLACES: usize = 8000;
 /// Largest distance by a first-order estimate, in tolerances, that is taken for true.
 const SURE: f64 = 0.4;
+
+/// Newton's steps that look for a place of the surface.
+const STEPS: usize = 4;
+/// Largest distance by a first-order estimate, in tolerances, of places of the surface from it.
+const ON: f64 = 0.1;
 
 /// Places where points of triangles are looked for on the surface.
 const SAMPLES: [[f64; 3]; 7] = [
@@ -75,26 +81,23 @@ pub fn approximate(
     for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
         let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
         let mut space = Space::new(function, forest, tolerance / size);
-        let mut lattice = Lattice::default();
-        let sizes = [tolerance, hiding];
-        let mut progress = progress.part(start, start + 0.1).in_phase(Phase::Cells);
-        match grow(
-            &mut space,
-            &mut lattice,
-            sizes,
+        let mut corners = Corners::default();
+        let sizes = Sizes {
+            tolerance,
+            hiding,
             most,
             threads,
-            &mut progress,
-        ) {
+        };
+        let mut progress = progress.part(start, start + 0.1).in_phase(Phase::Cells);
+        match dual(&mut space, &mut corners, &sizes, &mut progress) {
             Err(MeshError::TooMany { .. }) => {}
             result => {
-                result?;
-                grown = Some((space, lattice, sizes));
+                grown = Some((space, corners, sizes, result?));
                 break;
             }
         }
     }
-    let (mut space, mut lattice, sizes) = grown.ok_or_else(too_rough)?;
+    let (mut space, mut corners, sizes, mut first) = grown.ok_or_else(too_rough)?;
     if crossing(&space.forest).is_empty() {
         let mut cells = space.forest.cells.iter();
         let is_inside = cells.any(|cell| cell.child == NONE && cell.side == Side::Inside);
@@ -107,16 +110,23 @@ pub fn approximate(
     for (i, start) in FINE_MESHES.into_iter().enumerate() {
         let end = FINE_MESHES.get(i + 1).copied().unwrap_or(1.0);
         let mut progress = progress.part(start, end);
-        if i > 0 {
-            let progress = &mut progress.part(0.0, 0.5).in_phase(Phase::Cells);
-            match grow(&mut space, &mut lattice, sizes, most, threads, progress) {
-                Err(MeshError::TooMany { .. }) => break,
-                result => result?,
-            }
-        }
+        let cells = &mut progress.part(0.0, 0.5).in_phase(Phase::Cells);
+        let raw = match first.take() {
+            Some(raw) => Ok(Some(raw)),
+            None if i == 0 || i + 1 == FINE_MESHES.len() => Ok(None),
+            None => dual(&mut space, &mut corners, &sizes, cells),
+        };
+        let raw = match raw {
+            Ok(Some(raw)) => Ok(raw),
+            Ok(None) => march_all(&mut space, &mut corners, &sizes, cells),
+            Err(error) => Err(error),
+        };
+        let raw = match raw {
+            Err(MeshError::TooMany { .. }) => break,
+            raw => raw?,
+        };
         let mut progress = progress.part(0.5, 1.0).in_phase(Phase::Triangles);
         progress.at(0.0)?;
-        let raw = march(&space, &lattice, Some(tolerance), threads, &mut progress)?;
         if raw.triangles.is_empty() {
             return Err(MeshError::Nothing);
         }
@@ -161,13 +171,28 @@ pub fn approximate(
     Err(too_rough())
 }
 
+/// The mesh of the level set of tetrahedra, which may be cut off by the box.
+fn march_all(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Raw, MeshError> {
+    let mut lattice = Lattice::default();
+    grow_tetrahedra(space, corners, &mut lattice, sizes, progress)?;
+    march(
+        space,
+        &lattice,
+        Some(sizes.tolerance),
+        sizes.threads,
+        progress,
+    )
+}
+
 /// Why no mesh of a measured error was made.
 fn too_rough() -> MeshError {
     MeshError::Failed("the surface is too rough for a mesh whose error is only measured".into())
 }
-
-/// Change of the function over the tolerance, in thresholds, below which it is flat.
-const FLAT: f64 = 1e-10;
 
 /// Whether the function is flat at many places where it is the threshold, as where bodies lie on
 /// each other: then its signs are those of roundings.
@@ -251,11 +276,18 @@ impl Fine<'_> {
             let crossings = self_intersections(&mesh, MOST_CROSSINGS)
                 .map_err(|error| MeshError::Failed(error.to_string()))?;
             if !crossings.is_free() {
+                left.clear();
+                if attempt == 0
+                    && let Some(places) = self.find_crossings()?
+                {
+                    return Ok(Err(places));
+                }
                 let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
                 for i in faces {
                     let corners = mesh.corners(*i as usize);
                     let bounds = Aabb::of_points(corners);
                     let reach = 0.5 * bounds.size().max_element();
+                    left.push(bounds.center());
                     for i in points.overlapping(&cube(bounds.center(), reach)) {
                         is_guarded[i as usize] = true;
                     }
@@ -284,10 +316,19 @@ impl Fine<'_> {
             }
             left = far.into_iter().map(|(place, _)| place).collect();
         }
-        if left.is_empty() {
-            return Err(MeshError::Failed("the mesh cuts itself".into()));
-        }
         Ok(Err(left))
+    }
+
+    /// The places where the fine mesh cuts itself; `None` if it does not.
+    fn find_crossings(&self) -> Result<Option<Vec<DVec3>>, MeshError> {
+        let vertices = self.raw.vertices.iter();
+        let positions = vertices.map(|v| v.position).collect();
+        let mesh = TriangleMesh::new(positions, self.raw.triangles.clone());
+        let crossings = self_intersections(&mesh, MOST_CROSSINGS)
+            .map_err(|error| MeshError::Failed(error.to_string()))?;
+        let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
+        let places = faces.map(|i| Aabb::of_points(mesh.corners(*i as usize)).center());
+        Ok((!crossings.is_free()).then(|| places.collect()))
     }
 
     /// Measures both distances.
@@ -301,10 +342,7 @@ impl Fine<'_> {
         let mut far = Vec::new();
 
         // From the mesh.
-        let numbers: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-        let there = map_by(LARGE, threads, &numbers, progress, |i| {
-            self.farthest(mesh.corners(*i as usize))
-        })?;
+        let there = self.farthest_of_all(mesh, progress)?;
         for (i, worst) in there.into_iter().enumerate() {
             let Some((place, distance)) = worst else {
                 continue;
@@ -323,19 +361,23 @@ impl Fine<'_> {
         // From the surface.
         let bvh = Bvh::new(&mesh.triangle_boxes());
         let vertices = self.raw.vertices.iter();
-        let on = vertices.filter(|v| v.value.abs() <= 0.1 * tolerance * v.gradient.length());
+        let on = vertices.filter(|v| v.value.abs() <= ON * tolerance * v.gradient.length());
         let mut places: Vec<DVec3> = on.map(|v| v.position).collect();
         let fine = (0..self.raw.triangles.len()).filter(|i| !self.raw.is_lid[*i]);
         let fine = spread(fine.collect(), PLACES);
-        let others = map_by(LARGE, threads, &fine, progress, |i| {
-            let corners = self.raw.triangles[*i].map(|v| self.raw.vertices[v as usize].position);
+        let goals = fine.into_iter().map(|i| {
+            let corners = self.raw.triangles[i].map(|v| self.raw.vertices[v as usize].position);
             let [a, b, c] = corners;
             let reach = a.distance(b).max(b.distance(c)).max(c.distance(a));
-            let found = project_exactly(self.space, (a + b + c) / 3.0, reach, tolerance)?;
-            let is_in = self.space.forest.contains(found.position);
-            is_in.then_some(found.position)
-        })?;
-        places.extend(others.into_iter().flatten());
+            ((a + b + c) / 3.0, reach)
+        });
+        let goals: Vec<(DVec3, f64)> = goals.collect();
+        let others = descend(self.space, &goals, STEPS, tolerance, threads, progress)?;
+        let on = others.into_iter().filter(|v| {
+            let is_on = v.value.abs() <= ON * tolerance * v.gradient.length();
+            is_on && self.space.forest.contains(v.position)
+        });
+        places.extend(on.map(|v| v.position));
         let back = map_told(threads, &places, progress, |p| {
             root_of(bvh.nearest(*p, f64::INFINITY, |i| {
                 closest_point(&mesh.corners(i as usize), *p).distance_squared(*p)
@@ -347,35 +389,60 @@ impl Fine<'_> {
         Ok(Found { measured, far })
     }
 
-    /// The sample of a triangle that is farthest from the surface, and its distance: infinite if no
-    /// surface was found within the tolerance. `None` for lids.
-    fn farthest(&self, corners: [DVec3; 3]) -> Option<(DVec3, f64)> {
-        let is_lid = (0..3).any(|k| {
+    /// Measures all triangles: the sample of each that is farthest from the surface, and its
+    /// distance: infinite if no surface was found within the tolerance. `None` for lids.
+    fn farthest_of_all(
+        &self,
+        mesh: &TriangleMesh,
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<Option<(DVec3, f64)>>, MeshError> {
+        let all = 0..mesh.triangles.len();
+        let goals = all.clone().flat_map(|i| {
+            let [a, b, c] = mesh.corners(i);
+            SAMPLES.map(|[u, v, w]| (a * u + b * v + c * w, 0.0))
+        });
+        let goals: Vec<(DVec3, f64)> = goals.collect();
+        let (space, tolerance) = (self.space, self.tolerance);
+        let samples = descend(space, &goals, 0, tolerance, self.threads, progress)?;
+        let triangles: Vec<(usize, &[Vertex])> =
+            all.zip(samples.chunks_exact(SAMPLES.len())).collect();
+        map_by(LARGE, self.threads, &triangles, progress, |(i, samples)| {
+            let corners = mesh.corners(*i);
+            if self.is_lid(corners) {
+                return None;
+            }
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let distances = samples.iter().map(|sample| {
+                let first = sample.value.abs() / sample.gradient.length();
+                let is_sure = first <= SURE * tolerance;
+                let place = sample.position;
+                (
+                    place,
+                    if is_sure {
+                        first
+                    } else {
+                        self.distance(place, normal)
+                    },
+                )
+            });
+            distances.reduce(|one, other| if other.1 <= one.1 { one } else { other })
+        })
+    }
+
+    /// Whether a triangle lies on a side of the box.
+    fn is_lid(&self, corners: [DVec3; 3]) -> bool {
+        (0..3).any(|k| {
             [self.domain.min[k], self.domain.max[k]]
                 .iter()
                 .any(|side| corners.iter().all(|p| p[k] == *side))
-        });
-        if is_lid {
-            return None;
-        }
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let samples = SAMPLES.map(|[u, v, w]| {
-            let place = a * u + b * v + c * w;
-            (place, self.distance(place, normal))
-        });
-        samples
-            .into_iter()
-            .reduce(|one, other| if other.1 <= one.1 { one } else { other })
+        })
     }
 
     /// The distance of a point from the surface; infinite if it is more than the tolerance.
     fn distance(&self, place: DVec3, normal: DVec3) -> f64 {
         let vertex = at(self.space, place);
         let first = vertex.value.abs() / vertex.gradient.length();
-        if first <= SURE * self.tolerance {
-            return first;
-        }
         let uphill = vertex.gradient.normalize_or_zero();
         let toward = if vertex.value > 0.0 { -uphill } else { uphill };
         let reach = (1.05 * first).clamp(1e-3 * self.tolerance, self.tolerance);

@@ -70,6 +70,9 @@ pub struct Cell {
     pub undecided: bool,
     /// Bounds.
     pub bounds: Bounds,
+    /// Bound on the second derivative where nothing hides between samples any more, in this cell or
+    /// one that it was a part of; infinite elsewhere.
+    pub bend: f64,
 }
 
 /// Cells of a box.
@@ -131,6 +134,7 @@ impl Forest {
                         is_empty: false,
                         undecided: false,
                         bounds: Bounds::NONE,
+                        bend: f64::INFINITY,
                     });
                 }
             }
@@ -262,6 +266,7 @@ impl Forest {
                     parent.side
                 },
                 part: parent.part,
+                bend: parent.bend,
             });
         }
         first

@@ -1,224 +1,495 @@
 //! Cells of the size that the surface's curvature asks for, as samples tell it: for meshes whose
 //! error is measured, not proved.
 //!
-//! Bounds say where no surface can be, and how small cells must be so that none hides between
-//! samples; normals at the corners and the centre of a cell say how far its triangles would be from
-//! the surface. Where the surface leaves the cells that were taken for all of it, it is followed
-//! across their faces, so that the level set is closed.
+//! Bounds say where no surface can be, and when cells are so small that nothing hides between
+//! samples. From there on samples decide alone, eight at a time: at the corners and centres of
+//! cells, which neighbours share, and on the edges that the surface crosses. Where it leaves the
+//! cells that were taken for all of it, it is followed into those beside them.
 
-use crate::forest::{Cell, NONE, Side};
-use crate::lattice::{Lattice, tetrahedra};
+use crate::certify::{Vertex, sag};
+use crate::forest::{Cell, Forest, NONE, Side};
+use crate::lattice::{Key, Lattice, pack, tetrahedra, unpack};
+use crate::march::crossing_share;
 use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
-use crate::refine::{around, coarse_range, crossing, error, fine_range, side};
-use crate::space::Space;
-use field::{Jet, Part, THRESHOLD};
+use crate::refine::{around, coarse_range, crossing, error, side};
+use crate::space::{SLACK, Space};
+use core::hash::{BuildHasherDefault, Hasher};
+use field::{Ball, Jet, Part, THRESHOLD};
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// Cells are taken to hide nothing if the second derivative's bound times the square of their size
 /// is at most so many thresholds: first the least, then more where that asks for too many cells, as
 /// where bounds are far from the truth.
 pub const HIDING: [f64; 3] = [6.0, 60.0, 600.0];
-/// Largest height of the surface's arc between centre and corner of a cell, in tolerances.
-const SAG: f64 = 0.3;
-/// Least cosine of the angle between the normals at the centre and at a corner.
-const EVEN: f64 = 0.6;
+/// Nor if they are no larger than this share of the width of the kernels that matter there.
+const WIDTHS: f64 = 0.8;
+/// Largest height of the surface's arc between two of its places in a cell, in tolerances.
+const SAG: f64 = 0.5;
+/// Least cosine of the angle between the surface's normal in a cell and the mean of all there.
+const EVEN: f64 = 0.7;
 /// Cells are not divided below so many tolerances where only normals ask for it, as at creases.
 pub const FINEST: f64 = 2.0;
 /// Levels below that of the finest cells, for parts that are thinner.
 pub const LEVELS: u32 = 6;
-/// Cells that are looked at between two reports.
-const BATCH: usize = 20_000;
-
-/// Result of a look at a cell.
-struct Look {
-    side: Side,
-    split: bool,
-    part: Option<Part>,
-}
-
-/// Looks at a cell; `is_crossed` if the surface is known to be in it.
-fn look(space: &Space<'_>, cell: &Cell, [tolerance, hiding]: [f64; 2], is_crossed: bool) -> Look {
-    let forest = &space.forest;
-    let (center, size) = (forest.center(cell), forest.size(cell.level));
-    let longest = size.max_element();
-    let variation = around(space, cell.part, center, size);
-    let off = error(space, cell.part, size);
-    let sure = side(coarse_range(&variation, off));
-    if !is_crossed && sure != Side::Crossing && variation.jump == 0.0 {
-        return Look::leaf(sure);
-    }
-    let jet = space.jet(cell.part, center);
-    let sure = side(fine_range(&variation, &jet, size, off));
-    if !is_crossed && sure != Side::Crossing {
-        return Look::leaf(sure);
-    }
-    // Not so for NaN.
-    let hides_nothing = variation.curvature * longest * longest <= hiding * THRESHOLD;
-    let is_last = cell.level >= forest.deepest;
-    if !hides_nothing && !is_last {
-        return Look::split(space, cell);
-    }
-    let Seen {
-        is_near,
-        sag,
-        cosine,
-    } = Seen::new(space, cell, &jet, tolerance);
-    if !is_near && !is_crossed {
-        return Look::leaf(if jet.value > THRESHOLD {
-            Side::Inside
-        } else {
-            Side::Outside
-        });
-    }
-    let is_fine = sag <= SAG * tolerance && cosine >= EVEN;
-    if is_fine || cell.level >= forest.usual {
-        Look::leaf(Side::Crossing)
-    } else {
-        Look::split(space, cell)
-    }
-}
-
-impl Look {
-    fn leaf(side: Side) -> Self {
-        Self {
-            side,
-            split: false,
-            part: None,
-        }
-    }
-
-    fn split(space: &Space<'_>, cell: &Cell) -> Self {
-        Self {
-            side: Side::Crossing,
-            split: true,
-            part: space.narrow(cell),
-        }
-    }
-}
-
-/// The surface in a cell by samples.
-struct Seen {
-    /// Whether the samples do not say that it is elsewhere.
-    is_near: bool,
-    /// The largest height of its arc between centre and corner.
-    sag: f64,
-    /// The least cosine of the angle between the normals there.
-    cosine: f64,
-}
-
-impl Seen {
-    fn new(space: &Space<'_>, cell: &Cell, middle: &Jet<f64>, tolerance: f64) -> Self {
-        let forest = &space.forest;
-        let (center, half) = (forest.center(cell), 0.5 * forest.size(cell.level));
-        let ways: [DVec3; 8] = core::array::from_fn(|i| {
-            let signs = [1, 2, 4].map(|bit| if i & bit == 0 { -1.0 } else { 1.0 });
-            DVec3::from_array(signs) * half
-        });
-        let jets = space.jets(cell.part, &ways.map(|way| center + way), tolerance);
-        let own = middle.value - THRESHOLD;
-        let uphill = DVec3::from_array(middle.gradient);
-        let normal = uphill.normalize_or_zero();
-        let (mut sag, mut cosine, mut bend) = (0.0_f64, 1.0_f64, 0.0_f64);
-        let mut least = own.abs();
-        let mut is_near = false;
-        for (way, jet) in ways.iter().zip(&jets) {
-            let value = jet.value - THRESHOLD;
-            let gradient = DVec3::from_array(jet.gradient);
-            let other = gradient.normalize_or_zero();
-            // A value that is no number counts as outside.
-            is_near |= (value > 0.0) != (own > 0.0);
-            least = least.min(value.abs());
-            sag = sag.max((other - normal).dot(*way).abs() / 8.0);
-            cosine = cosine.min(other.dot(normal));
-            bend = bend.max((gradient - uphill).dot(*way).abs() / 8.0);
-        }
-        // Between samples the function is as far from its interpolant as along their edges.
-        // Not so for NaN.
-        let is_far = least > BEND * bend;
-        is_near |= !is_far;
-        Self {
-            is_near,
-            sag,
-            cosine,
-        }
-    }
-}
-
 /// Largest distance of the function from its interpolant in a cell, over that along the edges from
 /// its centre.
 const BEND: f64 = 3.0;
+/// Change of the function over the tolerance, in thresholds, below which it is flat.
+pub const FLAT: f64 = 1e-10;
+/// Bound on the relative error of values in single precision.
+const SINGLE: f64 = 1e-5;
+/// Cells that are looked at between two reports.
+const BATCH: usize = 20_000;
 
-/// Divides the cells that are not known yet, for a tolerance and one of [`HIDING`], and follows the
-/// surface through them. The lattice gets the values at the vertices of all cells that it crosses.
+/// Edges of a cell by the numbers of their ends: bit k of a corner's number is its place along the
+/// axis k.
+pub const EDGES: [[usize; 2]; 12] = {
+    let mut edges = [[0; 2]; 12];
+    let mut n = 0;
+    while n < 12 {
+        let (axis, place) = (n / 4, n % 4);
+        let low = match axis {
+            0 => 2 * place,
+            1 => (place & 1) | (place & 2) << 1,
+            _ => place,
+        };
+        edges[n] = [low, low | 1 << axis];
+        n += 1;
+    }
+    edges
+};
+
+/// Mixes the bits of a key.
+#[derive(Debug, Default)]
+pub struct Mix(u64);
+
+impl Hasher for Mix {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u64(u64::from(*byte));
+        }
+    }
+
+    fn write_u64(&mut self, key: u64) {
+        let mixed = (self.0 ^ key).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = mixed ^ mixed >> 32;
+    }
+}
+
+/// The function, less the threshold, at corners of cells.
+#[derive(Debug, Default)]
+pub struct Corners {
+    numbers: HashMap<Key, u32, BuildHasherDefault<Mix>>,
+    vertices: Vec<Vertex>,
+    /// Number of each cell's list of corners; [`NONE`] if it has none.
+    lists: Vec<u32>,
+    corners: Vec<[u32; 8]>,
+}
+
+impl Corners {
+    /// The function at the corners of a cell; `None` if it was not evaluated there.
+    pub fn of(&self, node: u32) -> Option<[&Vertex; 8]> {
+        let list = *self.lists.get(node as usize)?;
+        let corners = self.corners.get(list as usize)?;
+        Some(corners.map(|i| &self.vertices[i as usize]))
+    }
+
+    /// Evaluates the function at the corners of leaves, where that was not done.
+    fn extend(
+        &mut self,
+        space: &Space<'_>,
+        leaves: &[u32],
+        tolerance: f64,
+        threads: usize,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), MeshError> {
+        let forest = &space.forest;
+        let mut places = Vec::new();
+        self.lists.resize(forest.cells.len(), NONE);
+        for node in leaves {
+            if self.lists[*node as usize] != NONE {
+                continue;
+            }
+            let cell = &forest.cells[*node as usize];
+            let corners = corner_keys(forest, cell).map(|key| {
+                let next = (self.vertices.len() + places.len()) as u32;
+                let number = *self.numbers.entry(key).or_insert(next);
+                if number == next {
+                    places.push((cell.part, forest.position(unpack(key))));
+                }
+                number
+            });
+            self.lists[*node as usize] = self.corners.len() as u32;
+            self.corners.push(corners);
+        }
+        let jets = space.jets_in_parts(&places, tolerance, threads, progress)?;
+        let found = places.iter().zip(&jets);
+        (self.vertices).extend(found.map(|((_, place), jet)| Vertex::new(*place, jet)));
+        Ok(())
+    }
+}
+
+/// The corners of a cell.
+fn corner_keys(forest: &Forest, cell: &Cell) -> [Key; 8] {
+    let (low, span) = (forest.corner(cell), forest.span(cell.level));
+    core::array::from_fn(|i| pack([0, 1, 2].map(|k| low[k] + span * (i as u32 >> k & 1))))
+}
+
+/// A cell by bounds.
+struct Bounded {
+    /// Bounds on values.
+    range: [f64; 2],
+    /// Bounds on the gradient, the second derivative, and jumps of the gradient and of the value.
+    slope: f64,
+    bend: f64,
+    jump: f64,
+    step: f64,
+    /// Error of values.
+    off: f64,
+    /// Whether nothing hides between samples.
+    is_tame: bool,
+}
+
+impl Bounded {
+    fn new(space: &Space<'_>, cell: &Cell, hiding: f64) -> Self {
+        let size = space.forest.size(cell.level);
+        let off = error(space, cell.part, size);
+        if cell.bend.is_finite() {
+            return Self {
+                range: [f64::NEG_INFINITY, f64::INFINITY],
+                slope: f64::INFINITY,
+                bend: cell.bend,
+                jump: 0.0,
+                step: 0.0,
+                off,
+                is_tame: true,
+            };
+        }
+        let center = space.forest.center(cell);
+        let variation = around(space, cell.part, center, size);
+        let longest = size.max_element();
+        let mut own = Self {
+            range: coarse_range(&variation, off),
+            slope: variation.range.slope,
+            bend: variation.curvature,
+            jump: variation.jump,
+            step: variation.step,
+            off,
+            is_tame: variation.curvature * longest * longest <= hiding * THRESHOLD,
+        };
+        if !own.is_tame && side(own.range) == Side::Crossing {
+            let radius = 0.5 * size.length();
+            let width = space.least_width(cell.part, Ball { center, radius });
+            own.is_tame = longest <= WIDTHS * width;
+        }
+        own
+    }
+
+    /// The bounds on values with the function at the cell's centre, which may be single.
+    fn narrow(&self, jet: &Jet<f64>, size: DVec3) -> [f64; 2] {
+        let radius = 0.5 * size.length() * (1.0 + 1e-9);
+        // A box is a part of the ball.
+        let linear = (0.5 * DVec3::from_array(jet.gradient).abs() * size).element_sum();
+        let bent = (0.5 * self.bend * radius + self.jump) * radius;
+        let single = SINGLE * (THRESHOLD + jet.value.abs() + linear);
+        let change = (linear + bent).min(self.slope * radius);
+        let change = change + self.step + self.off + SLACK + single;
+        [
+            self.range[0].max(jet.value - change),
+            self.range[1].min(jet.value + change),
+        ]
+    }
+}
+
+/// Verdict on a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fate {
+    Leaf(Side),
+    Split,
+}
+
+/// Whether the corners on each side are connected by edges of the cell: then the surface is a disc
+/// there.
+fn is_simple(inside: [bool; 8]) -> bool {
+    let mut group: [usize; 8] = core::array::from_fn(|i| i);
+    for [a, b] in EDGES {
+        if inside[a] == inside[b] {
+            let (old, new) = (group[a], group[b]);
+            group
+                .iter_mut()
+                .filter(|g| **g == old)
+                .for_each(|g| *g = new);
+        }
+    }
+    let count = (0..8).filter(|i| group.contains(i)).count();
+    count <= 2
+}
+
+/// Looks at a cell by samples, where nothing hides between them.
+fn look(
+    space: &Space<'_>,
+    cell: &Cell,
+    middle: &Vertex,
+    corners: [&Vertex; 8],
+    tolerance: f64,
+    is_crossed: bool,
+) -> Fate {
+    let forest = &space.forest;
+    let is_usual = cell.level >= forest.usual;
+    // A value that is no number counts as outside.
+    let own = middle.value > 0.0;
+    let inside = corners.map(|corner| corner.value > 0.0);
+    let beyond = inside.iter().filter(|side| **side != own).count();
+    if beyond == 0 {
+        if is_crossed {
+            return Fate::Leaf(Side::Crossing);
+        }
+        let (mut least, mut bend) = (middle.value.abs(), 0.0_f64);
+        for corner in corners {
+            let turn = corner.gradient - middle.gradient;
+            let way = corner.position - middle.position;
+            (least, bend) = (least.min(corner.value.abs()), bend.max(turn.dot(way).abs()));
+        }
+        // Between samples the function is as far from its interpolant as along their edges.
+        // Not so for NaN.
+        let is_far = least > BEND * bend / 8.0;
+        if is_far || is_usual {
+            return Fate::Leaf(if own { Side::Inside } else { Side::Outside });
+        }
+        return Fate::Split;
+    }
+    if beyond == 8 || !is_simple(inside) {
+        let all = corners.iter().map(|corner| corner.gradient.length());
+        let slope = all.fold(middle.gradient.length(), f64::max);
+        // Where the function is flat its signs are those of roundings. Not so for NaN.
+        let is_steep = slope * tolerance >= FLAT * THRESHOLD;
+        let can_split = cell.level < forest.deepest && (is_steep || !is_usual);
+        return if can_split {
+            Fate::Split
+        } else {
+            Fate::Leaf(Side::Crossing)
+        };
+    }
+    if is_usual {
+        return Fate::Leaf(Side::Crossing);
+    }
+    let mut places = [DVec3::ZERO; 8];
+    let mut count = 0;
+    for [a, b] in EDGES {
+        if inside[a] != inside[b] && count < 8 {
+            places[count] = on_edge([corners[a], corners[b]]);
+            count += 1;
+        }
+    }
+    let first = places[0];
+    places[count..].fill(first);
+    let jets = space.jets(cell.part, &places, tolerance);
+    let found: [Vertex; 8] = core::array::from_fn(|i| Vertex::new(places[i], &jets[i]));
+    let found = &found[..count];
+    let normals = found.iter().map(Vertex::normal);
+    let mean = normals.sum::<DVec3>().normalize_or_zero();
+    let mut is_fine = found.iter().all(|vertex| vertex.normal().dot(mean) >= EVEN);
+    for (i, one) in found.iter().enumerate() {
+        is_fine &= found[..i]
+            .iter()
+            .all(|other| sag(one, other) <= SAG * tolerance);
+    }
+    if is_fine {
+        Fate::Leaf(Side::Crossing)
+    } else {
+        Fate::Split
+    }
+}
+
+/// The place of the surface on an edge whose ends are on different sides, by the function there.
+pub fn on_edge([a, b]: [&Vertex; 2]) -> DVec3 {
+    let way = b.position - a.position;
+    let slopes = [a, b].map(|end| end.gradient.dot(way));
+    a.position + way * crossing_share([a.value, b.value], slopes)
+}
+
+/// Sizes and limits of cells.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizes {
+    /// The tolerance.
+    pub tolerance: f64,
+    /// Trust in bounds: one of [`HIDING`].
+    pub hiding: f64,
+    /// Most cells.
+    pub most: usize,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// Divides the cells that are not known yet, and follows the surface along edges of cells, from
+/// some leaves that it is known to cross, besides.
 ///
 /// # Errors
-/// If there are more cells than `most`, or if the caller cancels.
+/// If there are too many cells, or if the caller cancels.
 pub fn grow(
     space: &mut Space<'_>,
-    lattice: &mut Lattice,
-    [tolerance, hiding]: [f64; 2],
-    most: usize,
-    threads: usize,
+    corners: &mut Corners,
+    crossed: Vec<u32>,
+    sizes: &Sizes,
     progress: &mut Progress<'_>,
 ) -> Result<(), MeshError> {
-    let mut left = Vec::new();
+    let mut left = crossed;
     let mut fraction = 0.0;
     loop {
-        divide(space, &left, [tolerance, hiding], most, threads, progress)?;
+        let mut fresh = divide(space, corners, &left, sizes, progress)?;
         fraction += 0.3 * (1.0 - fraction);
         progress.at(fraction)?;
-        let cells = crossing(&space.forest);
-        lattice.extend(space, &cells, false, tolerance, threads, progress)?;
-        left = follow(space, lattice, &cells, threads, progress)?;
+        let forest = &space.forest;
+        fresh.retain(|i| is_crossing(forest, *i));
+        let found = map_told(sizes.threads, &fresh, progress, |node| {
+            let mut found = Vec::new();
+            each_crossed_edge(forest, corners, *node, false, |ring, _| {
+                let beside = ring.into_iter().flatten();
+                found.extend(beside.filter(|i| !is_crossing(forest, *i)));
+            });
+            found
+        })?;
+        left = found.into_iter().flatten().collect();
+        left.sort_unstable();
+        left.dedup();
         if left.is_empty() {
             return Ok(());
         }
     }
 }
 
-/// Looks at all leaves that are not known, and splits those that need it, until there are none;
-/// those that are crossed first.
-fn divide(
+fn is_crossing(forest: &Forest, node: u32) -> bool {
+    let cell = &forest.cells[node as usize];
+    cell.child == NONE && cell.side == Side::Crossing
+}
+
+/// Calls a function with the leaves around each edge of a leaf whose ends are on different sides,
+/// unless finer leaves have parts of that edge, and with the edge's ends, the inner one first. The
+/// leaves are in the order in which they surround the way outward; `None` where the box ends. If
+/// `once`, only the first of the smallest leaves around an edge is called for it.
+pub fn each_crossed_edge(
+    forest: &Forest,
+    corners: &Corners,
+    node: u32,
+    once: bool,
+    mut each: impl FnMut([Option<u32>; 4], [&Vertex; 2]),
+) {
+    let cell = &forest.cells[node as usize];
+    let Some(ends) = corners.of(node) else {
+        return;
+    };
+    'edges: for (n, [low, high]) in EDGES.into_iter().enumerate() {
+        let is_out = ends[low].value > 0.0;
+        if is_out == (ends[high].value > 0.0) {
+            continue;
+        }
+        let axis = n / 4;
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [at_u, at_v] = [u, v].map(|k| (low >> k & 1) as i64);
+        let mut ring = [None; 4];
+        let mut is_first = true;
+        // Counter-clockwise around the axis.
+        for (own, [x, y]) in ring.iter_mut().zip([[-1, -1], [0, -1], [0, 0], [-1, 0]]) {
+            let mut direction = [0; 3];
+            direction[u] = x + at_u;
+            direction[v] = y + at_v;
+            *own = if direction == [0; 3] {
+                is_first = false;
+                Some(node)
+            } else {
+                forest.neighbor(cell, direction)
+            };
+            let Some(other) = own.map(|i| &forest.cells[i as usize]) else {
+                continue;
+            };
+            let is_before = once && is_first && other.level == cell.level;
+            if other.child != NONE || is_before {
+                continue 'edges;
+            }
+        }
+        if !is_out {
+            ring.reverse();
+        }
+        let [low, high] = [low, high].map(|i| ends[i]);
+        each(ring, if is_out { [low, high] } else { [high, low] });
+    }
+}
+
+/// Does the same for tetrahedra: finds values at the vertices of all tetrahedra of cells that the
+/// surface crosses, and cells beside them that it crosses, too.
+///
+/// # Errors
+/// If there are too many cells, or if the caller cancels.
+pub fn grow_tetrahedra(
     space: &mut Space<'_>,
-    crossed: &[u32],
-    sizes: [f64; 2],
-    most: usize,
-    threads: usize,
+    corners: &mut Corners,
+    lattice: &mut Lattice,
+    sizes: &Sizes,
     progress: &mut Progress<'_>,
 ) -> Result<(), MeshError> {
+    let mut left = Vec::new();
+    let mut fraction = 0.0;
+    loop {
+        divide(space, corners, &left, sizes, progress)?;
+        fraction += 0.3 * (1.0 - fraction);
+        progress.at(fraction)?;
+        let cells = crossing(&space.forest);
+        lattice.extend(
+            space,
+            &cells,
+            false,
+            sizes.tolerance,
+            sizes.threads,
+            progress,
+        )?;
+        left = follow(space, lattice, &cells, sizes.threads, progress)?;
+        if left.is_empty() {
+            return Ok(());
+        }
+    }
+}
+
+/// Looks at some leaves that the surface is known to cross, then at all that are not known, and
+/// splits those that need it, until there are none. Returns all that were looked at.
+fn divide(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    crossed: &[u32],
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Vec<u32>, MeshError> {
     let mut open = crossed.to_vec();
+    let mut looked = Vec::new();
     let mut is_crossed = true;
     let mut fresh = 0;
     loop {
+        looked.extend_from_slice(&open);
         for batch in open.chunks(BATCH) {
             progress.again()?;
-            let leaves: Vec<Cell> = batch
-                .iter()
-                .map(|i| space.forest.cells[*i as usize])
-                .collect();
-            let looks = map_told(threads, &leaves, progress, |cell| {
-                look(space, cell, sizes, is_crossed)
-            })?;
-            for (node, look) in batch.iter().zip(looks) {
-                if space.forest.cells[*node as usize].child != NONE {
-                    // A neighbour was split.
-                    continue;
-                }
+            let fates = decide(space, corners, batch, sizes, is_crossed, progress)?;
+            let split = batch.iter().zip(&fates);
+            let split = split.filter(|(_, fate)| **fate == Fate::Split);
+            let split: Vec<u32> = split.map(|(node, _)| *node).collect();
+            for (node, fate) in batch.iter().zip(fates) {
                 let cell = &mut space.forest.cells[*node as usize];
-                cell.side = look.side;
-                let part = cell.part;
-                if let Some(new) = look.part {
-                    let part = space.add(new, part);
-                    space.forest.cells[*node as usize].part = part;
-                }
-                if look.split {
-                    space.forest.split(*node);
+                // Else a neighbour was split.
+                if cell.child == NONE {
+                    cell.side = match fate {
+                        Fate::Leaf(side) => side,
+                        Fate::Split => Side::Crossing,
+                    };
                 }
             }
-            if space.forest.cells.len() > most {
+            split_all(space, &split, sizes.threads, progress)?;
+            if space.forest.cells.len() > sizes.most {
                 return Err(MeshError::TooMany {
-                    limit: most,
+                    limit: sizes.most,
                     fitting: None,
                 });
             }
@@ -230,9 +501,101 @@ fn divide(
         open = new.map(|(i, _)| i).collect();
         fresh = cells.len() as u32;
         if open.is_empty() {
-            return Ok(());
+            return Ok(looked);
         }
     }
+}
+
+/// Splits leaves, and gives their children the terms of the function that matter there.
+pub fn split_all(
+    space: &mut Space<'_>,
+    leaves: &[u32],
+    threads: usize,
+    progress: &mut Progress<'_>,
+) -> Result<(), MeshError> {
+    let parts: Vec<Option<Part>> = map_told(threads, leaves, progress, |node| {
+        space.narrow(&space.forest.cells[*node as usize])
+    })?;
+    for (node, part) in leaves.iter().zip(parts) {
+        let cell = space.forest.cells[*node as usize];
+        if cell.child != NONE {
+            // For the sake of a neighbour.
+            continue;
+        }
+        if let Some(part) = part {
+            space.forest.cells[*node as usize].part = space.add(part, cell.part);
+        }
+        space.forest.cells[*node as usize].side = Side::Crossing;
+        space.forest.split(*node);
+    }
+    Ok(())
+}
+
+/// Decides on leaves.
+fn decide(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    leaves: &[u32],
+    sizes: &Sizes,
+    is_crossed: bool,
+    progress: &mut Progress<'_>,
+) -> Result<Vec<Fate>, MeshError> {
+    let Sizes {
+        tolerance,
+        hiding,
+        threads,
+        ..
+    } = *sizes;
+    let mut fates = vec![Fate::Split; leaves.len()];
+    let cell_of = |space: &Space<'_>, i: usize| space.forest.cells[leaves[i] as usize];
+    // By bounds.
+    let bounded = map_told(threads, leaves, progress, |node| {
+        Bounded::new(space, &space.forest.cells[*node as usize], hiding)
+    })?;
+    let mut open: Vec<usize> = Vec::new();
+    for (i, own) in bounded.iter().enumerate() {
+        let sure = side(own.range);
+        if is_crossed || sure == Side::Crossing || own.jump > 0.0 {
+            open.push(i);
+        } else {
+            fates[i] = Fate::Leaf(sure);
+        }
+    }
+    // By the function at their centres.
+    let centers = open.iter().map(|i| {
+        let cell = cell_of(space, *i);
+        (cell.part, space.forest.center(&cell))
+    });
+    let centers: Vec<(u32, DVec3)> = centers.collect();
+    let jets = space.jets_in_parts(&centers, tolerance, threads, progress)?;
+    let mut near: Vec<(usize, Vertex)> = Vec::new();
+    for ((i, (_, center)), jet) in open.iter().zip(&centers).zip(&jets) {
+        let (own, cell) = (&bounded[*i], cell_of(space, *i));
+        let sure = side(own.narrow(jet, space.forest.size(cell.level)));
+        if !is_crossed && sure != Side::Crossing {
+            fates[*i] = Fate::Leaf(sure);
+        } else if own.is_tame || cell.level >= space.forest.deepest {
+            if own.is_tame && own.jump == 0.0 && own.step == 0.0 {
+                space.forest.cells[leaves[*i] as usize].bend = own.bend;
+            }
+            near.push((*i, Vertex::new(*center, jet)));
+        }
+    }
+    // By all samples.
+    let nodes: Vec<u32> = near.iter().map(|(i, _)| leaves[*i]).collect();
+    corners.extend(space, &nodes, tolerance, threads, progress)?;
+    let (space, corners) = (&*space, &*corners);
+    let found = map_told(threads, &near, progress, |(i, middle)| {
+        let cell = cell_of(space, *i);
+        match corners.of(leaves[*i]) {
+            Some(ends) => look(space, &cell, middle, ends, tolerance, is_crossed),
+            None => Fate::Split,
+        }
+    })?;
+    for ((i, _), fate) in near.iter().zip(found) {
+        fates[*i] = fate;
+    }
+    Ok(fates)
 }
 
 /// The cells beside some that the surface crosses, which it crosses too, but are not known to be.
@@ -265,4 +628,46 @@ fn follow(
     found.sort_unstable();
     found.dedup();
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_join_corners_that_differ_along_one_axis() {
+        let mut seen = Vec::new();
+        for (n, [low, high]) in EDGES.into_iter().enumerate() {
+            assert_eq!(low ^ high, 1 << (n / 4));
+            assert!(low < high);
+            seen.push([low, high]);
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen.len(), 12);
+    }
+
+    /// A surface that crosses each edge once at most is a disc in a cell where walks along edges
+    /// reach all corners on a side.
+    #[test]
+    fn simple_cells_have_one_piece_on_each_side() {
+        let reach = |inside: &[bool; 8], from: usize| {
+            let mut seen = [false; 8];
+            let mut open = vec![from];
+            while let Some(i) = open.pop() {
+                if !core::mem::replace(&mut seen[i], true) {
+                    let beside = [1, 2, 4].map(|bit| i ^ bit);
+                    open.extend(beside.into_iter().filter(|j| inside[*j] == inside[i]));
+                }
+            }
+            seen
+        };
+        for bits in 1..255_u32 {
+            let inside: [bool; 8] = core::array::from_fn(|i| bits >> i & 1 == 1);
+            let own = reach(&inside, inside.iter().position(|is| *is).unwrap());
+            let other = reach(&inside, inside.iter().position(|is| !*is).unwrap());
+            let all = (0..8).all(|i| own[i] || other[i]);
+            assert_eq!(is_simple(inside), all, "{bits:08b}");
+        }
+    }
 }

@@ -29,8 +29,9 @@
 //! ```
 //!
 //! A mesh for a file ([`approximate`]): `grow.rs` finds cells of the size that curvature asks for,
-//! `decimate.rs` makes few triangles of those that `march.rs` makes in them, and `file.rs` measures
-//! the error both ways and mends what is too far, or cuts itself.
+//! `dual.rs` makes a mesh of them (`march.rs` where the box cuts the surface off), `decimate.rs`
+//! makes its triangles fewer, and `file.rs` measures the error both ways and mends what is too far,
+//! or cuts itself.
 //!
 //! The way of a proven mesh, a file each:
 //! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with
@@ -67,9 +68,11 @@
 
 mod boxes;
 mod cages;
+mod caps;
 mod certify;
 mod coating;
 mod decimate;
+mod dual;
 mod file;
 mod forest;
 mod grow;

@@ -235,11 +235,37 @@ pub fn march(
 #[derive(Clone, Copy)]
 struct Edge {
     ends: [DVec3; 2],
-    /// Values at its ends, less the threshold, and their changes along it.
+    /// Values at its ends, less the threshold.
     values: [f64; 2],
-    slopes: [f64; 2],
     /// Share of the way at which the surface is.
     share: f64,
+}
+
+/// The root of the cubic polynomial with these values, of different signs, and slopes at 0 and 1;
+/// not quite at an end.
+pub fn crossing_share([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
+    let rest = b - a - c;
+    let bend = d - c;
+    // a + c·t + square·t² + cube·t³.
+    let (square, cube) = (3.0 * rest - bend, bend - 2.0 * rest);
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut t = a / (a - b);
+    for _ in 0..6 {
+        let value = a + t * (c + t * (square + t * cube));
+        let slope = c + t * (2.0 * square + t * 3.0 * cube);
+        *(if (value > 0.0) == (a > 0.0) {
+            &mut low
+        } else {
+            &mut high
+        }) = t;
+        let next = t - value / slope;
+        t = if next > low && next < high {
+            next
+        } else {
+            0.5 * (low + high)
+        };
+    }
+    t.clamp(MARGIN, 1.0 - MARGIN)
 }
 
 /// Largest distance from the surface of vertices that two steps put onto it, in tolerances.
@@ -248,41 +274,13 @@ const NEAR: f64 = 0.02;
 impl Edge {
     fn new(lattice: &Lattice, numbers: [u32; 2], ends: [DVec3; 2]) -> Self {
         let way = ends[1] - ends[0];
-        let mut edge = Self {
+        let values = numbers.map(|i| lattice.value(i));
+        let slopes = numbers.map(|i| lattice.gradient(i).dot(way));
+        Self {
             ends,
-            values: numbers.map(|i| lattice.value(i)),
-            slopes: numbers.map(|i| lattice.gradient(i).dot(way)),
-            share: 0.5,
-        };
-        edge.share = edge.guess();
-        edge
-    }
-
-    /// The root of the cubic polynomial with the values and slopes at the ends.
-    fn guess(&self) -> f64 {
-        let ([a, b], [c, d]) = (self.values, self.slopes);
-        let rest = b - a - c;
-        let bend = d - c;
-        // a + c·t + square·t² + cube·t³.
-        let (square, cube) = (3.0 * rest - bend, bend - 2.0 * rest);
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut t = a / (a - b);
-        for _ in 0..6 {
-            let value = a + t * (c + t * (square + t * cube));
-            let slope = c + t * (2.0 * square + t * 3.0 * cube);
-            *(if (value > 0.0) == (a > 0.0) {
-                &mut low
-            } else {
-                &mut high
-            }) = t;
-            let next = t - value / slope;
-            t = if next > low && next < high {
-                next
-            } else {
-                0.5 * (low + high)
-            };
+            values,
+            share: crossing_share(values, slopes),
         }
-        t.clamp(MARGIN, 1.0 - MARGIN)
     }
 
     fn place(&self) -> DVec3 {

@@ -1,4 +1,5 @@
-//! Hard shapes as triangles: vertices on the surface, triangles within a tolerance of it.
+//! Hard shapes as triangles within a tolerance of the surface. Polygons have the areas of the
+//! circles that they stand for, and balls their volume: corners lie outside and sides inside.
 
 use core::f64::consts::{PI, TAU};
 use field::Skeleton;
@@ -116,8 +117,18 @@ fn segments(radius: f64, tolerance: f64) -> usize {
     ((PI / half).ceil() as usize).clamp(LEAST_SEGMENTS, MOST_SEGMENTS)
 }
 
-/// Points of a circle.
+/// Factor by which the corners of a polygon, at this angle from each other about the middle, are
+/// farther from it than the circle of the same area.
+fn growth(angle: f64) -> f64 {
+    let sine = libm::sin(angle);
+    // Not so for an angle of 0.
+    let is_sound = sine > 0.0;
+    if is_sound { (angle / sine).sqrt() } else { 1.0 }
+}
+
+/// The corners of a polygon of a circle's area.
 fn circle(center: DVec3, [x, y]: [DVec3; 2], radius: f64, count: usize) -> Vec<DVec3> {
+    let radius = radius * growth(TAU / count as f64);
     let point = |i: usize| {
         let (sine, cosine) = libm::sincos(TAU * i as f64 / count as f64);
         center + radius * (x * cosine + y * sine)
@@ -163,7 +174,7 @@ fn skin(rings: &[Vec<DVec3>], is_closed: bool) -> TriangleMesh {
     mesh
 }
 
-/// A ball: an icosahedron whose faces are divided and put on the sphere.
+/// A ball: an icosahedron whose faces are divided and put on a sphere a little larger.
 fn ball(center: DVec3, radius: f64, tolerance: f64) -> TriangleMesh {
     // The largest triangle's circle is 0.607·1.26 of the radius over the number of divisions.
     let sag = (tolerance / radius).min(1.0);
@@ -219,6 +230,15 @@ fn ball(center: DVec3, radius: f64, tolerance: f64) -> TriangleMesh {
             }
         }
     }
+    let whole = 2.0 / 3.0 * TAU * radius * radius * radius;
+    let moved = mesh.positions.iter().map(|p| *p - center).collect();
+    let volume = TriangleMesh::new(moved, mesh.triangles.clone()).signed_volume();
+    if volume > 0.0 {
+        let growth = libm::cbrt(whole / volume);
+        for p in &mut mesh.positions {
+            *p = center + (*p - center) * growth;
+        }
+    }
     mesh
 }
 
@@ -260,9 +280,10 @@ fn arc(
     let along = segments(sweep + radius, 0.5 * tolerance);
     let count = segments(radius, 0.5 * tolerance);
     let steps = ((along as f64 * angle / TAU).ceil() as usize).max(if is_round { 3 } else { 1 });
+    let step = angle / steps as f64;
     let disc = |i: usize| {
-        let (sine, cosine) = libm::sincos(angle * i as f64 / steps as f64);
-        let outward = u * cosine + v * sine;
+        let (sine, cosine) = libm::sincos(step * i as f64);
+        let outward = (u * cosine + v * sine) * growth(step);
         (center + outward * sweep, [outward, -axis])
     };
     let ring = |i: usize| {

@@ -151,6 +151,13 @@ impl<'a> Space<'a> {
         }
     }
 
+    /// Returns the least width of a kernel that matters in a ball within that of a part; 0 if it is
+    /// not known.
+    pub fn least_width(&self, part: u32, ball: Ball) -> f64 {
+        let width = self.function.least_width(self.part(part), ball);
+        width.unwrap_or(0.0)
+    }
+
     /// Bounds on the error of values in a part, and on that of gradients, beyond what is left out.
     pub fn error(&self, part: u32) -> [f64; 2] {
         self.part(part).map_or([0.0; 2], Part::error)

@@ -13,7 +13,7 @@ use crate::page::{Moment, Page, Parts, Screen, Tab, repaint_once};
 use crate::panels::Panels;
 use crate::render::{Phase, Renderer};
 use crate::scripts::Scripts;
-use crate::scripts::request::{Answer, Request};
+use crate::scripts::request::{Answer, Request, Told};
 use crate::sculpt::SculptPanel;
 use crate::settings::Settings;
 use crate::sliders::Sliders;
@@ -25,8 +25,10 @@ use crate::wish::{Dialog, LabWish, Notice, ViewWish, Wish, Wishes, WorkWish};
 use crate::works::gallery::Gallery;
 use crate::{fonts, keys, layout, screen, theme};
 use browser::Backend;
+use browser::voice::Voice;
 use document::examples;
 use document::fitting::Fitting;
+use document::heavy;
 use document::reading::MeshReading;
 use document::work::{self, Origin, Work};
 use egui::{Context, Ui};
@@ -37,6 +39,8 @@ use std::rc::Rc;
 
 /// Seconds of running without trouble after which a start counts as a good one.
 const HEALTHY: f64 = 4.0;
+/// Seconds after a letter was typed in which its word is no mistake.
+const TYPING: f64 = 1.0;
 /// Seconds that tiles wait to be shown where the processor that traces them draws the page, too:
 /// each frame keeps the workers waiting.
 const REST: f32 = 0.4;
@@ -55,6 +59,12 @@ pub struct App {
     saved_settings: Settings,
     /// The name in the title of the browser's tab.
     tab_title: String,
+    /// Time of the last edit while the text had the focus, seconds, and the revision it led to.
+    typed: (f64, u64),
+    /// [`Session::shape`](document::session::Session::shape) of the scene that was weighed.
+    weighed: u64,
+    /// The own work that other tabs are asked to leave to this one.
+    claimed: Option<String>,
 }
 
 fn is_drawn_by_processor(backend: Backend, state: Option<&egui_wgpu::RenderState>) -> bool {
@@ -94,6 +104,7 @@ impl App {
             parts.requests.ask(Request::HashChanged);
         }
         ctx.set_fonts(fonts::definitions());
+        ctx.add_plugin(Voice::new(parts.acts.clone()));
         ctx.add_plugin(Keyboard::default());
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
@@ -117,6 +128,9 @@ impl App {
             work: work.number(),
             saved_settings: settings.clone(),
             tab_title: String::new(),
+            typed: (f64::NEG_INFINITY, work.session.revision()),
+            weighed: 0,
+            claimed: None,
             page: Page {
                 work,
                 reading: MeshReading::new(tools.clone()),
@@ -130,6 +144,7 @@ impl App {
                     rest,
                     touch: None,
                     place: [640.0, 480.0],
+                    width: 0.0,
                     forced: None,
                 },
                 is_lab_open: lab.is_open(),
@@ -137,6 +152,7 @@ impl App {
                 film: FilmPanel::default().length(),
                 dialog: None,
                 tab: Tab::Text,
+                is_refused: false,
                 notice: None,
                 wishes: Wishes::default(),
             },
@@ -154,12 +170,12 @@ impl App {
                 lab: Lessons(lab),
             },
         };
-        app.greet(trouble, browser::now(ctx));
+        app.greet(trouble);
         app
     }
 
     /// Says at the start what the user should know.
-    fn greet(&mut self, trouble: Option<String>, now: f64) {
+    fn greet(&mut self, trouble: Option<String>) {
         let page = &mut self.page;
         if !page.work.session.is_enabled() {
             let text = "Sinew stopped unexpectedly last time. Your text is here and safe; \
@@ -174,9 +190,6 @@ impl App {
                 "This browser stores nothing for this page, so your work lasts until you \
                     close it. Share makes a link that keeps it.",
             );
-        } else if page.screen.backend == Backend::None {
-            let text = "No graphics card here: few drafts or none, but everything else works.";
-            page.tell(text, now);
         }
     }
 
@@ -189,7 +202,7 @@ impl App {
                 "You are looking at a shared link. Change it as you like: it becomes yours."
             }),
             bad: false,
-            action: None,
+            actions: Vec::new(),
             until: None,
         };
         self.page.notice = Some(if is_replaced {
@@ -214,6 +227,7 @@ impl App {
         for request in self.page.parts.requests.take() {
             self.serve(request, &at, &mut answers);
         }
+        self.note_typing(now);
         let page = &mut self.page;
         page.settle(now);
         if let Some(trouble) = page.work.tick(now) {
@@ -227,6 +241,11 @@ impl App {
         if page.settings != self.saved_settings {
             self.saved_settings = page.settings.clone();
             page.parts.shelf.borrow_mut().set_settings(&page.settings);
+        }
+        let own = page.work.own_id();
+        if self.claimed != own {
+            browser::claim_work(own.as_deref());
+            self.claimed = own;
         }
         let title = self.panels.lab.0.title().unwrap_or(&page.work.name);
         if self.tab_title != title {
@@ -265,6 +284,8 @@ impl App {
         }
         let until = page.notice.as_ref().and_then(|notice| notice.until);
         waits.push(until.map(|until| until - now));
+        let typed = self.typed.0 + TYPING - now;
+        waits.push((typed > 0.0).then_some(typed));
         if !self.is_healthy && page.work.session.is_enabled() {
             waits.push(Some(started + HEALTHY - now));
         }
@@ -276,6 +297,22 @@ impl App {
         waits.min_by(f64::total_cmp)
     }
 
+    /// Tells the session of the word that is being typed.
+    fn note_typing(&mut self, now: f64) {
+        let session = &mut self.page.work.session;
+        let editor = &mut self.panels.text.editor;
+        if self.typed.1 != session.revision() {
+            let typed = if editor.take_written() {
+                now
+            } else {
+                f64::NEG_INFINITY
+            };
+            self.typed = (typed, session.revision());
+        }
+        let is_typing = now - self.typed.0 < TYPING;
+        session.set_typing(editor.caret().filter(|_| is_typing));
+    }
+
     /// Begins the picture that is wanted, if its time has come, and takes in the tiles that workers
     /// have traced.
     fn trace(&mut self, at: &Moment<'_>) {
@@ -284,8 +321,27 @@ impl App {
             return;
         }
         let size = page.size(at.ctx);
-        let generation = page.work.session.generation();
-        page.renderer.want(generation, size, at.now);
+        let session = &page.work.session;
+        page.renderer.want(session.generation(), size, at.now);
+        if self.weighed != session.shape() {
+            self.weighed = session.shape();
+            let is_part = session.errors() > 0;
+            let scene = session.scene();
+            let scene = scene.filter(|scene| heavy::is_heavy(scene, is_part));
+            page.is_refused = scene.is_some();
+            if let Some(scene) = scene {
+                let text = format!(
+                    "This text makes {} shapes, more than can be traced here in good time. \
+                        The picture was not begun; your text is safe.",
+                    scene.elements.len()
+                );
+                let notice = Notice::trouble(text);
+                page.notice = Some(notice.with_button("Trace all the same", ViewWish::Again));
+            }
+        }
+        if page.is_refused {
+            page.renderer.cancel();
+        }
         let pictures = &mut self.panels.lab.0.pictures;
         if page.lends_workers() {
             pictures.tick(at.ctx);
@@ -304,8 +360,10 @@ impl App {
         let touch = ctx.input(egui::InputState::has_touch_screen) || screen::is_narrow(&ctx);
         if screen.touch != Some(touch) {
             screen.touch = Some(touch);
+            theme::set_sharp(browser::is_wanted("(prefers-contrast: more)"));
             theme::apply(&ctx, touch);
-            if screen.rest > 0.0 {
+            let is_calm = browser::is_wanted("(prefers-reduced-motion: reduce)");
+            if screen.rest > 0.0 || is_calm {
                 // Fading draws many frames, each at the cost of the picture.
                 ctx.all_styles_mut(|style| style.animation_time = 0.0);
             }
@@ -319,6 +377,7 @@ impl App {
         for wish in wishes {
             self.carry_out(wish, &at);
         }
+        self.note_typing(now);
         self.page.settle(now);
         // Workers need not wait for this frame to be drawn.
         self.trace(&at);
@@ -353,7 +412,7 @@ impl App {
                 match dialog {
                     Dialog::Gallery => panels.gallery.open(page),
                     Dialog::Help => panels.help.turn_to_words(),
-                    Dialog::Result | Dialog::Sculpt | Dialog::Mesh => {}
+                    Dialog::Versions | Dialog::Result | Dialog::Sculpt | Dialog::Mesh => {}
                 }
                 page.dialog = Some(dialog);
             }
@@ -408,6 +467,7 @@ impl App {
                 "{what} came after another work was opened, and was left out. \
                     Go back to the work that it was for, and ask for it again."
             )),
+            Request::Storage(told) => self.heed(told, at),
             Request::Videos(formats) => self.panels.film.formats = Some(formats),
             Request::SetCamera(camera) => page.work.session.set_camera(camera),
             Request::Picture(answer) => answer(page.renderer.image()),
@@ -421,6 +481,42 @@ impl App {
                 page.screen.forced = size.map(|size| size.map(|side| side.clamp(1, longest)));
             }
             Request::Panic => panic!("asked for by sinew.debug.panic()"),
+        }
+    }
+
+    /// Heeds what the browser's storage tells.
+    fn heed(&mut self, told: Told, at: &Moment<'_>) {
+        let page = &mut self.page;
+        let open = self.claimed.as_ref();
+        match told {
+            Told::Refused(reason) => page.warn(reason),
+            Told::Mine(id) if open == Some(&id) => {
+                let mut shelf = page.parts.shelf.borrow_mut();
+                let was_theirs = shelf.is_theirs();
+                shelf.set_theirs(false);
+                let is_behind = shelf.is_behind();
+                drop(shelf);
+                if is_behind {
+                    self.carry_out(WorkWish::OpenSaved(id).into(), at);
+                }
+                if was_theirs {
+                    let name = &self.page.work.name;
+                    let text = format!("“{name}” is this tab's to change now.");
+                    self.page.tell(text, at.now);
+                }
+            }
+            Told::Theirs(id) if open == Some(&id) => {
+                page.parts.shelf.borrow_mut().set_theirs(true);
+                let name = &page.work.name;
+                let text = format!(
+                    "Another tab writes “{name}”. Changes that you make here become a copy."
+                );
+                let notice = Notice::trouble(text)
+                    .with_button("Take over", WorkWish::TakeOver)
+                    .with_button("Make a copy", WorkWish::Copy);
+                page.notice = Some(notice);
+            }
+            Told::Mine(_) | Told::Theirs(_) => {}
         }
     }
 

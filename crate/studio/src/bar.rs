@@ -1,9 +1,12 @@
-//! The strip at the top: examples, the name of the work, undo, and above all Share.
+//! The strip at the top: whole works, examples, the name of the work, undo, and above all Share.
 
 use crate::film::FilmPanel;
 use crate::icon::{self, Icon};
 use crate::page::Page;
-use crate::wish::{Dialog, LabWish, SculptWish, Setting, TextWish, Wish, Wishes, WorkWish};
+use crate::text::editor::find::Seek;
+use crate::wish::{
+    Dialog, LabWish, SculptWish, Setting, TextWish, ViewWish, Wish, Wishes, WorkWish,
+};
 use crate::{download, places, theme};
 use document::work::{Origin, Work};
 use egui::{Align, Button, Layout, RichText, TextEdit, Ui};
@@ -25,6 +28,13 @@ pub fn show(page: &Page, film: &FilmPanel, ui: &mut Ui, narrow: bool, wishes: &m
             ui.label(RichText::new("Sinew").size(17.0).color(palette.strong));
             ui.add_space(6.0);
         }
+        if !narrow {
+            let button = ui
+                .button("Work")
+                .on_hover_text("New, open, my work, versions");
+            places::note(ui.ctx(), "work", button.rect);
+            egui::Popup::menu(&button).show(|ui| whole_work(ui, wishes));
+        }
         let gallery = ui
             .button("Examples")
             .on_hover_text("Pick a model to start from, or one of your own");
@@ -32,12 +42,8 @@ pub fn show(page: &Page, film: &FilmPanel, ui: &mut Ui, narrow: bool, wishes: &m
         if gallery.clicked() {
             wishes.push(Wish::Open(Dialog::Gallery));
         }
-        let lab = ui
-            .button("Lab")
-            .on_hover_text("See and try out how convolution surfaces work");
-        places::note(ui.ctx(), "lab", lab.rect);
-        if lab.clicked() {
-            wishes.push(LabWish::Show);
+        if !has_short_bar(ui) {
+            lab(ui, wishes);
         }
         // A narrow page has it in its menu.
         if !narrow {
@@ -94,6 +100,70 @@ pub fn show(page: &Page, film: &FilmPanel, ui: &mut Ui, narrow: bool, wishes: &m
     });
 }
 
+/// Whether the page is so narrow that the menu has what else stands in the bar.
+fn has_short_bar(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < 350.0
+}
+
+fn lab(ui: &mut Ui, wishes: &mut Wishes) {
+    let lab = ui
+        .button("Lab")
+        .on_hover_text("See and try out how convolution surfaces work");
+    places::note(ui.ctx(), "lab", lab.rect);
+    if lab.clicked() {
+        wishes.push(LabWish::Show);
+    }
+}
+
+/// Shows the part of a menu that is about whole works.
+fn whole_work(ui: &mut Ui, wishes: &mut Wishes) {
+    ui.set_min_width(190.0);
+    let rows: [(&str, &str, Wish); 7] = [
+        (
+            "New",
+            "Begin with an almost empty dataset",
+            WorkWish::New.into(),
+        ),
+        (
+            "Draw",
+            "An empty page to draw a creature on",
+            WorkWish::DrawNew.into(),
+        ),
+        (
+            "Open files…",
+            "Texts, projects, images, meshes",
+            WorkWish::PickFiles.into(),
+        ),
+        (
+            "My work…",
+            "All that this browser keeps",
+            Wish::Open(Dialog::Gallery),
+        ),
+        (
+            "Versions…",
+            "Earlier states of this work",
+            Wish::Open(Dialog::Versions),
+        ),
+        (
+            "Save project",
+            "All texts, images and meshes in one file",
+            WorkWish::Save.into(),
+        ),
+        (
+            "Find and replace",
+            "Ctrl+F, Ctrl+H; to a line: Ctrl+G",
+            TextWish::Find(Seek::Replace).into(),
+        ),
+    ];
+    for (text, tip, wish) in rows {
+        let row = ui.button(text).on_hover_text(tip);
+        places::note(ui.ctx(), format!("work {}", text.to_lowercase()), row.rect);
+        if row.clicked() {
+            wishes.push(wish);
+        }
+    }
+}
+
 fn name(ui: &mut Ui, work: &Work, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let mut name = work.name.clone();
@@ -135,6 +205,17 @@ fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     places::note(ui.ctx(), "more", button.rect);
     egui::Popup::menu(&button).show(|ui| {
         ui.set_min_width(190.0);
+        whole_work(ui, wishes);
+        ui.separator();
+        if has_short_bar(ui) {
+            lab(ui, wishes);
+            if ui.button("See the whole model").clicked() {
+                wishes.push(ViewWish::ShowAll);
+            }
+            if ui.button("Camera of the text").clicked() {
+                wishes.push(ViewWish::SetCamera(None));
+            }
+        }
         let sculpt = ui.button("Sculpt");
         places::note(ui.ctx(), "sculpt", sculpt.rect);
         if sculpt.clicked() {
@@ -142,9 +223,6 @@ fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
         }
         if ui.button("How it works").clicked() {
             wishes.push(Wish::Open(Dialog::Help));
-        }
-        if ui.button("Open files…").clicked() {
-            wishes.push(WorkWish::PickFiles);
         }
         ui.separator();
         download::label(ui, "Download");

@@ -4,7 +4,7 @@ use crate::app::App;
 use crate::crash;
 use crate::page::Parts;
 use crate::scripts::handle;
-use crate::scripts::request::Request;
+use crate::scripts::request::{Request, Told};
 use browser::boot;
 use browser::emulation;
 use std::cell::Cell;
@@ -54,11 +54,33 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
     on(&window, "hashchange", move || {
         requests.ask(Request::HashChanged);
     })?;
+    let (requests, shelf) = (parts.requests.clone(), parts.shelf.clone());
+    browser::listen_to_storage(move |kind, about| {
+        let told = match kind.as_str() {
+            "mine" => Told::Mine(about),
+            "refused" => Told::Refused(about),
+            lost => {
+                // What another tab takes over is written before it reads it.
+                if lost == "lost"
+                    && let Ok(mut shelf) = shelf.try_borrow_mut()
+                {
+                    let _ = shelf.flush(browser::unix_time());
+                }
+                Told::Theirs(about)
+            }
+        };
+        requests.ask(Request::Storage(told));
+    });
+    let (requests, acts) = (parts.requests.clone(), parts.acts.clone());
+    browser::listen_to_elements(move |element, deed, value| {
+        acts.add(element, deed, value);
+        requests.wake();
+    });
     // Keys of the editor that the browser would take: help, find, developer tools.
     let keys = Closure::<dyn Fn(web_sys::KeyboardEvent)>::new(|event: web_sys::KeyboardEvent| {
         let with_control = event.ctrl_key() || event.meta_key();
-        let lays_out = with_control && event.shift_key() && event.code() == "KeyF";
-        if lays_out || !with_control && matches!(event.key().as_str(), "F1" | "F12") {
+        let of_editor = with_control && matches!(event.code().as_str(), "KeyF" | "KeyG" | "KeyH");
+        if of_editor || !with_control && matches!(event.key().as_str(), "F1" | "F12") {
             event.prevent_default();
         }
     });

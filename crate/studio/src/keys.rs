@@ -3,6 +3,7 @@
 use crate::page::Page;
 use crate::panels::Panels;
 use crate::stage::pencil::tool::Tool;
+use crate::text::editor::find::Seek;
 use crate::wish::{LabWish, TextWish, ViewWish, Wish, Wishes};
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
@@ -31,6 +32,18 @@ pub fn listen(page: &Page, panels: &Panels, ctx: &Context, wishes: &mut Wishes) 
     }
     if pressed(Modifiers::COMMAND, Key::S) {
         wishes.push(ViewWish::Save);
+    }
+    // With Shift, F lays the text out.
+    if page.dialog.is_none() && !ctx.input(|input| input.modifiers.shift) {
+        for (key, seek) in [
+            (Key::F, Seek::Text),
+            (Key::H, Seek::Replace),
+            (Key::G, Seek::Line),
+        ] {
+            if pressed(Modifiers::COMMAND, key) {
+                wishes.push(TextWish::Find(seek));
+            }
+        }
     }
     if page.dialog.is_some() && pressed(Modifiers::NONE, Key::Escape) {
         wishes.push(Wish::Close);

@@ -1,5 +1,6 @@
-//! Layout of the page. Wide: text on the left, picture on the right, with a split that can be
-//! dragged. Narrow: the picture on top, and text, sliders and problems in turn below.
+//! Layout of the page. Large: text on the left, picture on the right, with a split that can be
+//! dragged. Small: the picture above or, where the page is low, beside text, sliders and problems
+//! in turn.
 
 use crate::icon::{self, Icon};
 use crate::page::{Page, Tab};
@@ -10,7 +11,8 @@ use crate::stage::pencil;
 use crate::text::files;
 use crate::theme::{self, STRIP};
 use crate::wish::{Dialog, Setting, ViewWish, Wish, Wishes};
-use crate::{bar, download, fit, notice, places, problems, screen, sculpt, sliders, status, tray};
+use crate::works::versions;
+use crate::{bar, download, fit, notice, places, problems, screen, sculpt, status, tray};
 use document::{intake, size};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
@@ -33,32 +35,45 @@ pub fn show(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wish
         dialogs(page, panels, ui.ctx(), wishes);
         return;
     }
-    let narrow = screen::is_narrow(ui.ctx());
+    let small = screen::is_small(ui.ctx());
     let palette = theme::palette(ui.visuals());
     let line = Stroke::new(1.0, palette.line);
     let flat = Frame::new().fill(palette.panel);
-    let bar_height = if narrow { 52.0 } else { 46.0 };
+    let bar_height = if small { 52.0 } else { 46.0 };
     Panel::top("bar")
         .exact_size(bar_height)
         .frame(flat)
-        .show(ui, |ui| bar::show(page, &panels.film, ui, narrow, wishes));
+        .show(ui, |ui| bar::show(page, &panels.film, ui, small, wishes));
     Panel::bottom("status")
-        .exact_size(if narrow { 40.0 } else { 32.0 })
+        .exact_size(if small { 40.0 } else { 32.0 })
         .frame(flat)
         .show(ui, |ui| {
-            status::show(page, panels.stage.stand_in, ui, narrow, wishes);
+            status::show(page, panels.stage.stand_in, ui, small, wishes);
         });
-    if narrow {
-        narrow_page(page, panels, ui, wishes);
+    if small {
+        small_page(page, panels, ui, wishes);
     } else {
         let width = ui.available_width();
+        // The picture has at least half of a page that is not very wide.
+        let most = (width - 500.0).max(0.5 * width);
+        let wanted = (width * page.settings.split).clamp(260.0, most);
         let panel = Panel::left("text")
-            .default_size((width * page.settings.split).clamp(300.0, 640.0))
-            .size_range(260.0..=(width - 260.0).max(260.0))
+            .default_size(wanted)
+            .size_range(260.0..=most)
             .show_separator_line(true)
             .frame(flat);
+        // In a window of another width the split keeps its share.
+        let is_resized = page.screen.width != width;
+        page.screen.width = width;
+        let panel = if is_resized {
+            panel.exact_size(wanted)
+        } else {
+            panel
+        };
         let side = panel.show(ui, |ui| text_side(page, panels, ui, wishes));
-        page.settings.split = (side.response.rect.width() / width.max(1.0)).clamp(0.15, 0.85);
+        if !is_resized {
+            page.settings.split = (side.response.rect.width() / width.max(1.0)).clamp(0.15, 0.85);
+        }
         CentralPanel::no_frame().show(ui, |ui| {
             let all = ui.max_rect();
             let head = Rect::from_min_size(all.min, vec2(all.width(), STRIP));
@@ -85,22 +100,26 @@ fn text_side(page: &Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes)
         .show(ui, |ui| {
             files::show(ui, session, &mut panels.text.editor, true, wishes);
         });
-    if !session.diagnostics().is_empty() {
-        Panel::bottom("problems")
-            .resizable(true)
-            .default_size(130.0)
-            .size_range(64.0..=420.0)
-            .frame(inset)
-            .show(ui, |ui| problems::show(page, ui, wishes));
-    }
+    // It is always there, so that the editor stays where it is while problems come and go.
+    let room = if ui.available_height() < 480.0 {
+        46.0
+    } else {
+        72.0
+    };
+    Panel::bottom("problems")
+        .resizable(true)
+        .default_size(room)
+        .size_range(46.0..=(0.5 * ui.available_height()).max(46.0))
+        .frame(inset)
+        .show(ui, |ui| problems::show(page, ui, wishes));
     if panels.fit.0.open {
         Panel::bottom("fit")
             .exact_size(fit::HEIGHT)
             .frame(inset)
             .show(ui, |ui| panels.fit.show(page, ui, wishes));
     }
-    if !session.compilation().hot.is_empty() {
-        let rows = sliders::height(ui, &session.compilation().hot);
+    let rows = panels.sliders.height(ui, session);
+    if rows > 0.0 {
         let most = (0.4 * ui.available_height()).clamp(60.0, 260.0);
         Panel::bottom("sliders")
             .exact_size(rows.min(most) + 42.0)
@@ -261,7 +280,7 @@ fn strip(ui: &mut Ui, place: &mut Rect, height: f32, name: &str) -> Ui {
 /// Shows the picture in a place, with the strips below it and everything that is drawn on it.
 fn stage(page: &mut Page, panels: &mut Panels, ui: &mut Ui, mut place: Rect, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
-    let narrow = screen::is_narrow(ui.ctx());
+    let narrow = screen::is_small(ui.ctx());
     let line = Stroke::new(1.0, palette.line);
     ui.painter().rect_filled(place, 0.0, palette.stage);
     if page.work.session.is_animated() {
@@ -299,34 +318,36 @@ fn stage(page: &mut Page, panels: &mut Panels, ui: &mut Ui, mut place: Rect, wis
     panels.stage.pencil.keep_off(covers);
 }
 
-/// Shows a narrow page below the bar.
-fn narrow_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
+/// Shows a small page between the bars: the picture above the rest, or beside it where the page is
+/// low.
+fn small_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
     let all = ui.available_rect_before_wrap();
     let [w, h] = page.work.session.frame().map(|side| side as f32);
     // With the keyboard up there is little room; the text then matters more.
-    let share = if all.height() < 420.0 { 0.34 } else { 0.46 };
+    let share = if all.height() < 420.0 { 0.34 } else { 0.5 };
     if panels.stage.pencil.tool().is_some() {
         stage(page, panels, ui, all, wishes);
         return;
     }
-    let mut height = (all.width() * h / w).min(all.height() * share).max(80.0);
-    if panels.tray.is_used() && all.height() >= 420.0 {
-        height += tray::strip::height(true, false);
-    }
-    let split = all.top() + height;
-    stage(
-        page,
-        panels,
-        ui,
-        Rect::from_min_max(all.min, pos2(all.right(), split)),
-        wishes,
-    );
-    let tabs = Rect::from_min_size(pos2(all.left(), split), vec2(all.width(), 48.0));
+    let rest = if all.width() > 1.25 * all.height() {
+        let (rest, picture) = all.split_left_right_at_fraction(0.45);
+        stage(page, panels, ui, picture, wishes);
+        rest
+    } else {
+        let mut height = (all.width() * h / w).min(all.height() * share).max(80.0);
+        if panels.tray.is_used() && all.height() >= 420.0 {
+            height += tray::strip::height(true, false);
+        }
+        let (picture, rest) = all.split_top_bottom_at_y(all.top() + height);
+        stage(page, panels, ui, picture, wishes);
+        rest
+    };
+    let tabs = Rect::from_min_size(rest.min, vec2(rest.width(), 48.0));
     ui.painter().rect_filled(tabs, 0.0, palette.panel);
     let part = places::part("tabs", tabs).layout(Layout::left_to_right(Align::Center));
     tab_row(page, panels, &mut ui.new_child(part), wishes);
-    let below = Rect::from_min_max(tabs.left_bottom(), all.max);
+    let below = Rect::from_min_max(tabs.left_bottom(), rest.max);
     ui.painter().rect_filled(below, 0.0, palette.panel);
     let mut ui = ui.new_child(places::part("below", below));
     match page.tab {
@@ -343,7 +364,7 @@ fn narrow_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut W
         }
         Tab::Sliders => {
             Frame::new().inner_margin(14).show(&mut ui, |ui| {
-                if page.work.session.compilation().hot.is_empty() {
+                if panels.sliders.height(ui, &page.work.session) == 0.0 {
                     ui.weak(
                         "Write “hot” after a variable, as in  var r = 0.3 hot,  \
                             and it gets a slider here.",
@@ -363,11 +384,7 @@ fn narrow_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut W
         }
         Tab::Problems => {
             Frame::new().inner_margin(10).show(&mut ui, |ui| {
-                if page.work.session.diagnostics().is_empty() {
-                    ui.weak("No problems.");
-                } else {
-                    problems::show(page, ui, wishes);
-                }
+                problems::show(page, ui, wishes);
             });
         }
     }
@@ -375,10 +392,12 @@ fn narrow_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut W
 
 fn tab_row(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
-    ui.add_space(8.0);
-    ui.spacing_mut().item_spacing.x = 4.0;
-    let problems = page.work.session.diagnostics().len();
-    let errors = page.work.session.errors() > 0;
+    // Where there is little room, the menu has the buttons for the view.
+    let is_short = ui.available_width() < 350.0;
+    ui.add_space(if is_short { 2.0 } else { 8.0 });
+    ui.spacing_mut().item_spacing.x = if is_short { 0.0 } else { 4.0 };
+    let problems = page.work.session.messages().len();
+    let errors = page.work.session.shows_errors();
     let sliders = page.work.session.compilation().hot.len();
     let mut tabs = vec![(Tab::Text, String::from("Text"))];
     for (tab, title, count) in [
@@ -415,6 +434,9 @@ fn tab_row(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishe
             panels.fit.0.open |= tab == Tab::Fit;
         }
     }
+    if is_short {
+        return;
+    }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.add_space(6.0);
         let is_moved = page.work.session.user_camera().is_some();
@@ -435,7 +457,7 @@ fn dialogs(page: &Page, panels: &mut Panels, ctx: &Context, wishes: &mut Wishes)
     let screen = ctx.content_rect();
     let width = match dialog {
         Dialog::Gallery | Dialog::Result | Dialog::Mesh => 860.0,
-        Dialog::Help | Dialog::Sculpt => 640.0,
+        Dialog::Help | Dialog::Sculpt | Dialog::Versions => 640.0,
     };
     let size = vec2(
         (screen.width() - 24.0).min(width),
@@ -460,6 +482,7 @@ fn dialogs(page: &Page, panels: &mut Panels, ctx: &Context, wishes: &mut Wishes)
             ui.set_max_height(size.y - inner);
             match dialog {
                 Dialog::Gallery => panels.gallery.show(page, ui, wishes),
+                Dialog::Versions => versions::show(page, ui, wishes),
                 Dialog::Result => {
                     let kept = page.work.session.assets();
                     panels.tray.show_large(ui, kept, wishes);

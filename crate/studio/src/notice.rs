@@ -24,22 +24,38 @@ pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, wishes: &mut Wishes) {
         .corner_radius(10)
         .shadow(ui.visuals().popup_shadow)
         .inner_margin(Margin::symmetric(14, 8));
+    // Buttons that leave little room for the words stand below them.
+    let is_below = notice.actions.len() > 1 && width < 520.0;
     let shown = frame.show(&mut ui, |ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if icon::button(ui, Icon::Close, "Close this message", true).clicked() {
                 wishes.push(Wish::Close);
             }
-            if let Some((text, wish)) = &notice.action {
-                let button =
-                    Button::new(RichText::new(text).color(palette.on_accent)).fill(palette.accent);
-                if ui.add(button).clicked() {
-                    wishes.push(wish.clone());
-                }
+            if !is_below {
+                buttons(ui, notice, wishes);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(Label::new(RichText::new(&notice.text).color(palette.text)).wrap());
             });
         });
+        if is_below {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                buttons(ui, notice, wishes)
+            });
+        }
     });
     places::note(ui.ctx(), "notice", shown.response.rect);
+}
+
+/// Shows the buttons of a message, the last one first.
+fn buttons(ui: &mut Ui, notice: &Notice, wishes: &mut Wishes) {
+    let palette = theme::palette(ui.visuals());
+    for (text, wish) in notice.actions.iter().rev() {
+        let button = Button::new(RichText::new(text).color(palette.on_accent)).fill(palette.accent);
+        let button = ui.add(button);
+        places::note(ui.ctx(), text.to_lowercase(), button.rect);
+        if button.clicked() {
+            wishes.push(wish.clone());
+        }
+    }
 }

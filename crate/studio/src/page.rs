@@ -8,6 +8,7 @@ use crate::scripts::request::Requests;
 use crate::settings::Settings;
 use crate::wish::{Dialog, Notice, Setting, Wish, Wishes};
 use browser::Backend;
+use browser::voice::Acts;
 use document::mesh_export::Film;
 use document::reading::MeshReading;
 use document::size;
@@ -40,6 +41,8 @@ pub struct Parts {
     pub shelf: Rc<RefCell<Shelf>>,
     /// Wishes of scripts.
     pub requests: Requests,
+    /// Events of the elements for assistive technology.
+    pub acts: Acts,
     /// State that scripts can read.
     pub outbox: Shared,
     /// The workers of the app that runs, for tests that end one.
@@ -54,6 +57,7 @@ impl Parts {
         Self {
             shelf: Rc::new(RefCell::new(shelf)),
             requests: Requests::default(),
+            acts: Acts::default(),
             outbox: Shared::default(),
             pool: Rc::default(),
         }
@@ -79,6 +83,8 @@ pub struct Screen {
     pub touch: Option<bool>,
     /// The picture's place in device pixels at the last frame.
     pub place: [f32; 2],
+    /// Width that text and picture shared at the last frame, points.
+    pub width: f32,
     /// The size of the picture that a film or a test asks for.
     pub forced: Option<[u32; 2]>,
 }
@@ -122,6 +128,8 @@ pub struct Page {
     pub dialog: Option<Dialog>,
     /// The part that a narrow page shows.
     pub tab: Tab,
+    /// Whether the picture is not begun, as it may take hours.
+    pub is_refused: bool,
     /// The message across the top of the picture.
     pub notice: Option<Notice>,
     /// Wishes of panels to other panels, which are carried out next.
@@ -262,6 +270,6 @@ pub fn ratio(ctx: &Context) -> f64 {
     if size.y <= size.x {
         return 0.75;
     }
-    let bars = if screen::is_narrow(ctx) { 150.0 } else { 300.0 };
+    let bars = if screen::is_small(ctx) { 150.0 } else { 300.0 };
     f64::from((size.y - bars).max(1.0) / size.x.max(1.0))
 }

@@ -42,9 +42,15 @@ pub fn summary(diagnostics: &[Diagnostic]) -> String {
 
 /// Shows the list in all of `ui`.
 pub fn show(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
-    places::note(ui.ctx(), "problems", ui.max_rect());
+    // It has its place even while there is nothing to tell.
+    ui.set_min_size(ui.available_size());
     let session = &page.work.session;
-    let (project, diagnostics) = (session.project(), session.diagnostics());
+    let (project, diagnostics) = (session.project(), session.messages());
+    if diagnostics.is_empty() {
+        ui.weak("No problems.");
+        return;
+    }
+    places::note(ui.ctx(), "problems", ui.max_rect());
     let area = ScrollArea::vertical().id_salt("problems");
     let area = area.min_scrolled_height(0.0).auto_shrink(false);
     area.show(ui, |ui| {
@@ -52,7 +58,7 @@ pub fn show(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         ui.spacing_mut().item_spacing.y = 2.0;
         for (index, diagnostic) in diagnostics.iter().take(MOST).enumerate() {
             ui.push_id(("problem", index), |ui| {
-                let clicked = row(ui, palette, project, diagnostic).clicked();
+                let clicked = row(ui, palette, project, diagnostic, index == 0).clicked();
                 let place = (&diagnostic.file, &diagnostic.span);
                 wishes.extend(jump(project, place).filter(|_| clicked));
                 more(ui, palette, project, diagnostic, wishes);
@@ -121,6 +127,7 @@ fn row(
     palette: &Palette,
     project: &Project,
     diagnostic: &Diagnostic,
+    is_first: bool,
 ) -> egui::Response {
     let several = project.files.len() > 1;
     let place = if several {
@@ -151,7 +158,14 @@ fn row(
                             .size(12.0)
                             .color(palette.weak),
                     );
-                    ui.label(RichText::new(&diagnostic.message).color(palette.text));
+                    let message = RichText::new(&diagnostic.message).color(palette.text);
+                    let message = ui.label(message);
+                    if is_first {
+                        // Screen readers say it when it comes.
+                        ui.ctx().accesskit_node_builder(message.id, |node| {
+                            node.set_live(egui::accesskit::Live::Polite);
+                        });
+                    }
                 });
                 if let Some(hint) = &diagnostic.hint {
                     ui.label(RichText::new(hint).size(12.5).color(palette.weak));
@@ -169,6 +183,7 @@ fn row(
         )
         .on_hover_cursor(egui::CursorIcon::PointingHand);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name.as_str()));
+    theme::ring(ui, &response);
     if response.hovered() {
         let shape = egui::Shape::rect_filled(response.rect, f32::from(theme::ROUND), palette.hover);
         ui.painter().set(background, shape);

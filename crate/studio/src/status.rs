@@ -65,11 +65,18 @@ pub fn show(
     // Places are kept for optional widgets: egui draws twice more if a button is at a new place.
     ui.horizontal_centered(|ui| {
         ui.add_space(12.0);
-        ui.label(
+        let state = ui.label(
             RichText::new(summary(renderer, enabled, reading))
                 .color(palette.text)
                 .size(13.0),
         );
+        // Screen readers say when a picture begins and ends, not each part of it.
+        ui.ctx().accesskit_node_builder(state.id, |node| {
+            node.set_live(egui::accesskit::Live::Polite);
+            if tracing {
+                node.set_value("Tracing");
+            }
+        });
         if let (true, Some(pass), false) = (tracing, progress.pass, narrow) {
             ui.label(
                 RichText::new(pass_label(pass))

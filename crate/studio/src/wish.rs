@@ -81,6 +81,8 @@ impl From<Notice> for Wish {
 pub enum Dialog {
     /// Examples and own works.
     Gallery,
+    /// Earlier versions of the open work.
+    Versions,
     /// The help.
     Help,
     /// A result of the text's jobs on pictures.
@@ -91,16 +93,16 @@ pub enum Dialog {
     Mesh,
 }
 
-/// A message across the top of the picture: something that went wrong or was done, perhaps with a
-/// button.
+/// A message across the top of the picture: something that went wrong or was done, perhaps with
+/// buttons.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
     /// The text.
     pub text: String,
     /// Whether something went wrong.
     pub bad: bool,
-    /// A button: its text and its wish.
-    pub action: Option<(String, Wish)>,
+    /// Buttons: texts and wishes.
+    pub actions: Vec<(String, Wish)>,
     /// Time at which the message disappears by itself, seconds on the app's clock.
     pub until: Option<f64>,
 }
@@ -112,7 +114,7 @@ impl Notice {
         Self {
             text: text.into(),
             bad: false,
-            action: None,
+            actions: Vec::new(),
             until: Some(now + 6.0),
         }
     }
@@ -123,7 +125,7 @@ impl Notice {
         Self {
             text: text.into(),
             bad: true,
-            action: None,
+            actions: Vec::new(),
             until: None,
         }
     }
@@ -131,7 +133,7 @@ impl Notice {
     /// Adds a button.
     #[must_use]
     pub fn with_button(mut self, text: &str, wish: impl Into<Wish>) -> Self {
-        self.action = Some((text.to_owned(), wish.into()));
+        self.actions.push((text.to_owned(), wish.into()));
         self
     }
 }

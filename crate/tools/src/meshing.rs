@@ -122,6 +122,8 @@ impl MeshFacts {
             notes: model.notes.clone(),
             ..Self::default()
         };
+        let shift = mesh::shift_of(&model.bounds(), millimetres);
+        facts.notes.extend(mesh::describe_shift(shift));
         for part in &model.parts {
             facts.triangles += part.mesh.triangles.len();
             facts.vertices += part.mesh.positions.len();

@@ -2,7 +2,7 @@
 
 use crate::Random;
 use core::f64::consts::{PI, TAU};
-use field::local::Limb;
+use field::local::{Limb, LimbPiece};
 use field::skeleton::Map;
 use field::{BlobScale, Kernel, Local, Primitive, Shaping, Skeleton};
 use glam::{DAffine3, DQuat, DVec3};
@@ -231,8 +231,11 @@ pub fn hairpin(kernel: Kernel, apart: f64) -> Local {
         let piece = Primitive::new(Skeleton::Segment { base, apex }, &shaping, None);
         Limb {
             ends: [i, i + 1],
-            next: [i.checked_sub(1), (i + 1 < count).then_some(i + 1)],
-            pieces: vec![(piece.expect("it is a segment"), base.distance(apex))],
+            pieces: vec![LimbPiece {
+                primitives: vec![piece.expect("it is a segment")],
+                length: base.distance(apex),
+                radius: 0.4,
+            }],
         }
     });
     Local::new(&points, &limbs.collect::<Vec<_>>(), 1.2).expect("it is short")

@@ -78,6 +78,7 @@ pub fn button(ui: &mut Ui, icon: Icon, name: &str, enabled: bool) -> Response {
             palette.text
         };
         paint(ui.painter(), icon, rect.center(), Stroke::new(1.5, colour));
+        theme::ring(ui, &response);
     }
     if enabled {
         response.on_hover_text(name)

@@ -5,6 +5,7 @@ use egui::{
     Visuals, vec2,
 };
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The user's choice of palette.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -92,7 +93,7 @@ pub const DARK: Palette = Palette {
     hover: hex(0x2E3743),
     line: hex(0x272E38),
     text: hex(0xC9D1DB),
-    weak: hex(0x8491A1),
+    weak: hex(0x96A1AE),
     strong: hex(0xF1F4F8),
     accent: hex(0xE8704A),
     on_accent: hex(0x1C0F0A),
@@ -104,7 +105,7 @@ pub const DARK: Palette = Palette {
     option: hex(0x8FB8DE),
     number: hex(0xD8C27A),
     colour: hex(0x8FCFA8),
-    comment: hex(0x667485),
+    comment: hex(0x748190),
     sign: hex(0x93A0B0),
 };
 
@@ -118,26 +119,57 @@ pub const LIGHT: Palette = Palette {
     hover: hex(0xDEDAD3),
     line: hex(0xDDD9D2),
     text: hex(0x2B323A),
-    weak: hex(0x6A737D),
+    weak: hex(0x596069),
     strong: hex(0x12171D),
-    accent: hex(0xD4572E),
+    accent: hex(0xBA4C28),
     on_accent: hex(0xFFFFFF),
     error: hex(0xC62F2F),
-    warning: hex(0x9A6700),
+    warning: hex(0x966500),
     note: hex(0x2F6DA8),
     selection: hex(0xF6D5C8),
     command: hex(0xB8431C),
     option: hex(0x2B64A0),
     number: hex(0x85640A),
     colour: hex(0x1F7A4A),
-    comment: hex(0x8A929B),
+    comment: hex(0x6F767D),
     sign: hex(0x59636E),
 };
+
+/// The palettes of those who ask for more contrast.
+const SHARP: [Palette; 2] = [sharpen(DARK), sharpen(LIGHT)];
+
+/// Makes a palette of more contrast.
+const fn sharpen(palette: Palette) -> Palette {
+    Palette {
+        line: palette.weak,
+        text: palette.strong,
+        weak: palette.text,
+        comment: palette.text,
+        sign: palette.strong,
+        ..palette
+    }
+}
+
+/// Whether more contrast is asked for.
+static IS_SHARP: AtomicBool = AtomicBool::new(false);
+
+/// Sets whether more contrast is asked for; [`apply`] follows.
+pub fn set_sharp(is_sharp: bool) {
+    IS_SHARP.store(is_sharp, Ordering::Relaxed);
+}
 
 /// Returns the palette in use.
 #[must_use]
 pub fn palette(visuals: &Visuals) -> &'static Palette {
-    if visuals.dark_mode { &DARK } else { &LIGHT }
+    palette_of(visuals.dark_mode)
+}
+
+fn palette_of(is_dark: bool) -> &'static Palette {
+    match (IS_SHARP.load(Ordering::Relaxed), is_dark) {
+        (false, true) => &DARK,
+        (false, false) => &LIGHT,
+        (true, is_dark) => &SHARP[usize::from(!is_dark)],
+    }
 }
 
 /// Size of the editor's letters.
@@ -150,8 +182,11 @@ pub const ROUND: u8 = 6;
 /// Sets up both palettes; egui picks the one for the theme in use. `touch` makes targets as large
 /// as a thumb needs.
 pub fn apply(ctx: &egui::Context, touch: bool) {
-    ctx.set_style_of(Theme::Dark, style(&DARK, Visuals::dark(), touch));
-    ctx.set_style_of(Theme::Light, style(&LIGHT, Visuals::light(), touch));
+    ctx.set_style_of(Theme::Dark, style(palette_of(true), Visuals::dark(), touch));
+    ctx.set_style_of(
+        Theme::Light,
+        style(palette_of(false), Visuals::light(), touch),
+    );
 }
 
 fn style(palette: &Palette, mut visuals: Visuals, touch: bool) -> Style {
@@ -254,6 +289,8 @@ fn style(palette: &Palette, mut visuals: Visuals, touch: bool) -> Style {
     widgets.active.bg_fill = palette.hover;
     widgets.active.weak_bg_fill = palette.hover;
     widgets.active.fg_stroke = Stroke::new(1.0, palette.strong);
+    // A widget with the focus is painted as an active one.
+    widgets.active.bg_stroke = Stroke::new(1.5, palette.accent);
     widgets.open.weak_bg_fill = palette.hover;
     widgets.open.fg_stroke = Stroke::new(1.0, palette.strong);
     // A slider's knob is drawn with these strokes; a line makes it readable on both palettes.
@@ -280,5 +317,73 @@ pub fn other(ui: &egui::Ui) -> Choice {
         Choice::Light
     } else {
         Choice::Dark
+    }
+}
+
+/// Draws the ring around a widget that has the focus and is painted by hand.
+pub fn ring(ui: &egui::Ui, response: &egui::Response) {
+    if response.has_focus() {
+        let palette = palette(ui.visuals());
+        let stroke = Stroke::new(1.5, palette.accent);
+        let inside = egui::StrokeKind::Inside;
+        ui.painter()
+            .rect_stroke(response.rect, f32::from(ROUND), stroke, inside);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the relative luminance of a colour (WCAG 2.2).
+    fn luminance(colour: Color32) -> f64 {
+        let [r, g, b, _] = colour.to_array().map(|byte| {
+            let share = f64::from(byte) / 255.0;
+            if share <= 0.04045 {
+                share / 12.92
+            } else {
+                libm::pow((share + 0.055) / 1.055, 2.4)
+            }
+        });
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    /// Returns the contrast of two colours, 1 … 21 (WCAG 2.2).
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let [a, b] = [a, b].map(luminance);
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn what_is_written_can_be_read_on_each_ground() {
+        assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 1e-9);
+        for palette in [DARK, LIGHT, SHARP[0], SHARP[1]] {
+            let (panel, paper, raised) = (palette.panel, palette.paper, palette.raised);
+            let grounds = [panel, paper, raised, palette.button, palette.hover];
+            let words = [palette.text, palette.weak, palette.strong];
+            let mut pairs = vec![(palette.on_accent, palette.accent), (palette.accent, panel)];
+            pairs.extend(
+                words
+                    .iter()
+                    .flat_map(|word| grounds.map(|ground| (*word, ground))),
+            );
+            for told in [palette.error, palette.warning, palette.note] {
+                pairs.extend([panel, raised].map(|ground| (told, ground)));
+            }
+            let code = [
+                palette.command,
+                palette.option,
+                palette.number,
+                palette.colour,
+            ];
+            let code = code
+                .into_iter()
+                .chain([palette.comment, palette.sign, palette.error]);
+            pairs.extend(code.map(|word| (word, paper)));
+            for (word, ground) in pairs {
+                let contrast = contrast(word, ground);
+                assert!(contrast >= 4.5, "{word:?} on {ground:?}: {contrast}");
+            }
+        }
     }
 }

@@ -117,6 +117,39 @@ fn words_say_what_a_user_wants_to_know() {
     assert_eq!(known["parts"][0]["level"], "proof");
 }
 
+/// A model in a map's coordinates: STL keeps its shape about another origin, which is said.
+#[test]
+fn far_models_are_moved_and_what_is_left_out_is_named() {
+    let folder = Folder::new("mesh-far");
+    let far = "surface warm diffuse OrangeRed blob -2\nsurface bare diffuse White blob -2 rad 0\n\
+        sphere warm 1 500000 4649776 0\nsphere warm 1 500001.5 4649776 0\n\
+        line bare <500000 4649776 0> <500001 4649776 0>\n";
+    let file = folder.write("far.rat", far);
+    let out = folder.path("far.stl");
+    let arguments = ["mesh", &file, "-o", &out, "--relative", "5e-3"];
+    let known = mesh(&[&arguments[..], &["--json"]].concat());
+    let said = known["diagnostics"].to_string();
+    assert!(said.contains("left out"), "{said}");
+    assert!(known["notes"][0].as_str().unwrap().contains("origin"));
+    assert!(known["shift"][1].as_f64().unwrap() > 1e8);
+    let written = mesh::read(&out, &std::fs::read(&out).unwrap()).unwrap();
+    let topology = mesh::Topology::of(&written).unwrap();
+    assert_eq!(
+        (topology.genera, topology.repairs.is_none()),
+        (vec![0], true)
+    );
+    let mut heights: Vec<u64> = written.positions.iter().map(|p| p.y.to_bits()).collect();
+    heights.sort_unstable();
+    heights.dedup();
+    assert!(
+        4 * heights.len() > written.positions.len(),
+        "{}",
+        heights.len()
+    );
+    let crossings = mesh::self_intersections(&written, 10).unwrap();
+    assert!(crossings.is_free());
+}
+
 #[test]
 fn what_cannot_be_meshed_is_told() {
     let folder = Folder::new("mesh-words");

@@ -2,7 +2,6 @@
 use contact::{Bulge, Folded};
 use field::{Ball, Implicit, Kernel, THRESHOLD};
 use glam::DVec3;
-use std::sync::Arc;
 use trials::skeletons::hairpin;
 use trials::{Random, count};
 
@@ -22,16 +21,20 @@ const BULGES: [Bulge; 3] = [
 
 #[test]
 fn folds_are_deformed_as_the_formula_says() {
-    let local = Arc::new(hairpin(Kernel::Cubed, 0.5));
+    let local = hairpin(Kernel::Cubed, 0.5);
+    let both = local.clone().with_folds(0.3);
     let mut random = Random::new(5);
     let mut kinds = [0; 4];
     for bulge in BULGES {
         let folded = Folded::new(local.clone(), bulge);
         for _ in 0..count(1200) {
             let point = DVec3::new(-1.0, 0.0, 0.0) + random.vector(1.0) * DVec3::new(0.8, 0.6, 0.4);
-            let (first, second) = local.two(point);
+            let (first, second) = both.two(point.to_array());
             let Some(second) = second else { continue };
-            let (f, other) = (first.value, second.value);
+            let (own, second) = (first.value, second.value);
+            let t = ((second - 0.3) / 0.35).clamp(0.0, 1.0);
+            let f = own.max(second * t * t * (3.0 - 2.0 * t));
+            let other = second.min(own);
             // The bulges written out once more.
             let g = if other > 1.0 {
                 kinds[0] += 1;
@@ -84,7 +87,7 @@ fn crest(f: f64, m: f64, h: f64, wave: f64) -> f64 {
 
 #[test]
 fn bounds_hold_in_balls() {
-    let local = Arc::new(hairpin(Kernel::Cubed, 0.55));
+    let local = hairpin(Kernel::Cubed, 0.55);
     let mut random = Random::new(9);
     let (mut finite, mut all) = (0, 0);
     for bulge in BULGES {
@@ -93,7 +96,11 @@ fn bounds_hold_in_balls() {
             let center =
                 DVec3::new(-1.0, 0.0, 0.0) + random.vector(1.0) * DVec3::new(1.5, 1.0, 0.7);
             let radius = 0.3 * random.decades(-3.0, 0.0);
-            let bounds = folded.enclose(Ball { center, radius });
+            let ball = Ball { center, radius };
+            let bounds = folded.enclose(ball);
+            let variation = folded.variation(None, ball);
+            let bend = variation.curvature * radius + variation.jump;
+            let at_center = DVec3::from_array(folded.jet(center).gradient);
             all += 1;
             finite += u32::from(bounds.slope.is_finite());
             for _ in 0..10 {
@@ -105,8 +112,11 @@ fn bounds_hold_in_balls() {
                     low - slack <= jet.value && jet.value <= high + slack,
                     "{jet:?} {bounds:?}"
                 );
-                let steep = DVec3::from_array(jet.gradient).length();
+                let gradient = DVec3::from_array(jet.gradient);
+                let steep = gradient.length();
                 assert!(steep <= bounds.slope * (1.0 + 1e-9), "{steep} {bounds:?}");
+                let change = gradient.distance(at_center);
+                assert!(change <= bend * (1.0 + 1e-6) + 1e-7, "{change} {bend}");
             }
         }
     }

@@ -29,15 +29,15 @@ impl Graph {
         self.edges[b as usize].push((a, length));
     }
 
-    /// Distances along the graph from a node to those within a reach (Dijkstra's algorithm), at
-    /// most `most` of them.
+    /// Returns the distances along the graph, up to a reach, of nodes from the nearest of some with
+    /// distances of their own (Dijkstra's algorithm), at most `most` of them.
     #[must_use]
-    pub fn within(&self, from: u32, reach: f64, most: usize) -> BTreeMap<u32, f64> {
+    pub fn within(&self, from: &[(u32, f64)], reach: f64, most: usize) -> BTreeMap<u32, f64> {
         let mut found = BTreeMap::new();
-        let mut waiting = BinaryHeap::from([Waiting {
-            distance: 0.0,
-            node: from,
-        }]);
+        let near = from.iter().filter(|(_, distance)| *distance <= reach);
+        let mut waiting: BinaryHeap<Waiting> = near
+            .map(|&(node, distance)| Waiting { distance, node })
+            .collect();
         while let Some(Waiting { distance, node }) = waiting.pop() {
             if found.len() >= most {
                 break;

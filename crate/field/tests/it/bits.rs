@@ -233,12 +233,12 @@ impl Found {
         map.matrix3.x_axis.y += 0.2;
         self.function("placed", &Placed::new(balls, map).expect("an inverse"));
         for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
-            let local = hairpin(kernel, 0.55);
+            let local = hairpin(kernel, 0.55).with_folds(0.05);
             let name = format!("{} local", kernel.name());
             self.function(&name, &local);
             let mut hash = Hash::default();
             for _ in 0..100 {
-                let (first, second) = local.two(random.vector(1.5));
+                let (first, second) = local.two(random.vector(1.5).to_array());
                 hash.numbers(numbers(first));
                 hash.numbers(second.into_iter().flat_map(numbers));
             }

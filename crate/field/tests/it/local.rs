@@ -1,17 +1,18 @@
-//! Local convolution: against its definition, by quadrature and search; its bounds, by sampling;
-//! and how far it jumps.
+//! Local convolution: against its definition, by quadrature; its bounds, by sampling; and how
+//! smooth it is.
 
-use field::local::{Limb, Place, Two};
-use field::{Ball, BlobScale, Implicit, Kernel, Local, Primitive, Shaping, Skeleton, Taper};
+use field::local::{Limb, LimbPiece, LocalError, Two};
+use field::{Ball, BlobScale, Implicit, Jet, Kernel, Local, Primitive, Shaping, Skeleton, Taper};
 use glam::DVec3;
 use oracle::quadrature;
 use trials::{Random, count};
+use wide::f32x8;
 
 /// A skeleton: points with radii, and segments between them, curve by curve.
 struct Figure {
     points: Vec<(DVec3, f64)>,
-    /// Pair of points, and the number of their curve.
-    segments: Vec<([usize; 2], usize)>,
+    /// Pairs of points.
+    segments: Vec<[usize; 2]>,
     reach: f64,
     kernel: Kernel,
 }
@@ -29,8 +30,8 @@ const PIECES: usize = 2;
 impl Figure {
     fn new(points: Vec<(DVec3, f64)>, curves: &[Vec<usize>], reach: f64, kernel: Kernel) -> Self {
         let mut segments = Vec::new();
-        for (number, curve) in curves.iter().enumerate() {
-            segments.extend(curve.windows(2).map(|w| ([w[0], w[1]], number)));
+        for curve in curves {
+            segments.extend(curve.windows(2).map(|w| [w[0], w[1]]));
         }
         Self {
             points,
@@ -44,18 +45,23 @@ impl Figure {
         self.points[a].0.distance(self.points[b].0)
     }
 
+    /// The radius at a part of a segment.
+    fn radius(&self, [a, b]: [usize; 2], part: f64) -> f64 {
+        let [start, end] = [a, b].map(|i| self.points[i].1);
+        start + (end - start) * part
+    }
+
     fn primitive(&self, [a, b]: [usize; 2], from: f64, to: f64) -> Primitive {
         let [(base, start), (apex, end)] = [self.points[a], self.points[b]];
-        let radius = |part: f64| start + (end - start) * part;
         let shaping = Shaping {
             kernel: self.kernel,
-            radius: radius(from),
+            radius: self.radius([a, b], from),
             blobbiness: 2.0,
             blob_scale: BlobScale::Relative,
             strength: 1.0,
             influence: 1e-3,
             taper: (start != end).then_some(Taper {
-                radius: radius(to),
+                radius: self.radius([a, b], to),
                 blobbiness: 2.0,
             }),
         };
@@ -77,38 +83,22 @@ impl Figure {
         all
     }
 
-    /// The segment that goes on from an end of another.
-    fn next(&self, index: usize, end: usize) -> Option<usize> {
-        let segments = &self.segments;
-        let point = segments[index].0[end];
-        let around: Vec<usize> = (0..segments.len())
-            .filter(|i| segments[*i].0.contains(&point))
-            .collect();
-        if around.len() == 2 {
-            return around.into_iter().find(|i| *i != index);
-        }
-        let other = if end == 0 {
-            index.checked_sub(1)?
-        } else {
-            index + 1
-        };
-        let (ends, curve) = segments.get(other)?;
-        (*curve == segments[index].1 && ends[1 - end] == point).then_some(other)
-    }
-
     fn local(&self) -> Local {
         let segments = &self.segments;
-        let limbs: Vec<Limb> = (segments.iter().enumerate())
-            .map(|(index, (ends, _))| Limb {
+        let limbs: Vec<Limb> = (segments.iter())
+            .map(|ends| Limb {
                 ends: ends.map(|end| end as u32),
-                next: [0, 1].map(|end| self.next(index, end).map(|next| next as u32)),
                 pieces: (0..PIECES)
                     .map(|i| {
                         let [from, to] = [i, i + 1].map(|i| i as f64 / PIECES as f64);
-                        (
-                            self.primitive(*ends, from, to),
-                            self.length(*ends) / PIECES as f64,
-                        )
+                        // A piece of two primitives is as one of their sum.
+                        let middle = 0.5 * (from + to);
+                        let halves = [[from, middle], [middle, to]];
+                        LimbPiece {
+                            primitives: halves.map(|[a, b]| self.primitive(*ends, a, b)).to_vec(),
+                            length: self.length(*ends) / PIECES as f64,
+                            radius: self.radius(*ends, middle),
+                        }
                     })
                     .collect(),
             })
@@ -124,7 +114,7 @@ impl Figure {
         for (i, row) in d.iter_mut().enumerate() {
             row[i] = 0.0;
         }
-        for &(ends, _) in &self.segments {
+        for &ends in &self.segments {
             let length = self.length(ends);
             for [a, b] in [ends, [ends[1], ends[0]]] {
                 d[a][b] = d[a][b].min(length);
@@ -143,12 +133,12 @@ impl Figure {
     /// Distance along the skeleton between parts of segments.
     fn distance(&self, between: &[Vec<f64>], a: (usize, f64), b: (usize, f64)) -> f64 {
         let segments = &self.segments;
-        let (first, second) = (segments[a.0].0, segments[b.0].0);
+        let (first, second) = (segments[a.0], segments[b.0]);
         let (own, other) = (self.length(first), self.length(second));
-        if a.0 == b.0 {
-            return (a.1 - b.1).abs() * own;
-        }
-        let mut least = f64::INFINITY;
+        let mut least = match a.0 == b.0 {
+            true => (a.1 - b.1).abs() * own,
+            false => f64::INFINITY,
+        };
         for (i, here) in [a.1 * own, (1.0 - a.1) * own].into_iter().enumerate() {
             for (k, there) in [b.1 * other, (1.0 - b.1) * other].into_iter().enumerate() {
                 least = least.min(here + between[first[i]][second[k]] + there);
@@ -177,59 +167,51 @@ impl Figure {
             let mean = (at(0) + at(STEPS) + 4.0 * inner(1) + 2.0 * inner(2)) / (3 * STEPS) as f64;
             if mean > 0.0 {
                 sum +=
-                    mean * quadrature::value(&self.primitive(segments[segment].0, from, to), point);
+                    mean * quadrature::value(&self.primitive(segments[segment], from, to), point);
             }
         }
         sum
     }
 
-    /// The places whose planes hold a point, by a search for changes of sign; and ends and
-    /// branches.
-    fn places(&self, point: DVec3) -> Vec<(usize, f64)> {
-        const STEPS: usize = 500;
-        let segments = &self.segments;
-        let direction = |index: usize| {
-            let [a, b] = segments[index].0;
-            (self.points[b].0 - self.points[a].0).normalize()
+    /// Computes F, F₂ and the largest W, by their definition.
+    fn fields(&self, point: DVec3, level: f64) -> [f64; 3] {
+        let between = self.distances();
+        let pieces = self.pieces();
+        let middle = |p: &Piece| (p.segment, 0.5 * (p.from + p.to));
+        let weights = pieces.iter().map(|p| {
+            let length = self.length(self.segments[p.segment]) * (p.to - p.from);
+            let primitive = self.primitive(self.segments[p.segment], p.from, p.to);
+            let radius = self.radius(self.segments[p.segment], 0.5 * (p.from + p.to));
+            length * (quadrature::value(&primitive, point) * radius / length).powi(8)
+        });
+        let weights: Vec<f64> = weights.collect();
+        let stretches = pieces.iter();
+        let stretches = stretches.map(|p| self.stretch(&between, middle(p), point));
+        let stretches: Vec<f64> = stretches.collect();
+        let mean = |of: &dyn Fn(usize) -> [f64; 2]| {
+            let [mut sum, mut total] = [0.0; 2];
+            for i in 0..pieces.len() {
+                let [weight, value] = of(i);
+                sum += weight * value;
+                total += weight;
+            }
+            if total > 0.0 { sum / total } else { 0.0 }
         };
-        let mut found = Vec::new();
-        for index in 0..segments.len() {
-            let ends = segments[index].0;
-            let normals = [0, 1].map(|end| match self.next(index, end) {
-                None => direction(index),
-                Some(next) => {
-                    let along = segments[next].0[1 - end] == ends[end];
-                    let other = direction(next) * if along { 1.0 } else { -1.0 };
-                    (direction(index) + other).normalize()
-                }
+        let second = |j: usize| {
+            let far = mean(&|k| {
+                let distance = self.distance(&between, middle(&pieces[j]), middle(&pieces[k]));
+                let t = (distance / self.reach - 2.0).clamp(0.0, 1.0);
+                let apart = t * t * (3.0 - 2.0 * t);
+                [apart * weights[k], apart * stretches[k]]
             });
-            let at = |u: f64| {
-                let place = self.points[ends[0]].0.lerp(self.points[ends[1]].0, u);
-                normals[0].lerp(normals[1], u).dot(point - place)
-            };
-            for i in 0..STEPS {
-                let [mut low, mut high] = [i, i + 1].map(|i| i as f64 / STEPS as f64);
-                let first = at(low);
-                if (first <= 0.0) == (at(high) <= 0.0) {
-                    continue;
-                }
-                for _ in 0..60 {
-                    let middle = 0.5 * (low + high);
-                    if (at(middle) <= 0.0) == (first <= 0.0) {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                found.push((index, 0.5 * (low + high)));
-            }
-            for end in [0, 1] {
-                if self.next(index, end).is_none() {
-                    found.push((index, end as f64));
-                }
-            }
-        }
-        found
+            let t = (2.0 * far / level - 1.0).clamp(0.0, 1.0);
+            far * t * t * (3.0 - 2.0 * t)
+        };
+        [
+            mean(&|j| [weights[j], stretches[j]]),
+            mean(&|j| [weights[j], second(j)]),
+            stretches.iter().copied().fold(0.0, f64::max),
+        ]
     }
 }
 
@@ -263,115 +245,162 @@ fn figure(random: &mut Random, kernel: Kernel) -> Figure {
 }
 
 fn near(figure: &Figure, random: &mut Random, spread: f64) -> DVec3 {
-    let segments = &figure.segments;
-    let [a, b] = random.pick(segments).0;
+    let [a, b] = random.pick(&figure.segments);
     let on = figure.points[a].0.lerp(figure.points[b].0, random.unit());
     on + random.direction() * random.range(0.05, spread)
 }
 
+/// Figures that are out of the common: a closed curve, five curves of one node, curves along each
+/// other, a reach beyond the whole, and two parts that nothing joins.
+fn odd_figures(kernel: Kernel) -> Vec<Figure> {
+    let at = |x: f64, y: f64| (DVec3::new(x, y, 0.1 * x * y), 0.25);
+    let ring = [0.0, 1.0, 2.0, 3.0, 4.0].map(|i| {
+        let (y, x) = libm::sincos(i * core::f64::consts::TAU / 5.0);
+        at(0.6 * x, 0.6 * y)
+    });
+    let two = vec![at(-1.0, 0.0), at(-0.5, 0.0), at(0.0, 0.1), at(0.5, 0.0)];
+    let along = vec![vec![0, 1, 2, 3], vec![0, 1, 2, 3], vec![3, 2]];
+    let apart = vec![vec![0, 1], vec![2, 3]];
+    let whole = vec![vec![0, 1, 2, 3]];
+    vec![
+        Figure::new(ring.to_vec(), &[vec![0, 1, 2, 3, 4, 0]], 0.7, kernel),
+        Figure::new(ring.to_vec(), &[vec![0, 1, 2, 3, 4, 0]], 0.4, kernel),
+        star(5, kernel),
+        Figure::new(two.clone(), &along, 0.6, kernel),
+        Figure::new(two.clone(), &whole, 50.0, kernel),
+        Figure::new(two, &apart, 0.4, kernel),
+    ]
+}
+
+fn figures(random: &mut Random, kernel: Kernel) -> Vec<Figure> {
+    let mut figures = odd_figures(kernel);
+    figures.extend((0..3).map(|_| figure(random, kernel)));
+    figures
+}
+
 #[test]
-fn the_field_is_the_largest_stretch() {
+fn the_fields_are_the_means_of_stretches() {
     let mut random = Random::new(71);
-    let mut compared = 0;
+    let (mut compared, mut seconds) = (0, 0);
     for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
-        for _ in 0..2 {
-            let figure = figure(&mut random, kernel);
-            let (local, between) = (figure.local(), figure.distances());
-            for _ in 0..count(8) {
+        for figure in figures(&mut random, kernel) {
+            let local = figure.local().with_folds(0.01);
+            for _ in 0..count(4) {
                 let point = near(&figure, &mut random, 0.8);
-                let places = figure.places(point);
-                let stretches: Vec<f64> = places
-                    .iter()
-                    .map(|p| figure.stretch(&between, *p, point))
-                    .collect();
-                let (leader, want) = (places.iter().zip(&stretches))
-                    .max_by(|a, b| a.1.total_cmp(b.1))
-                    .expect("there are ends");
-                // Beyond all supports all places are alike.
-                if *want == 0.0 {
-                    continue;
-                }
-                let jet = local.jet(point);
-                let tolerance = 1e-6 * want;
-                assert!(
-                    (jet.value - want).abs() <= tolerance,
-                    "{} for {want}",
-                    jet.value
-                );
-                // Those of the others that are far along the skeleton.
-                let far = (places.iter().zip(&stretches))
-                    .filter(|(p, _)| figure.distance(&between, **p, *leader) > 2.0 * figure.reach)
-                    .map(|(_, w)| *w)
-                    .fold(f64::NEG_INFINITY, f64::max);
-                match local.two(point).1 {
-                    Some(second) => {
-                        assert!((second.value - far).abs() <= 1e-6 * far.abs(), "{far}")
+                let [want, second, most] = figure.fields(point, 0.01);
+                let (own, other) = local.two(point.to_array());
+                assert!((own.value - want).abs() <= 1e-6 * want, "{own:?} {want}");
+                assert!(own.value <= most * (1.0 + 1e-6), "{own:?} {most}");
+                match other {
+                    Some(own) => {
+                        let error = (own.value - second).abs();
+                        assert!(error <= 1e-6 * second + 1e-9, "{own:?} {second}");
+                        seconds += 1;
                     }
-                    None => assert_eq!(far, f64::NEG_INFINITY),
+                    None => assert!(second <= 0.01 * (1.0 + 1e-6), "{second}"),
                 }
                 compared += 1;
             }
         }
     }
-    assert!(compared > count(40), "{compared}");
+    assert!(
+        compared > count(40) && 5 * seconds > compared,
+        "{compared} {seconds}"
+    );
 }
 
-/// Cells of space that know which places matter change nothing, down to the last bit.
 #[test]
-fn cells_leave_nothing_out() {
+fn pieces_without_length_are_refused() {
+    let figure = &odd_figures(Kernel::Cubed)[3];
+    let points: Vec<DVec3> = figure.points.iter().map(|p| p.0).collect();
+    let limb = Limb {
+        ends: [0, 1],
+        pieces: vec![LimbPiece {
+            primitives: vec![figure.primitive([0, 1], 0.0, 1.0)],
+            length: 0.0,
+            radius: 0.3,
+        }],
+    };
+    let made = Local::new(&points, &[limb], 1.0).map(|_| ());
+    assert_eq!(made, Err(LocalError::Unusable));
+}
+
+/// A lane of eight has the bits of a number alone, wherever the other lanes are, so that cells of
+/// space that know which pieces matter change nothing; and both are near those of double precision.
+#[test]
+fn precisions_agree() {
     let mut random = Random::new(75);
-    let (mut seconds, mut all) = (0, 0);
     for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
-        for _ in 0..4 {
-            let figure = figure(&mut random, kernel);
-            let local = figure.local();
-            for _ in 0..count(400).max(400) {
-                let point = near(&figure, &mut random, 0.7);
-                // Below the faintest level all terms are asked.
-                let (first, second) = local.two(point);
-                assert_eq!(local.jet(point), first);
-                let level = 0.1;
-                let (own, other) = local.two_above(point, level);
-                assert_eq!(own, first);
-                all += 1;
-                if let Some(second) = second.filter(|second| second.value >= level) {
-                    assert_eq!(other, Some(second));
-                    seconds += 1;
+        for figure in figures(&mut random, kernel) {
+            let local = figure.local().with_folds(0.01);
+            for _ in 0..count(20) {
+                let spread = random.pick(&[0.0, 0.01, 1.0]);
+                let middle = near(&figure, &mut random, 0.5);
+                let points: [DVec3; 8] =
+                    core::array::from_fn(|_| middle + spread * 0.3 * random.direction());
+                let points = points.map(|p| p.as_vec3());
+                let lanes = [0, 1, 2].map(|k| f32x8::new(points.map(|p| p[k])));
+                let eight = local.jet8(lanes);
+                for (i, point) in points.into_iter().enumerate() {
+                    let one = local.jet32(point.to_array());
+                    let bits = |x: f32| x.to_bits();
+                    assert_eq!(bits(one.value), bits(eight.value.to_array()[i]));
+                    let gradient = eight.gradient.map(|g| bits(g.to_array()[i]));
+                    assert_eq!(one.gradient.map(bits), gradient);
+                    let exact = local.jet(point.as_dvec3());
+                    let size = 1.0 + exact.value;
+                    assert!((f64::from(one.value) - exact.value).abs() < 1e-4 * size);
+                    let steep = DVec3::from_array(exact.gradient);
+                    let own = DVec3::from_array(one.gradient.map(f64::from));
+                    let error = own.distance(steep);
+                    // The weights of fields that end tell little where these nearly have.
+                    let most = if exact.value > 0.3 { 2e-3 } else { 0.05 };
+                    assert!(error < most * (size + steep.length()), "{own} {steep}");
                 }
             }
         }
     }
-    assert!(seconds * 50 > all, "{seconds} of {all}");
 }
 
 #[test]
 fn gradients_are_derivatives() {
     let mut random = Random::new(72);
-    let (mut all, mut off) = (0, 0);
-    for _ in 0..10 {
-        let figure = figure(&mut random, Kernel::Cubed);
-        let local = figure.local();
-        for _ in 0..count(40) {
-            let point = near(&figure, &mut random, 0.6);
-            let jet = local.jet(point);
-            let h = 1e-5;
-            let gradient = DVec3::from_array(core::array::from_fn(|axis| {
-                let at = |step: f64| {
-                    let mut p = point;
-                    p[axis] += step * h;
-                    local.jet(p).value
+    for kernel in [Kernel::Cubed, Kernel::Cauchy] {
+        for figure in figures(&mut random, kernel) {
+            let local = figure.local().with_folds(0.01);
+            for _ in 0..count(20) {
+                let point = near(&figure, &mut random, 0.6);
+                let both = |point: DVec3| {
+                    let (first, second) = local.two(point.to_array());
+                    [Some(first), second]
                 };
-                (at(1.0) - at(-1.0)) / (2.0 * h)
-            }));
-            let own = DVec3::from_array(jet.gradient);
-            all += 1;
-            // Two places may tie within h.
-            off += u32::from(
-                (gradient - own).length() > 1e-5 * (1.0 + own.length() + jet.value.powi(2)),
-            );
+                let jets = both(point);
+                let h = 1e-5;
+                for which in [0, 1] {
+                    let Some(jet) = jets[which] else { continue };
+                    let gradient = core::array::from_fn(|axis| {
+                        let at = |step: f64| {
+                            let mut p = point;
+                            p[axis] += step * h;
+                            both(p)[which].map_or(f64::NAN, |jet| jet.value)
+                        };
+                        (at(1.0) - at(-1.0)) / (2.0 * h)
+                    });
+                    let gradient = DVec3::from_array(gradient);
+                    let own = DVec3::from_array(jet.gradient);
+                    // F₂ may be left out beside the point.
+                    if gradient.is_nan() {
+                        continue;
+                    }
+                    let size = 1.0 + own.length() + jet.value.powi(2);
+                    assert!(
+                        own.distance(gradient) < 1e-5 * size,
+                        "{which}: {own} {gradient}"
+                    );
+                }
+            }
         }
     }
-    assert!(off * 50 < all, "{off} of {all}");
 }
 
 /// Values, slopes and second derivatives in balls are within their bounds, and the bounds are of
@@ -379,122 +408,122 @@ fn gradients_are_derivatives() {
 #[test]
 fn bounds_hold_in_balls() {
     let mut random = Random::new(73);
-    let (mut finite, mut all, mut sharpest) = (0, 0, 0.0f64);
-    for kernel in [Kernel::Cubed, Kernel::Cauchy] {
-        for _ in 0..8 {
-            let figure = figure(&mut random, kernel);
-            let local = figure.local();
-            for _ in 0..count(60) {
+    let (mut finite, mut all, mut sharpest) = (0, 0, [0.0f64; 2]);
+    for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
+        for figure in figures(&mut random, kernel) {
+            let local = figure.local().with_folds(0.05);
+            for _ in 0..count(50) {
                 let center = near(&figure, &mut random, 0.7);
                 let radius = random.decades(-4.0, -0.5);
                 let ball = Ball { center, radius };
-                let Two { first, second } = local.enclose_two(ball, Some(0.0));
+                let Two { first, second, .. } = local.enclose_two(ball);
+                let (at_center, other_at_center) = local.two(center.to_array());
+                let most = local.most(ball);
                 all += 1;
                 finite += u32::from(first.slope.is_finite());
                 for _ in 0..12 {
                     let point = center + random.direction() * (radius * random.unit());
-                    let (own, other) = local.two(point);
-                    let inside = |value: f64, [low, high]: [f64; 2]| {
-                        let slack = 1e-9 * (1.0 + value.abs());
-                        low - slack <= value && value <= high + slack
-                    };
-                    assert!(
-                        inside(own.value, first.value),
-                        "{} {first:?} {ball:?}",
-                        own.value
-                    );
-                    let steep = DVec3::from_array(own.gradient).length();
-                    assert!(
-                        steep <= first.slope * (1.0 + 1e-9),
-                        "{steep} {first:?} {ball:?}"
-                    );
-                    if let (Some(other), Some(second)) = (other, second) {
+                    let (own, other) = local.two(point.to_array());
+                    assert!(own.value <= most * (1.0 + 1e-9), "{own:?} {most}");
+                    let bounded = other.map(|other| (other, second, other_at_center));
+                    for (i, (own, bounds, center)) in
+                        [Some((own, Some(first), Some(at_center))), bounded]
+                            .into_iter()
+                            .flatten()
+                            .enumerate()
+                    {
+                        let Some(bounds) = bounds else {
+                            assert!(own.value <= 0.05 * (1.0 + 1e-6), "{own:?}");
+                            continue;
+                        };
+                        let slack = 1e-9 * (1.0 + own.value.abs());
+                        let [low, high] = bounds.value;
                         assert!(
-                            inside(other.value, second.value),
-                            "{} {second:?}",
-                            other.value
+                            low - slack <= own.value && own.value <= high + slack,
+                            "{i}: {own:?} {bounds:?} {ball:?}"
                         );
-                        let steep = DVec3::from_array(other.gradient).length();
-                        assert!(steep <= second.slope * (1.0 + 1e-9), "{steep} {second:?}");
-                    }
-                    assert!(other.is_none() || second.is_some());
-                    if first.jump.is_finite() {
-                        // The gradient changes by no more than the second derivative times the
-                        // distance, and its jumps.
-                        let center = local.jet(center);
-                        let change =
-                            DVec3::from_array(own.gradient) - DVec3::from_array(center.gradient);
-                        let most = first.curvature * radius + first.jump;
+                        let gradient = |jet: Jet<f64>| DVec3::from_array(jet.gradient);
+                        let steep = gradient(own).length();
                         assert!(
-                            change.length() <= most * (1.0 + 1e-6) + 1e-7,
-                            "{change} {most}"
+                            steep <= bounds.slope * (1.0 + 1e-9),
+                            "{i}: {steep} {bounds:?} {ball:?}"
                         );
-                        sharpest = sharpest.max(change.length() / most);
+                        if let Some(center) = center {
+                            // The gradient changes by no more than the second derivative times
+                            // the distance.
+                            let change = gradient(own).distance(gradient(center));
+                            let most = bounds.curvature * radius + bounds.jump;
+                            assert!(change <= most * (1.0 + 1e-6) + 1e-7, "{i}: {change} {most}");
+                            if most.is_finite() {
+                                sharpest[i] = sharpest[i].max(change / most);
+                            }
+                        }
                     }
                 }
             }
         }
     }
+    println!("{finite} of {all}, {sharpest:?}");
     assert!(
-        2 * finite > all && sharpest > 0.02,
-        "{finite} of {all}, {sharpest}"
+        2 * finite > all && sharpest[0] > 0.1 && sharpest[1] > 0.02,
+        "{finite} of {all}, {sharpest:?}"
     );
 }
 
-/// Across the planes at joints and at the ends of curves in a branch the value is continuous and
-/// the slope jumps a little; where places vanish that lead, far out beside bends, the value jumps.
+/// Normals of surfaces that are 10⁻⁵ radii apart differ by less than a degree, at bends, inside of
+/// folds and at branches.
 #[test]
-fn jumps_are_small() {
-    for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
-        let [coarse, fine] = [36, 144].map(|segments| {
-            let (figure, planes) = wave(segments, kernel);
-            jumps(&figure, &planes)
-        });
-        // The value has none. A slope's is that of the turn at a joint: the finer the curve, the
-        // smaller.
-        assert!(
-            coarse[0].max(fine[0]) < 1e-6,
-            "{kernel:?} {coarse:?} {fine:?}"
-        );
-        assert!(
-            coarse[1] < 0.2 && fine[1] < 0.7 * coarse[1],
-            "{kernel:?} {coarse:?} {fine:?}"
-        );
-        for arms in [3, 6] {
-            let (figure, planes) = star(arms, kernel);
-            let branch = jumps(&figure, &planes);
-            assert!(
-                branch[0] < 1e-6 && branch[1] < 0.2,
-                "{kernel:?} {arms}: {branch:?}"
-            );
+fn normals_do_not_jump() {
+    let mut random = Random::new(77);
+    for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Gauss] {
+        let mut all = vec![wave(36, kernel), wave(144, kernel)];
+        all.extend([3, 5, 6].map(|arms| star(arms, kernel)));
+        all.extend((0..3).map(|_| figure(&mut random, kernel)));
+        let (mut worst, mut found) = (0.0f64, 0);
+        for figure in all {
+            let local = figure.local();
+            for _ in 0..count(1000) {
+                let mut point = near(&figure, &mut random, 0.5);
+                for _ in 0..12 {
+                    let Jet { value, gradient } = local.jet(point);
+                    let gradient = DVec3::from_array(gradient);
+                    let step = gradient * ((1.0 - value) / gradient.length_squared());
+                    point += step.clamp_length_max(0.05);
+                }
+                if (local.jet(point).value - 1.0).abs() > 1e-6 {
+                    continue;
+                }
+                found += 1;
+                let normal = |point| DVec3::from_array(local.jet(point).gradient).normalize();
+                let beside = point + 0.3e-5 * random.direction();
+                worst = worst.max(normal(point).distance(normal(beside)).to_degrees());
+            }
         }
+        println!("{kernel:?}: {worst:.4}° of {found}");
+        assert!(
+            worst < 1.0 && found > count(3000),
+            "{kernel:?} {worst} {found}"
+        );
     }
 }
 
-/// Returns a wave of flesh of a radius of 0.3, whose bends have a radius of 0.5: inside of them ∇s
-/// is large. And the planes of its joints: a point and the normal.
-fn wave(segments: u32, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
+/// Returns a wave of flesh of a radius of 0.3, whose bends have a radius of 0.5.
+fn wave(segments: u32, kernel: Kernel) -> Figure {
     let places: Vec<(DVec3, f64)> = (0..=segments)
         .map(|i| {
             let x = 6.0 * f64::from(i) / f64::from(segments) - 3.0;
             (DVec3::new(x, 0.5 * libm::sin(2.0 * x), 0.0), 0.3)
         })
         .collect();
-    let planes = places.windows(3).map(|w| {
-        let [a, b, c] = [0, 1, 2].map(|i| w[i].0);
-        let normal = (b - a).normalize() + (c - b).normalize();
-        [b, normal.normalize()]
-    });
-    let planes = planes.collect();
     let curve: Vec<usize> = (0..places.len()).collect();
-    (Figure::new(places, &[curve], 1.2, kernel), planes)
+    Figure::new(places, &[curve], 1.2, kernel)
 }
 
-/// Arms that end in one branch, and the planes of their ends there.
-fn star(arms: usize, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
+/// Returns arms that end in one branch.
+fn star(arms: usize, kernel: Kernel) -> Figure {
     let mut random = Random::new(76);
     let mut places = vec![(DVec3::ZERO, 0.3)];
-    let (mut curves, mut planes) = (Vec::new(), Vec::new());
+    let mut curves = Vec::new();
     for _ in 0..arms {
         let direction = random.direction();
         let mut curve = vec![0];
@@ -503,37 +532,8 @@ fn star(arms: usize, kernel: Kernel) -> (Figure, Vec<[DVec3; 2]>) {
             places.push((direction * (0.25 * f64::from(i)), 0.25));
         }
         curves.push(curve);
-        planes.push([DVec3::ZERO, direction]);
     }
-    (Figure::new(places, &curves, 1.2, kernel), planes)
-}
-
-/// The largest jump of the value and of the slope, relative to them, at some planes.
-fn jumps(figure: &Figure, planes: &[[DVec3; 2]]) -> [f64; 2] {
-    let mut random = Random::new(74);
-    let local = figure.local();
-    let (mut largest, mut steepest, mut at_surface) = (0.0f64, 0.0f64, 0.0f64);
-    for _ in 0..count(1500).max(300) {
-        // On the plane, as far from its middle as flesh is.
-        let [middle, normal] = random.pick(planes);
-        let aside = normal.cross(random.direction()).normalize() * random.range(0.05, 0.45);
-        let sides = [-1e-7, 1e-7].map(|off| local.jet(middle + aside + normal * off));
-        let [before, after] = sides.map(|jet| DVec3::from_array(jet.gradient));
-        let jump = (sides[0].value - sides[1].value).abs() - 2e-7 * before.length();
-        largest = largest.max(jump / sides[0].value);
-        let kink = (before - after).length() / before.length();
-        steepest = steepest.max(kink);
-        if (sides[0].value - 1.0).abs() < 0.3 {
-            at_surface = at_surface.max(kink);
-        }
-    }
-    println!(
-        "{} segments, {:?}: value {largest:.1e}, slope {steepest:.1e}, at the surface \
-         {at_surface:.1e}",
-        figure.segments.len(),
-        figure.kernel
-    );
-    [largest, steepest]
+    Figure::new(places, &curves, 1.2, kernel)
 }
 
 /// Folds beside each other blend when all of the skeleton counts, and do not when only what is near
@@ -549,6 +549,4 @@ fn folds_do_not_blend() {
     let between = DVec3::new(-1.5, 0.5, 0.0);
     assert!(fold(100.0).jet(between).value > 1.0);
     assert!(fold(1.0).jet(between).value < 0.9);
-    let place = |segment, along| Place { segment, along };
-    assert!((fold(100.0).distance(place(0, 0.5), place(3, 0.5)) - 3.562).abs() < 1e-3);
 }

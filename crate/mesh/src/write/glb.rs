@@ -245,13 +245,19 @@ pub(super) fn write(
         })
         .collect();
     let scale = [0.001, 0.001, 0.001];
+    let shift = (export.shift() * scale[0]).to_array();
     let mut nodes: Vec<Value> = parts
         .iter()
         .enumerate()
         .map(|(i, part)| match rig {
             // Joints alone place it.
             Some(_) => json!({ "name": part.name, "mesh": i, "skin": 0 }),
-            None => json!({ "name": part.name, "mesh": i, "scale": scale }),
+            None if shift == [0.0; 3] => {
+                json!({ "name": part.name, "mesh": i, "scale": scale })
+            }
+            None => json!({
+                "name": part.name, "mesh": i, "scale": scale, "translation": shift
+            }),
         })
         .collect();
     let mut roots: Vec<usize> = (0..parts.len()).collect();

@@ -11,7 +11,7 @@ use glam::DVec3;
 pub(super) struct Prepared<'a> {
     pub(super) name: &'a str,
     pub(super) mesh: &'a TriangleMesh,
-    /// Millimetres.
+    /// Millimetres from the files' origin.
     pub(super) positions: Vec<[f32; 3]>,
     /// Normals of length 1.
     pub(super) normals: Option<Vec<[f32; 3]>>,
@@ -63,8 +63,9 @@ impl Prepared<'_> {
 }
 
 impl Export {
-    /// The meshes as every format has them: in millimetres, rounded to 32 bits. What shall be
-    /// proved of a file (that nothing intersects, say) is to be proved of these.
+    /// The meshes as every format has them: in millimetres from [`Export::shift`], rounded to 32
+    /// bits. What shall be proved of a file (that nothing intersects, say) is to be proved of
+    /// these.
     ///
     /// # Errors
     /// As [`Export::write`].
@@ -114,17 +115,18 @@ pub(super) fn prepare(export: &Export) -> Result<Vec<Prepared<'_>>, Error> {
         return fail(format!("more than {MAX_MATERIALS} parts and groups"));
     }
     let materials = materials(export);
+    let shift = export.shift();
     export
         .parts
         .iter()
         .filter(|part| !part.mesh.triangles.is_empty())
-        .map(|part| prepare_part(part, export.millimetres, &materials))
+        .map(|part| prepare_part(part, (export.millimetres, shift), &materials))
         .collect()
 }
 
 fn prepare_part<'a>(
     part: &'a Part,
-    millimetres: f64,
+    (millimetres, shift): (f64, DVec3),
     materials: &[&Material],
 ) -> Result<Prepared<'a>, Error> {
     let mesh = &part.mesh;
@@ -151,7 +153,7 @@ fn prepare_part<'a>(
     let positions: Vec<[f32; 3]> = mesh
         .positions
         .iter()
-        .map(|p| (*p * millimetres).to_array().map(|x| x as f32))
+        .map(|p| (*p * millimetres - shift).to_array().map(|x| x as f32))
         .collect();
     if positions.as_flattened().iter().any(|x| !x.is_finite()) {
         return wrong("has a vertex that is too far away");

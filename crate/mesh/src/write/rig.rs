@@ -163,6 +163,12 @@ impl Export {
     /// As [`Export::write`], and if the rig does not fit the meshes.
     pub fn write_rigged(&self, rig: &Rig) -> Result<ExportedFile, Error> {
         let parts = prepare(self)?;
+        if self.shift() != DVec3::ZERO {
+            return fail(
+                "the model is too far from its origin for a rig, whose numbers would spoil its \
+                 shape; move it nearer, or write it without a rig",
+            );
+        }
         let vertices: Vec<usize> = parts.iter().map(|part| part.positions.len()).collect();
         rig.check(&vertices)?;
         Ok(ExportedFile {

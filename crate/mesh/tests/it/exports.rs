@@ -434,6 +434,52 @@ fn meshes_that_cannot_be_written_are_errors() {
     assert!(told(&|e| ring(e, groups)).contains("parts and groups"));
 }
 
+/// Far from the origin all vertices stay apart in every format, and GLB's nodes move them back.
+#[test]
+fn what_is_far_away_keeps_its_shape() {
+    let far = DVec3::new(500_000.0, 4_649_776.0, 12.0);
+    let mut mesh = sphere(4);
+    mesh.positions.iter_mut().for_each(|p| *p += far);
+    let part = |mesh: &TriangleMesh| Part {
+        name: "ball".into(),
+        mesh: mesh.clone(),
+    };
+    let export = Export {
+        name: "far".into(),
+        parts: vec![part(&mesh)],
+        millimetres: 50.0,
+    };
+    let shift = export.shift();
+    assert!(shift.distance(far * 50.0) <= 1.0, "{shift}");
+    assert!(mesh::describe_shift(shift).is_some_and(|said| said.contains("25000000 ")));
+    for format in Format::ALL {
+        let file = write(&export, format).remove(0);
+        let back = read(&format!("far.{}", format.extension()), &file.bytes).unwrap();
+        assert_eq!(back.triangles.len(), mesh.triangles.len());
+        // Readers take GLB's nodes into account, whose own numbers have 32 bits.
+        let (moved, within) = match format {
+            Format::Glb => (shift, 1e-6 * shift.length()),
+            _ => (DVec3::ZERO, 0.0),
+        };
+        for i in 0..mesh.triangles.len() {
+            let wanted = mesh.corners(i).map(|p| p * 50.0 - shift);
+            for (own, wanted) in back.corners(i).iter().zip(wanted) {
+                let own = *own - moved;
+                assert!(
+                    own.distance(wanted) <= 1e-4 + within,
+                    "{format:?}: {own} {wanted}"
+                );
+            }
+        }
+    }
+    mesh.positions.iter_mut().for_each(|p| *p -= far);
+    let near = Export {
+        parts: vec![part(&mesh)],
+        ..export
+    };
+    assert_eq!(near.shift(), DVec3::ZERO);
+}
+
 #[test]
 fn names_do_no_harm() {
     let mut export = export();

@@ -1,7 +1,7 @@
 //! Meshes whose error is measured: sound at any tolerance, and the same on any number of threads.
 
 use crate::judges::{Distances, assert_embedded, assert_manifold, crossings, of_mesh};
-use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum};
+use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, Taper};
 use glam::DVec3;
 use mesh::{Aabb, Topology};
 use mesher::{
@@ -114,6 +114,58 @@ fn thin_tail_is_unbroken_at_any_tolerance() {
                     assert!(off <= 1.001 * tolerance, "{name}: {off}");
                 }
             }
+        }
+    }
+}
+
+/// The edges of a cube as limbs that taper.
+fn frame(kernel: Kernel, blobbiness: f64) -> Sum {
+    let corner = |i: usize| DVec3::from([1, 2, 4].map(|bit| if i & bit == 0 { 0.0 } else { 1.0 }));
+    let limbs = (0..8_usize).flat_map(|i| [1, 2, 4].map(|bit| (i, i | bit)));
+    let limbs = limbs.filter(|(i, j)| i != j).filter_map(|(i, j)| {
+        let shaping = Shaping {
+            kernel,
+            radius: 0.06,
+            blobbiness,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: Some(Taper {
+                radius: 0.04,
+                blobbiness,
+            }),
+        };
+        let (base, apex) = (corner(i), corner(j));
+        Primitive::new(Skeleton::Segment { base, apex }, &shaping, None)
+    });
+    limbs.collect()
+}
+
+/// Cells on limbs are as large as these are thick, however steep the field is there.
+#[test]
+fn lattices_of_limbs_take_few_evaluations_and_keep_their_cycles() {
+    for kernel in [Kernel::Soft, Kernel::Quartic, Kernel::Compact6] {
+        for blobbiness in [2.0, 10.0, 30.0] {
+            let name = format!("{kernel:?} {blobbiness}");
+            let sum = frame(kernel, blobbiness);
+            assert_eq!(sum.primitives.len(), 12);
+            let surface = build(&sum, &Options::new(0.01)).unwrap();
+            assert_manifold(&name, &surface.mesh);
+            assert_embedded(&name, &surface.mesh);
+            assert_eq!(Topology::of(&surface.mesh).unwrap().genera, [5], "{name}");
+            assert!(surface.error <= 0.01, "{name}: {}", surface.error);
+            println!(
+                "{name}: {} evaluations, {} cells, {} of {} triangles",
+                surface.evaluations,
+                surface.cells,
+                surface.mesh.triangles.len(),
+                surface.raw_triangles
+            );
+            assert!(
+                surface.evaluations < 1_000_000,
+                "{name}: {}",
+                surface.evaluations
+            );
         }
     }
 }

@@ -49,7 +49,8 @@ pub static CONTACT: CommandSpec = row("contact", "let two bodies touch instead o
          where its field is 1, and the bulge begins where it is c. The smaller c, the wider the \
          bulge; where the fields fall slowly a wide and high one would coat the other body, which \
          a warning tells. A body can touch many others. With `self` the folds of a body's \
-         skeletons touch, which needs `local` there.",
+         skeletons touch, which needs `local D` there: what is 3D away along the curves presses \
+         in full, and what is nearer than 2D does not.",
     )
     .example(flesh!(
         "body LEFT\n  sphere Flesh 1.2, -0.9 0 0\nclose\nbody RIGHT\n  sphere Flesh 1.2, 0.9 0 0\n\

@@ -12,6 +12,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use crate::syntax::Command;
+use crate::{is_mesh, is_skeleton};
 use field::{Kernel, Shaping, Taper};
 use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Form, Function, Shape};
@@ -95,15 +96,16 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
          node to node. The flesh is soft whatever the material's blobbiness; its kernel is \
          `cubed` unless the material names another. With `local D` only the stretch within D \
          along the curves counts at a point, so that a fold does not blend with what lies beside \
-         it; about four radii suit. A skeleton is an object: it is moved, turned and copied by \
-         its name.\n\
+         it; about four radii suit, and less than one makes limbs thinner. A skeleton is an \
+         object: it is moved, turned and copied by its name.\n\
          `skeleton sn, name file.swc` has the limbs of a file of the project in place of a block: \
          neurons (.swc), lattices of beams (.3mf), centrelines (.vtp .vtk), trees (.csv), lines \
          with radii (.obj .ply) and molecules (.xyz .pdb). Its limbs are straight, `subdivide 0`, \
          unless the text says otherwise; `subdivide` rounds them through their nodes. Radii are \
          those of the file, times `scale`; `radius NAME` names the array or column that has \
-         them. The surface stands at these radii for the kernel `compact6` and the blobbiness 8, \
-         which a material has here that names neither.",
+         them. With `ends flat` free ends are planes, which meshes have as groups: `inlet`, the \
+         widest, `outlet-1` and so on. The surface stands at the radii for the kernel `compact6` \
+         and the blobbiness 8, which a material has here that names neither.",
     )
     .example(
         "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
@@ -114,7 +116,7 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
     );
 
 fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let is_file = is_file_next(run, command);
+    let is_file = is_file_next(run, command)?;
     let (parameters, options) = match is_file {
         true => (skeleton_file::PARAMETERS, FILE_OPTIONS),
         false => (PARAMETERS, SKELETON_OPTIONS),
@@ -129,12 +131,25 @@ fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
     add_block(run, command, &given.options, sn, name)
 }
 
-/// Whether a file's name, which has a dot, stands behind the names of material and skeleton.
-fn is_file_next(run: &mut Evaluator<'_>, command: &Command) -> bool {
+/// Returns whether a file's name, which has a dot, stands behind those of material and skeleton.
+///
+/// # Errors
+/// If it stands in the place of the skeleton's name, or in quotes.
+fn is_file_next(run: &mut Evaluator<'_>, command: &Command) -> Outcome<bool> {
+    let mut read = run.reader(command);
+    let Ok(sn) = read.name("") else {
+        return Ok(false);
+    };
+    if let Ok(file) = read.file_name("")
+        && (is_skeleton(file.text) || is_mesh(file.text))
+    {
+        let hint = format!("write `skeleton {} NAME {}`", sn.text, file.text);
+        return Err(Problem::new(&file.span, "a skeleton has a name before its file").hint(hint));
+    }
     let mut read = run.reader(command);
     let is_named = read.name("").is_ok() && read.name("").is_ok();
     let is_word = is_named && read.peek_word().is_some();
-    is_word && read.file_name("").is_ok_and(|name| name.text.contains('.'))
+    Ok(is_word && read.file_name("")?.text.contains('.'))
 }
 
 fn add_block<'a>(
@@ -166,7 +181,10 @@ fn add_block<'a>(
     let lonely = read.lonely();
     let names = read.nodes.iter().map(|(name, _)| name.text.to_owned());
     let names = names.collect();
-    let curves = read.refine(command, options)?;
+    let mut curves = read.refine(command, options)?;
+    if let Some(reach) = options.last(&LOCAL) {
+        curves = keep_apart(run, curves, reach)?;
+    }
     let segments = curves.polyline().map_or(0, |p| p.segments.len());
     run.scope
         .step((segments / SEGMENTS_PER_STEP) as u64, &command.word_span)?;
@@ -234,19 +252,32 @@ pub(super) fn weigh(run: &Evaluator<'_>, element: &Element) -> usize {
     weight
 }
 
+/// Length along its curves within which flesh blends as if all of it counted, in its largest radii.
+const SUITABLE_REACH: f64 = 4.0;
 /// Least length along its curves within which flesh may blend, in its largest radii.
 const LEAST_REACH: f64 = 0.2;
 
-/// Refuses a reach of local convolution within which so few of the field's sources count that no
-/// flesh is left.
-pub(super) fn check_reach(reach: f64, thickest: f64, span: &Range<usize>) -> Outcome<()> {
-    if reach >= LEAST_REACH * thickest {
-        return Ok(());
+/// Returns curves whose flesh blends within a reach along them. Refuses a reach within which so few
+/// of the field's sources count that no flesh is left, and warns of one that leaves it thinner than
+/// the radii say.
+pub(super) fn keep_apart(
+    run: &mut Evaluator<'_>,
+    curves: Curves,
+    (reach, span): (f64, Range<usize>),
+) -> Outcome<Curves> {
+    let thickest = curves.points().fold(0.0, |most: f64, (_, r)| most.max(r));
+    let flesh =
+        format_args!("flesh as thick as {thickest} blends along {reach} of its curves only");
+    if reach < LEAST_REACH * thickest {
+        let hint = "let it blend about as far as it is thick, and a fifth of that at least";
+        return Err(Problem::new(&span, format!("{flesh}, and vanishes")).hint(hint));
     }
-    let blends = format_args!("blends along {reach} of its curves only, and vanishes");
-    let message = format!("flesh as thick as {thickest} {blends}");
-    Err(Problem::new(span, message)
-        .hint("let it blend about as far as it is thick, and a fifth of that at least"))
+    if reach < thickest {
+        let enough = (1e3 * SUITABLE_REACH * thickest - 1e-6).ceil() / 1e3;
+        let message = format_args!("{flesh}, and is thinner than that");
+        run.warn(&span, message, format_args!("write `local {enough}`"));
+    }
+    Ok(curves.within(reach))
 }
 
 /// Content of a block.
@@ -360,15 +391,8 @@ impl<'a> Read<'a> {
         };
         let (places, curves): (Vec<_>, Vec<_>) = self.curves.into_iter().unzip();
         let nodes: Vec<Node> = self.nodes.into_iter().map(|(_, node)| node).collect();
-        let thickest = nodes
-            .iter()
-            .fold(0.0, |most: f64, node| most.max(node.radius));
-        let mut curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
+        let curves = Curves::new(Skeleton { nodes, curves }, scheme, levels)
             .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
-        if let Some((reach, span)) = options.last(&LOCAL) {
-            check_reach(reach, thickest, &span)?;
-            curves = curves.within(reach);
-        }
         // A curve all of whose nodes are at one place has no flesh.
         let lengths = curves.polyline().map_or(&[][..], |p| &p.lengths);
         let flat = lengths.iter().position(|length| *length <= 0.0);

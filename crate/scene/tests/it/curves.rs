@@ -1,6 +1,6 @@
 //! Skeletons of subdivision curves as elements of scenes.
 
-use field::Kernel;
+use field::{Implicit, Kernel};
 use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Flesh, Form, Function, Scene, Shape, Surface};
 use skeleton::{Node, Scheme, Skeleton};
@@ -69,6 +69,64 @@ fn levels_of_a_straight_curve_are_the_same_flesh() {
         let point = DVec3::new(t * 0.02, 0.6 * libm::sin(t), 0.5 * libm::cos(2.0 * t));
         let [a, b] = [&coarse, &fine].map(|s| s[0].function().jet(point).value);
         assert!((a - b).abs() <= 1e-10 * a, "{point}: {a} {b}");
+    }
+}
+
+/// Segments of refined curves are joined to pieces of local convolution, so that it does not depend
+/// on the level; and no piece goes on beyond a branch.
+#[test]
+fn levels_of_a_local_skeleton_have_pieces_alike() {
+    let nodes = vec![
+        node(-2.0, 0.0, 0.0, 0.3),
+        node(0.0, 0.5, 0.0, 0.3),
+        node(2.0, 0.0, 0.0, 0.3),
+        node(0.5, 2.5, 0.0, 0.15),
+    ];
+    let made = [3, 6].map(|levels| {
+        let mut scene = scene(
+            nodes.clone(),
+            &[&[0, 1, 2], &[1, 3]],
+            levels,
+            DAffine3::IDENTITY,
+        );
+        let Shape::Function(function) = &mut scene.elements[0].shape else {
+            panic!("no function")
+        };
+        let curves = function.curves().expect("curves").clone().within(1.2);
+        let lengths = curves.polyline().expect("a polyline").lengths.clone();
+        function.form = Form::Skeleton(Arc::new(curves));
+        let Shape::Function(function) = &scene.elements[0].shape else {
+            panic!("no function")
+        };
+        let limbs = scene.limbs(&scene.elements[0], function).expect("limbs");
+        assert_eq!(limbs.limbs.len(), 3);
+        let shared = limbs.limbs.iter().flat_map(|limb| limb.ends);
+        let branch = limbs.limbs[2].ends[0];
+        assert_eq!(shared.filter(|end| *end == branch).count(), 3);
+        let pieces = limbs.limbs.iter().flat_map(|limb| &limb.pieces);
+        let long: f64 = pieces.clone().map(|piece| piece.length).sum();
+        assert!((long - lengths.iter().sum::<f64>()).abs() < 1e-9);
+        assert!(
+            pieces
+                .clone()
+                .all(|piece| piece.length <= 0.3 && piece.radius <= 0.3 + 1e-9)
+        );
+        let local = scene.local(&scene.elements[0], function);
+        (
+            pieces.count(),
+            local.expect("a skeleton").expect("a function"),
+        )
+    });
+    let [(few, coarse), (many, fine)] = made;
+    assert!(
+        few >= 20 && 2 * few > many && 2 * many > few,
+        "{few} {many}"
+    );
+    for i in 0..200 {
+        let t = f64::from(i);
+        let point = DVec3::new(t * 0.02 - 2.0, 0.3 + 0.3 * libm::sin(t), 0.4);
+        let [a, b] = [&coarse, &fine].map(|local| local.jet(point).value);
+        assert!((a - b).abs() <= 0.03 * a, "{point}: {a} {b}");
     }
 }
 

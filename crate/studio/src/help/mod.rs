@@ -40,7 +40,7 @@ const LANGUAGE: [(&str, &str); 9] = [
     ("# words", "a comment"),
 ];
 
-const KEYS: [(&str, &str); 15] = [
+const KEYS: [(&str, &str); 16] = [
     ("drag", "turn the model"),
     ("shift-drag, right-drag, two fingers", "move it"),
     ("wheel, pinch", "zoom"),
@@ -60,6 +60,7 @@ const KEYS: [(&str, &str); 15] = [
     ("F12, Ctrl+click", "go to where a name is defined"),
     ("F2", "rename it everywhere"),
     ("F8", "fold the block at the caret, or unfold it"),
+    ("Ctrl+F, Ctrl+H, Ctrl+G", "find, replace, go to a line"),
     ("Ctrl+Shift+F", "lay the text out neatly"),
     ("Ctrl+S", "save the picture as PNG"),
 ];

@@ -30,7 +30,8 @@
 //! `status()` gives `phase` (`"idle"`, `"waiting"` for a pause in typing, `"tracing"`, `"done"`,
 //! `"cancelled"`), `progress` (0 … 1), `pass` (`"coarse"`, `"full"`, `"smooth"` or null),
 //! `remaining` (seconds or null), `fresh` (whether the picture on the screen is of the present text
-//! and camera), `picture` (`{width, height}` or null), `errors` (how many),
+//! and camera, which it never is while the text has errors), `picture` (`{width, height}` or null),
+//! `errors` (how many),
 //! `elements` (how many the text makes), `diagnostics` (each `{severity, message, file, span, line,
 //! column, hint, related, command}`), `hot` (names of the sliders), `assets` (names of the images
 //! and meshes), `reading` (name of the mesh that is being read, or null), `fit`
@@ -42,7 +43,7 @@
 //! `failure`, `timings` (seconds: `compile`, `coarse`, `done`), `stats`
 //! (`{primaryRays, shadowRays, fieldEvaluations}`),
 //! `revision` (rises with each change of the text), `name`, `saved` (whether all changes are in the
-//! browser's storage).
+//! browser's storage), `theirs` (whether another tab writes the open work).
 //!
 //! `lab()` gives `lesson` (the word in its link, as in `#lab=kernels`), `title`,
 //! `waiting` (small pictures still to be traced), `drawn` (small pictures there), `refused` (texts

@@ -76,7 +76,7 @@ impl Scripts {
         state.workers = progress.workers;
         state.replaced = progress.restarted;
         state.failure.clone_from(&progress.error);
-        state.fresh = session.is_compiled() && page.is_fresh();
+        state.fresh = session.is_compiled() && session.errors() == 0 && page.is_fresh();
         state.stand_in = panels.stage.stand_in.map(StandIn::id);
         state.timings.coarse = page.renderer.timings().coarse;
         state.timings.done = page.renderer.timings().done;
@@ -91,7 +91,10 @@ impl Scripts {
         };
         state.revision = session.revision();
         state.name.clone_from(&page.work.name);
-        state.saved = !page.parts.shelf.borrow().is_dirty();
+        let shelf = page.parts.shelf.borrow();
+        state.saved = !shelf.is_dirty() && !browser::is_storing();
+        state.theirs = shelf.is_theirs();
+        drop(shelf);
         state.reading = page.reading.current().map(|(name, _)| name.to_owned());
         state.fit = panels.fit.0.report();
         state.mesh = panels.mesh.report(page);

@@ -27,7 +27,7 @@ pub struct Report {
     pub replaced: u32,
     /// The reason why tracing does not work.
     pub failure: Option<String>,
-    /// Whether the picture on the screen is of the present text and camera.
+    /// Whether the picture on the screen is of the present text and camera, and that has no errors.
     pub fresh: bool,
     /// Number of diagnostics that are errors.
     pub errors: usize,
@@ -63,6 +63,8 @@ pub struct Report {
     pub name: String,
     /// Whether all changes are written to the browser's storage.
     pub saved: bool,
+    /// Whether another tab writes the open work.
+    pub theirs: bool,
 }
 
 /// Seconds from the start of the picture.

@@ -18,6 +18,16 @@ pub type Viewer = Box<dyn FnOnce(Option<&Image>)>;
 /// A function that takes the outcome of a request, with the reason if it was refused.
 pub type Answer = Box<dyn FnOnce(Result<(), String>)>;
 
+/// A message of the browser's storage.
+pub enum Told {
+    /// The work of this id is written by this tab alone.
+    Mine(String),
+    /// The work of this id is written by another tab.
+    Theirs(String),
+    /// Something could not be written, for this reason.
+    Refused(String),
+}
+
 /// A wish from outside. The app carries it out at its next tick.
 pub enum Request {
     /// Answer when the app runs.
@@ -40,6 +50,8 @@ pub enum Request {
         /// The wish.
         wish: Wish,
     },
+    /// Heed a message of the browser's storage.
+    Storage(Told),
     /// Take note of the browser's encoders of videos.
     Videos(Vec<VideoFormat>),
     /// Look at the scene with this camera, or with that of the text if it is `None`.
@@ -75,6 +87,11 @@ impl Requests {
     /// Adds a request and wakes the app.
     pub fn ask(&self, request: Request) {
         self.waiting.borrow_mut().push(request);
+        self.wake();
+    }
+
+    /// Wakes the app.
+    pub fn wake(&self) {
         if let Some(ctx) = &*self.ctx.borrow() {
             ctx.request_repaint();
         }

@@ -8,6 +8,7 @@ use crate::panel::Panel;
 use crate::slider::{colours, counts, decimals, fitting_range, snap};
 use crate::wish::{TextWish, Wishes};
 use crate::{places, screen, theme};
+use document::session::Session;
 use egui::{Context, DragValue, RichText, ScrollArea, Slider, SliderClamping, Ui};
 use pad::Bounds;
 use rats::{HotValue, HotVariable, TextEdit, hot};
@@ -18,9 +19,20 @@ use std::collections::HashMap;
 pub struct Sliders {
     ranges: HashMap<(usize, String), (f64, f64)>,
     dragging: bool,
+    /// Height of the rows of the last text without errors.
+    height: f32,
 }
 
 impl Sliders {
+    /// Returns the height of all rows: while the text has errors, that of the last one without, so
+    /// that nothing moves.
+    pub fn height(&mut self, ui: &Ui, session: &Session) -> f32 {
+        if session.errors() == 0 || self.height == 0.0 {
+            self.height = height(ui, &session.compilation().hot);
+        }
+        self.height
+    }
+
     /// Shows a row for each variable.
     fn rows(&mut self, ui: &mut Ui, hot: &[HotVariable], wishes: &mut Wishes) {
         let mut dragging = false;
@@ -166,8 +178,17 @@ impl Panel for Sliders {
     fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         let palette = theme::palette(ui.visuals());
         places::note(ui.ctx(), "sliders", ui.max_rect());
-        if !screen::is_narrow(ui.ctx()) {
-            ui.label(RichText::new("Sliders").size(12.5).color(palette.weak))
+        let waits = page.work.session.shows_errors();
+        if waits || !screen::is_small(ui.ctx()) {
+            let (text, colour) = if waits {
+                (
+                    "Sliders: the picture waits until the errors are mended",
+                    palette.error,
+                )
+            } else {
+                ("Sliders", palette.weak)
+            };
+            ui.label(RichText::new(text).size(12.5).color(colour))
                 .on_hover_text("Variables marked hot in the text");
         }
         ScrollArea::vertical()
@@ -182,12 +203,12 @@ impl Panel for Sliders {
 
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
         self.ranges.clear();
+        self.height = 0.0;
     }
 }
 
 /// Returns the height of the rows of these variables together.
-#[must_use]
-pub fn height(ui: &Ui, hot: &[HotVariable]) -> f32 {
+fn height(ui: &Ui, hot: &[HotVariable]) -> f32 {
     let spacing = ui.spacing();
     hot.iter()
         .map(|variable| match (&variable.value, &variable.literal) {

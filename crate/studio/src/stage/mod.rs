@@ -110,7 +110,12 @@ impl Stage {
             ViewWish::LetGo => self.hands.clear(),
             ViewWish::SetTool(tool) => self.take_tool(tool, page, at.ctx),
             ViewWish::Cancel => page.renderer.cancel(),
-            ViewWish::Again => page.renderer.again(at.now),
+            ViewWish::Again => {
+                if std::mem::take(&mut page.is_refused) {
+                    page.notice = None;
+                }
+                page.renderer.again(at.now);
+            }
             ViewWish::Save => save(page, at.now),
         }
     }
@@ -145,7 +150,9 @@ impl Stage {
             ctx.request_repaint_after_secs(view::SOON as f32);
         }
         let mut stand_in = StandIn::Draft;
-        let texture = if view::needs_draft(page.settings.show, session, &page.renderer, slow, now) {
+        let texture = if page.is_refused && slow {
+            None
+        } else if view::needs_draft(page.settings.show, session, &page.renderer, slow, now) {
             match &mut self.draft {
                 Some(draft) => {
                     let mesh = self.live.mesh(session, now);
@@ -170,8 +177,13 @@ impl Stage {
 impl Panel for Stage {
     fn show(&mut self, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         let session = &page.work.session;
-        let narrow = screen::is_narrow(ui.ctx());
-        let margin = if narrow { 0.0 } else { 18.0 };
+        let narrow = screen::is_small(ui.ctx());
+        // A small window needs its room for the picture.
+        let margin = if narrow {
+            0.0
+        } else {
+            (0.03 * ui.max_rect().height()).min(18.0)
+        };
         let scale = ui.ctx().pixels_per_point();
         let rect = view::fit(ui.max_rect().shrink(margin), session.frame(), scale);
         // Sizes are taken in whole pixels, so that a picture is not traced anew for a rounding
@@ -191,6 +203,7 @@ impl Panel for Stage {
             show: page.settings.show,
             now,
             hint: !page.settings.turned,
+            old: session.has_old_scene() && session.shows_errors(),
             round: if narrow { 0.0 } else { 5.0 },
             grasp: Grasp {
                 draws,
@@ -245,7 +258,7 @@ impl Panel for Stage {
         if page.is_reading() {
             self.live.give_way();
         }
-        let is_drawn = self.draft.is_some() && self.stand_in.is_some();
+        let is_drawn = self.draft.is_some() && self.stand_in.is_some() && !page.is_refused;
         let rests = rests(page);
         self.live.tick(&page.work.session, at.now, is_drawn, rests);
     }

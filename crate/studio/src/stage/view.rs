@@ -3,6 +3,7 @@
 //! While the scene or the camera is newer than the traced picture, the draft stands in; the traced
 //! picture fades in over it once the coarse picture is complete.
 
+use crate::places;
 use crate::render::Renderer;
 use crate::settings::Show;
 use crate::theme;
@@ -36,6 +37,8 @@ pub struct Scenery<'a> {
     pub now: f64,
     /// Whether to show a hint of how to turn the picture.
     pub hint: bool,
+    /// Whether the text has errors, so that the picture is of one before.
+    pub old: bool,
     /// Radius of the corners.
     pub round: f32,
     /// Gestures that do not move the camera.
@@ -113,6 +116,7 @@ pub fn show(ui: &mut Ui, rect: Rect, scenery: &Scenery<'_>, wishes: &mut Wishes)
         show,
         now,
         hint,
+        old,
         round,
         grasp,
     } = *scenery;
@@ -159,20 +163,29 @@ pub fn show(ui: &mut Ui, rect: Rect, scenery: &Scenery<'_>, wishes: &mut Wishes)
         } else {
             CursorIcon::Grab
         });
+    if old {
+        painter.rect_filled(rect, round, Color32::from_black_alpha(110));
+        let text = "of the last text without errors";
+        let place = inscribe(&painter, rect, egui::Align2::CENTER_TOP, text);
+        places::note(ui.ctx(), "old picture", place);
+    }
     if hint && !grasp.draws && response.hovered() && !response.dragged() {
         let text = "drag to turn · shift-drag to move · scroll to zoom · click a shape to edit it";
-        let at = rect.center_bottom() - vec2(0.0, 16.0);
-        let font = egui::FontId::proportional(12.5);
-        let galley = painter.layout_no_wrap(text.to_owned(), font, Color32::from_gray(235));
-        let place = egui::Align2::CENTER_BOTTOM.anchor_size(at, galley.size());
-        painter.rect_filled(
-            place.expand2(vec2(10.0, 5.0)),
-            8.0,
-            Color32::from_black_alpha(120),
-        );
-        painter.galley(place.min, galley, Color32::WHITE);
+        inscribe(&painter, rect, egui::Align2::CENTER_BOTTOM, text);
     }
     response
+}
+
+/// Writes words on a dark ground at an edge of the picture. Returns their place.
+fn inscribe(painter: &egui::Painter, rect: Rect, align: egui::Align2, text: &str) -> Rect {
+    let font = egui::FontId::proportional(12.5);
+    let width = (rect.width() - 32.0).max(60.0);
+    let galley = painter.layout(text.to_owned(), font, Color32::from_gray(235), width);
+    let place = align.align_size_within_rect(galley.size(), rect.shrink(16.0));
+    let ground = place.expand2(vec2(10.0, 5.0));
+    painter.rect_filled(ground, 8.0, Color32::from_black_alpha(150));
+    painter.galley(place.min, galley, Color32::WHITE);
+    ground
 }
 
 fn background(session: &Session) -> Color32 {

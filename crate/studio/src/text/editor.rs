@@ -1,8 +1,9 @@
-//! The text editor: colours, line numbers, underlined mistakes, indentation, completions, cards,
-//! the line that says how a command is written, definitions, renaming.
+//! The text editor: finding and replacing, colours, line numbers, underlined mistakes, indentation,
+//! completions, cards, the line that says how a command is written, definitions, renaming.
 
 mod answers;
 mod completion;
+pub mod find;
 mod folding;
 mod hover;
 mod place;
@@ -26,6 +27,9 @@ use egui::{
 use place::{Place, id, to_bytes, to_chars};
 use std::ops::Range;
 
+/// Most places that are found and shown on a light ground.
+const LIT: usize = 200;
+
 /// The state of the editor that is not part of the user's work.
 #[derive(Default)]
 pub struct Editor {
@@ -35,6 +39,8 @@ pub struct Editor {
     pub asset: Option<String>,
     /// The file and bytes of the commands that are chosen in the picture, shown on a light ground.
     pub lit: Option<(usize, Range<usize>)>,
+    /// The strip in which one finds and replaces.
+    find: find::Find,
     buffer: Buffer,
     cursor: Cursor,
     look: Look,
@@ -62,6 +68,8 @@ struct Cursor {
     line: usize,
     /// Whether a letter was typed in the last frame, which may open the completions.
     typed: bool,
+    /// Whether the text was written in by hand since [`Editor::take_written`].
+    wrote: bool,
     /// The file and byte.
     caret: Option<(usize, usize)>,
 }
@@ -118,12 +126,30 @@ impl Editor {
         self.cursor.caret
     }
 
+    /// Returns whether the text was written in by hand since the last call.
+    pub fn take_written(&mut self) -> bool {
+        std::mem::take(&mut self.cursor.wrote)
+    }
+
+    /// Opens the strip in which one finds and replaces, with what is selected.
+    pub fn seek(&mut self, seek: find::Seek) {
+        self.asset = None;
+        let selected = self.cursor.before.map_or(0..0, |range| {
+            let range = range.as_sorted_char_range();
+            let text = &self.buffer.text;
+            to_bytes(text, range.start.0)..to_bytes(text, range.end.0)
+        });
+        let text = self.buffer.text.get(selected.clone()).unwrap_or_default();
+        self.find.open(seek, text, selected.start);
+    }
+
     /// Shows the first file from the top, when another work was opened.
     pub fn reset(&mut self, ctx: &egui::Context) {
         self.open(0);
         self.cards.completions.close();
         self.look.folding.clear();
         self.cards.rename = None;
+        self.find.close();
         self.buffer.of = None;
         self.cursor.caret = None;
         self.cursor.jump = None;
@@ -141,10 +167,10 @@ impl Editor {
             self.buffer.of = Some((session.revision(), self.file));
         }
         self.look.marks.update(
-            session.revision(),
+            [session.revision(), session.messages_number()],
             session.project(),
             self.file,
-            session.diagnostics(),
+            session.messages(),
         );
         let palette = theme::palette(ui.visuals());
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.paper);
@@ -155,6 +181,7 @@ impl Editor {
         let mut is_step = self.write(ui, chosen);
         self.ask(ui, session, wishes);
         let has_changed = self.keys(ui);
+        is_step |= self.show_find(ui);
         let height = ui.available_height();
         let lines = self
             .buffer
@@ -195,6 +222,38 @@ impl Editor {
         } else if has_changed || text != session.text(file) {
             wishes.push(TextWish::edit(rats::TextEdit::whole(file, text)));
         }
+    }
+
+    /// Shows the strip in which one finds and replaces, if it is open. Returns whether the text
+    /// changed.
+    fn show_find(&mut self, ui: &mut Ui) -> bool {
+        match self.find.show(ui, &mut self.buffer.text) {
+            find::Sought::Nothing => {}
+            find::Sought::Show(place) => self.cursor.place = Some(place.start),
+            find::Sought::Close(Some(place)) => self.cursor.jump = Some(place),
+            find::Sought::Close(None) => place::focus(ui.ctx()),
+            find::Sought::Changed => return true,
+        }
+        false
+    }
+
+    /// Returns shapes behind bytes of the text.
+    fn shapes_behind(
+        &self,
+        galley: &Galley,
+        origin: Pos2,
+        bytes: &Range<usize>,
+        colour: egui::Color32,
+    ) -> impl Iterator<Item = egui::Shape> {
+        let text = &self.buffer.text;
+        let chars = to_chars(text, bytes.start)..to_chars(text, bytes.end);
+        let rows = marks::rows(galley, chars).into_iter();
+        rows.map(move |row| {
+            let row = row
+                .translate(origin.to_vec2())
+                .expand2(egui::vec2(3.0, 0.0));
+            egui::Shape::rect_filled(row, 3.0, colour)
+        })
     }
 
     /// Shows the text. Returns the caret's rectangle and place.
@@ -251,6 +310,7 @@ impl Editor {
             .show(ui);
         let (galley, origin) = (output.galley.clone(), output.galley_pos);
         if output.response.response.changed() {
+            self.cursor.wrote = true;
             self.cursor.typed = ui.input(|input| {
                 input.events.iter().any(writes_letters)
                     || self.cards.completions.is_open() && input.key_pressed(Key::Backspace)
@@ -282,20 +342,23 @@ impl Editor {
             self.cursor.caret = Some((self.file, byte));
             self.cursor.line = line_of(&self.buffer.text, byte) + 1;
         }
+        let mut shapes = Vec::new();
         if let Some((file, range)) = &self.lit
             && *file == self.file
         {
-            let chars =
-                to_chars(&self.buffer.text, range.start)..to_chars(&self.buffer.text, range.end);
             let light = palette.accent.gamma_multiply(0.22);
-            let rows = marks::rows(&galley, chars).into_iter().map(|row| {
-                let row = row
-                    .translate(origin.to_vec2())
-                    .expand2(egui::vec2(3.0, 0.0));
-                egui::Shape::rect_filled(row, 3.0, light)
-            });
-            ui.painter().set(behind, egui::Shape::Vec(rows.collect()));
+            shapes.extend(self.shapes_behind(&galley, origin, range, light));
         }
+        let (found, shown) = self.find.places();
+        for (index, place) in found.iter().enumerate() {
+            let is_shown = shown == Some(index);
+            if is_shown || index < LIT {
+                let strength = if is_shown { 0.5 } else { 0.18 };
+                let light = palette.accent.gamma_multiply(strength);
+                shapes.extend(self.shapes_behind(&galley, origin, place, light));
+            }
+        }
+        ui.painter().set(behind, egui::Shape::Vec(shapes));
         self.look
             .marks
             .paint(ui.painter(), palette, &galley, origin);
@@ -389,7 +452,7 @@ impl Editor {
                     egui::Align2::RIGHT_CENTER,
                     line,
                     font.clone(),
-                    colour.gamma_multiply(if here { 1.0 } else { 0.75 }),
+                    colour,
                 );
                 if let Some(severity) = self.look.marks.of_line(line) {
                     painter.circle_filled(
@@ -469,11 +532,11 @@ fn end_of_line(text: &str, line: usize) -> usize {
     ends.skip(line).chain([text.len()]).next().unwrap_or(0)
 }
 
-/// Whether an event types letters, on a keyboard or on that of a phone.
+/// Whether an event types letters or a space, on a keyboard or on that of a phone.
 fn writes_letters(event: &egui::Event) -> bool {
     match event {
         egui::Event::Text(text) | egui::Event::Ime(egui::ImeEvent::Commit(text)) => {
-            !text.is_empty() && text.chars().all(char::is_alphanumeric)
+            text == " " || !text.is_empty() && text.chars().all(char::is_alphanumeric)
         }
         _ => false,
     }

@@ -74,7 +74,7 @@ pub fn show(
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(12.0);
-            let diagnostics = session.diagnostics();
+            let diagnostics = session.messages();
             let text = problems::summary(diagnostics);
             if !text.is_empty() {
                 let worst = diagnostics.iter().map(|d| d.severity).max();

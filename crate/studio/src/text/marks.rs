@@ -14,7 +14,7 @@ const MOST: usize = 300;
 /// The messages about one file, with their places counted in characters.
 #[derive(Default)]
 pub struct Marks {
-    key: Option<(u64, usize)>,
+    key: Option<([u64; 2], usize)>,
     marks: Vec<Mark>,
 }
 
@@ -26,18 +26,19 @@ struct Mark {
 }
 
 impl Marks {
-    /// Brings the marks up to date with the messages of a revision of the text.
+    /// Brings the marks up to date with the messages that are shown. `state` has the numbers that
+    /// rise when the text or the messages change.
     pub fn update(
         &mut self,
-        revision: u64,
+        state: [u64; 2],
         project: &Project,
         file: usize,
         diagnostics: &[Diagnostic],
     ) {
-        if self.key == Some((revision, file)) {
+        if self.key == Some((state, file)) {
             return;
         }
-        self.key = Some((revision, file));
+        self.key = Some((state, file));
         self.marks.clear();
         let Some(File { name, text }) = project.files.get(file).map(File::of) else {
             return;

@@ -79,6 +79,10 @@ impl TextPanel {
                 page.wish(ViewWish::Follow);
             }
             TextWish::Release => session.release(),
+            TextWish::Find(seek) => {
+                page.tab = Tab::Text;
+                self.editor.seek(seek);
+            }
             TextWish::Undo => {
                 let place = session.undo();
                 self.show_change(place);

@@ -1,5 +1,6 @@
 //! Wishes about the texts, images and meshes of the work.
 
+use super::editor::find::Seek;
 use document::asset::Asset;
 use rats::TextEdit;
 use std::ops::Range;
@@ -32,6 +33,8 @@ pub enum TextWish {
     Hold,
     /// End the gesture.
     Release,
+    /// Find and replace, or go to a line.
+    Find(Seek),
     /// Go one step back.
     Undo,
     /// Go one step forward.

@@ -1,4 +1,4 @@
-//! The gallery: examples, and the user's own works.
+//! The gallery: the user's own works, and examples.
 
 use crate::page::Page;
 use crate::panel::Panel;
@@ -13,6 +13,9 @@ use egui::{
     Vec2, pos2, vec2,
 };
 
+/// Saved works that are listed at once.
+const FEW: usize = 5;
+
 /// The gallery's thumbnails, fetched when it is first opened, and the works.
 #[derive(Default)]
 pub struct Gallery {
@@ -23,6 +26,10 @@ pub struct Gallery {
     entries: Vec<Entry>,
     /// The work whose deletion waits for a second click.
     to_delete: Option<String>,
+    /// Whether all saved works are listed, not only the last ones.
+    all: bool,
+    /// Whether the search is to have the focus at the next frame.
+    focus: bool,
     /// The example that was asked for last, whose files may be on their way.
     pub(super) asked: Option<usize>,
 }
@@ -33,6 +40,12 @@ impl Gallery {
         self.entries = entries;
         self.to_delete = None;
         self.search.clear();
+        self.all = false;
+    }
+
+    /// Gives the search the focus at the next frame.
+    pub fn focus(&mut self) {
+        self.focus = true;
     }
 
     fn examples(&mut self, ui: &mut Ui, wishes: &mut Wishes) {
@@ -55,6 +68,10 @@ impl Gallery {
         let found: Vec<usize> = (0..examples::ALL.len())
             .filter(|&index| examples::ALL[index].matches(&words))
             .collect();
+        if !found.is_empty() && !self.entries.is_empty() {
+            let heading = ui.label(RichText::new("Examples").heading().color(palette.strong));
+            places::note(ui.ctx(), "examples heading", heading.rect);
+        }
         let group_of = |index: &usize| examples::ALL[*index].group;
         for group in found.chunk_by(|a, b| group_of(a) == group_of(b)) {
             ui.label(RichText::new(group_of(&group[0])).color(palette.weak));
@@ -130,6 +147,10 @@ impl Gallery {
             FontId::proportional(11.5),
             palette.weak,
         );
+        theme::ring(ui, &response);
+        if response.gained_focus() {
+            response.scroll_to_me(None);
+        }
         response
             .on_hover_cursor(egui::CursorIcon::PointingHand)
             .clicked()
@@ -138,11 +159,23 @@ impl Gallery {
     fn works(&mut self, ui: &mut Ui, open: Option<&str>, now: f64, wishes: &mut Wishes) {
         let palette = theme::palette(ui.visuals());
         let words = self.words();
-        for entry in &self.entries {
-            let name = entry.name.to_lowercase();
-            if !words.iter().all(|word| name.contains(word)) {
-                continue;
-            }
+        let found: Vec<&Entry> = self
+            .entries
+            .iter()
+            .filter(|entry| {
+                let name = entry.name.to_lowercase();
+                words.iter().all(|word| name.contains(word))
+            })
+            .collect();
+        if found.is_empty() {
+            return;
+        }
+        let heading = ui.label(RichText::new("My work").heading().color(palette.strong));
+        places::note(ui.ctx(), "my work", heading.rect);
+        ui.add_space(4.0);
+        let shown = if self.all { found.len() } else { FEW };
+        let more = found.len().saturating_sub(shown);
+        for entry in found.into_iter().take(shown) {
             let is_open = open == Some(entry.id.as_str());
             ui.horizontal(|ui| {
                 let name = if entry.name.is_empty() {
@@ -169,6 +202,7 @@ impl Gallery {
                     FontId::proportional(14.0),
                     palette.text,
                 );
+                theme::ring(ui, &row);
                 if row
                     .on_hover_cursor(egui::CursorIcon::PointingHand)
                     .clicked()
@@ -202,6 +236,10 @@ impl Gallery {
                 });
             });
         }
+        if more > 0 && ui.button(format!("{more} more")).clicked() {
+            self.all = true;
+        }
+        ui.add_space(14.0);
     }
 }
 
@@ -210,7 +248,7 @@ impl Panel for Gallery {
         let (shelf, now) = (page.work.shelf().borrow(), browser::unix_time());
         let palette = theme::palette(ui.visuals());
         ui.horizontal(|ui| {
-            ui.label(RichText::new("Examples").heading().color(palette.strong));
+            ui.label(RichText::new("Open").heading().color(palette.strong));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("Close").clicked() {
                     wishes.push(Wish::Close);
@@ -240,17 +278,16 @@ impl Panel for Gallery {
                 .background_color(palette.button),
         );
         places::note(ui.ctx(), "search examples", field.rect);
+        // On a phone the keyboard would cover half of the window.
+        if std::mem::take(&mut self.focus) && page.screen.touch != Some(true) {
+            field.request_focus();
+        }
         ui.add_space(4.0);
         ScrollArea::vertical()
             .auto_shrink([false, true])
             .show(ui, |ui| {
+                self.works(ui, shelf.open_id(), now, wishes);
                 self.examples(ui, wishes);
-                if !self.entries.is_empty() {
-                    ui.add_space(14.0);
-                    ui.label(RichText::new("My work").heading().color(palette.strong));
-                    ui.add_space(4.0);
-                    self.works(ui, shelf.open_id(), now, wishes);
-                }
             });
     }
 }
@@ -268,7 +305,7 @@ pub(crate) fn contain(picture: Vec2, place: Rect) -> Rect {
 }
 
 /// Returns an age in words.
-fn ago(milliseconds: f64) -> String {
+pub(super) fn ago(milliseconds: f64) -> String {
     let minutes = (milliseconds / 60_000.0).max(0.0);
     if minutes < 1.0 {
         String::from("just now")

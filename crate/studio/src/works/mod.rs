@@ -3,11 +3,13 @@
 
 mod arrivals;
 pub mod gallery;
+pub mod versions;
 pub mod wish;
 
 use crate::page::{self, Moment, Page};
+use crate::scripts::request::Request;
 use crate::stage::pencil::tool::Tool;
-use crate::wish::{ViewWish, WorkWish};
+use crate::wish::{Notice, TextWish, ViewWish, WorkWish};
 use document::asset;
 use document::project_file::{self, Project};
 use document::work::Origin;
@@ -47,8 +49,41 @@ impl Gallery {
                 );
             }
             WorkWish::OpenSaved(id) => {
+                let (of, requests) = (page.work.number(), page.parts.requests.clone());
+                browser::fetch_work(&id.clone(), move || {
+                    requests.ask(Request::Late {
+                        of,
+                        what: String::from("The work"),
+                        wish: WorkWish::OpenFetchedWork(id).into(),
+                    });
+                });
+            }
+            WorkWish::OpenFetchedWork(id) => {
                 let result = page.work.open_saved(&id);
                 show_opened(page, result);
+            }
+            WorkWish::TakeOver => {
+                if let Some(id) = page.work.own_id() {
+                    browser::take_work_over(&id);
+                }
+            }
+            WorkWish::Copy => {
+                let result = page.work.copy(at.now);
+                if page.accept(result).is_some() {
+                    page.tell(format!("This is “{}” now.", page.work.name), at.now);
+                }
+            }
+            WorkWish::BringBack(index) => {
+                let versions = page.parts.shelf.borrow().versions().all().to_vec();
+                if let Some(version) = versions.into_iter().nth(index) {
+                    let files = version.project.files;
+                    let result = page.work.session.set_files(files, at.now);
+                    if page.accept(result).is_some() {
+                        page.dialog = None;
+                        let notice = Notice::success("This version is back.", at.now);
+                        page.notice = Some(notice.with_button("Undo", TextWish::Undo));
+                    }
+                }
             }
             WorkWish::OpenText { name, text } => {
                 let result = page.work.open_text(&name, text, Origin::Example);
@@ -67,9 +102,7 @@ impl Gallery {
             }
             WorkWish::GoBack => {
                 if let Some(id) = page.work.before().map(str::to_owned) {
-                    browser::set_hash("");
-                    let result = page.work.open_saved(&id);
-                    show_opened(page, result);
+                    page.wish(WorkWish::OpenSaved(id));
                 }
             }
             WorkWish::Rename(name) => page.work.rename(name, at.now),
@@ -97,6 +130,7 @@ impl Gallery {
         let result = page.work.flush();
         page.accept(result);
         self.refresh(page.parts.shelf.borrow().entries());
+        self.focus();
     }
 }
 

@@ -17,8 +17,16 @@ pub enum WorkWish {
         /// The images and meshes.
         assets: Vec<Asset>,
     },
-    /// Open a saved work.
+    /// Open a saved work, parts of which may have to be fetched first.
     OpenSaved(String),
+    /// Open a saved work, all of which is there.
+    OpenFetchedWork(String),
+    /// Take the open work over from the tab that writes it.
+    TakeOver,
+    /// Go on with a copy of the open work.
+    Copy,
+    /// Bring back the texts of a version of the open work: the number of the version.
+    BringBack(usize),
     /// Open a text as an example is opened.
     OpenText {
         /// The name of the work.

@@ -2,11 +2,15 @@
 
 use crate::driver::Window;
 use document::intake::Incoming;
-use document::{share, storage};
+use document::share;
+use document::storage::{Shelf, Store};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use rats::File;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 use studio::page::Parts;
 use studio::scripts::request::Request;
@@ -129,18 +133,45 @@ fn images_and_meshes_are_tabs_that_show_them_and_are_kept_but_not_shared() {
     window.place("tab tri.obj");
 }
 
+/// A store that takes texts of at most 20 kB.
+#[derive(Default)]
+struct Small(BTreeMap<String, String>);
+
+impl Store for Small {
+    fn get(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+    fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        if value.len() > 20_000 {
+            return Err(String::from("no room"));
+        }
+        self.0.insert(key.to_owned(), value.to_owned());
+        Ok(())
+    }
+    fn remove(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+    fn keys(&self) -> Vec<String> {
+        self.0.keys().cloned().collect()
+    }
+}
+
 #[test]
 fn files_that_cannot_be_kept_or_taken_are_reported() {
-    let mut window = Window::with_text(TEXT);
+    let mut parts = Parts::new();
+    let shelf = Shelf::new(Box::<Small>::default(), String::from("a"));
+    parts.shelf = Rc::new(RefCell::new(shelf));
+    let mut window = Window::open_with(1000.0, 700.0, parts);
+    window.load(TEXT);
     window.edit();
     window.write("# mine\n");
     let mut large = OBJ.to_vec();
-    large.resize(storage::MAX_KEPT + 1, b' ');
+    large.resize(100_000, b' ');
     take_in(&mut window, &[("large.obj", &large)]);
     window.steps(20);
     window
         .harness
-        .get_by_label_contains("large.obj cannot be kept");
+        .get_by_label_contains("no room for large.obj");
 
     let before = window.text();
     take_in(

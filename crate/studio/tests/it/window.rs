@@ -30,11 +30,23 @@ fn typing_edits_and_an_error_is_listed_while_the_picture_stays() {
     assert!(!picture.is_empty());
 
     window.edit();
-    window.write("backgrund 1 0 0\n");
+    let editor = window.place("editor");
+    window.write("backgrund");
+    assert_eq!(window.errors(), 1);
+    assert!(
+        window
+            .harness
+            .query_by_label_contains("Problem at")
+            .is_none(),
+        "it is being typed"
+    );
+    window.write(" 1 0 0\n");
     assert!(window.text().starts_with("backgrund 1 0 0\n"));
     assert_eq!(window.errors(), 1);
     window.steps(10);
     assert_eq!(window.image(), picture, "the old picture stays");
+    window.place("old picture");
+    assert_eq!(window.place("editor"), editor, "nothing moves");
     assert!(window.place("problems").height() > 20.0);
 
     // A click on the problem selects its place, which typing replaces.
@@ -328,33 +340,42 @@ fn check_layout(window: &Window, names: &[&str]) {
 
 #[test]
 fn nothing_overlaps_on_a_phone_or_a_desk() {
-    for (width, height) in [(390.0, 844.0), (360.0, 560.0), (390.0, 460.0)] {
+    let phones = [(390.0, 844.0), (360.0, 560.0), (390.0, 460.0)];
+    let low = [
+        (720.0, 450.0),
+        (600.0, 400.0),
+        (844.0, 390.0),
+        (320.0, 568.0),
+    ];
+    for (width, height) in phones.into_iter().chain(low) {
         let mut window = Window::open(width, height);
         window.load(TEXT);
         for tab in ["text", "sliders", "problems"] {
             let at = window.place(&format!("tab {tab}")).center();
             window.click(at);
-            let mut names = vec![
-                "share", "examples", "lab", "undo", "more", "picture", "status",
-            ];
+            let mut names = vec!["share", "examples", "undo", "more", "picture", "status"];
+            if width >= 350.0 {
+                names.push("lab");
+            }
             names.extend(["tab text", "tab sliders", "tab problems"]);
             if tab == "text" {
                 names.push("editor");
             }
             check_layout(&window, &names);
-            for name in ["share", "examples", "lab", "undo", "tab text"] {
+            for name in ["share", "examples", "undo", "tab text"] {
+                // A low window that is wide is on a desk.
                 assert!(
-                    window.place(name).height() >= 38.0,
+                    width >= 700.0 || window.place(name).height() >= 38.0,
                     "{name} is too small for a thumb"
                 );
             }
         }
     }
-    for (width, height) in [(1440.0, 900.0), (1024.0, 600.0), (720.0, 400.0)] {
+    for (width, height) in [(1440.0, 900.0), (1024.0, 600.0), (720.0, 480.0)] {
         let mut window = Window::open(width, height);
         window.load(&format!("sphree\n{TEXT}"));
         let names = [
-            "share", "examples", "lab", "undo", "picture", "editor", "sliders", "problems",
+            "work", "share", "examples", "lab", "undo", "picture", "editor", "sliders", "problems",
             "status",
         ];
         check_layout(&window, &names);

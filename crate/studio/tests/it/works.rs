@@ -7,7 +7,7 @@ use document::intake::Incoming;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use studio::scripts::request::Request;
+use studio::scripts::request::{Request, Told};
 use studio::wish::{Dialog, FitWish, SculptWish, Wish, WorkWish};
 
 const TEXT: &str = "\
@@ -228,4 +228,85 @@ fn fit_ends_with_its_work() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     assert_eq!(window.text(), mesh);
+}
+
+/// Lets the storage tell something.
+fn tell(window: &mut Window, told: Told) {
+    window.parts.requests.ask(Request::Storage(told));
+    window.steps(3);
+}
+
+#[test]
+fn work_of_another_tab_is_copied_or_taken_over() {
+    let mut window = Window::with_text(TEXT);
+    window.edit();
+    window.write("# mine\n");
+    window.steps(20);
+    let id = browser::last_claim().expect("an own work is claimed");
+    tell(&mut window, Told::Theirs(String::from("another")));
+    assert!(!window.parts.outbox.borrow().report.theirs);
+    tell(&mut window, Told::Theirs(id.clone()));
+    assert!(window.parts.outbox.borrow().report.theirs);
+    assert!(is_told(&window, "Another tab writes"));
+    window.harness.get_by_label("Take over").click();
+    window.steps(2);
+    assert_eq!(browser::last_takeover(), Some(id.clone()));
+    tell(&mut window, Told::Mine(id.clone()));
+    assert!(!window.parts.outbox.borrow().report.theirs);
+
+    tell(&mut window, Told::Theirs(id.clone()));
+    window.edit();
+    window.write("# yours\n");
+    window.steps(20);
+    assert!(window.parts.outbox.borrow().report.name.ends_with(" copy"));
+    assert!(is_told(&window, "is a copy"));
+    let copy = browser::last_claim().expect("the copy is claimed");
+    assert_ne!(copy, id);
+    tell(&mut window, Told::Theirs(copy.clone()));
+    window.harness.get_by_label("Make a copy").click();
+    window.steps(3);
+    assert!(
+        window
+            .parts
+            .outbox
+            .borrow()
+            .report
+            .name
+            .ends_with(" copy copy")
+    );
+    ask(&mut window, WorkWish::OpenSaved(id));
+    window.steps(3);
+    assert!(window.text().starts_with("# mine\n"), "{}", window.text());
+    tell(&mut window, Told::Refused(String::from("It is full.")));
+    assert!(is_told(&window, "It is full."));
+}
+
+#[test]
+fn a_version_is_brought_back_as_a_step() {
+    let mut window = Window::with_text(TEXT);
+    window.edit();
+    window.write("# mine\n");
+    window.steps(20);
+    ask(&mut window, Wish::Open(Dialog::Versions));
+    window.harness.get_by_label("Bring back").click();
+    window.steps(3);
+    assert_eq!(window.text(), TEXT);
+    window.harness.get_by_label("Undo").click();
+    window.steps(3);
+    assert!(window.text().starts_with("# mine\n"));
+}
+
+#[test]
+fn very_many_shapes_are_not_traced_before_the_user_says_so() {
+    let mut window = Window::with_text(TEXT);
+    window.finish();
+    let heavy = format!("{TEXT}for i = 1 to 20000 {{ sphere flesh 0.5, 0 0 0 }}\n");
+    window.load(&heavy);
+    window.steps(5);
+    assert!(is_told(&window, "The picture was not begun"));
+    assert_eq!(window.parts.outbox.borrow().report.phase, "cancelled");
+    window.harness.get_by_label("Trace all the same").click();
+    window.steps(3);
+    assert_eq!(window.parts.outbox.borrow().report.phase, "tracing");
+    assert!(!is_told(&window, "The picture was not begun"));
 }

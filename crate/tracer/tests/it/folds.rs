@@ -1,7 +1,7 @@
 //! Pictures of local convolution and of folds in contact, against a search along the ray.
 
 use contact::Bulge;
-use field::{Implicit, Kernel, THRESHOLD};
+use field::{Implicit, Kernel, Local, THRESHOLD};
 use glam::{DAffine3, DVec3};
 use scene::{Contact, Curves, Element, Flesh, Form, Function, Scene, Shape};
 use skeleton::{Node, Scheme, Skeleton};
@@ -128,4 +128,91 @@ fn folds_are_seen_where_they_are() {
     }
     println!("{hits} hits, {grazing} grazing, off by {worst:.1e}");
     assert!(hits * 4 > rays && grazing * 20 < hits, "{hits} {grazing}");
+}
+
+/// Returns the text of an example.
+fn example(name: &str) -> String {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../www/examples");
+    std::fs::read_to_string(format!("{folder}/{name}.rat")).expect(name)
+}
+
+/// Whether the field of other folds equals that of the folds themselves within a distance of a
+/// point, to first order: where they press each other there is a crease.
+fn is_crease(local: &Local, point: DVec3, distance: f64) -> bool {
+    let (own, Some(other)) = local.two(point.to_array()) else {
+        return false;
+    };
+    let [own_slope, other_slope] = [own, other].map(|jet| DVec3::from_array(jet.gradient));
+    (own.value - other.value).abs() <= own_slope.distance(other_slope) * distance
+}
+
+/// Normals 10⁻⁵ radii apart differ by less than a degree: of folds with and without contact, of a
+/// skeleton with eight arms and of five curves that meet. Where folds press each other there may be
+/// a crease.
+#[test]
+fn normals_do_not_jump() {
+    let star = "surface s, radius 0.2, kernel cauchy, blobbiness -2\n\
+        skeleton s, STAR subdivide 3 local 0.6 {\n node O <0 0 0>\n node A <1 0 0.2>\n \
+        node B <0.3 1 0>\n node C <-0.8 0.6 -0.3>\n node D <-0.8 -0.6 0.1>\n \
+        node E <0.3 -1 0.2>\n curve O A curve O B curve O C curve O D curve O E }";
+    let octopus = example("octopus").replace("subdivide 3 {", "subdivide 3 local 0.9 {");
+    assert!(octopus.contains("local 0.9"));
+    for (name, text, radius) in [
+        ("folds", example("folds"), 0.23),
+        ("coils", example("coils"), 0.3),
+        ("octopus", octopus, 0.2),
+        ("star", star.to_owned(), 0.2),
+    ] {
+        let compiled = rats::compile(&rats::Project::single(&text));
+        let scene = &compiled.scene;
+        let surfaces = scene.surfaces();
+        let function = surfaces.last().expect(name).function();
+        let (element, own, curves) = (scene.elements.iter())
+            .filter_map(|element| match &element.shape {
+                Shape::Function(own) => Some((element, own, own.curves()?)),
+                _ => None,
+            })
+            .find(|(.., curves)| curves.local.is_some())
+            .expect(name);
+        let local = scene.local(element, own).expect(name).expect(name);
+        let start = scene.contacts.first().map(|contact| contact.bulge.start());
+        let local = start.map(|start| local.with_folds(start));
+        let points: Vec<DVec3> = curves.points().map(|(point, _)| point).collect();
+        let mut numbers = Random::new(31);
+        let tries = trials::count(4000);
+        let (mut worst, mut found, mut creases) = ((0.0, DVec3::ZERO), 0, 0);
+        for _ in 0..tries {
+            let mut point = numbers.pick(&points) + numbers.direction() * radius * 1.2;
+            for _ in 0..8 {
+                let jet = function.jet(point);
+                let gradient = DVec3::from_array(jet.gradient);
+                let step = gradient * ((THRESHOLD - jet.value) / gradient.length_squared());
+                point += step.clamp_length_max(0.3 * radius);
+            }
+            if (function.jet(point).value - THRESHOLD).abs() > 1e-6 {
+                continue;
+            }
+            let distance = 1e-5 * radius;
+            let both = [point, point + numbers.direction() * distance];
+            let normals = both.map(|p| DVec3::from_array(function.jet(p).gradient).normalize());
+            let turn = normals[0].distance(normals[1]).to_degrees();
+            found += 1;
+            if local
+                .as_ref()
+                .is_some_and(|local| is_crease(local, point, distance))
+            {
+                creases += 1;
+                continue;
+            }
+            if turn > worst.0 {
+                worst = (turn, point);
+            }
+        }
+        println!("{name}: {worst:?} of {found}, {creases} at creases");
+        assert!(worst.0 < 1.0, "{name}: {worst:?} of {found}");
+        assert!(
+            2 * found > tries && 100 * creases < found,
+            "{name}: {creases} of {found}"
+        );
+    }
 }

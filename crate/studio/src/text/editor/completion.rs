@@ -7,7 +7,7 @@
 use super::place::{self, Place};
 use crate::theme::{self, Palette};
 use crate::thumbnail::Thumbnails;
-use assist::{Completion, CompletionKind, Completions};
+use assist::{Completion, CompletionKind, Completions, SymbolKind};
 use document::session::Session;
 use egui::{
     Align2, Area, Color32, FontId, Frame, Key, Modifiers, Order, Rect, Role, Sense, Ui, WidgetInfo,
@@ -42,6 +42,8 @@ pub struct Popup {
     selected: usize,
     /// Whether the user moved the selection, so that Enter takes it.
     chosen: bool,
+    /// Whether the list was asked for.
+    asked: bool,
     /// A place for which a list is wanted, and since when; whether it was asked for.
     wanted: Option<(Place, f64, bool)>,
     /// Seconds that making the last list took.
@@ -85,7 +87,12 @@ impl Popup {
             .count();
         let was_open = self.is_open();
         self.close();
-        if word >= LETTERS || (was_open && word > 0) {
+        // Behind a word, which may be a command that takes a material.
+        let line = text[..place.byte].rsplit('\n').next().unwrap_or_default();
+        let is_behind = line
+            .strip_suffix(' ')
+            .is_some_and(|line| line.ends_with(char::is_alphanumeric) && !line.contains('#'));
+        if word >= LETTERS || (was_open && word > 0) || is_behind {
             self.wanted = Some((place, now, false));
         }
     }
@@ -124,9 +131,19 @@ impl Popup {
             .items
             .iter()
             .any(|item| item.insert.trim_end() == typed);
-        if !completions.items.is_empty() && (asked || !done) {
-            let before = completions.replace.start..here.byte;
-            let written = session.text(here.file).get(before).unwrap_or_default();
+        let before = completions.replace.start..here.byte;
+        let written = session.text(here.file).get(before).unwrap_or_default();
+        let is_material = completions
+            .items
+            .first()
+            .is_some_and(|first| first.kind == CompletionKind::Name(SymbolKind::Material));
+        let is_wanted = if written.is_empty() {
+            is_material
+        } else {
+            !done
+        };
+        if !completions.items.is_empty() && (asked || is_wanted) {
+            self.asked = asked;
             self.written = written.to_lowercase();
             self.offers = Some((here, completions));
             self.selected = 0;
@@ -176,7 +193,10 @@ impl Popup {
             .offers
             .as_ref()
             .and_then(|(_, completions)| completions.items.get(index));
-        self.chosen || item.is_some_and(|item| item.text.to_lowercase().starts_with(&self.written))
+        // Before the first letter of a word Enter ends the line, unless the list was asked for.
+        self.chosen
+            || (self.asked || !self.written.is_empty())
+                && item.is_some_and(|item| item.text.to_lowercase().starts_with(&self.written))
     }
 
     fn take(&mut self, index: usize) -> Choice {

@@ -95,7 +95,7 @@ impl Hover {
 
 fn message(ui: &mut Ui, session: &Session, index: usize) {
     let palette = theme::palette(ui.visuals());
-    let Some(diagnostic) = session.diagnostics().get(index) else {
+    let Some(diagnostic) = session.messages().get(index) else {
         return;
     };
     let colour = problems::colour(palette, diagnostic.severity);

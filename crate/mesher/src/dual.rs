@@ -1,0 +1,309 @@
+//! The mesh that is dual to cells: a vertex for each leaf that the surface crosses, in the middle
+//! of its part there and put onto it, and a polygon for each edge of leaves whose ends are on
+//! different sides, through the leaves around it (Ju, Losasso, Schaefer and Warren 2002).
+//!
+//! It is closed where the surface does not reach the end of the box, and a manifold where the
+//! polygons around each leaf make one ring: other leaves are split.
+
+use crate::certify::{descend, sag};
+use crate::forest::{NONE, Side};
+use crate::grow::{Corners, Sizes, each_crossed_edge, grow, on_edge, split_all};
+use crate::march::Raw;
+use crate::options::{MeshError, Progress};
+use crate::parallel::map_told;
+use crate::refine::crossing;
+use crate::space::Space;
+use glam::DVec3;
+
+/// Most times that leaves are split for the sake of the mesh's topology.
+const ROUNDS: usize = 24;
+/// Most leaves that are split at once for its sake.
+const MOST_PINCHED: usize = 5000;
+/// Newton's steps that put a vertex onto the surface.
+const STEPS: usize = 3;
+/// Distance from its leaf's centre that a vertex may have along an axis, in sides of the leaf.
+const ROOM: f64 = 0.6;
+
+/// A polygon around an edge of leaves.
+struct Polygon {
+    /// Leaves in the order of the corners, the last one twice if it is a triangle.
+    leaves: [u32; 4],
+    /// The place where the surface crosses the edge.
+    place: DVec3,
+}
+
+impl Polygon {
+    fn corners(&self) -> &[u32] {
+        let is_triangle = self.leaves[2] == self.leaves[3];
+        &self.leaves[..if is_triangle { 3 } else { 4 }]
+    }
+}
+
+/// Divides the cells that are not known yet, and makes the mesh; `None` where the surface reaches
+/// the end of the box, or touches itself too closely for leaves to tell it apart.
+///
+/// # Errors
+/// If there are too many cells, or if the caller cancels.
+pub fn dual(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Option<Raw>, MeshError> {
+    let mut crossed = Vec::new();
+    for round in 0..ROUNDS {
+        let start = round as f32 / ROUNDS as f32;
+        grow(
+            space,
+            corners,
+            crossed,
+            sizes,
+            &mut progress.part(start, 1.0),
+        )?;
+        if is_cut(space) {
+            return Ok(None);
+        }
+        let Some(polygons) = polygons(space, corners, sizes.threads, progress)? else {
+            return Ok(None);
+        };
+        crossed = find_missing(space, &polygons);
+        if !crossed.is_empty() {
+            continue;
+        }
+        let rings = polygons.iter().map(Polygon::corners);
+        let mut bad = find_pinched(rings);
+        if bad.is_empty() {
+            let mut mesh = Mesh::new(space, &polygons, sizes, progress)?;
+            bad = mesh.triangulate(&polygons);
+            if bad.is_empty() {
+                return Ok(Some(mesh.raw));
+            }
+        }
+        let cells = &space.forest.cells;
+        let mut levels = bad.iter().map(|i| cells[*i as usize].level);
+        if bad.len() > MOST_PINCHED || levels.any(|level| level >= space.forest.deepest) {
+            return Ok(None);
+        }
+        split_all(space, &bad, sizes.threads, progress)?;
+    }
+    Ok(None)
+}
+
+/// Whether the end of the box is inside somewhere.
+fn is_cut(space: &Space<'_>) -> bool {
+    let forest = &space.forest;
+    let span = forest.span(0);
+    forest.cells.iter().any(|cell| {
+        let (low, own) = (forest.corner(cell), forest.span(cell.level));
+        let is_end = (0..3).any(|k| low[k] == 0 || low[k] + own == forest.counts[k] * span);
+        cell.child == NONE && cell.side == Side::Inside && is_end
+    })
+}
+
+/// The polygons; `None` if one reaches the end of the box.
+fn polygons(
+    space: &Space<'_>,
+    corners: &Corners,
+    threads: usize,
+    progress: &mut Progress<'_>,
+) -> Result<Option<Vec<Polygon>>, MeshError> {
+    let forest = &space.forest;
+    let cells = crossing(forest);
+    let found = map_told(threads, &cells, progress, |node| {
+        let mut found = Vec::new();
+        let mut is_open = false;
+        each_crossed_edge(forest, corners, *node, true, |ring, ends| {
+            let [Some(a), Some(b), Some(c), Some(d)] = ring else {
+                is_open = true;
+                return;
+            };
+            let mut leaves = [a, b, c, d];
+            if let Some(i) = (0..4).find(|i| leaves[*i] == leaves[(i + 1) % 4]) {
+                // The same leaf twice comes last.
+                leaves.rotate_left((i + 2) % 4);
+            }
+            found.push(Polygon {
+                leaves,
+                place: on_edge(ends),
+            });
+        });
+        (!is_open).then_some(found)
+    })?;
+    let found: Option<Vec<Vec<Polygon>>> = found.into_iter().collect();
+    Ok(found.map(|found| found.into_iter().flatten().collect()))
+}
+
+/// The leaves of polygons that are not known to be crossed, in ascending order.
+fn find_missing(space: &Space<'_>, polygons: &[Polygon]) -> Vec<u32> {
+    let all = polygons.iter().flat_map(|polygon| polygon.leaves);
+    let missing = all.filter(|i| space.forest.cells[*i as usize].side != Side::Crossing);
+    let mut missing: Vec<u32> = missing.collect();
+    missing.sort_unstable();
+    missing.dedup();
+    missing
+}
+
+/// The mesh with its leaves.
+struct Mesh {
+    raw: Raw,
+    /// The leaf of each vertex, in ascending order.
+    leaves: Vec<u32>,
+}
+
+impl Mesh {
+    /// The vertices.
+    fn new(
+        space: &Space<'_>,
+        polygons: &[Polygon],
+        sizes: &Sizes,
+        progress: &mut Progress<'_>,
+    ) -> Result<Self, MeshError> {
+        let forest = &space.forest;
+        let all = polygons.iter().flat_map(|polygon| polygon.leaves);
+        let mut leaves: Vec<u32> = all.collect();
+        leaves.sort_unstable();
+        leaves.dedup();
+        let mut sums = vec![(DVec3::ZERO, 0.0); leaves.len()];
+        for polygon in polygons {
+            for leaf in polygon.corners() {
+                if let Ok(i) = leaves.binary_search(leaf) {
+                    sums[i] = (sums[i].0 + polygon.place, sums[i].1 + 1.0);
+                }
+            }
+        }
+        let size = |leaf: u32| forest.size(forest.cells[leaf as usize].level);
+        let middles = leaves.iter().zip(&sums).map(|(leaf, (sum, count))| {
+            let longest = 0.5 * size(*leaf).max_element();
+            (*sum / *count, longest)
+        });
+        let middles: Vec<(DVec3, f64)> = middles.collect();
+        let mut vertices = descend(
+            space,
+            &middles,
+            STEPS,
+            sizes.tolerance,
+            sizes.threads,
+            progress,
+        )?;
+        // A vertex that has left its leaf could make triangles cut others.
+        let away = (0..leaves.len()).filter(|i| {
+            let center = forest.center(&forest.cells[leaves[*i] as usize]);
+            let off = (vertices[*i].position - center).abs();
+            off.cmpgt(ROOM * size(leaves[*i])).any()
+        });
+        let away: Vec<usize> = away.collect();
+        let middles: Vec<(DVec3, f64)> = away.iter().map(|i| middles[*i]).collect();
+        let back = descend(space, &middles, 0, sizes.tolerance, sizes.threads, progress)?;
+        for (i, vertex) in away.into_iter().zip(back) {
+            vertices[i] = vertex;
+        }
+        let raw = Raw {
+            vertices,
+            ..Raw::default()
+        };
+        Ok(Self { raw, leaves })
+    }
+
+    /// Makes triangles of the polygons, and returns the leaves at which they are no manifold.
+    fn triangulate(&mut self, polygons: &[Polygon]) -> Vec<u32> {
+        let number = |leaf: &u32| match self.leaves.binary_search(leaf) {
+            Ok(i) | Err(i) => i as u32,
+        };
+        let vertices = &self.raw.vertices;
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        for polygon in polygons {
+            let [a, b, c, d] = polygon.leaves.each_ref().map(number);
+            if c == d {
+                triangles.push([a, b, c]);
+                continue;
+            }
+            // Along the lower arc.
+            let height = |i: u32, j: u32| sag(&vertices[i as usize], &vertices[j as usize]);
+            if height(a, c) <= height(b, d) {
+                triangles.extend([[a, b, c], [a, c, d]]);
+            } else {
+                triangles.extend([[a, b, d], [b, c, d]]);
+            }
+        }
+        let bad = find_pinched(triangles.iter().map(|t| &t[..]));
+        self.raw.is_lid = vec![false; triangles.len()];
+        self.raw.triangles = triangles;
+        let bad = bad.into_iter().map(|i| self.leaves[i as usize]);
+        bad.collect()
+    }
+}
+
+/// The vertices of polygons whose edges do not all have two sides, or around which the polygons
+/// make more than one ring; in ascending order.
+fn find_pinched<'a>(polygons: impl Iterator<Item = &'a [u32]>) -> Vec<u32> {
+    // For each corner of a polygon its vertex, the next one, and the one before.
+    let corners = polygons.flat_map(|own| {
+        let count = own.len();
+        (0..count).map(move |i| [own[i], own[(i + 1) % count], own[(i + count - 1) % count]])
+    });
+    let mut corners: Vec<[u32; 3]> = corners.collect();
+    corners.sort_unstable();
+    let mut bad = Vec::new();
+    for own in corners.chunk_by(|one, other| one[0] == other[0]) {
+        let mut at = own[0][1];
+        let mut length = 0;
+        // Each next vertex comes once, and the ring closes after all triangles.
+        let is_ring = own.windows(2).all(|pair| pair[0][1] != pair[1][1])
+            && loop {
+                let Ok(i) = own.binary_search_by_key(&at, |corner| corner[1]) else {
+                    break false;
+                };
+                (at, length) = (own[i][2], length + 1);
+                if at == own[0][1] {
+                    break length == own.len();
+                }
+                if length > own.len() {
+                    break false;
+                }
+            };
+        if !is_ring {
+            bad.push(own[0][0]);
+        }
+    }
+    bad
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pinch_is_found() {
+        // A pyramid over a square.
+        let base = [[4, 3, 2, 1]];
+        let sides = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+        let polygons = |sides: &[[u32; 3]], bases: &[[u32; 4]]| {
+            let sides = sides.iter().map(|own| own.to_vec());
+            let all = sides.chain(bases.iter().map(|own| own.to_vec()));
+            all.collect::<Vec<Vec<u32>>>()
+        };
+        let find = |all: &[Vec<u32>]| find_pinched(all.iter().map(|own| &own[..]));
+        let whole = polygons(&sides, &base);
+        assert!(find(&whole).is_empty());
+        // Open along two edges.
+        assert_eq!(find(&polygons(&sides[..3], &base)), [0, 1, 4]);
+        // Another one that shares the tip.
+        let second = polygons(&sides, &base).into_iter();
+        let second = second.map(|own| {
+            own.iter()
+                .map(|i| if *i == 0 { 0 } else { i + 4 })
+                .collect()
+        });
+        let both: Vec<Vec<u32>> = whole.iter().cloned().chain(second).collect();
+        assert_eq!(find(&both), [0]);
+        // Another one that shares an edge.
+        let other = polygons(&sides, &base).into_iter();
+        let other = other.map(|own| {
+            own.iter()
+                .map(|i| if *i < 2 { *i } else { i + 4 })
+                .collect()
+        });
+        let both: Vec<Vec<u32>> = whole.into_iter().chain(other).collect();
+        assert_eq!(find(&both), [0, 1]);
+    }
+}
