@@ -25,6 +25,7 @@ pub mod orbit;
 mod pipelines;
 mod solid;
 mod targets;
+pub mod trace;
 mod view;
 
 pub use bounds::Bounds;

@@ -10,11 +10,10 @@
 use crate::body::Body;
 use crate::ray::Ray;
 use crate::roots::refine_root;
-use crate::unit::Unit;
 use crate::walk::Quest;
 use field::{Ball, Implicit, THRESHOLD};
 use glam::DVec3;
-use scene::{ComposedSurface, Scene};
+use scene::{ComposedSurface, Scene, Unit};
 use std::sync::Arc;
 
 /// Length below which pieces of rays are not halved, in units of the scene's size.

@@ -3,59 +3,68 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// The code of each pipeline, put together as the crate does: the shapes' files are continuations
-/// of `element.wgsl`, and all but the last pass begin with `view.wgsl`.
-fn programs() -> BTreeMap<String, String> {
+/// Shapes that rays meet.
+const SHAPES: [&str; 6] = ["sphere", "cylinder", "arc", "triangle", "plane", "patch"];
+
+/// The code of each pipeline, put together as the crate does.
+fn programs() -> BTreeMap<&'static str, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shaders");
-    let mut files: BTreeMap<String, String> = std::fs::read_dir(&folder)
+    let files: BTreeMap<String, String> = std::fs::read_dir(&folder)
         .expect("the folder shaders/")
         .map(|entry| entry.expect("an entry of shaders/"))
         .filter(|entry| entry.path().is_file())
         .map(|entry| {
             let name = entry.file_name().into_string().expect("a name in Unicode");
             let text = std::fs::read_to_string(entry.path()).expect("a text file");
-            (name, text)
+            (name.replace(".wgsl", ""), text)
         })
         .collect();
-    let view = files.remove("view.wgsl").expect("view.wgsl");
-    let element = files.remove("element.wgsl").expect("element.wgsl");
-    for (name, text) in &mut files {
-        match name.as_str() {
-            "resolve.wgsl" => {}
-            "backdrop.wgsl" | "mesh.wgsl" => *text = format!("{view}{text}"),
-            _ => *text = format!("{view}{element}{text}"),
-        }
+    let mut used = BTreeSet::new();
+    let mut join = |names: &[&'static str]| -> String {
+        used.extend(names.iter().copied());
+        names.iter().map(|name| files[*name].as_str()).collect()
+    };
+    let mut programs = BTreeMap::new();
+    for shape in SHAPES {
+        let corners: &[_] = if shape == "patch" { &["corners"] } else { &[] };
+        let mut code = join(&["view", "shadeless", "solid", "element", shape]) + &join(corners);
+        code += "fn meet(ray: Ray, solid: Solid) -> Hit { return meet_";
+        programs.insert(shape, code + shape + "(ray, solid); }");
     }
-    files
+    programs.insert("mesh", join(&["view", "shadeless", "mesh"]));
+    programs.insert("backdrop", join(&["view", "shadeless", "sky", "backdrop"]));
+    programs.insert("resolve", join(&["resolve"]));
+    for entry in ["compute", "fragment"] {
+        let tracer = join(&["view", "sky", "solid"]) + &join(&SHAPES);
+        let formulas = ["plain_term", "profile_of_term"].map(|name| {
+            format!(
+                "fn {name}(kind: u32, at: u32, count: u32, p: vec3f) -> vec4f {{ return vec4f(); }}"
+            )
+        });
+        let all = tracer + &join(&["march", "scene", entry]) + &formulas.concat();
+        programs.insert(entry, all);
+    }
+    let all: BTreeSet<&str> = files.keys().map(String::as_str).collect();
+    assert_eq!(used, all, "files of no program, or missing ones");
+    programs
 }
 
 #[test]
 fn shaders_are_valid_and_translate_to_webgl2() {
     let programs = programs();
-    let names: Vec<&str> = programs.keys().map(String::as_str).collect();
-    assert_eq!(
-        names,
-        [
-            "arc.wgsl",
-            "backdrop.wgsl",
-            "cylinder.wgsl",
-            "mesh.wgsl",
-            "patch.wgsl",
-            "plane.wgsl",
-            "resolve.wgsl",
-            "sphere.wgsl",
-            "triangle.wgsl"
-        ]
-    );
     for (name, code) in &programs {
         let module = naga::front::wgsl::parse_str(code)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(code)));
         let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
             .validate(&module)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(code)));
+        if *name == "compute" {
+            assert_eq!(module.entry_points.len(), 1);
+            continue;
+        }
         assert!(module.entry_points.len() >= 2, "{name} draws nothing");
         for entry in &module.entry_points {
             let glsl = to_glsl(&module, &info, entry)

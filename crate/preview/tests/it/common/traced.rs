@@ -1,0 +1,126 @@
+//! Tracing a scene on an adapter, reading it back, and holding it to the tracer's picture.
+
+use preview::Bounds;
+use preview::trace::{Detail, Pixel, Shown, Tracer};
+use scene::{Camera, Scene};
+
+/// A device that computes.
+pub struct Card {
+    pub name: String,
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+}
+
+/// Shares of pixels, 0 to 1, that differ from the tracer's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Differs {
+    /// In being surface, of all pixels.
+    pub coverage: f64,
+    /// In distance by more than 10⁻³ of the radius of the scene, of those that both call surface.
+    pub distance: f64,
+    /// In normal by more than 5°, of the same.
+    pub normal: f64,
+}
+
+/// Returns a device that computes, if this machine has one. On a CI machine none is an error.
+pub fn open() -> Option<Card> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::VULKAN;
+    let instance = wgpu::Instance::new(descriptor);
+    let options = wgpu::RequestAdapterOptions::default();
+    let adapter = pollster::block_on(instance.request_adapter(&options)).ok();
+    let Some(adapter) = adapter else {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "no graphics adapter: install mesa-vulkan-drivers"
+        );
+        eprintln!("skipped: no graphics adapter here; install mesa-vulkan-drivers");
+        return None;
+    };
+    let descriptor = wgpu::DeviceDescriptor::default();
+    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
+    Some(Card {
+        name: adapter.get_info().name,
+        device,
+        queue,
+    })
+}
+
+impl Card {
+    /// Prepares a scene.
+    pub fn prepare(&self, scene: &Scene, detail: Detail) -> (Tracer, Shown) {
+        let mut tracer = Tracer::new(&self.device);
+        let shown = tracer.set_scene(&self.device, &self.queue, scene, detail);
+        (tracer, shown)
+    }
+
+    /// Draws a frame and waits for it.
+    pub fn draw(&self, tracer: &mut Tracer, camera: &Camera, size: [u32; 2]) {
+        let mut encoder = self.device.create_command_encoder(&<_>::default());
+        tracer.render(&self.device, &self.queue, &mut encoder, camera, size);
+        self.queue.submit([encoder.finish()]);
+        let poll = wgpu::PollType::wait_indefinitely();
+        self.device.poll(poll).expect("the device answers");
+    }
+
+    /// Draws a frame and reads its pixels back.
+    pub fn read(&self, tracer: &mut Tracer, camera: &Camera, size: [u32; 2]) -> Vec<Pixel> {
+        let mut encoder = self.device.create_command_encoder(&<_>::default());
+        let pixels = tracer
+            .render(&self.device, &self.queue, &mut encoder, camera, size)
+            .expect("a scene");
+        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: pixels.size(),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        encoder.copy_buffer_to_buffer(pixels, 0, &copy, 0, pixels.size());
+        self.queue.submit([encoder.finish()]);
+        let slice = copy.slice(..);
+        slice.map_async(wgpu::MapMode::Read, |mapped| mapped.expect("readable"));
+        let poll = wgpu::PollType::wait_indefinitely();
+        self.device.poll(poll).expect("the device answers");
+        let mapped = slice.get_mapped_range().expect("mapped");
+        bytemuck::pod_collect_to_vec(&mapped)
+    }
+}
+
+/// Compares pixels with what the tracer finds in the same directions.
+pub fn compare(scene: &Scene, size: [u32; 2], pixels: &[Pixel]) -> Differs {
+    let picture = tracer::Picture::new(scene, size);
+    let projection = scene.camera.projection(size[0], size[1]);
+    let radius = Bounds::of(scene).radius;
+    let rays: Vec<_> = (0..size[0] * size[1])
+        .map(|i| {
+            let at = [i % size[0], i / size[0]];
+            let [x, y] = [0, 1].map(|k| (f64::from(at[k]) + 0.5) / f64::from(size[k]));
+            (projection.eye, projection.direction(x, y))
+        })
+        .collect();
+    let hits = picture.cast(&rays);
+    let (mut both, mut counts) = (0, [0; 3]);
+    for ((pixel, hit), (_, gaze)) in pixels.iter().zip(&hits).zip(&rays) {
+        let is_surface = pixel.distance >= 0.0;
+        counts[0] += usize::from(is_surface != hit.is_some());
+        let Some(hit) = hit.filter(|_| is_surface) else {
+            continue;
+        };
+        both += 1;
+        let away = (f64::from(pixel.distance) * radius - hit.t).abs();
+        counts[1] += usize::from(away > 1e-3 * radius);
+        let normal = glam::Vec3::from(pixel.normal).as_dvec3();
+        let seen = if hit.normal.dot(*gaze) > 0.0 {
+            -hit.normal
+        } else {
+            hit.normal
+        };
+        counts[2] += usize::from(normal.dot(seen) < 5_f64.to_radians().cos());
+    }
+    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
+    Differs {
+        coverage: share(counts[0], pixels.len()),
+        distance: share(counts[1], both),
+        normal: share(counts[2], both),
+    }
+}
