@@ -154,7 +154,7 @@ struct Crossing {
 }
 
 // Most cells that a ray passes.
-const MOST_CELLS: u32 = 512u;
+const MOST_CELLS: u32 = 1024u;
 
 // The first crossing of a ray with a body's surface; of `entries` only those where it goes in.
 fn march(root: Cell, origin: vec3f, direction: vec3f, first: f32, last: f32, entries: bool) -> Crossing {

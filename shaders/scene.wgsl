@@ -191,7 +191,6 @@ struct Seen {
     normal: vec3f,
     // From the eye, in draft units; less than 0 where no surface is.
     distance: f32,
-    depth: f32,
 }
 
 fn see(position: vec2f) -> Seen {
@@ -215,7 +214,6 @@ fn see(position: vec2f) -> Seen {
         if ground.y == 0.0 || distance < ground.x {
             let light = phong(look_at(met, place), place, gaze, out.normal);
             out.colour = written(foggy(light, gaze, distance));
-            out.depth = depth_at(distance, gaze);
             return out;
         }
     }
@@ -225,7 +223,6 @@ fn see(position: vec2f) -> Seen {
         shade = sun(place);
     }
     out.colour = written(behind(gaze, ground, shade));
-    out.depth = select(0.0, depth_at(ground.x, gaze), ground.y > 0.0);
     return out;
 }
 

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 macro_rules! cells {
     ($($name:literal)*) => {
-        [$(($name, include_str!(concat!("../../../../shaders/field/", $name, ".wgsl")))),*]
+        [$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/field/", $name, ".wgsl")))),*]
     };
 }
 
@@ -69,6 +69,17 @@ fn find(term: &Term<f32>) -> Option<(&'static Formula, Option<&'static Formula>)
 /// Whether the card has the formula of a primitive.
 pub(crate) fn has(primitive: &Primitive) -> bool {
     find(primitive.term()).is_some()
+}
+
+/// Returns the records of all formulas, for [`code`].
+#[cfg(test)]
+pub(crate) fn all() -> impl Iterator<Item = u32> {
+    formulas()
+        .iter()
+        .map(|(name, formula)| match name.starts_with("profile") {
+            true => (formula.number + 1) << 16,
+            false => formula.number,
+        })
 }
 
 /// Appends the constants of a primitive to some data, and returns its record as `term` in the

@@ -14,11 +14,9 @@ mod pack;
 
 use crate::bounds::Bounds;
 use crate::materials;
-use crate::pipelines::{layout, shader, texture, uniform, uniform_buffer};
+use crate::pipelines::{COLOUR, layout, shader, texture, uniform, uniform_buffer};
 use crate::view::{Air, Lights, Tone, View};
 use bytemuck::{Pod, Zeroable};
-use field::skeleton::Map;
-use glam::DVec3;
 use pack::{Frame, Packed};
 use scene::{Camera, Scene, Unit};
 use std::collections::BTreeSet;
@@ -86,20 +84,54 @@ pub struct Shown {
     pub lights_left_out: usize,
 }
 
-/// Draws the true surface of a scene with compute shaders.
+/// The stage of the card that traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Compute shaders, with data in a buffer.
+    Compute,
+    /// A fragment shader, with data in a texture: all that WebGL2 has.
+    Fragment,
+}
+
+/// Width of the texture of data, as in `shaders/fragment.wgsl`.
+const ROW: usize = 2048;
+
+/// Draws the true surface of a scene.
 pub struct Tracer {
+    stage: Stage,
     /// The formulas that it has, and the program.
-    pipeline: Option<(BTreeSet<u32>, wgpu::ComputePipeline)>,
+    program: Option<(BTreeSet<u32>, Program)>,
     bindings: wgpu::BindGroupLayout,
     view: wgpu::Buffer,
     frame: wgpu::Buffer,
     scene: Option<Prepared>,
-    pixels: Option<([u32; 2], wgpu::Buffer)>,
+    target: Option<([u32; 2], Target)>,
+}
+
+/// Program of either stage.
+enum Program {
+    Compute(wgpu::ComputePipeline),
+    Fragment(wgpu::RenderPipeline),
+}
+
+/// What a frame is written to.
+#[derive(Debug)]
+pub enum Target {
+    /// The [`Pixel`]s row by row from the top, of [`Stage::Compute`].
+    Pixels(wgpu::Buffer),
+    /// A picture (`Rgba8Unorm`), of [`Stage::Fragment`].
+    Picture(wgpu::Texture),
+}
+
+/// The data of a scene.
+enum Data {
+    Buffer(wgpu::Buffer),
+    Texture(wgpu::TextureView),
 }
 
 /// A scene on the card.
 struct Prepared {
-    data: wgpu::Buffer,
+    data: Data,
     materials: wgpu::TextureView,
     frame: Frame,
     bounds: Bounds,
@@ -108,39 +140,219 @@ struct Prepared {
     air: Air,
 }
 
-impl Tracer {
-    /// Prepares a device that has storage buffers.
+impl Stage {
+    /// Returns the stage that a device has.
     #[must_use]
-    pub fn new(device: &wgpu::Device) -> Self {
-        let compute = wgpu::ShaderStages::COMPUTE;
-        let storage = |binding, read_only| wgpu::BindGroupLayoutEntry {
+    pub fn of(device: &wgpu::Device) -> Self {
+        if device.limits().max_storage_buffers_per_shader_stage >= 2 {
+            Self::Compute
+        } else {
+            Self::Fragment
+        }
+    }
+
+    /// Returns the number of vectors of four that data may take.
+    fn room(self, device: &wgpu::Device) -> usize {
+        let limits = device.limits();
+        match self {
+            Self::Compute => {
+                let most = limits.max_storage_buffer_binding_size;
+                most.min(limits.max_buffer_size) as usize / 16
+            }
+            Self::Fragment => limits.max_texture_dimension_2d as usize * ROW,
+        }
+    }
+
+    /// Hands over the data of a scene.
+    fn upload(self, device: &wgpu::Device, queue: &wgpu::Queue, data: &mut Vec<[u32; 4]>) -> Data {
+        match self {
+            Self::Compute => {
+                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("tracer's data"),
+                    size: size_of_val(&data[..]) as u64,
+                    usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                queue.write_buffer(&buffer, 0, bytemuck::cast_slice(data));
+                Data::Buffer(buffer)
+            }
+            Self::Fragment => {
+                data.resize(data.len().next_multiple_of(ROW), [0; 4]);
+                let size = wgpu::Extent3d {
+                    width: ROW as u32,
+                    height: (data.len() / ROW) as u32,
+                    depth_or_array_layers: 1,
+                };
+                let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+                let texture = device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some("tracer's data"),
+                    size,
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: wgpu::TextureFormat::Rgba32Uint,
+                    usage,
+                    view_formats: &[],
+                });
+                queue.write_texture(
+                    texture.as_image_copy(),
+                    bytemuck::cast_slice(data),
+                    wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(size.width * 16),
+                        rows_per_image: None,
+                    },
+                    size,
+                );
+                Data::Texture(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+            }
+        }
+    }
+
+    /// Makes what a frame of a size is written to.
+    fn target(self, device: &wgpu::Device, [width, height]: [u32; 2]) -> Target {
+        let label = Some("traced picture");
+        match self {
+            Self::Compute => Target::Pixels(device.create_buffer(&wgpu::BufferDescriptor {
+                label,
+                size: u64::from(width) * u64::from(height) * size_of::<Pixel>() as u64,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })),
+            Self::Fragment => Target::Picture(device.create_texture(&wgpu::TextureDescriptor {
+                label,
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: COLOUR,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })),
+        }
+    }
+
+    fn layout(self, device: &wgpu::Device) -> wgpu::BindGroupLayout {
+        let stage = match self {
+            Self::Compute => wgpu::ShaderStages::COMPUTE,
+            Self::Fragment => wgpu::ShaderStages::FRAGMENT,
+        };
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
-            visibility: compute,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage { read_only },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
+            visibility: stage,
+            ty,
             count: None,
         };
-        let bindings = layout(
-            device,
-            "tracer",
-            &[
-                uniform(0, compute),
-                texture(1, compute),
-                uniform(2, compute),
-                storage(3, true),
-                storage(4, false),
-            ],
-        );
+        let storage = |binding, read_only| {
+            let ty = wgpu::BufferBindingType::Storage { read_only };
+            entry(
+                binding,
+                wgpu::BindingType::Buffer {
+                    ty,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+            )
+        };
+        let mut entries = vec![uniform(0, stage), texture(1, stage), uniform(2, stage)];
+        match self {
+            Self::Compute => entries.extend([storage(3, true), storage(4, false)]),
+            Self::Fragment => entries.push(entry(
+                3,
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Uint,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+            )),
+        }
+        layout(device, "tracer", &entries)
+    }
+
+    /// Returns the text of the program with some formulas.
+    fn code(self, formulas: &BTreeSet<u32>) -> String {
+        let entry = match self {
+            Self::Compute => shader!("compute"),
+            Self::Fragment => shader!("fragment"),
+        };
+        [COMMON, &formulas::code(formulas.iter().copied()), entry].concat()
+    }
+
+    /// Compiles the program with some formulas.
+    fn compile(
+        self,
+        device: &wgpu::Device,
+        bindings: &wgpu::BindGroupLayout,
+        formulas: &BTreeSet<u32>,
+    ) -> Program {
+        let label = Some("tracer");
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label,
+            source: wgpu::ShaderSource::Wgsl(self.code(formulas).into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &[Some(bindings)],
+            immediate_size: 0,
+        });
+        match self {
+            Self::Compute => {
+                let descriptor = wgpu::ComputePipelineDescriptor {
+                    label,
+                    layout: Some(&layout),
+                    module: &module,
+                    entry_point: Some("trace"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    cache: None,
+                };
+                Program::Compute(device.create_compute_pipeline(&descriptor))
+            }
+            Self::Fragment => {
+                let descriptor = wgpu::RenderPipelineDescriptor {
+                    label,
+                    layout: Some(&layout),
+                    vertex: wgpu::VertexState {
+                        module: &module,
+                        entry_point: Some("cover"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        buffers: &[],
+                    },
+                    primitive: wgpu::PrimitiveState::default(),
+                    depth_stencil: None,
+                    multisample: wgpu::MultisampleState::default(),
+                    fragment: Some(wgpu::FragmentState {
+                        module: &module,
+                        entry_point: Some("draw"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        targets: &[Some(COLOUR.into())],
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                };
+                Program::Fragment(device.create_render_pipeline(&descriptor))
+            }
+        }
+    }
+}
+
+impl Tracer {
+    /// Prepares a device for a stage, which it must have: [`Stage::of`] tells one.
+    #[must_use]
+    pub fn new(device: &wgpu::Device, stage: Stage) -> Self {
         Self {
-            pipeline: None,
-            bindings,
+            stage,
+            program: None,
+            bindings: stage.layout(device),
             view: uniform_buffer(device, "tracer's view", size_of::<View>()),
             frame: uniform_buffer(device, "tracer's frame", size_of::<Frame>()),
             scene: None,
-            pixels: None,
+            target: None,
         }
     }
 
@@ -155,26 +367,23 @@ impl Tracer {
         let bounds = Bounds::of(scene);
         let units = bounds.units();
         let table = materials::upload(device, queue, scene);
-        let unit = Unit::of_ball(bounds.center, bounds.radius);
-        let packed = Packed::new(&unit.map_scene(scene), &table, detail.most_leaves());
-        let known = (self.pipeline.take()).filter(|(formulas, _)| *formulas == packed.formulas);
-        self.pipeline = Some(known.unwrap_or_else(|| {
-            let pipeline = self.compile(device, &packed.formulas);
-            (packed.formulas, pipeline)
+        let mapped = Unit::of_ball(bounds.center, bounds.radius).map_scene(scene);
+        let mut most = detail.most_leaves();
+        let mut packed = Packed::new(&mapped, &table, most);
+        while packed.data.len() > self.stage.room(device) && most > 1 {
+            most = most.min(packed.leaves) / 2;
+            packed = Packed::new(&mapped, &table, most);
+        }
+        let known = (self.program.take()).filter(|(formulas, _)| *formulas == packed.formulas);
+        self.program = Some(known.unwrap_or_else(|| {
+            let program = self.stage.compile(device, &self.bindings, &packed.formulas);
+            (packed.formulas.clone(), program)
         }));
-        let bytes: &[u8] = bytemuck::cast_slice(&packed.data);
-        let data = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("tracer's data"),
-            size: bytes.len() as u64,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        queue.write_buffer(&data, 0, bytes);
         let (lights, lights_left_out) = Lights::new(&scene.lights, units);
         let mut frame = packed.frame;
         frame.counts[3] = lights.shadows;
         self.scene = Some(Prepared {
-            data,
+            data: self.stage.upload(device, queue, &mut packed.data),
             materials: table.view,
             frame,
             bounds,
@@ -190,32 +399,8 @@ impl Tracer {
         }
     }
 
-    /// Compiles the program with some formulas.
-    fn compile(&self, device: &wgpu::Device, formulas: &BTreeSet<u32>) -> wgpu::ComputePipeline {
-        let label = Some("tracer");
-        let formulas = formulas::code(formulas.iter().copied());
-        let code = [COMMON, &formulas, shader!("compute")].concat();
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label,
-            source: wgpu::ShaderSource::Wgsl(code.into()),
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&self.bindings)],
-            immediate_size: 0,
-        });
-        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label,
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some("trace"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        })
-    }
-
-    /// Traces the scene from a camera into a picture of `size` pixels, row by row from the top, and
-    /// gives the buffer of its [`Pixel`]s; `None` before the first scene.
+    /// Traces the scene from a camera into a picture of `size` pixels, and gives it; `None` before
+    /// the first scene.
     pub fn render(
         &mut self,
         device: &wgpu::Device,
@@ -223,57 +408,129 @@ impl Tracer {
         encoder: &mut wgpu::CommandEncoder,
         camera: &Camera,
         size: [u32; 2],
-    ) -> Option<&wgpu::Buffer> {
+    ) -> Option<&Target> {
         let scene = self.scene.as_ref()?;
-        let (_, pipeline) = self.pipeline.as_ref()?;
-        let units = scene.bounds.units();
-        let view = View::new(
-            camera,
-            size,
-            size,
-            units,
-            scene.tone,
-            &scene.lights,
-            scene.air,
-        );
-        queue.write_buffer(&self.view, 0, bytemuck::bytes_of(&view));
+        let (_, program) = self.program.as_ref()?;
+        scene.look(queue, [&self.view, &self.frame], camera, size);
+        let target = (self.target.take()).filter(|(old, _)| *old == size);
+        let target = target.unwrap_or_else(|| (size, self.stage.target(device, size)));
+        let (_, target) = self.target.insert(target);
+        let mut resources = vec![
+            self.view.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&scene.materials),
+            self.frame.as_entire_binding(),
+            match &scene.data {
+                Data::Buffer(buffer) => buffer.as_entire_binding(),
+                Data::Texture(view) => wgpu::BindingResource::TextureView(view),
+            },
+        ];
+        if let Target::Pixels(buffer) = target {
+            resources.push(buffer.as_entire_binding());
+        }
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let label = Some("tracer");
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label,
+            layout: &self.bindings,
+            entries: &entries,
+        });
+        match (program, &*target) {
+            (Program::Compute(pipeline), _) => {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
+            }
+            (Program::Fragment(pipeline), Target::Picture(picture)) => {
+                let view = picture.create_view(&wgpu::TextureViewDescriptor::default());
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label,
+                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                        view: &view,
+                        depth_slice: None,
+                        resolve_target: None,
+                        ops: wgpu::Operations {
+                            load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                            store: wgpu::StoreOp::Store,
+                        },
+                    })],
+                    ..wgpu::RenderPassDescriptor::default()
+                });
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            (Program::Fragment(_), Target::Pixels(_)) => {}
+        }
+        Some(target)
+    }
+}
+
+impl Prepared {
+    /// Writes the uniforms of a camera.
+    fn look(
+        &self,
+        queue: &wgpu::Queue,
+        [view, frame]: [&wgpu::Buffer; 2],
+        camera: &Camera,
+        size: [u32; 2],
+    ) {
+        let units = self.bounds.units();
+        let seen = View::new(camera, size, size, units, self.tone, &self.lights, self.air);
+        queue.write_buffer(view, 0, bytemuck::bytes_of(&seen));
         let projection = camera.projection(size[0], size[1]);
         let forward = -projection.world_from_view.z_axis;
-        let eye = Unit::of_ball(units.center, units.radius).point(projection.eye);
+        let eye = Unit::of_ball(units.center, units.radius).map(projection.eye);
         let ahead = (-eye.dot(forward)).max(0.0);
         let [x, y, z] = (eye + ahead * forward).as_vec3().to_array();
-        let frame = Frame {
+        let place = Frame {
             middle: [x, y, z, ahead as f32],
-            ..scene.frame
+            ..self.frame
         };
-        queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
-        let pixels = self.pixels.take().filter(|(old, _)| *old == size);
-        let (_, pixels) = self.pixels.insert(pixels.unwrap_or_else(|| {
-            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("traced pixels"),
-                size: u64::from(size[0]) * u64::from(size[1]) * size_of::<Pixel>() as u64,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            });
-            (size, buffer)
-        }));
-        let buffers = [
-            (0, self.view.as_entire_binding()),
-            (1, wgpu::BindingResource::TextureView(&scene.materials)),
-            (2, self.frame.as_entire_binding()),
-            (3, scene.data.as_entire_binding()),
-            (4, pixels.as_entire_binding()),
-        ];
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tracer"),
-            layout: &self.bindings,
-            entries: &buffers.map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }),
-        });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
-        drop(pass);
-        Some(pixels)
+        queue.write_buffer(frame, 0, bytemuck::bytes_of(&place));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use naga::back::glsl;
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+    #[test]
+    fn all_formulas_fit_both_stages() {
+        let all: BTreeSet<u32> = formulas::all().collect();
+        for stage in [Stage::Compute, Stage::Fragment] {
+            let code = stage.code(&all);
+            let module = naga::front::wgsl::parse_str(&code)
+                .unwrap_or_else(|error| panic!("{stage:?}: {}", error.emit_to_string(&code)));
+            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+                .validate(&module)
+                .unwrap_or_else(|error| panic!("{stage:?}: {}", error.emit_to_string(&code)));
+            if stage == Stage::Compute {
+                continue;
+            }
+            let options = glsl::Options {
+                version: glsl::Version::Embedded {
+                    version: 300,
+                    is_webgl: true,
+                },
+                ..glsl::Options::default()
+            };
+            let pipeline = glsl::PipelineOptions {
+                entry_point: "draw".into(),
+                shader_stage: naga::ShaderStage::Fragment,
+                multiview: None,
+            };
+            let mut text = String::new();
+            let policies = naga::proc::BoundsCheckPolicies::default();
+            let written =
+                glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
+                    .and_then(|mut writer| writer.write());
+            assert!(written.is_ok(), "{written:?}");
+        }
     }
 }

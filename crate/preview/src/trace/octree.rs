@@ -26,6 +26,11 @@ const SMOOTH: f64 = 0.1;
 /// Half of the side of the smallest cell, over 1 plus its distance from the scene's middle, in
 /// draft units.
 const FINEST: f64 = 0.003;
+/// Number of cells that are looked at together.
+const BATCH: usize = 4096;
+/// Fewest cells that are worth a thread.
+#[cfg(not(target_arch = "wasm32"))]
+const FEW: usize = 64;
 /// Value that samples are cut off at.
 const HIGH: f32 = 1e6;
 /// Half of the side of the octree of a body that has no end.
@@ -60,7 +65,7 @@ pub(crate) struct Leaf {
 }
 
 /// Choice of the terms that a leaf lists.
-pub(crate) type List<'a> = dyn Fn(Option<&[u32]>) -> Vec<u32> + 'a;
+pub(crate) type List<'a> = dyn Fn(Option<&[u32]>) -> Vec<u32> + Sync + 'a;
 
 /// The cells of a body. The first is the root.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,45 +119,77 @@ impl Octree {
             half,
             part: None,
         }]);
-        while let Some(cell) = open.pop_front() {
+        while !open.is_empty() {
             let room = tree.leaves.len() + open.len() < most;
-            match look(function, &cell, &nodes, room, list) {
-                Look::Settled(settled) => tree.cells[cell.place] = settled,
-                Look::Crossed {
-                    cubic,
-                    part,
-                    is_rough,
-                    listed,
-                } => {
-                    tree.rough += usize::from(is_rough);
-                    tree.cells[cell.place] = Cell::Leaf(tree.leaves.len() as u32);
-                    tree.leaves.push(Leaf {
-                        cubic,
-                        center: cell.center,
-                        half: cell.half,
-                        terms: part.map(|part| part.terms.clone()),
-                        listed,
-                    });
-                }
-                Look::Unknown(part) => {
-                    let first = tree.cells.len();
-                    tree.cells[cell.place] = Cell::Parted(first as u32);
-                    tree.cells.resize(first + 8, Cell::Outside);
-                    let half = 0.5 * cell.half;
-                    for (i, place) in (first..first + 8).enumerate() {
-                        let side = |axis: usize| if i >> axis & 1 == 1 { half } else { -half };
-                        open.push_back(Open {
-                            place,
-                            center: cell.center + DVec3::new(side(0), side(1), side(2)),
-                            half,
-                            part: part.clone(),
-                        });
-                    }
-                }
+            let batch: Vec<Open> = open.drain(..open.len().min(BATCH)).collect();
+            let looks = map(&batch, |cell| look(function, cell, &nodes, room, list));
+            for (cell, look) in batch.into_iter().zip(looks) {
+                tree.add(cell, look, &mut open);
             }
         }
         (!tree.leaves.is_empty()).then_some(tree)
     }
+
+    /// Adds what was found in a cell, and the parts that it is to be divided into.
+    fn add(&mut self, cell: Open, look: Look, open: &mut VecDeque<Open>) {
+        match look {
+            Look::Settled(settled) => self.cells[cell.place] = settled,
+            Look::Crossed {
+                cubic,
+                part,
+                is_rough,
+                listed,
+            } => {
+                self.rough += usize::from(is_rough);
+                self.cells[cell.place] = Cell::Leaf(self.leaves.len() as u32);
+                self.leaves.push(Leaf {
+                    cubic,
+                    center: cell.center,
+                    half: cell.half,
+                    terms: part.map(|part| part.terms.clone()),
+                    listed,
+                });
+            }
+            Look::Unknown(part) => {
+                let first = self.cells.len();
+                self.cells[cell.place] = Cell::Parted(first as u32);
+                self.cells.resize(first + 8, Cell::Outside);
+                let half = 0.5 * cell.half;
+                for (i, place) in (first..first + 8).enumerate() {
+                    let side = |axis: usize| if i >> axis & 1 == 1 { half } else { -half };
+                    open.push_back(Open {
+                        place,
+                        center: cell.center + DVec3::new(side(0), side(1), side(2)),
+                        half,
+                        part: part.clone(),
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// Calls a function with each cell; natively with several at once.
+fn map(cells: &[Open], look: impl Fn(&Open) -> Look + Sync) -> Vec<Look> {
+    #[cfg(not(target_arch = "wasm32"))]
+    {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let share = cells.len().div_ceil(threads).max(FEW);
+        let look = &look;
+        std::thread::scope(|scope| {
+            let parts: Vec<_> = cells
+                .chunks(share)
+                .map(|part| scope.spawn(move || part.iter().map(look).collect::<Vec<_>>()))
+                .collect();
+            let looks = parts.into_iter().flat_map(|part| match part.join() {
+                Ok(looks) => looks,
+                Err(panic) => std::panic::resume_unwind(panic),
+            });
+            looks.collect()
+        })
+    }
+    #[cfg(target_arch = "wasm32")]
+    cells.iter().map(look).collect()
 }
 
 /// What is found in a cell.

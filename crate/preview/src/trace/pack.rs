@@ -72,7 +72,9 @@ impl Packed {
     fn add_solids(&mut self, scene: &Scene, materials: &Table) {
         let detail = facets::detail(scene);
         let mut solids = Vec::new();
-        for element in scene.elements.iter().filter(|e| !scene.is_soft(e)) {
+        let shown = |finish: u32| (finish as usize) < scene.finishes.len();
+        let hard = (scene.elements.iter()).filter(|e| !scene.is_soft(e) && shown(e.finish));
+        for element in hard {
             let own = Solid::of(scene, element, detail);
             self.elements += usize::from(!own.is_empty());
             for solid in own {

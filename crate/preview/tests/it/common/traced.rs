@@ -1,7 +1,7 @@
 //! Tracing a scene on an adapter, reading it back, and holding it to the tracer's picture.
 
 use preview::Bounds;
-use preview::trace::{Detail, Pixel, Shown, Tracer};
+use preview::trace::{Detail, Pixel, Shown, Stage, Target, Tracer};
 use scene::{Camera, Scene};
 
 /// A device that computes.
@@ -49,7 +49,7 @@ pub fn open() -> Option<Card> {
 impl Card {
     /// Prepares a scene.
     pub fn prepare(&self, scene: &Scene, detail: Detail) -> (Tracer, Shown) {
-        let mut tracer = Tracer::new(&self.device);
+        let mut tracer = Tracer::new(&self.device, Stage::Compute);
         let shown = tracer.set_scene(&self.device, &self.queue, scene, detail);
         (tracer, shown)
     }
@@ -66,9 +66,10 @@ impl Card {
     /// Draws a frame and reads its pixels back.
     pub fn read(&self, tracer: &mut Tracer, camera: &Camera, size: [u32; 2]) -> Vec<Pixel> {
         let mut encoder = self.device.create_command_encoder(&<_>::default());
-        let pixels = tracer
-            .render(&self.device, &self.queue, &mut encoder, camera, size)
-            .expect("a scene");
+        let target = tracer.render(&self.device, &self.queue, &mut encoder, camera, size);
+        let Some(Target::Pixels(pixels)) = target else {
+            panic!("compute shaders write pixels");
+        };
         let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: pixels.size(),
