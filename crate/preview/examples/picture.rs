@@ -7,7 +7,7 @@
 mod traced;
 
 use preview::orbit;
-use preview::trace::Detail;
+use preview::trace::{Detail, Stage};
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -27,15 +27,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         [width, height] => [width.parse()?, height.parse()?],
         _ => scene.settings.frame,
     };
-    let has = |name: &str| options.iter().any(|option| option == name);
-    let detail = if has("--quick") {
+    let detail = if options.iter().any(|option| option == "--quick") {
         Detail::Quick
     } else {
         Detail::Fine
     };
     let card = traced::open().ok_or("no graphics adapter")?;
     let start = Instant::now();
-    let (mut tracer, shown) = card.prepare(&scene, detail);
+    let (mut tracer, shown) = card.prepare(&scene, detail, Stage::Compute);
     println!("{shown:?}, prepared in {:.0?}", start.elapsed());
     let pixels = card.read(&mut tracer, &scene.camera, size);
     let bytes: Vec<u8> = (pixels.iter())
@@ -55,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frame_ms = 1e3 * start.elapsed().as_secs_f64() / f64::from(FRAMES);
     let surface = pixels.iter().filter(|pixel| pixel.distance >= 0.0).count();
     let evaluations: u64 = pixels.iter().map(|p| u64::from(p.evaluations[0])).sum();
-    let differs = if has("--compare") {
+    let differs = if options.iter().any(|option| option == "--compare") {
         let differs = traced::compare(&scene, size, &pixels);
         format!(
             ",\"differs\":{{\"coverage\":{:.5},\"distance\":{:.5},\"normal\":{:.5}}}",
@@ -65,8 +64,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         String::new()
     };
     println!(
-        "{{\"adapter\":{:?},\"elements\":{},\"surface_pixels\":{surface},\"frame_ms\":{frame_ms:.2},\
-         \"evaluations_per_pixel\":{:.2},\"meshed\":[]{differs}}}",
+        "{{\"adapter\":{:?},\"elements\":{},\"surface_pixels\":{surface},\
+         \"frame_ms\":{frame_ms:.2},\"evaluations_per_pixel\":{:.2},\"meshed\":[]{differs}}}",
         card.name,
         shown.elements,
         evaluations as f64 / pixels.len() as f64,

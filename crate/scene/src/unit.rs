@@ -2,8 +2,8 @@
 //!
 //! Single precision is used where rays meet the soft surface, so a scene far from the origin, very
 //! large or very small would lose digits. Before tracing it is moved to the origin and scaled to
-//! about unit size, for pictures by a power of two (which costs no digits). Nothing else changes: fields, angles
-//! and colours are the same.
+//! about unit size, for pictures by a power of two (which costs no digits). Nothing else changes:
+//! fields, angles and colours are the same.
 use crate::{Element, LightKind, Scene, Shape};
 use field::skeleton::Map;
 use glam::{DAffine3, DQuat, DVec3};

@@ -1,10 +1,10 @@
 //! Cubics of three variables that stand for a function in a cube.
 //!
-//! The function is sampled at Chebyshev's nodes, four along each axis. There its Chebyshev series up
-//! to the third degree along each axis follows from sums over the samples:
-//! `c_ijk = Σ f·T_i·T_j·T_k` times 1/4 for each degree 0, 1/2 for others. Of these 64 terms the cubic
-//! keeps the 20 of total degree 3 or less. The sizes of the others, which are at most 1 times their
-//! coefficients in the cube, tell how well it stands for the function.
+//! The function is sampled at Chebyshev's nodes, four along each axis. There its Chebyshev series
+//! up to the third degree along each axis follows from sums over the samples:
+//! `c_ijk = Σ f·T_i·T_j·T_k` times 1/4 for each degree 0, 1/2 for others. Of these 64 terms the
+//! cubic keeps the 20 of total degree 3 or less. The sizes of the others, which are at most 1 times
+//! their coefficients in the cube, tell how well it stands for the function.
 
 use glam::DVec3;
 
@@ -71,8 +71,8 @@ pub(crate) struct Cubic {
 /// Returns the places of the samples in a cube.
 pub(crate) fn places() -> [DVec3; SAMPLES] {
     core::array::from_fn(|n| {
-        let at = |axis: u32| NODES[n / SIDE.pow(axis) % SIDE];
-        DVec3::new(at(0), at(1), at(2))
+        let [x, y, z] = [0, 1, 2].map(|axis| NODES[n / SIDE.pow(axis) % SIDE]);
+        DVec3::new(x, y, z)
     })
 }
 
@@ -120,10 +120,13 @@ impl Cubic {
     /// Computes the value at a place in the cube.
     #[cfg(test)]
     pub(crate) fn value(&self, place: DVec3) -> f64 {
-        let power = |axis: usize, n: usize| (0..n).fold(1.0, |product, _| product * place[axis]);
         let terms = self.coefficients.iter().zip(&MONOMIALS);
+        let axes = place.to_array();
         terms
-            .map(|(c, n)| c * power(0, n[0]) * power(1, n[1]) * power(2, n[2]))
+            .map(|(c, powers)| {
+                let factors = axes.iter().zip(powers).flat_map(|(x, n)| vec![*x; *n]);
+                c * factors.product::<f64>()
+            })
             .sum()
     }
 }
@@ -165,11 +168,10 @@ mod tests {
         for _ in 0..count(100) {
             let wave = DVec3::from_array(core::array::from_fn(|_| random.range(-1.0, 1.0)));
             let phase = random.range(0.0, 6.0);
-            let function = |place: DVec3| libm::sin(place.dot(wave) + phase);
-            let fitted = Cubic::fit(&places().map(function));
+            let fitted = Cubic::fit(&places().map(|place| libm::sin(place.dot(wave) + phase)));
             for _ in 0..20 {
                 let place = DVec3::from_array(core::array::from_fn(|_| random.range(-1.0, 1.0)));
-                let off = (fitted.value(place) - function(place)).abs();
+                let off = (fitted.value(place) - libm::sin(place.dot(wave) + phase)).abs();
                 assert!(off <= 3.0 * fitted.error + 0.01, "{off} {}", fitted.error);
             }
         }

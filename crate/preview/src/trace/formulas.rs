@@ -8,7 +8,15 @@ use std::sync::OnceLock;
 
 macro_rules! cells {
     ($($name:literal)*) => {
-        [$(($name, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/field/", $name, ".wgsl")))),*]
+        [$((
+            $name,
+            include_str!(concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/../../shaders/field/",
+                $name,
+                ".wgsl"
+            )),
+        )),*]
     };
 }
 
@@ -90,18 +98,24 @@ pub(crate) fn pack(primitive: &Primitive, data: &mut Vec<[u32; 4]>) -> [u32; 4] 
     let Some((plain, profile)) = find(term) else {
         return [u32::MAX, 0, 0, 0];
     };
-    let mut add = |formula: &Formula| {
-        let start = data.len() as u32;
-        let (constants, records) = formula.layout.pack(term);
-        data.extend(constants.iter().map(|four| four.map(f32::to_bits)));
-        (start, records)
-    };
-    let (start, records) = add(plain);
+    let (start, records) = append(plain, term, data);
     let (kind, of_profile) = match profile {
-        Some(profile) => (plain.number | (profile.number + 1) << 16, add(profile).0),
+        Some(profile) => (
+            plain.number | (profile.number + 1) << 16,
+            append(profile, term, data).0,
+        ),
         None => (plain.number, 0),
     };
     [kind, start, of_profile, records]
+}
+
+/// Appends the constants that a formula loads, and returns where they begin and the number of
+/// records.
+fn append(formula: &Formula, term: &Term<f32>, data: &mut Vec<[u32; 4]>) -> (u32, u32) {
+    let start = data.len() as u32;
+    let (constants, records) = formula.layout.pack(term);
+    data.extend(constants.iter().map(|four| four.map(f32::to_bits)));
+    (start, records)
 }
 
 /// Returns the functions of formulas of some records, and the function `term` that chooses among

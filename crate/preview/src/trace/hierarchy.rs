@@ -1,4 +1,5 @@
-//! Hierarchy of boxes around hard shapes, in the order in which `shaders/scene.wgsl` goes through it.
+//! Hierarchy of boxes around hard shapes, in the order in which `shaders/scene.wgsl` goes through
+//! it.
 
 use glam::DVec3;
 
@@ -40,10 +41,10 @@ fn append(boxes: &[(DVec3, DVec3)], items: &mut [u32], nodes: &mut Vec<Node>) {
         let axis = (0..3)
             .max_by(|&i, &j| size[i].total_cmp(&size[j]))
             .unwrap_or(0);
-        let middle = |i: u32| boxes[i as usize].0[axis] + boxes[i as usize].1[axis];
         let half = items.len() / 2;
         items.select_nth_unstable_by(half, |&i, &j| {
-            middle(i).total_cmp(&middle(j)).then(i.cmp(&j))
+            let [a, b] = [i, j].map(|k| boxes[k as usize].0[axis] + boxes[k as usize].1[axis]);
+            a.total_cmp(&b).then(i.cmp(&j))
         });
         let (first, second) = items.split_at_mut(half);
         append(boxes, first, nodes);

@@ -2,9 +2,10 @@
 //!
 //! The functions of all bodies ([`scene::Scene::surfaces`]) are divided into cells ([`octree`]),
 //! those that the surface passes with a cubic each ([`cubic`]) and, where that is not enough, with
-//! the chart's formulas ([`formulas`]); hard shapes have a hierarchy of boxes ([`hierarchy`]). [`pack`] lays them out, and `shaders/scene.wgsl` sends a ray from the eye
-//! through each pixel, and one from what it meets to each light. Nothing of it depends on the
-//! camera: while one turns, only the view changes.
+//! the chart's formulas ([`formulas`]); hard shapes have a hierarchy of boxes ([`hierarchy`]).
+//! [`pack`] lays them out, and `shaders/scene.wgsl` sends a ray from the eye through each pixel,
+//! and one from what it meets to each light. Nothing of it depends on the camera: while one turns,
+//! only the view changes.
 
 mod cubic;
 mod formulas;
@@ -50,13 +51,13 @@ pub struct Pixel {
     pub evaluations: [u32; 4],
 }
 
-/// How closely the space around a scene is looked at before it is drawn.
+/// Care with which the space around a scene is divided before it is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
-    /// In an instant, for scenes that change with every frame: large cells, in which rays add up
-    /// the terms near them. Functions that are no sums are drawn roughly.
+    /// Large cells, in which rays add up the terms near them: made in an instant, for scenes that
+    /// change with every frame. Functions that are no sums are drawn roughly.
     Quick,
-    /// So closely that rays need hardly add up anything.
+    /// Small cells, in most of which rays need not add up anything.
     #[default]
     Fine,
 }
@@ -71,14 +72,14 @@ impl Detail {
     }
 }
 
-/// What a scene is made of for the card.
+/// Numbers of what a scene is made of for the card.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shown {
     /// Elements that are drawn.
     pub elements: usize,
     /// Cells that a surface passes.
     pub leaves: usize,
-    /// Those of them in which the cubic is not close to the function.
+    /// Number of such cells in which the cubic is not close to the function.
     pub rough: usize,
     /// Lights left out: at most [`crate::MAX_LIGHTS`] count.
     pub lights_left_out: usize,
@@ -114,7 +115,7 @@ enum Program {
     Fragment(wgpu::RenderPipeline),
 }
 
-/// What a frame is written to.
+/// Buffer or texture that a frame is written to.
 #[derive(Debug)]
 pub enum Target {
     /// The [`Pixel`]s row by row from the top, of [`Stage::Compute`].
@@ -243,35 +244,36 @@ impl Stage {
             Self::Compute => wgpu::ShaderStages::COMPUTE,
             Self::Fragment => wgpu::ShaderStages::FRAGMENT,
         };
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: stage,
-            ty,
-            count: None,
-        };
-        let storage = |binding, read_only| {
-            let ty = wgpu::BufferBindingType::Storage { read_only };
-            entry(
-                binding,
+        let data = match self {
+            Self::Compute => vec![
                 wgpu::BindingType::Buffer {
-                    ty,
+                    ty: wgpu::BufferBindingType::Storage { read_only: true },
                     has_dynamic_offset: false,
                     min_binding_size: None,
                 },
-            )
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Storage { read_only: false },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+            ],
+            Self::Fragment => vec![wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Uint,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            }],
         };
         let mut entries = vec![uniform(0, stage), texture(1, stage), uniform(2, stage)];
-        match self {
-            Self::Compute => entries.extend([storage(3, true), storage(4, false)]),
-            Self::Fragment => entries.push(entry(
-                3,
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Uint,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-            )),
-        }
+        entries.extend(
+            (3..)
+                .zip(data)
+                .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+                    binding,
+                    visibility: stage,
+                    ty,
+                    count: None,
+                }),
+        );
         layout(device, "tracer", &entries)
     }
 

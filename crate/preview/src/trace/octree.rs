@@ -36,14 +36,14 @@ const HIGH: f32 = 1e6;
 /// Half of the side of the octree of a body that has no end.
 const ENDLESS: f64 = 64.0;
 
-/// What is known of a cell.
+/// Knowledge of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Cell {
     /// The first of eight cells.
     Parted(u32),
     /// The function is below the threshold.
     Outside,
-    /// It is above.
+    /// The function is above the threshold.
     Inside,
     /// Number of a leaf.
     Leaf(u32),
@@ -74,7 +74,7 @@ pub(crate) struct Octree {
     pub(crate) center: DVec3,
     /// Half the root's side.
     pub(crate) half: f64,
-    /// All cells, eight by eight after the root.
+    /// The cells, eight by eight after the root.
     pub(crate) cells: Vec<Cell>,
     /// The cells that the surface may pass.
     pub(crate) leaves: Vec<Leaf>,
@@ -155,11 +155,10 @@ impl Octree {
                 self.cells[cell.place] = Cell::Parted(first as u32);
                 self.cells.resize(first + 8, Cell::Outside);
                 let half = 0.5 * cell.half;
-                for (i, place) in (first..first + 8).enumerate() {
-                    let side = |axis: usize| if i >> axis & 1 == 1 { half } else { -half };
+                for (place, corner) in (first..).zip(corners()) {
                     open.push_back(Open {
                         place,
-                        center: cell.center + DVec3::new(side(0), side(1), side(2)),
+                        center: cell.center + half * corner,
                         half,
                         part: part.clone(),
                     });
@@ -167,6 +166,14 @@ impl Octree {
             }
         }
     }
+}
+
+/// The places of a cell's corners, each coordinate −1 or 1.
+pub(crate) fn corners() -> [DVec3; 8] {
+    core::array::from_fn(|i| {
+        let [x, y, z] = [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 });
+        DVec3::new(x, y, z)
+    })
 }
 
 /// Calls a function with each cell; natively with several at once.
@@ -192,7 +199,7 @@ fn map(cells: &[Open], look: impl Fn(&Open) -> Look + Sync) -> Vec<Look> {
     cells.iter().map(look).collect()
 }
 
-/// What is found in a cell.
+/// Result of a look at a cell.
 enum Look {
     Settled(Cell),
     Crossed {

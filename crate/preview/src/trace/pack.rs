@@ -2,7 +2,7 @@
 
 use super::formulas;
 use super::hierarchy;
-use super::octree::{Cell, Leaf, Octree};
+use super::octree::{Cell, Leaf, Octree, corners};
 use crate::facets;
 use crate::materials::{Table, draft_colours, finite, with};
 use crate::solid::{Kind, Solid};
@@ -72,9 +72,11 @@ impl Packed {
     fn add_solids(&mut self, scene: &Scene, materials: &Table) {
         let detail = facets::detail(scene);
         let mut solids = Vec::new();
-        let shown = |finish: u32| (finish as usize) < scene.finishes.len();
-        let hard = (scene.elements.iter()).filter(|e| !scene.is_soft(e) && shown(e.finish));
-        for element in hard {
+        let elements = scene.elements.iter();
+        for element in elements.filter(|element| !scene.is_soft(element)) {
+            if element.finish as usize >= scene.finishes.len() {
+                continue;
+            }
             let own = Solid::of(scene, element, detail);
             self.elements += usize::from(!own.is_empty());
             for solid in own {
@@ -123,11 +125,11 @@ impl Packed {
         for surface in &surfaces {
             let own: BTreeSet<u32> = surface.element().iter().copied().collect();
             self.elements += own.len();
-            let list = |terms: Option<&[u32]>| match surface {
+            let tree = Octree::new(surface.function(), most, &|terms| match surface {
                 Surface::Sum(sum) => list(&sum.sum.primitives, terms),
                 Surface::Composed(_) => Vec::new(),
-            };
-            let Some(tree) = Octree::new(surface.function(), most, &list) else {
+            });
+            let Some(tree) = tree else {
                 continue;
             };
             self.leaves += tree.leaves.len();
@@ -160,14 +162,16 @@ impl Packed {
         tree: &Octree,
         materials: &Table,
     ) -> Vec<u32> {
-        let finish_of = |element: u32| scene.elements[element as usize].finish;
-        let finishes: BTreeSet<u32> = surface.element().iter().map(|e| finish_of(*e)).collect();
+        let elements = surface.element().iter();
+        let finishes: BTreeSet<u32> = elements
+            .map(|element| scene.elements[*element as usize].finish)
+            .collect();
         let around = scene.background.mean();
         let mut records: BTreeMap<u32, [u32; 4]> = BTreeMap::new();
         let mut places = Vec::with_capacity(tree.leaves.len());
         for leaf in &tree.leaves {
             let mixture = if finishes.len() > 1 {
-                mixture(surface, leaf, finish_of)
+                mixture(scene, surface, leaf)
             } else {
                 Vec::new()
             };
@@ -222,14 +226,6 @@ fn list(primitives: &[Primitive], terms: Option<&[u32]>) -> Vec<u32> {
     if known { terms } else { Vec::new() }
 }
 
-/// The places of a leaf's corners, each coordinate −1 or 1.
-fn corners() -> [DVec3; 8] {
-    core::array::from_fn(|i| {
-        let side = |axis: usize| if i >> axis & 1 == 1 { 1.0 } else { -1.0 };
-        DVec3::new(side(0), side(1), side(2))
-    })
-}
-
 /// Returns the share of each finish at a leaf's corners: all those that count at one of them.
 fn mixture(surface: &Surface, leaf: &Leaf, finish_of: impl Fn(u32) -> u32) -> Vec<(u32, [f64; 8])> {
     let mut shares: BTreeMap<u32, [f64; 8]> = BTreeMap::new();
@@ -251,7 +247,8 @@ fn mixture(surface: &Surface, leaf: &Leaf, finish_of: impl Fn(u32) -> u32) -> Ve
             let Some(element) = surface.element().get(number as usize) else {
                 continue;
             };
-            let sum = &mut shares.entry(finish_of(*element)).or_insert([0.0; 8])[corner];
+            let finish = scene.elements[*element as usize].finish;
+            let sum = &mut shares.entry(finish).or_insert([0.0; 8])[corner];
             *sum += if all > 0.0 {
                 share.min(1e30) / all
             } else {
@@ -259,8 +256,8 @@ fn mixture(surface: &Surface, leaf: &Leaf, finish_of: impl Fn(u32) -> u32) -> Ve
             };
         }
     }
-    let counts = |own: &[f64; 8]| own.iter().any(|share| *share > NEGLIGIBLE);
-    shares.into_iter().filter(|(_, own)| counts(own)).collect()
+    shares.retain(|_, own| own.iter().any(|share| *share > NEGLIGIBLE));
+    shares.into_iter().collect()
 }
 
 /// Returns three channels of four – ambient and shine, diffuse, specular – as linear functions in a

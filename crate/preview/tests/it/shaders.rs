@@ -22,34 +22,37 @@ fn programs() -> BTreeMap<&'static str, String> {
             (name.replace(".wgsl", ""), text)
         })
         .collect();
-    let mut used = BTreeSet::new();
-    let mut join = |names: &[&'static str]| -> String {
-        used.extend(names.iter().copied());
-        names.iter().map(|name| files[*name].as_str()).collect()
-    };
-    let mut programs = BTreeMap::new();
+    let mut parts: BTreeMap<&str, Vec<&str>> = BTreeMap::from([
+        ("mesh", vec!["view", "shadeless", "mesh"]),
+        ("backdrop", vec!["view", "shadeless", "sky", "backdrop"]),
+        ("resolve", vec!["resolve"]),
+    ]);
     for shape in SHAPES {
-        let corners: &[_] = if shape == "patch" { &["corners"] } else { &[] };
-        let mut code = join(&["view", "shadeless", "solid", "element", shape]) + &join(corners);
-        code += "fn meet(ray: Ray, solid: Solid) -> Hit { return meet_";
-        programs.insert(shape, code + shape + "(ray, solid); }");
+        let corners = (shape == "patch").then_some("corners");
+        let shared = ["view", "shadeless", "solid", "element", shape];
+        parts.insert(shape, shared.into_iter().chain(corners).collect());
     }
-    programs.insert("mesh", join(&["view", "shadeless", "mesh"]));
-    programs.insert("backdrop", join(&["view", "shadeless", "sky", "backdrop"]));
-    programs.insert("resolve", join(&["resolve"]));
     for entry in ["compute", "fragment"] {
-        let tracer = join(&["view", "sky", "solid"]) + &join(&SHAPES);
-        let formulas = ["plain_term", "profile_of_term"].map(|name| {
-            format!(
-                "fn {name}(kind: u32, at: u32, count: u32, p: vec3f) -> vec4f {{ return vec4f(); }}"
-            )
-        });
-        let all = tracer + &join(&["march", "scene", entry]) + &formulas.concat();
-        programs.insert(entry, all);
+        let tracer = ["view", "sky", "solid"].into_iter().chain(SHAPES);
+        parts.insert(entry, tracer.chain(["march", "scene", entry]).collect());
     }
+    let used: BTreeSet<&str> = parts.values().flatten().copied().collect();
     let all: BTreeSet<&str> = files.keys().map(String::as_str).collect();
     assert_eq!(used, all, "files of no program, or missing ones");
-    programs
+    let programs = parts.into_iter().map(|(name, parts)| {
+        let mut code: String = parts.iter().map(|part| files[*part].as_str()).collect();
+        if SHAPES.contains(&name) {
+            code += &format!("fn meet(r: Ray, s: Solid) -> Hit {{ return meet_{name}(r, s); }}");
+        }
+        if parts.contains(&"march") {
+            for formulas in ["plain_term", "profile_of_term"] {
+                code += &format!("fn {formulas}(kind: u32, at: u32, count: u32, p: vec3f)");
+                code += " -> vec4f { return vec4f(); }";
+            }
+        }
+        (name, code)
+    });
+    programs.collect()
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::common::traced::{Differs, compare, open};
 use field::Kernel;
-use preview::trace::Detail;
+use preview::trace::{Detail, Stage};
 use scene::Scene;
 use trials::scenes::{KINDS, Kind};
 use trials::{Random, count};
@@ -33,7 +33,7 @@ fn compile(name: &str, text: &str) -> Scene {
 
 fn differs(scene: &Scene) -> Option<Differs> {
     let card = open()?;
-    let (mut tracer, _) = card.prepare(scene, Detail::Fine);
+    let (mut tracer, _) = card.prepare(scene, Detail::Fine, Stage::Compute);
     let pixels = card.read(&mut tracer, &scene.camera, SIZE);
     Some(compare(scene, SIZE, &pixels))
 }
@@ -52,6 +52,29 @@ fn examples_are_as_traced() {
         }
     }
     assert!(failed.is_empty(), "{failed:?}");
+}
+
+#[test]
+fn both_stages_draw_the_same() {
+    let Some(card) = open() else { return };
+    for (name, text) in &EXAMPLES[..3] {
+        let scene = compile(name, text);
+        let (mut tracer, _) = card.prepare(&scene, Detail::Fine, Stage::Compute);
+        let pixels = card.read(&mut tracer, &scene.camera, SIZE);
+        let (mut tracer, _) = card.prepare(&scene, Detail::Fine, Stage::Fragment);
+        let colours = card.colours(&mut tracer, &scene.camera, SIZE);
+        let differ = pixels.iter().zip(&colours).filter(|(pixel, colour)| {
+            let channels = pixel.colour.iter().zip(*colour);
+            channels
+                .into_iter()
+                .any(|(one, other)| (one * 255.0 - f32::from(*other)).abs() > 2.0)
+        });
+        let (count, all) = (differ.count(), pixels.len());
+        assert!(
+            count * 1000 <= all,
+            "{name}: {count} of {all} pixels differ"
+        );
+    }
 }
 
 #[test]

@@ -14,11 +14,12 @@ pub struct Card {
 /// Shares of pixels, 0 to 1, that differ from the tracer's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Differs {
-    /// In being surface, of all pixels.
+    /// Share of all pixels that differ in being surface.
     pub coverage: f64,
-    /// In distance by more than 10⁻³ of the radius of the scene, of those that both call surface.
+    /// Share of the pixels that both call surface whose distances differ by more than 10⁻³ of the
+    /// radius of the scene.
     pub distance: f64,
-    /// In normal by more than 5°, of the same.
+    /// Share of the same pixels whose normals differ by more than 5°.
     pub normal: f64,
 }
 
@@ -48,8 +49,8 @@ pub fn open() -> Option<Card> {
 
 impl Card {
     /// Prepares a scene.
-    pub fn prepare(&self, scene: &Scene, detail: Detail) -> (Tracer, Shown) {
-        let mut tracer = Tracer::new(&self.device, Stage::Compute);
+    pub fn prepare(&self, scene: &Scene, detail: Detail, stage: Stage) -> (Tracer, Shown) {
+        let mut tracer = Tracer::new(&self.device, stage);
         let shown = tracer.set_scene(&self.device, &self.queue, scene, detail);
         (tracer, shown)
     }
@@ -63,27 +64,62 @@ impl Card {
         self.device.poll(poll).expect("the device answers");
     }
 
-    /// Draws a frame and reads its pixels back.
+    /// Draws a frame of compute shaders and reads its pixels back.
     pub fn read(&self, tracer: &mut Tracer, camera: &Camera, size: [u32; 2]) -> Vec<Pixel> {
         let mut encoder = self.device.create_command_encoder(&<_>::default());
         let target = tracer.render(&self.device, &self.queue, &mut encoder, camera, size);
         let Some(Target::Pixels(pixels)) = target else {
             panic!("compute shaders write pixels");
         };
-        let copy = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: pixels.size(),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let copy = self.copy(pixels.size());
         encoder.copy_buffer_to_buffer(pixels, 0, &copy, 0, pixels.size());
         self.queue.submit([encoder.finish()]);
+        bytemuck::pod_collect_to_vec(&self.bytes(&copy))
+    }
+
+    /// Draws a frame of a fragment shader and reads its colours back; rows must be multiples of
+    /// 64 pixels.
+    #[allow(dead_code, reason = "for tests")]
+    pub fn colours(&self, tracer: &mut Tracer, camera: &Camera, size: [u32; 2]) -> Vec<[u8; 4]> {
+        let mut encoder = self.device.create_command_encoder(&<_>::default());
+        let target = tracer.render(&self.device, &self.queue, &mut encoder, camera, size);
+        let Some(Target::Picture(picture)) = target else {
+            panic!("a fragment shader draws a picture");
+        };
+        let copy = self.copy(u64::from(size[0]) * u64::from(size[1]) * 4);
+        encoder.copy_texture_to_buffer(
+            picture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &copy,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(4 * size[0]),
+                    rows_per_image: None,
+                },
+            },
+            picture.size(),
+        );
+        self.queue.submit([encoder.finish()]);
+        self.bytes(&copy).as_chunks::<4>().0.to_vec()
+    }
+
+    /// Makes a buffer that is read back.
+    fn copy(&self, size: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// Reads a buffer back.
+    fn bytes(&self, copy: &wgpu::Buffer) -> Vec<u8> {
         let slice = copy.slice(..);
         slice.map_async(wgpu::MapMode::Read, |mapped| mapped.expect("readable"));
         let poll = wgpu::PollType::wait_indefinitely();
         self.device.poll(poll).expect("the device answers");
-        let mapped = slice.get_mapped_range().expect("mapped");
-        bytemuck::pod_collect_to_vec(&mapped)
+        slice.get_mapped_range().expect("mapped").to_vec()
     }
 }
 
@@ -100,7 +136,7 @@ pub fn compare(scene: &Scene, size: [u32; 2], pixels: &[Pixel]) -> Differs {
         })
         .collect();
     let hits = picture.cast(&rays);
-    let (mut both, mut counts) = (0, [0; 3]);
+    let (mut both, mut counts) = (0_u32, [0_usize; 3]);
     for ((pixel, hit), (_, gaze)) in pixels.iter().zip(&hits).zip(&rays) {
         let is_surface = pixel.distance >= 0.0;
         counts[0] += usize::from(is_surface != hit.is_some());
@@ -118,10 +154,11 @@ pub fn compare(scene: &Scene, size: [u32; 2], pixels: &[Pixel]) -> Differs {
         };
         counts[2] += usize::from(normal.dot(seen) < 5_f64.to_radians().cos());
     }
-    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
+    let [coverage, distance, normal] = counts.map(|count| count as f64);
+    let both = f64::from(both.max(1));
     Differs {
-        coverage: share(counts[0], pixels.len()),
-        distance: share(counts[1], both),
-        normal: share(counts[2], both),
+        coverage: coverage / pixels.len() as f64,
+        distance: distance / both,
+        normal: normal / both,
     }
 }
