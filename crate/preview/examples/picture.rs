@@ -14,6 +14,8 @@ use std::time::Instant;
 
 /// Frames of a turn.
 const FRAMES: u32 = 30;
+/// Seconds after which no further frame is begun.
+const LONGEST: f64 = 10.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (options, arguments): (Vec<_>, Vec<_>) = std::env::args()
@@ -47,11 +49,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     encoder.write_header()?.write_image_data(&bytes)?;
 
     let start = Instant::now();
-    for i in 0..FRAMES {
-        let camera = orbit::orbit(scene.camera, 2.0 * f64::from(i) / f64::from(FRAMES), 0.0);
-        card.draw(&mut tracer, &camera, size);
+    let mut frames = 0;
+    while frames < FRAMES && start.elapsed().as_secs_f64() < LONGEST {
+        let across = 2.0 * f64::from(frames) / f64::from(FRAMES);
+        card.draw(&mut tracer, &orbit::orbit(scene.camera, across, 0.0), size);
+        frames += 1;
     }
-    let frame_ms = 1e3 * start.elapsed().as_secs_f64() / f64::from(FRAMES);
+    let frame_ms = 1e3 * start.elapsed().as_secs_f64() / f64::from(frames);
     let surface = pixels.iter().filter(|pixel| pixel.distance >= 0.0).count();
     let evaluations: u64 = pixels.iter().map(|p| u64::from(p.evaluations[0])).sum();
     let differs = if options.iter().any(|option| option == "--compare") {

@@ -227,7 +227,7 @@ fn list(primitives: &[Primitive], terms: Option<&[u32]>) -> Vec<u32> {
 }
 
 /// Returns the share of each finish at a leaf's corners: all those that count at one of them.
-fn mixture(surface: &Surface, leaf: &Leaf, finish_of: impl Fn(u32) -> u32) -> Vec<(u32, [f64; 8])> {
+fn mixture(scene: &Scene, surface: &Surface, leaf: &Leaf) -> Vec<(u32, [f64; 8])> {
     let mut shares: BTreeMap<u32, [f64; 8]> = BTreeMap::new();
     for (corner, place) in corners().into_iter().enumerate() {
         let point = leaf.center + leaf.half * place;
