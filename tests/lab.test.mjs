@@ -46,6 +46,7 @@ const TOUCH = {
   superposition: ['lab grip cut', [45, 0], 'cut'],
   contact: ['lab grip right drop', [30, 0], 'apart'],
   fitting: ['lab grip point 3', [20, -30], 'triangular'],
+  centreline: ['lab grip INLET', [20, 10], 'inlet'],
 };
 
 let browser;

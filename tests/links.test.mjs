@@ -133,7 +133,7 @@ test('whatever the pages and their scripts name is there', async () => {
     assert.equal(response.status(), 200, name);
     return response.text();
   };
-  const names = new Set(['index.html', 'reference.html', 'figures.html', 'worker.js', 'tools_worker.js']);
+  const names = new Set(['index.html', 'reference.html', 'figures.html', 'neurons.html', 'worker.js', 'tools_worker.js']);
   // The set grows while it is gone through.
   for (const name of names) {
     const text = await get(name);

@@ -118,6 +118,8 @@ const HEAD: &str = concat!(
 <main>
 <h1>The language</h1>
 <p id="none" hidden>Nothing is called that and nothing tells of it.</p>
+<p><a href="neurons.html">Neurons from SWC</a> · <a href="lattices.html">Lattices from 3MF</a> · "#,
+    r#"<a href="metaballs.html">From BOSL2 metaballs to Sinew</a></p>
 "#
 );
 

@@ -12,6 +12,7 @@ mod fields;
 mod fit;
 mod fused;
 mod growth;
+mod limbs;
 mod memory;
 mod meshes;
 mod mirrors;
@@ -44,7 +45,7 @@ macro_rules! part {
     }};
 }
 
-const PARTS: [Part; 14] = [
+const PARTS: [Part; 15] = [
     part!(speed),
     part!(models),
     part!(mirrors),
@@ -55,6 +56,7 @@ const PARTS: [Part; 14] = [
     part!(profile),
     part!(growth),
     part!(memory),
+    part!(limbs),
     part!(fields),
     part!(fit),
     part!(meshes),

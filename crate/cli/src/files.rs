@@ -3,7 +3,7 @@
 //! A dataset may `read` others. The compiler only ever sees the texts of a project, so the ones it
 //! asks for are fetched here, from the folder of the first file, until it asks for no more.
 
-use crate::Outcome;
+use crate::{Outcome, skeleton};
 use rats::{Asset, Compiled, File, Project};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -49,10 +49,12 @@ pub fn each(files: &[PathBuf], mut run: impl FnMut(&Path) -> Outcome) -> Outcome
 pub const INPUT: &str = "-";
 
 /// Loads a dataset and all that it reads. Of the path `-` the text comes from the standard input,
-/// and what it reads from the present folder.
+/// and what it reads from the present folder. A file with a skeleton is loaded as by a dataset that
+/// frames and lights it.
 ///
 /// # Errors
-/// If the first file cannot be read. A missing file further down is a diagnostic of the compiler.
+/// If the first file cannot be read, or is a mesh or a skeleton that cannot be understood. A
+/// missing file further down is a diagnostic of the compiler.
 pub fn load(path: &Path) -> Result<Loaded, String> {
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     let is_input = path == Path::new(INPUT);
@@ -61,6 +63,10 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
         Some(name) => name.to_string_lossy().into_owned(),
         None => path.display().to_string(),
     };
+    if rats::is_skeleton(&name) || rats::is_mesh(&name) {
+        let (project, asset) = skeleton::make_project(path)?;
+        return Ok(compile(project, vec![asset]));
+    }
     let mut project = Project {
         files: vec![File {
             name,
@@ -104,14 +110,19 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
             }
         }
     }
+    Ok(compile(project, assets))
+}
+
+/// Compiles a project, and tells the time that it took.
+fn compile(project: Project, assets: Vec<Asset>) -> Loaded {
     let start = std::time::Instant::now();
     let compiled = rats::compile_at(&project, &assets, 0.0);
-    Ok(Loaded {
+    Loaded {
         project,
         assets,
         compiled,
         compile_seconds: start.elapsed().as_secs_f64(),
-    })
+    }
 }
 
 /// An image or mesh; none if it cannot be read or is too large, which the compiler then says.

@@ -13,6 +13,7 @@ mod fit;
 mod fmt;
 mod interludes;
 mod meshes;
+mod plot;
 mod probe;
 mod render;
 mod report;
@@ -53,6 +54,8 @@ enum Command {
     Mesh(meshes::Mesh),
     /// Evaluate the field at points, or intersect rays with the surface
     Probe(probe::Probe),
+    /// Plot kernels, or the field along a line or on a plane
+    Plot(plot::Plot),
     /// Carry out the strokes of a sculpture and write its mesh
     Sculpt(sculpt::Sculpt),
     /// Tell what is in a skeleton's file, or write it in another format
@@ -113,6 +116,7 @@ fn run() -> Outcome {
         Command::Scan(command) => command.run(),
         Command::Fmt(command) => command.run(),
         Command::Mesh(command) => command.run(),
+        Command::Plot(command) => command.run(),
         Command::Probe(command) => command.run(),
         Command::Scene(command) => command.run(),
         Command::Share(command) => command.run(),

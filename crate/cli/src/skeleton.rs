@@ -4,6 +4,7 @@ use crate::{Outcome, files, whole};
 use clap::Args;
 use glam::DVec3;
 use limbs::{Builder, Graph, Recipe};
+use rats::{Asset, File, Project};
 use scene::{Scene, Shape};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -196,7 +197,7 @@ fn choose_writer(to: &Path) -> Result<fn(&Graph, &str) -> limbs::Written, String
     }
 }
 
-/// Writes a dataset with a light, a material, a camera and the block form of the skeleton.
+/// Returns a text that draws a skeleton in the block form.
 fn write_text(graph: &Graph, name: &str) -> limbs::Written {
     let letters = name.chars().map(|c| match c {
         c if c.is_ascii_alphanumeric() => c,
@@ -204,6 +205,14 @@ fn write_text(graph: &Graph, name: &str) -> limbs::Written {
     });
     let name: String = "S_".chars().chain(letters).collect();
     let block = graph.write_block("Flesh", &name, &[]);
+    limbs::Written {
+        text: write_view(graph) + &block.text,
+        remarks: block.remarks,
+    }
+}
+
+/// Returns the lines of a text that frame and light a skeleton and define the material `Flesh`.
+fn write_view(graph: &Graph) -> String {
     let mut low = DVec3::INFINITY;
     let mut high = DVec3::NEG_INFINITY;
     for node in &graph.nodes {
@@ -223,12 +232,29 @@ fn write_text(graph: &Graph, name: &str) -> limbs::Written {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{word} {} {} {}", place.x, place.y, place.z);
     }
-    text += "fov 40\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine 40, \
-        kernel compact6, blobbiness -8\n";
-    limbs::Written {
-        text: text + &block.text,
-        remarks: block.remarks,
-    }
+    text + "fov 40\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine 40, radius 1, \
+        kernel compact6, blobbiness -8\n"
+}
+
+/// Makes a project that draws the skeleton of a file.
+///
+/// # Errors
+/// If the file cannot be read, or holds no limbs.
+pub fn make_project(path: &Path) -> Result<(Project, Asset), String> {
+    let bytes = files::read_bounded(path, files::MAX_ASSET)?;
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let (shown, recipe) = (path.display(), Recipe::default());
+    let graph = recipe
+        .make(&shown.to_string(), &bytes)
+        .map_err(|error| format!("{shown}: {error}"))?;
+    // A name that the language can write, whatever the file is called.
+    let asset = Asset::new(format!("skeleton.{}", ending.to_lowercase()), bytes);
+    let text = write_view(&graph) + &format!("skeleton Flesh, SKELETON {}\n", asset.name);
+    asset.keep_skeleton(recipe, Ok(graph));
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = format!("{stem}.rat");
+    let files = vec![File { name, text }];
+    Ok((Project { files }, asset))
 }
 
 /// Returns the lines and balls of a scene; the kinds of limbs are the numbers of their materials.

@@ -115,11 +115,12 @@ const FIRST: &str = "First steps";
 const MATTER: &str = "Light and matter";
 /// The group of sculptures.
 pub const SCULPTED: &str = "Sculpted";
+const DATA: &str = "From data";
 const STARFISH: &str = "One skeleton, six kinds of flesh";
 
 /// The examples, group by group. A first visit shows the first one.
 #[rustfmt::skip]
-pub static ALL: [Example; 57] = [
+pub static ALL: [Example; 62] = [
     built_in!(SEA, "Tide line", "a cowrie, two starfish and pebbles", "tide"),
     example!(SEA, "Cowrie", "a shell with random spikes", "cowrie"),
     example!(SEA, "Seahorse", "the classic, made of arcs", "seahorse"),
@@ -164,6 +165,11 @@ pub static ALL: [Example; 57] = [
     example!(CURVES, "Falling body", "it slides down a wall and folds: play it", "falling"),
     example!(CURVES, "Jelly frog", "it drops on steps: play it", "jelly"),
     example!(CURVES, "Floppy ears", "a shaken head and what hangs from it: play it", "floppy-ears"),
+    example!(DATA, "Neuron", "188 limbs of an SWC file", "neuron", "neuron.swc"),
+    example!(DATA, "Vessel tree", "centrelines of a VTP file", "vessels", "vessels.vtp"),
+    example!(DATA, "Lattice", "436 beams of a 3MF file", "lattice", "lattice.3mf"),
+    example!(DATA, "Winter tree", "a scan's cylinders, a CSV table", "winter-tree", "tree.csv"),
+    example!(DATA, "Molecule", "forty atoms of an XYZ file", "molecule", "dodecahedrane.xyz"),
     sculpted!("Dog", "six stages from a box", "dog"),
     sculpted!("Fish", "a ball with fins", "fish"),
     sculpted!("Slug", "five minutes of work", "slug"),

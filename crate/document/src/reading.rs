@@ -16,7 +16,7 @@ use tools::{ReadMesh, ReadSkeleton};
 /// A file that is being read.
 struct Reading {
     asset: Asset,
-    ticket: Ticket<TriangleMesh>,
+    ticket: Ticket<(TriangleMesh, Vec<String>)>,
 }
 
 impl Reading {
@@ -63,8 +63,8 @@ impl MeshReading {
     pub fn tick(&mut self, session: &Session) -> bool {
         let mut any_read = false;
         self.files.retain_mut(|file| match file.ticket.result() {
-            Some(mesh) => {
-                file.asset.keep_mesh(mesh);
+            Some(read) => {
+                file.asset.keep_mesh(read);
                 any_read = true;
                 false
             }

@@ -87,6 +87,7 @@ pub mod real;
 mod ripple;
 pub mod shaping;
 pub mod skeleton;
+pub mod sliced;
 mod sort;
 mod sum;
 mod term;

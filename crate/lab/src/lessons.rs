@@ -1,5 +1,6 @@
 //! The lessons, each in a file of its own, and their list.
 
+mod centreline;
 mod chart;
 mod contact;
 mod convolution;
@@ -29,4 +30,5 @@ pub static ALL: &[Entry] = &[
     entry::<sculpting::Sculpting>(&sculpting::WORDS),
     entry::<fitting::Fitting>(&fitting::WORDS),
     entry::<textures::Textures>(&textures::WORDS),
+    entry::<centreline::Centreline>(&centreline::WORDS),
 ];

@@ -32,7 +32,6 @@
 
 mod bench;
 mod command;
-pub mod contour;
 mod dataset;
 pub mod formulas;
 mod lesson;

@@ -1,8 +1,8 @@
 //! The field on a plane, eight points at a time, a little in each frame.
 
-use crate::contour::Grid;
 use field::{BlobScale, Implicit, Kernel, Shaping, Sum};
 use glam::DVec3;
+use picture::contour::Grid;
 use wide::f32x8;
 
 /// Returns the shaping of a primitive in the lessons from kernel, radius and magnitude of the

@@ -228,6 +228,22 @@ impl Graph {
         }
     }
 
+    /// Makes the caps of limbs flat at free ends that are flat in the file, or at all if asked for,
+    /// and round elsewhere. Returns the number of flat ones.
+    pub fn choose_caps(&mut self, are_flat: bool) -> usize {
+        let degrees = self.degrees();
+        let mut count = 0;
+        for limb in &mut self.limbs {
+            for (cap, end) in limb.caps.iter_mut().zip(limb.ends) {
+                let is_free = degrees[end as usize] == 1 && !self.nodes[end as usize].is_ball;
+                let is_flat = is_free && (are_flat || *cap == Cap::Flat);
+                *cap = if is_flat { Cap::Flat } else { Cap::Round };
+                count += usize::from(is_flat);
+            }
+        }
+        count
+    }
+
     /// Moves each free end on along its limb, by a multiple of its radius that its cap gives; one
     /// below 0 moves it back, by a quarter of the limb at most. The limb's radius goes on as it
     /// varies, down to a half of the end's.

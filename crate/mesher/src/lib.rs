@@ -67,6 +67,7 @@
 
 mod boxes;
 mod cages;
+mod caps;
 mod certify;
 mod coating;
 mod decimate;

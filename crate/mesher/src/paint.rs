@@ -1,10 +1,12 @@
 //! Colours and materials of meshes.
 
+use crate::caps;
 use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
 use field::Skeleton;
 use glam::DVec3;
 use mesh::{Group, Material, TriangleMesh, roughness_from_phong};
+use scene::flat_ends::FlatEnd;
 use scene::{Element, Finish, Scene, Surface};
 use std::collections::BTreeMap;
 
@@ -25,6 +27,7 @@ pub struct Paint<'a> {
     /// The material of each primitive.
     of: Vec<u32>,
     materials: Vec<Material>,
+    ends: Vec<FlatEnd>,
 }
 
 impl<'a> Paint<'a> {
@@ -42,12 +45,13 @@ impl<'a> Paint<'a> {
         Self {
             of: of.collect(),
             materials,
+            ends: scene.flat_ends(surface.body()),
             surface,
         }
     }
 
-    /// Gives a mesh one group with the material that most primitives have, and vertex colours if
-    /// there are several materials.
+    /// Gives a mesh one group with the material that most primitives have, further ones of flat
+    /// ends, and vertex colours if there are several materials.
     ///
     /// # Errors
     /// If the caller cancels.
@@ -70,6 +74,7 @@ impl<'a> Paint<'a> {
             let colors = map_told(threads, &mesh.positions, progress, |p| self.color(*p))?;
             mesh.colors = Some(colors);
         }
+        caps::part(mesh, &self.ends);
         Ok(())
     }
 

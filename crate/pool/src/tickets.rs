@@ -19,12 +19,12 @@ use tools::{Answer, Job, Pace, Request};
 ///     name: "triangle.obj".into(),
 ///     bytes: text.into(),
 /// });
-/// let mesh = loop {
+/// let read = loop {
 ///     if let Some(result) = ticket.result() {
 ///         break result;
 ///     }
 /// };
-/// assert_eq!(mesh.unwrap().positions.len(), 3);
+/// assert_eq!(read.unwrap().0.positions.len(), 3);
 /// # }
 /// ```
 #[derive(Clone)]

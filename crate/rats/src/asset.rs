@@ -6,8 +6,8 @@ use mesh::{Error, Format, Topology, TriangleMesh};
 use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// A reader of mesh files, as [`mesh::read`].
-type Reader = fn(&str, &[u8]) -> Result<TriangleMesh, Error>;
+/// A reader of mesh files, as [`mesh::read_with_remarks`].
+type Reader = fn(&str, &[u8]) -> Result<(TriangleMesh, Vec<String>), Error>;
 
 /// A maker of skeletons, as [`Recipe::make`].
 type Maker = fn(&Recipe, &str, &[u8]) -> Result<Graph, limbs::Error>;
@@ -39,7 +39,7 @@ type Made = (Recipe, Result<Arc<Graph>, Error>);
 struct Read {
     /// The last ones that were made.
     skeletons: Mutex<Vec<Made>>,
-    mesh: OnceLock<Result<Arc<TriangleMesh>, Error>>,
+    mesh: OnceLock<Result<(Arc<TriangleMesh>, Vec<String>), Error>>,
     topology: OnceLock<Result<Topology, Error>>,
 }
 
@@ -54,7 +54,7 @@ impl Asset {
     #[must_use]
     pub fn new(name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> Self {
         Self {
-            reader: Some(mesh::read),
+            reader: Some(mesh::read_with_remarks),
             maker: Some(Recipe::make),
             ..Self::await_mesh(name, bytes)
         }
@@ -67,7 +67,8 @@ impl Asset {
     /// let asset = rats::Asset::await_mesh("a.obj", *b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     /// let copy = asset.clone();
     /// assert!(copy.is_unread() && copy.mesh().is_err());
-    /// asset.keep_mesh(mesh::read(&asset.name, &asset.bytes).map_err(|error| error.0));
+    /// let read = mesh::read_with_remarks(&asset.name, &asset.bytes);
+    /// asset.keep_mesh(read.map_err(|error| error.0));
     /// assert_eq!(copy.mesh()?.triangles, [[0, 1, 2]]);
     /// # Ok::<(), mesh::Error>(())
     /// ```
@@ -88,10 +89,21 @@ impl Asset {
         self.reader.is_none() && is_mesh(&self.name) && self.read.mesh.get().is_none()
     }
 
-    /// Keeps the mesh that was read elsewhere, or the error message of its reader, for all copies
-    /// of the asset. It must be what [`mesh::read`] gives. The first one stays.
-    pub fn keep_mesh(&self, mesh: Result<TriangleMesh, String>) {
-        let _ = self.read.mesh.set(mesh.map(Arc::new).map_err(Error));
+    /// Keeps the mesh that was read elsewhere with the remarks about it, or the error message of
+    /// its reader, for all copies of the asset. It must be what [`mesh::read_with_remarks`] gives.
+    /// The first one stays.
+    pub fn keep_mesh(&self, read: Result<(TriangleMesh, Vec<String>), String>) {
+        let read = read.map(|(mesh, remarks)| (Arc::new(mesh), remarks));
+        let _ = self.read.mesh.set(read.map_err(Error));
+    }
+
+    /// Returns sentences about what was left out of a mesh file that has been read.
+    #[must_use]
+    pub fn remarks(&self) -> &[String] {
+        match self.read.mesh.get() {
+            Some(Ok((_, remarks))) => remarks,
+            _ => &[],
+        }
     }
 
     /// Returns the triangles of a mesh file.
@@ -99,20 +111,17 @@ impl Asset {
     /// # Errors
     /// A sentence on what is wrong with the file, or that it is not read yet.
     pub fn mesh(&self) -> Result<Arc<TriangleMesh>, Error> {
-        let mesh = match self.reader {
-            Some(read) => {
-                let mesh = &self.read.mesh;
-                Some(mesh.get_or_init(|| read(&self.name, &self.bytes).map(Arc::new)))
-            }
-            None => self.read.mesh.get(),
-        };
-        mesh.cloned().unwrap_or_else(|| {
-            Err(if is_mesh(&self.name) {
-                Error(String::from("this mesh is not read yet"))
-            } else {
-                Format::refuse()
-            })
-        })
+        if let Some(read) = self.reader
+            && self.read.mesh.get().is_none()
+        {
+            self.keep_mesh(read(&self.name, &self.bytes).map_err(|Error(text)| text));
+        }
+        match self.read.mesh.get() {
+            Some(Ok((mesh, _))) => Ok(Arc::clone(mesh)),
+            Some(Err(error)) => Err(error.clone()),
+            None if is_mesh(&self.name) => Err(Error(String::from("this mesh is not read yet"))),
+            None => Err(Format::refuse()),
+        }
     }
 
     /// Returns the skeleton of a file; `None` if it is to be read elsewhere, and has not been.

@@ -34,6 +34,7 @@ mod scene_commands;
 mod shots;
 mod skeleton;
 mod skeleton_file;
+mod skeleton_radii;
 pub(crate) mod state;
 mod structure;
 mod surroundings;

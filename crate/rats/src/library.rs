@@ -27,7 +27,7 @@ pub const FILES: &[(&str, &str)] = &[
 static ASSETS: LazyLock<[Asset; 2]> = LazyLock::new(|| {
     let text = include_str!("../library/gem.obj");
     let gem = Asset::await_mesh("gem.obj", text.as_bytes());
-    gem.keep_mesh(Ok(read_plain(text)));
+    gem.keep_mesh(Ok((read_plain(text), Vec::new())));
     let hills: &[u8] = include_bytes!("../library/hills.png");
     [Asset::await_mesh("hills.png", hills), gem]
 });

@@ -236,11 +236,20 @@ impl<'e, 'a> Reader<'e, 'a> {
     /// Reads a file's name: all up to the next separator.
     ///
     /// # Errors
-    /// If there is none.
+    /// If there is none, or one in quotes, which would belong to it.
     pub fn file_name(&mut self, what: &str) -> Outcome<Name<'a>> {
-        self.glue(what, |datum| {
+        const QUOTES: [char; 4] = ['"', '\'', '“', '”'];
+        let name = self.glue(what, |datum| {
             !matches!(datum, Datum::Sign(b',' | b'<' | b'>'))
-        })
+        })?;
+        let bare = name.text.trim_matches(QUOTES);
+        if name.text.starts_with(QUOTES) && !bare.is_empty() {
+            return Err(
+                Problem::new(&name.span, "a file's name is written without quotes")
+                    .hint(format!("write `{}`, and no space in it", quote(bare))),
+            );
+        }
+        Ok(name)
     }
 
     /// Reads the name of an image, even of a kind that is not read, if its ending says so; else

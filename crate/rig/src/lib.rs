@@ -224,15 +224,17 @@ impl Weights {
         for (own, joint_of) in rest.iter().zip(joint_of) {
             stretches.push((own.element, of_stretches(scene, own, joint_of)?));
         }
-        // Of curves that are convolved locally all stretches share: near a fold that touches at
-        // rest too.
+        // Of curves that are convolved locally, or end flat, all stretches share: near a fold that
+        // touches at rest too.
         let mut whole = scene.clone();
         for element in &mut whole.elements {
             if let Shape::Function(function) = &mut element.shape
                 && let Form::Skeleton(curves) = &mut function.form
-                && curves.local.is_some()
+                && (curves.local.is_some() || !curves.flat.is_empty())
             {
-                Arc::make_mut(curves).local = None;
+                let curves = Arc::make_mut(curves);
+                curves.local = None;
+                curves.flat.clear();
             }
         }
         let surfaces = whole.soft_surfaces().into_iter().map(|surface| {

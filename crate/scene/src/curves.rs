@@ -9,6 +9,9 @@ use std::sync::OnceLock;
 /// The blobbiness of curves whose material has none.
 pub const BLOBBINESS: f64 = 2.0;
 
+/// Flat ends of a skeleton that count.
+pub const MOST_FLAT: usize = 256;
+
 /// Curves on a graph of nodes, refined to a level. Their polyline's segments are convolved, each
 /// with radii that vary evenly along it.
 ///
@@ -24,6 +27,8 @@ pub struct Curves {
     pub levels: u32,
     /// Arc length within which the skeleton counts at a point, if not all of it does.
     pub local: Option<f64>,
+    /// Nodes at free ends where the surface ends in a plane, unless convolution is local.
+    pub flat: Vec<u32>,
     /// The refined curves, made at first use.
     #[serde(skip)]
     polyline: OnceLock<Option<Polyline>>,
@@ -33,6 +38,7 @@ impl PartialEq for Curves {
     fn eq(&self, other: &Self) -> bool {
         self.skeleton == other.skeleton
             && (self.scheme, self.levels, self.local) == (other.scheme, other.levels, other.local)
+            && self.flat == other.flat
     }
 }
 
@@ -48,6 +54,7 @@ impl Curves {
             scheme,
             levels,
             local: None,
+            flat: Vec::new(),
             polyline: OnceLock::from(Some(polyline)),
         })
     }
@@ -75,6 +82,12 @@ impl Curves {
     pub fn within(self, reach: f64) -> Self {
         let local = Some(reach);
         Self { local, ..self }
+    }
+
+    /// Returns the curves with planes at free ends, given by their nodes.
+    #[must_use]
+    pub fn with_flat(self, flat: Vec<u32>) -> Self {
+        Self { flat, ..self }
     }
 
     /// The refined curves; `None` if data from elsewhere are not usable.
@@ -108,12 +121,18 @@ impl Curves {
         })
     }
 
+    /// Whether a node is a free end that is flat.
+    fn is_flat(&self, node: Option<usize>) -> bool {
+        node.is_some_and(|node| self.flat.contains(&(node as u32)))
+    }
+
     /// The shapes that stand for the curves in drafts: cones, and balls between them.
     pub(crate) fn draft(&self, to_world: &DAffine3, growth: f64) -> Vec<Shape> {
-        let balls = self.points().filter(|(_, radius)| *radius > 0.0);
-        let balls = balls.map(|(center, radius)| {
-            Shape::sphere(to_world.transform_point3(center), radius * growth)
-        });
+        let vertices = self.polyline().map_or(&[][..], |p| &p.vertices);
+        let balls = vertices
+            .iter()
+            .filter(|v| v.radius > 0.0 && !self.is_flat(v.node))
+            .map(|v| Shape::sphere(to_world.transform_point3(v.position), v.radius * growth));
         let cones = self.pieces().map(|[(base, start), (apex, end)]| {
             let [base, apex] = [base, apex].map(|p| to_world.transform_point3(p));
             Shape::cone(base, start * growth, apex, end * growth)

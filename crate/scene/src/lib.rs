@@ -28,6 +28,7 @@ pub mod contact;
 pub mod curves;
 pub mod element;
 pub mod finish;
+pub mod flat_ends;
 pub mod flesh;
 pub mod function;
 pub mod implicit_mesh;

@@ -225,6 +225,12 @@ impl Scene {
         };
         if let Shape::Function(function) = &element.shape {
             let limbs = self.segments_of(element, function, &flesh);
+            let is_flat = match function.curves() {
+                Some(curves) if !curves.flat.is_empty() => curves.is_in_stump(),
+                _ => Vec::new(),
+            };
+            let limbs = limbs.zip((0..).map(|i| is_flat.get(i) == Some(&true)));
+            let limbs = limbs.filter(|(_, is_flat)| !is_flat).map(|(limb, _)| limb);
             let pieces = limbs.flat_map(|(skeleton, shaping)| limbs::cut(skeleton, shaping));
             pieces
                 .filter_map(|(skeleton, shaping)| Primitive::new(skeleton, &shaping, None))

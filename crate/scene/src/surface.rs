@@ -99,10 +99,12 @@ impl Scene {
             if let Shape::Function(function) = &element.shape
                 && self.is_soft(element)
                 && (element.body as usize) < self.bodies.len()
-                && let Some(function) = self.function_of(element, function)
             {
-                let body = functions.entry(element.body).or_default();
-                body.push((index, function));
+                let own = self.functions_of(element, function);
+                if !own.is_empty() {
+                    let body = functions.entry(element.body).or_default();
+                    body.extend(own.into_iter().map(|function| (index, function)));
+                }
             }
         }
         let mut surfaces = Vec::new();
@@ -125,17 +127,21 @@ impl Scene {
 }
 
 impl Scene {
-    /// The function of an element that is one; `None` if it is a sum of primitives, or its numbers
-    /// are not usable.
-    fn function_of(&self, element: &Element, function: &Function) -> Option<Arc<dyn Implicit>> {
+    /// The functions of an element that is no mere sum of primitives; none if its numbers are not
+    /// usable.
+    fn functions_of(&self, element: &Element, function: &Function) -> Vec<Arc<dyn Implicit>> {
         if function.curves().is_none() {
-            return function.implicit();
+            return function.implicit().into_iter().collect();
         }
-        let local = Arc::new(self.local(element, function)?.ok()?);
-        Some(match self.fold(element.body) {
+        let Some(local) = self.local(element, function) else {
+            return self.slice(element, function);
+        };
+        let Ok(local) = local else { return Vec::new() };
+        let local = Arc::new(local);
+        vec![match self.fold(element.body) {
             Some(bulge) => Arc::new(contact::Folded::new(local, bulge)),
             None => local,
-        })
+        }]
     }
 }
 

@@ -13,8 +13,9 @@
 //!     name: "triangle.obj".into(),
 //!     bytes: "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".into(),
 //! };
-//! let mesh = job.run(&mut Progress::silent())?;
+//! let (mesh, remarks) = job.run(&mut Progress::silent())?;
 //! assert_eq!(mesh.triangles, [[0, 1, 2]]);
+//! assert!(remarks.is_empty());
 //! # Ok::<(), String>(())
 //! ```
 

@@ -17,12 +17,15 @@ pub struct ReadMesh {
     pub bytes: Vec<u8>,
 }
 
+/// Mesh of a file, and sentences about what was left out of it.
+type MeshAndRemarks = (TriangleMesh, Vec<String>);
+
 impl Job for ReadMesh {
-    type Output = TriangleMesh;
+    type Output = MeshAndRemarks;
     const PACE: Pace = Pace::Quick;
 
-    fn run(self, _: &mut Progress<'_, TriangleMesh>) -> Result<TriangleMesh, String> {
-        mesh::read(&self.name, &self.bytes).map_err(|error| error.to_string())
+    fn run(self, _: &mut Progress<'_, MeshAndRemarks>) -> Result<MeshAndRemarks, String> {
+        mesh::read_with_remarks(&self.name, &self.bytes).map_err(|error| error.to_string())
     }
 }
 
@@ -84,9 +87,9 @@ impl Job for ReadMeasured {
 mod tests {
     use super::*;
 
-    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 1 2\n";
 
-    fn read(name: &str, text: &str) -> Result<TriangleMesh, String> {
+    fn read(name: &str, text: &str) -> Result<MeshAndRemarks, String> {
         let job = ReadMesh {
             name: name.into(),
             bytes: text.into(),
@@ -96,7 +99,8 @@ mod tests {
 
     #[test]
     fn mesh_equals_that_of_a_direct_read() {
-        let direct = mesh::read("a.obj", SQUARE.as_bytes()).unwrap();
+        let direct = mesh::read_with_remarks("a.obj", SQUARE.as_bytes()).unwrap();
+        assert_eq!(direct.1.len(), 1);
         assert_eq!(read("a.obj", SQUARE), Ok(direct));
     }
 

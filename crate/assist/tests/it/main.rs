@@ -3,6 +3,7 @@
 mod complete;
 mod fold;
 mod format;
+mod guides;
 mod handles;
 mod highlight;
 mod hover;

@@ -28,6 +28,8 @@ mod logarithm;
 #[cfg(not(target_arch = "wasm32"))]
 mod real;
 #[cfg(not(target_arch = "wasm32"))]
+mod sliced;
+#[cfg(not(target_arch = "wasm32"))]
 mod spans;
 #[cfg(not(target_arch = "wasm32"))]
 mod taper;

@@ -4,7 +4,6 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::contour::Grid;
 use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot};
 use crate::sample::{self, Window};
@@ -14,6 +13,7 @@ use core::f64::consts::PI;
 use egui::{Align2, Color32, CursorIcon, FontId, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
 use field::{Kernel, Primitive, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
+use picture::contour::Grid;
 use widgets::theme;
 
 /// Samples of the fields, columns and rows.

@@ -3,7 +3,6 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::contour::Grid;
 use crate::lesson::{Figure, Words};
 use crate::plot::{self, Axis, Plot, grip, number};
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
@@ -13,6 +12,7 @@ use fit::{Observations, Options, Problem};
 use glam::{DVec2, DVec3};
 use mesh::TriangleMesh;
 use metaballs::Metaballs;
+use picture::contour::Grid;
 use widgets::theme;
 
 /// Half the side of the part of the plane that is shown.

@@ -11,6 +11,7 @@ use crate::graph::{Cap, Graph, Limb};
 use crate::limits::MAX_LIMBS;
 use csv::{ReaderBuilder, StringRecord};
 use glam::DVec3;
+use mesh::formats::text;
 use std::collections::HashMap;
 
 /// Spellings of the columns, the best first.
@@ -26,6 +27,7 @@ const RADIUS: [&str; 7] = [
     "rawradius",
     "unmodradius",
 ];
+const DIAMETER: [&str; 4] = ["diameter", "diameterm", "cyldiameter", "diametercyl"];
 const LENGTH: [&str; 5] = ["length", "lengthm", "axislength", "cyllength", "height"];
 const ID: [&str; 4] = ["id", "cylid", "cylinderid", "index"];
 const PARENT: [&str; 5] = [
@@ -36,6 +38,9 @@ const PARENT: [&str; 5] = [
     "parentcyl",
 ];
 
+/// Names of the axes, letters before the numbers of a matrix' columns.
+const AXES: [[&str; 3]; 2] = [["x", "y", "z"], ["1", "2", "3"]];
+
 /// Share of a parent's radius within which its end counts as its child's start.
 const NEAR: f64 = 1e-3;
 
@@ -44,7 +49,8 @@ struct Columns {
     start: [usize; 3],
     end: Option<[usize; 3]>,
     axis: Option<([usize; 3], usize)>,
-    radius: usize,
+    /// Column, and the factor that makes radii of its values: a half for diameters.
+    radius: (usize, f64),
     id: Option<usize>,
     parent: Option<usize>,
 }
@@ -59,7 +65,8 @@ struct Cylinder {
 
 /// Reads a table of cylinders, in metres.
 pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> {
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let text = text::decode(bytes);
+    let bytes = text.as_bytes();
     let heading = bytes
         .split(|byte| *byte == b'\n')
         .find(|line| !matches!(line.trim_ascii(), [] | [b'#', ..]));
@@ -208,9 +215,14 @@ impl Columns {
                 }
             }
         }
-        let radius = match radii {
-            Some(name) => one(&plain_names, &[&plain(name)]),
-            None => one(&plain_names, &RADIUS),
+        let radius = match radii.map(plain) {
+            Some(name) => {
+                let factor = if name.ends_with("diameter") { 0.5 } else { 1.0 };
+                one(&plain_names, &[&name]).map(|column| (column, factor))
+            }
+            None => one(&plain_names, &RADIUS)
+                .map(|column| (column, 1.0))
+                .or_else(|| one(&plain_names, &DIAMETER).map(|column| (column, 0.5))),
         };
         let end = three(&plain_names, &END);
         let axis = three(&plain_names, &AXIS).zip(one(&plain_names, &LENGTH));
@@ -255,7 +267,7 @@ impl Columns {
         Ok(Cylinder {
             line,
             ends: [start, end],
-            radius: number(names, record, line, self.radius)?,
+            radius: number(names, record, line, self.radius.0)? * self.radius.1,
             parent,
         })
     }
@@ -269,11 +281,15 @@ fn one(names: &[String], spellings: &[&str]) -> Option<usize> {
     places.find_map(|place| place)
 }
 
-/// Finds three columns by the first spelling, with the axis for `?`, of which there are all.
+/// Finds three columns by the first spelling, with the axis or its number for `?`, of which there
+/// are all.
 fn three(names: &[String], spellings: &[&str]) -> Option<[usize; 3]> {
-    spellings.iter().find_map(|spelling| {
-        let axes = ["x", "y", "z"].map(|axis| one(names, &[&spelling.replace('?', axis)]));
-        let [Some(x), Some(y), Some(z)] = axes else {
+    let all = AXES
+        .iter()
+        .flat_map(|axes| spellings.iter().map(move |spelling| (axes, spelling)));
+    all.into_iter().find_map(|(axes, spelling)| {
+        let columns = axes.map(|axis| one(names, &[&spelling.replace('?', axis)]));
+        let [Some(x), Some(y), Some(z)] = columns else {
             return None;
         };
         Some([x, y, z])
@@ -300,7 +316,8 @@ fn number(
 ) -> Result<f64, Error> {
     let name = names.get(column).unwrap_or_default();
     let word = record.get(column).unwrap_or_default();
-    match word.parse::<f64>() {
+    // A comma in a cell of a table of semicolons, or in quotes, is a point.
+    match word.replacen(',', ".", 1).parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ if word.is_empty() => fail_at(line, format!("`{}` is missing", shorten(name))),
         _ => fail_at(
@@ -325,7 +342,7 @@ fn whole(
         return Ok(-1);
     }
     let number = number(names, record, line, column)?;
-    if number != number.trunc() || number.abs() > 2e9 {
+    if number != number.trunc() || number.abs() > 9e15 {
         let name = shorten(names.get(column).unwrap_or_default());
         return fail_at(line, format!("`{name}` is {number}, no whole number"));
     }

@@ -8,6 +8,7 @@ use crate::error::{Error, fail, fail_at, shorten};
 use crate::graph::{Cap, Graph, Limb};
 use crate::limits::{MAX_LISTED, MAX_NODES};
 use glam::DVec3;
+use mesh::formats::text;
 use mesh::{Aabb, Bvh};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -23,8 +24,7 @@ const BOND_RADIUS: f64 = 0.2;
 
 /// Reads an XYZ file; `None` if it holds measured points instead of a molecule.
 pub(super) fn read_xyz(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>, Error> {
-    let text = String::from_utf8_lossy(bytes);
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let text = text::decode(bytes);
     let mut lines = (1..).zip(text.lines());
     let count = lines
         .next()
@@ -61,7 +61,7 @@ pub(super) fn read_xyz(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Gra
 
 /// Reads a PDB file: the atoms of its first model, and of alternative places the first.
 pub(super) fn read_pdb(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = text::decode(bytes);
     let mut molecule = Molecule::default();
     let mut serials: HashMap<i64, u32> = HashMap::new();
     let mut joined: Vec<[i64; 2]> = Vec::new();
@@ -228,8 +228,14 @@ impl Molecule {
 /// Radius of atoms whose element has none in the table, ångström.
 const OTHER_RADIUS: f64 = 2.0;
 
-/// Finds an element by its symbol, in any case, or by its number.
+/// Finds an element by its symbol, in any case, by its number, or by a label that begins with its
+/// symbol: `C12`, `H_a`.
 fn element(symbol: &str) -> Option<&'static Element> {
+    let letters = symbol.find(|c: char| !c.is_ascii_alphabetic());
+    let symbol = match letters {
+        Some(end) if end > 0 => &symbol[..end],
+        _ => symbol,
+    };
     if let Ok(number) = symbol.parse::<usize>() {
         return ELEMENTS.get(number.checked_sub(1)?);
     }

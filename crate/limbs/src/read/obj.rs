@@ -8,17 +8,19 @@ use crate::draft::{Draft, UNKNOWN};
 use crate::error::{Error, fail, fail_at, shorten};
 use crate::graph::{Cap, Graph, Limb};
 use crate::limits::MAX_POINTS;
+use mesh::formats::text;
 
 /// Comment that says that each `vt` is a radius.
 pub(crate) const RADII_IN_VT: &str = "# vt: radius";
 
 /// Reads an OBJ file; `None` if it has no `l`.
 pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>, Error> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = text::decode(bytes);
     let mut reader = Reader::default();
     // A backslash at its end continues a line.
     let mut begun = String::new();
-    for (line, number) in text.lines().zip(1..) {
+    let mut lines = text.lines().zip(1..).peekable();
+    while let Some((line, number)) = lines.next() {
         if line.trim() == RADII_IN_VT {
             reader.has_radii = true;
         }
@@ -26,9 +28,12 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>,
         if let Some(part) = line.trim_end().strip_suffix('\\') {
             begun.push_str(part);
             begun.push(' ');
-            continue;
+            if lines.peek().is_some() {
+                continue;
+            }
+        } else {
+            begun.push_str(line);
         }
-        begun.push_str(line);
         let result = reader.line(&begun);
         begun.clear();
         result.or_else(|Error(text)| fail_at(number, text))?;

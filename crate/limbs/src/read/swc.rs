@@ -9,10 +9,17 @@ use crate::error::{Error, fail, fail_at, shorten};
 use crate::graph::{Cap, Graph, Limb};
 use crate::limits::MAX_POINTS;
 use glam::DVec3;
+use mesh::formats::text;
 use std::collections::BTreeMap;
 
 /// Type of a soma's nodes.
 const SOMA: i64 = 1;
+
+/// Columns of a line.
+const COLUMNS: usize = 7;
+
+/// Largest magnitude of whole numbers, all of which up to it a double holds.
+const MAX_WHOLE: f64 = 9e15;
 
 /// Names of the types 0 … 6.
 pub(crate) const TYPES: [&str; 7] = [
@@ -37,7 +44,7 @@ struct Row {
 
 /// Reads an SWC file, in micrometres.
 pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = text::decode(bytes);
     let mut draft = Draft::new(Some(1e-3));
     let mut rows = rows(&text, &mut draft)?;
     if rows.is_empty() {
@@ -92,15 +99,21 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> 
 /// Reads the lines, by their ids.
 fn rows(text: &str, draft: &mut Draft) -> Result<BTreeMap<i64, Row>, Error> {
     let mut rows: BTreeMap<i64, Row> = BTreeMap::new();
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     for (line, content) in (1..).zip(text.lines()) {
         let (content, comment) = content.split_once('#').unwrap_or((content, ""));
-        let words = content.split(|c: char| c.is_ascii_whitespace() || c == ',');
-        let mut words = words.filter(|word| !word.is_empty()).peekable();
-        if words.peek().is_none() {
+        let words = split(content);
+        if words.is_empty() {
             remark_scale(line, comment, draft);
             continue;
         }
+        if rows.is_empty() && words.iter().all(|word| word.parse::<f64>().is_err()) {
+            draft.remark(
+                Some(line),
+                "this line has no numbers and is taken for a heading",
+            );
+            continue;
+        }
+        let mut words = words.into_iter();
         let id = whole(line, "id", number(line, "id", &mut words)?)?;
         let kind = whole(line, "type", number(line, "type", &mut words)?)?;
         let x = number(line, "x", &mut words)?;
@@ -141,7 +154,8 @@ fn rows(text: &str, draft: &mut Draft) -> Result<BTreeMap<i64, Row>, Error> {
     }
     let mut orphans: Vec<(usize, i64, i64)> = rows
         .iter()
-        .filter(|(_, row)| row.parent >= 0 && !rows.contains_key(&row.parent))
+        // Where ids count from 1, 0 stands for none.
+        .filter(|(_, row)| row.parent > 0 && !rows.contains_key(&row.parent))
         .map(|(id, row)| (row.line, *id, row.parent))
         .collect();
     orphans.sort_unstable();
@@ -150,6 +164,18 @@ fn rows(text: &str, draft: &mut Draft) -> Result<BTreeMap<i64, Row>, Error> {
         draft.remark(Some(line), text);
     }
     Ok(rows)
+}
+
+/// Splits a line at blanks and commas; at blanks alone where these make all columns, so that a
+/// comma in a word is told as no part of a number.
+fn split(line: &str) -> Vec<&str> {
+    let blanks = line.split_ascii_whitespace();
+    let words: Vec<&str> = blanks.map(|word| word.trim_end_matches(',')).collect();
+    if words.len() >= COLUMNS {
+        return words;
+    }
+    let words = line.split(|c: char| c.is_ascii_whitespace() || c == ',');
+    words.filter(|word| !word.is_empty()).collect()
 }
 
 /// Tells of a scale that the comments ask for.
@@ -177,17 +203,23 @@ fn number<'a>(
     };
     match word.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
-        _ => fail_at(
-            line,
-            format!("`{column}` is `{}`, which is no number", shorten(word)),
-        ),
+        _ => {
+            let is_comma = word.replacen(',', ".", 1).parse::<f64>().is_ok();
+            let hint = if is_comma { ": it needs a point" } else { "" };
+            let text = format!(
+                "`{column}` is `{}`, which is no number{hint}",
+                shorten(word)
+            );
+            fail_at(line, text)
+        }
     }
 }
 
 /// Returns a whole number.
 fn whole(line: usize, column: &str, number: f64) -> Result<i64, Error> {
-    if number != number.trunc() || number.abs() > 2e9 {
-        return fail_at(line, format!("`{column}` is {number}, no whole number"));
+    if number != number.trunc() || number.abs() > MAX_WHOLE {
+        let text = format!("`{column}` is {number}, no whole number up to {MAX_WHOLE:e}");
+        return fail_at(line, text);
     }
     Ok(number as i64)
 }

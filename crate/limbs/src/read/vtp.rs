@@ -10,6 +10,7 @@ use crate::graph::Graph;
 use crate::limits::{MAX_POINTS, MAX_UNPACKED};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use mesh::formats::text;
 use mesh::formats::xml::{Event, Reader, Tag};
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use std::borrow::Cow;
@@ -36,6 +37,9 @@ enum Encoded<'a> {
 
 /// Reads a VTP file.
 pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Graph, Error> {
+    // Such a file has no data behind its tags.
+    let wide = text::is_wide(bytes).then(|| text::decode(bytes));
+    let bytes = wide.as_ref().map_or(bytes, |text| text.as_bytes());
     let cut = bytes
         .windows(APPENDED.len())
         .position(|window| window == APPENDED);

@@ -4,6 +4,7 @@ mod any_bytes;
 mod common;
 mod lines;
 mod molecules;
+mod odd;
 mod recipe;
 mod shape;
 mod swc;

@@ -72,3 +72,21 @@ fn builder_refuses_what_is_no_limb() {
     assert!(builder.limb([DVec3::NAN, DVec3::X], [1.0; 2], "x").is_err());
     assert!(Builder::default().finish().is_err(), "nothing");
 }
+
+#[test]
+fn caps_are_chosen_at_free_ends() {
+    let mut builder = Builder::default();
+    let [a, b, c] = [0.0, 4.0, 8.0].map(|x| DVec3::X * x);
+    builder.limb([a, b], [1.0, 1.0], "x").unwrap();
+    builder.limb([b, c], [1.0, 1.0], "x").unwrap();
+    builder.ball(c, 2.0, "x").unwrap();
+    let mut graph = builder.finish().unwrap();
+    assert_eq!(graph.choose_caps(false), 0);
+    assert_eq!(
+        graph.choose_caps(true),
+        1,
+        "neither at a ball nor where a limb goes on"
+    );
+    assert_eq!(graph.limbs[0].caps, [Cap::Flat, Cap::Round]);
+    assert_eq!(graph.choose_caps(false), 1, "that of the graph");
+}

@@ -4,6 +4,7 @@
 //! name (the production extension), of the materials base materials and groups of colours.
 //! Textures, slices and support are passed over.
 
+use super::text;
 use super::xml::{Event, Reader, Tag};
 use crate::color::linear_from_srgb;
 use crate::error::{Error, fail};
@@ -121,7 +122,7 @@ impl Package {
                     _ => fail(format!("this 3MF file has no part `{}`", shorten(&name))),
                 };
             };
-            let text = String::from_utf8_lossy(&text);
+            let text = text::decode(&text);
             let read = loader.part(&text, parts.len());
             let part = read.map_err(|Error(text)| match parts.len() {
                 0 => Error(text),
@@ -286,7 +287,7 @@ fn shorten(name: &str) -> String {
 /// The name of the member that describes the model.
 fn main_part(archive: &Archive<'_>, rest: &mut usize) -> Result<String, Error> {
     let relations = member(archive, "_rels/.rels", rest)?.unwrap_or_default();
-    let text = String::from_utf8_lossy(&relations);
+    let text = text::decode(&relations);
     let mut reader = Reader::new(&text);
     while let Some(event) = reader.next()? {
         let Event::Start(tag) = event else { continue };

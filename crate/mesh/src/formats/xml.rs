@@ -64,6 +64,8 @@ impl<'a> Reader<'a> {
     /// Returns a reader of a text.
     #[must_use]
     pub fn new(text: &'a str) -> Self {
+        // The reader below passes over a mark, but does not count it.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut inner = quick_xml::Reader::from_str(text);
         inner.config_mut().expand_empty_elements = true;
         Self {

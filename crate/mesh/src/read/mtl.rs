@@ -2,6 +2,7 @@
 
 use crate::color::{decode, roughness_from_phong};
 use crate::error::{Error, fail};
+use crate::formats::text;
 use crate::limits::{MAX_BYTES, MAX_MATERIALS};
 use crate::triangle_mesh::{Material, TriangleMesh};
 
@@ -14,7 +15,7 @@ pub fn read_mtl(bytes: &[u8]) -> Result<Vec<Material>, Error> {
     if bytes.len() > MAX_BYTES {
         return fail(format!("this MTL file has more than {MAX_BYTES} bytes"));
     }
-    let text = String::from_utf8_lossy(bytes);
+    let text = text::decode(bytes);
     let mut materials: Vec<Material> = Vec::new();
     let mut has_roughness = false;
     for (line, number) in text.lines().zip(1_u64..) {

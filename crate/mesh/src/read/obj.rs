@@ -3,6 +3,7 @@
 
 use crate::color::decode;
 use crate::error::{Error, fail};
+use crate::formats::text;
 use crate::limits::{MAX_COORDINATE, MAX_MATERIALS, MAX_VERTICES};
 use crate::triangle_mesh::{Group, Material, TriangleMesh};
 use glam::DVec3;
@@ -32,7 +33,7 @@ struct Reader {
 }
 
 pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
-    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes));
+    let text = text::decode(bytes);
     let mut reader = Reader::default();
     // A backslash at its end continues a line.
     let mut begun = String::new();

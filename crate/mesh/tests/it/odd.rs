@@ -472,3 +472,54 @@ fn parts_of_3mf_are_followed_and_units_meet() {
     let mesh = read("a.3mf", &package).unwrap();
     check_boxes(&mesh, 2, [0.0; 3], [8.0, 2.0, 1.0]);
 }
+
+#[test]
+fn nodes_of_glb_may_stand_in_each_other_deeply() {
+    let (list, bytes) = views(&[&floats(CORNERS.into_iter().flatten()), &corner_indices()]);
+    let rest = format!(
+        "{MESH},\"bufferViews\":[{list}],\"accessors\":[{},{}],\"scene\":0,\
+         \"scenes\":[{{\"nodes\":[0]}}]}}",
+        accessor(0, 5126, 8, "VEC3", ""),
+        accessor(1, 5123, 36, "SCALAR", "")
+    );
+    let deep = format!("{},{rest}", nest(20_001, ""));
+    let mesh = read("a.glb", &glb(&deep, &bytes)).unwrap();
+    check_boxes(&mesh, 1, [0.0, 0.0, 20_000.0], [3.0, 2.0, 20_001.0]);
+    for depth in [1, 3, 20_000] {
+        let circle = format!("{},{rest}", nest(depth, ",\"children\":[0]"));
+        let told = read("a.glb", &glb(&circle, &bytes)).unwrap_err();
+        assert!(told.to_string().contains("is in two places"), "{told}");
+    }
+}
+
+/// Returns nodes in each other, as JSON. Each moves what is in it by 1; the last has the mesh.
+fn nest(depth: usize, last: &str) -> String {
+    let mut nodes = String::new();
+    for i in 1..depth {
+        let _ = write!(nodes, "{{\"children\":[{i}],\"translation\":[0,0,1]}},");
+    }
+    format!("\"nodes\":[{nodes}{{\"mesh\":0{last}}}]")
+}
+
+#[test]
+fn text_of_obj_may_be_in_any_encoding_and_have_any_ends_of_lines() {
+    let mut text = String::from("# µ\n");
+    for [x, y, z] in CORNERS {
+        let _ = writeln!(text, "v {x} {y} {z}");
+    }
+    for [a, b, c] in triangles() {
+        let _ = writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1);
+    }
+    let units: Vec<u16> = std::iter::once(0xFEFF).chain(text.encode_utf16()).collect();
+    for bytes in [
+        text.clone().into_bytes(),
+        format!("\u{feff}{text}").into_bytes(),
+        units.iter().flat_map(|unit| unit.to_le_bytes()).collect(),
+        units.iter().flat_map(|unit| unit.to_be_bytes()).collect(),
+        text.replace('\n', "\r").into_bytes(),
+        text.replace('\n', "\r\n").into_bytes(),
+        format!("{text}\0\0").into_bytes(),
+    ] {
+        check_box(&read("a.obj", &bytes).unwrap());
+    }
+}

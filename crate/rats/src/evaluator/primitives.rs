@@ -669,6 +669,10 @@ fn mesh_of_file<'a>(
     let mesh = asset
         .mesh()
         .map_err(|error| Problem::new(&file.span, error.to_string()))?;
+    if !asset.remarks().is_empty() {
+        let remarks = asset.remarks().join("; ");
+        run.warn(&file.span, format_args!("{}: {remarks}", file.text), "");
+    }
     note_coordinates(run, &name, &file, asset)?;
     if let Some(metaballs) = implicit_mesh::metaballs(options)? {
         let topology = asset.topology().ok().cloned();

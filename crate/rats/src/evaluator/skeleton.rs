@@ -12,6 +12,7 @@ use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use crate::syntax::Command;
+use crate::{is_mesh, is_skeleton};
 use field::{Kernel, Shaping, Taper};
 use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Form, Function, Shape};
@@ -102,8 +103,9 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
          with radii (.obj .ply) and molecules (.xyz .pdb). Its limbs are straight, `subdivide 0`, \
          unless the text says otherwise; `subdivide` rounds them through their nodes. Radii are \
          those of the file, times `scale`; `radius NAME` names the array or column that has \
-         them. The surface stands at these radii for the kernel `compact6` and the blobbiness 8, \
-         which a material has here that names neither.",
+         them. With `ends flat` free ends are planes, which meshes have as groups: `inlet`, the \
+         widest, `outlet-1` and so on. The surface stands at the radii for the kernel `compact6` \
+         and the blobbiness 8, which a material has here that names neither.",
     )
     .example(
         "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
@@ -114,7 +116,7 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
     );
 
 fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> {
-    let is_file = is_file_next(run, command);
+    let is_file = is_file_next(run, command)?;
     let (parameters, options) = match is_file {
         true => (skeleton_file::PARAMETERS, FILE_OPTIONS),
         false => (PARAMETERS, SKELETON_OPTIONS),
@@ -129,12 +131,25 @@ fn skeleton<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<Flow> 
     add_block(run, command, &given.options, sn, name)
 }
 
-/// Whether a file's name, which has a dot, stands behind the names of material and skeleton.
-fn is_file_next(run: &mut Evaluator<'_>, command: &Command) -> bool {
+/// Returns whether a file's name, which has a dot, stands behind those of material and skeleton.
+///
+/// # Errors
+/// If it stands in the place of the skeleton's name, or in quotes.
+fn is_file_next(run: &mut Evaluator<'_>, command: &Command) -> Outcome<bool> {
+    let mut read = run.reader(command);
+    let Ok(sn) = read.name("") else {
+        return Ok(false);
+    };
+    if let Ok(file) = read.file_name("")
+        && (is_skeleton(file.text) || is_mesh(file.text))
+    {
+        let hint = format!("write `skeleton {} NAME {}`", sn.text, file.text);
+        return Err(Problem::new(&file.span, "a skeleton has a name before its file").hint(hint));
+    }
     let mut read = run.reader(command);
     let is_named = read.name("").is_ok() && read.name("").is_ok();
     let is_word = is_named && read.peek_word().is_some();
-    is_word && read.file_name("").is_ok_and(|name| name.text.contains('.'))
+    Ok(is_word && read.file_name("")?.text.contains('.'))
 }
 
 fn add_block<'a>(

@@ -2,6 +2,7 @@
 
 use super::model::{Group, Part};
 use super::skeleton::{SCHEMES, check_reach, weigh};
+use super::skeleton_radii;
 use super::state::{Evaluator, Flow};
 use crate::assets;
 use crate::commands::build::{options, plain, word_of};
@@ -19,6 +20,7 @@ use crate::syntax::Command;
 use field::{BlobScale, Kernel, Primitive, Shaping, THRESHOLD};
 use glam::{DAffine3, DVec3};
 use limbs::{Cap, Graph, Recipe};
+use scene::curves::MOST_FLAT;
 use scene::{Curves, Element, Form, Function, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::rc::Rc;
@@ -48,7 +50,10 @@ const END_SHAPES: &[OptionSpec] = &[
         "round",
         "the surface reaches a free end and its radius beyond",
     ),
-    word_of("flat", "the surface ends at the free end itself"),
+    word_of(
+        "flat",
+        "the surface ends in a plane through the free end, across its limb",
+    ),
 ];
 
 options! {
@@ -153,9 +158,26 @@ pub(super) fn add<'a>(
         return Err(Problem::new(&file.span, "nothing is left of this skeleton"));
     }
     let own = find_materials(run, &graph, material, &others)?;
-    let is_flat = options.last(&ENDS) == Some("flat");
+    let flat = graph.choose_caps(options.last(&ENDS) == Some("flat"));
     if run.settings.soft {
-        lengthen(run, &mut graph, material, is_flat);
+        let cuts = flat <= MOST_FLAT && !options.has(&FILE_LOCAL);
+        lengthen(run, &mut graph, material, cuts);
+        if flat > 0 && !cuts {
+            let message = format!(
+                "{}: {flat} flat ends are round: {MOST_FLAT} may be cut by a plane, and none where \
+                 `local` counts",
+                file.text
+            );
+            run.note(&file.span, message, "");
+            for limb in &mut graph.limbs {
+                limb.caps = [Cap::Round; 2];
+            }
+        }
+        // Where limbs are rounded or do not blend, others than these are drawn.
+        if options.last(&FILE_SUBDIVIDE).unwrap_or(0) == 0 && !options.has(&FILE_LOCAL) {
+            let shapings: Vec<Shaping> = own.iter().map(|own| shaping(run, *own)).collect();
+            skeleton_radii::tell(run, &graph, &shapings, file);
+        }
     }
     run.model.open(run.file, name, Group::Object)?;
     run.repeating += 1;
@@ -221,27 +243,33 @@ fn find_materials<'a>(
     Ok(own)
 }
 
-/// Moves free ends such that the surface ends a radius beyond them, or at them where they are flat.
-fn lengthen(run: &Evaluator<'_>, graph: &mut Graph, material: usize, is_flat: bool) {
-    if run.settings.blob_scale != BlobScale::Relative {
-        return;
-    }
+/// Returns the shaping of limbs of a material that have the radius 1.
+fn shaping(run: &Evaluator<'_>, material: usize) -> Shaping {
     let flesh = &run.palette.surfaces[material].flesh;
-    let shaping = Shaping {
+    Shaping {
         kernel: flesh.kernel.unwrap_or(KERNEL),
         radius: 1.0,
         blobbiness: flesh.blobbiness.unwrap_or(BLOBBINESS),
-        blob_scale: BlobScale::Relative,
-        strength: 1.0,
+        blob_scale: run.settings.blob_scale,
+        strength: flesh.strength,
         influence: run.settings.influence,
         taper: None,
-    };
-    let Some(reach) = measure_reach(&shaping) else {
+    }
+}
+
+/// Moves free ends such that the surface ends a radius beyond them, or where they are flat, at them
+/// unless a plane cuts it there.
+fn lengthen(run: &Evaluator<'_>, graph: &mut Graph, material: usize, cuts: bool) {
+    if run.settings.blob_scale != BlobScale::Relative {
+        return;
+    }
+    let Some(reach) = measure_reach(&shaping(run, material)) else {
         return;
     };
-    graph.lengthen_free_ends(|cap| match (cap, is_flat) {
-        (Cap::Round, false) => 1.0 - reach,
-        _ => -reach,
+    graph.lengthen_free_ends(|cap| match cap {
+        Cap::Round => 1.0 - reach,
+        Cap::Flat if cuts => 0.0,
+        Cap::Flat => -reach,
     });
 }
 
@@ -293,7 +321,7 @@ fn add_material<'a>(
                 check_reach(reach, radii.fold(0.0, f64::max), &span)?;
                 curves.within(reach)
             }
-            None => curves,
+            None => curves.with_flat(flat_nodes(&part)),
         };
         let shape = Shape::Function(Box::new(Function {
             form: Form::Skeleton(Arc::new(curves)),
@@ -331,6 +359,17 @@ fn add_material<'a>(
         )?;
     }
     Ok(())
+}
+
+/// Lists the nodes of a graph at which limbs end flat.
+fn flat_nodes(graph: &Graph) -> Vec<u32> {
+    let ends = graph
+        .limbs
+        .iter()
+        .flat_map(|limb| limb.ends.into_iter().zip(limb.caps));
+    ends.filter(|(_, cap)| *cap == Cap::Flat)
+        .map(|(node, _)| node)
+        .collect()
 }
 
 /// Returns the lines of a graph as curves through their nodes.

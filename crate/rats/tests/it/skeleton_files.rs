@@ -239,3 +239,321 @@ fn skeletons_of_files_are_counted() {
     let compiled = compile(&text, "n.swc", LIMB);
     assert_eq!(compiled.scene.elements.len(), 30);
 }
+
+/// The notes of a compilation about its file.
+fn notes(compiled: &Compiled) -> Vec<String> {
+    let told = messages(compiled).into_iter();
+    let notes =
+        told.filter(|(severity, message)| *severity == Severity::Note && message.starts_with("n."));
+    notes.map(|(_, message)| message).collect()
+}
+
+/// Returns limbs of an OBJ file with radii: the ends of each, and its radius.
+fn write_limbs(limbs: &[([DVec3; 2], f64)]) -> String {
+    let mut text = String::from("# vt: radius\n");
+    for ([a, b], radius) in limbs {
+        for p in [a, b] {
+            text += &format!("v {} {} {}\n", p.x, p.y, p.z);
+        }
+        text += &format!("vt {radius}\nl -2/-1 -1/-1\n");
+    }
+    text
+}
+
+/// Returns a text that draws limbs with a kernel of their material.
+fn with_kernel(kernel: &str) -> String {
+    format!("verbose on\nsurface u, diffuse Red {kernel}\nskeleton u, N n.obj")
+}
+
+/// Returns a limb, and a thicker one beside it at a distance.
+fn write_beside(gap: f64) -> String {
+    let shift = DVec3::Y * gap + DVec3::X;
+    let limb = [DVec3::ZERO, DVec3::X * 20.0];
+    write_limbs(&[(limb, 1.0), (limb.map(|p| p + shift), 3.0)])
+}
+
+#[test]
+fn radii_that_cannot_be_kept_are_told() {
+    let straight = write_limbs(&[([DVec3::ZERO, DVec3::X * 20.0], 1.0)]);
+    for kernel in [
+        "",
+        "kernel gauss, blobbiness -1",
+        "kernel cauchy, blobbiness -4",
+    ] {
+        assert!(
+            notes(&compile(&with_kernel(kernel), "n.obj", &straight)).is_empty(),
+            "{kernel}"
+        );
+    }
+    // A limb of six radii is too short for a kernel that reaches far, which thins it.
+    let short = write_limbs(&[([DVec3::ZERO, DVec3::X * 7.0], 1.0)]);
+    let compiled = compile(
+        &with_kernel("kernel cauchy, blobbiness -0.2"),
+        "n.obj",
+        &short,
+    );
+    let found = reach(&compiled, DVec3::X * 3.5, DVec3::Y, 4.0);
+    let told = notes(&compiled);
+    let wanted =
+        format!("n.obj: at the middles of 1 of 1 long limbs the surface stands at {found:.2} of");
+    assert!(told[0].starts_with(&wanted), "{told:?} {found}");
+    assert!((found - 1.0).abs() > 0.05);
+    // Another one beside it, whose flesh is thick there on one side only.
+    assert!(notes(&compile(&with_kernel(""), "n.obj", &write_beside(4.5))).is_empty());
+    // Within it.
+    let told = notes(&compile(&with_kernel(""), "n.obj", &write_beside(0.5)));
+    let wanted = "n.obj: 1 of 2 long limbs lie within others at their middles";
+    assert!(told[0].starts_with(wanted), "{told:?}");
+}
+
+/// Whether a place is within a capsule whose radius varies evenly along it.
+fn is_within([(a, r), (b, s)]: [(DVec3, f64); 2], place: DVec3) -> bool {
+    let share = ((place - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+    place.distance(a + (b - a) * share) <= r + (s - r) * share
+}
+
+#[test]
+fn lattices_stand_at_their_radii_and_where_limbs_overlap_at_those_of_their_capsules() {
+    let mut random = trials::Random::new(44);
+    for _ in 0..trials::count(3) {
+        // A jittered grid with diagonals that cross, as lattices for printing have.
+        let mut nodes = Vec::new();
+        for i in 0..27 {
+            let cell = DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9));
+            nodes.push(cell * 10.0 + random.vector(1.5));
+        }
+        let mut limbs = Vec::new();
+        for _ in 0..60 {
+            let [a, b] = [0, 1].map(|_| nodes[random.below(27)]);
+            if a != b {
+                limbs.push(([a, b], random.range(0.4, 1.1)));
+            }
+        }
+        let compiled = compile("skeleton s, N n.obj", "n.obj", &write_limbs(&limbs));
+        let surfaces = compiled.scene.surfaces();
+        let function = surfaces[0].function();
+        let drawn = self::limbs(&compiled);
+        let (mut count, mut close) = (0, 0);
+        for [(a, r), (b, s)] in &drawn {
+            let radius = 0.5 * (r + s);
+            if a.distance(*b) < 6.0 * r.max(*s) {
+                continue;
+            }
+            let middle = 0.5 * (*a + *b);
+            let (u, v) = (*b - *a).normalize().any_orthonormal_pair();
+            // The surface over that of the capsules, both from the middle out.
+            let mut ratios: Vec<f64> = (0..12)
+                .map(|i| {
+                    let (sine, cosine) = libm::sincos(f64::from(i) * 0.523_598_775_6);
+                    let way = u * cosine + v * sine;
+                    let exact = (1..400)
+                        .map(|i| f64::from(i) * 0.01)
+                        .find(|t| {
+                            let place = middle + way * (radius * t);
+                            !drawn.iter().any(|limb| is_within(*limb, place))
+                        })
+                        .unwrap_or(4.0);
+                    let soft = (1..400)
+                        .map(|i| f64::from(i) * 0.01)
+                        .find(|t| function.jet(middle + way * (radius * t)).value < THRESHOLD);
+                    soft.unwrap_or(4.0) / exact
+                })
+                .collect();
+            ratios.sort_by(f64::total_cmp);
+            count += 1;
+            close += i32::from((ratios[6] - 1.0).abs() < 0.05);
+        }
+        assert!(count > 20, "{count}");
+        assert!(
+            f64::from(close) >= 0.95 * f64::from(count),
+            "{close} of {count}"
+        );
+    }
+}
+
+#[test]
+fn every_format_is_drawn_at_its_radius() {
+    let vtp = "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"2\"><PointData>\
+        <DataArray type=\"Float32\" Name=\"Radius\">1 1</DataArray></PointData><Points>\
+        <DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0 20 0 0</DataArray></Points>\
+        <Lines><DataArray type=\"Int64\" Name=\"connectivity\">0 1</DataArray>\
+        <DataArray type=\"Int64\" Name=\"offsets\">2</DataArray></Lines></Piece></PolyData>\
+        </VTKFile>";
+    let vtk = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n\
+        0 0 0 20 0 0\nLINES 1 3\n2 0 1\nPOINT_DATA 2\nSCALARS radius float 1\n\
+        LOOKUP_TABLE default\n1 1\n";
+    let csv = "start_x,start_y,start_z,end_x,end_y,end_z,radius\n0,0,0,20,0,0,1\n";
+    let ply = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n\
+        property float z\nproperty float radius\nelement edge 1\nproperty int vertex1\n\
+        property int vertex2\nend_header\n0 0 0 1\n20 0 0 1\n0 1\n";
+    for (name, content) in [
+        ("n.swc", LIMB),
+        ("n.vtp", vtp),
+        ("n.vtk", vtk),
+        ("n.csv", csv),
+        (
+            "n.obj",
+            "# vt: radius\nv 0 0 0\nv 20 0 0\nvt 1\nl 1/1 2/1\n",
+        ),
+        ("n.ply", ply),
+    ] {
+        let compiled = compile(&format!("skeleton s, N {name}"), name, content);
+        assert_eq!(messages(&compiled), [], "{name}");
+        for (from, way, wanted) in [
+            (DVec3::X * 10.0, DVec3::Y, 1.0),
+            (DVec3::X * 10.0, DVec3::X, 11.0),
+            (DVec3::X * 10.0, -DVec3::X, 11.0),
+        ] {
+            let found = reach(&compiled, from, way, 30.0);
+            assert!((found - wanted).abs() < 0.02, "{name}: {found}");
+        }
+    }
+    // Molecules: balls of the van der Waals radii, and bonds between them.
+    let water = "3\n\nO 0 0 0.1173\nH 0 0.7572 -0.4692\nH 0 -0.7572 -0.4692\n";
+    let atom = "HETATM    1  O   HOH A   1       0.000   0.000   0.000  1.00  0.00           O\n";
+    for (name, content, balls, sticks) in [("n.xyz", water, 3, 2), ("n.pdb", atom, 1, 0)] {
+        let compiled = compile(&format!("skeleton s, N {name} bonds"), name, content);
+        let elements = compiled.scene.elements.iter();
+        let radii = elements.filter(|own| own.shape.curves().is_none());
+        let radii: Vec<f64> = radii.map(|own| compiled.scene.radius(own)).collect();
+        assert_eq!((radii.len(), radii[0]), (balls, 1.52), "{name}");
+        assert_eq!(limbs(&compiled).len(), sticks, "{name}");
+    }
+}
+
+#[test]
+fn odd_limbs_are_no_matter() {
+    for content in [
+        "1 3 0 0 0 1e-300 -1\n2 3 1e-299 0 0 1e-300 1\n",
+        "1 3 0 0 0 1e12 -1\n2 3 1e12 0 0 1e12 1\n",
+        "1 3 0 0 0 1e-9 -1\n2 3 1e9 0 0 1e-9 1\n",
+        "1 3 0 0 0 1 -1\n2 3 1e-12 0 0 1 1\n3 3 1e-12 1e-13 0 5 2\n",
+        "1 3 0 0 0 1 -1\n2 3 9 0 0 0 1\n3 3 9 9 0 -4 2\n",
+        "1 3 0 0 0 1 -1\n2 3 9 0 0 1 3\n3 3 9 9 0 1 2\n",
+    ] {
+        for text in [
+            "",
+            "subdivide 3",
+            "ends flat",
+            "local 3",
+            "thicken -0.5",
+            "scale 1e9",
+        ] {
+            let compiled = compile(&format!("skeleton s, N n.swc {text}"), "n.swc", content);
+            // It is drawn, or it is said why not.
+            let elements = compiled.scene.elements.len();
+            assert!(
+                elements > 0 || !messages(&compiled).is_empty(),
+                "{text}: {content}"
+            );
+            let surfaces = compiled.scene.surfaces();
+            for surface in &surfaces {
+                assert!(!surface.function().jet(DVec3::ONE).value.is_infinite());
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_mesh_leaves_out_is_told() {
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    assert_eq!(messages(&compile("mesh s n.obj", "n.obj", square)), []);
+    let text = format!("{square}f 1 1 2\nf 3 1 2\n");
+    let compiled = compile("mesh s n.obj", "n.obj", &text);
+    assert_eq!(compiled.scene.elements.len(), 2);
+    let (severity, message) = &messages(&compiled)[0];
+    assert_eq!(*severity, Severity::Warning);
+    assert!(message.contains("without an area"), "{message}");
+    assert!(message.contains("that are there twice"), "{message}");
+}
+
+/// Returns the value of a surface's function at a place.
+fn value(surface: &scene::Surface, place: DVec3) -> f64 {
+    surface.function().jet(place).value
+}
+
+#[test]
+fn flat_ends_are_planes() {
+    // A bent line with a branch: three free ends.
+    let bent = "1 3 0 0 0 1 -1\n2 3 10 0 0 1 1\n3 3 18 6 0 .8 2\n4 3 10 -9 0 .6 2\n";
+    for kernel in [
+        "",
+        "kernel gauss, blobbiness -4",
+        "kernel cauchy, blobbiness -2",
+    ] {
+        let text = format!("surface u, diffuse Red {kernel}\nskeleton u, N n.swc ends");
+        let flat = compile(&format!("{text} flat"), "n.swc", bent);
+        let round = compile(&format!("{text} round"), "n.swc", bent);
+        assert_eq!(messages(&flat), [], "{kernel}");
+        let [flat, round] = [&flat, &round].map(|own| own.scene.surfaces().swap_remove(0));
+        let ends = [
+            (DVec3::ZERO, DVec3::NEG_X, 1.0),
+            (DVec3::new(18.0, 6.0, 0.0), DVec3::new(0.8, 0.6, 0.0), 0.8),
+            (DVec3::new(10.0, -9.0, 0.0), DVec3::NEG_Y, 0.6),
+        ];
+        for (at, outward, radius) in ends {
+            let (u, v) = outward.any_orthonormal_pair();
+            for i in 0..24 {
+                let (sine, cosine) = libm::sincos(f64::from(i) * 1.7);
+                let across = (u * cosine + v * sine) * (radius * f64::from(i) / 24.0);
+                let place = at + across;
+                // Inside up to the plane over the whole disk, and nothing behind it.
+                if across.length() < 0.93 * radius {
+                    assert!(
+                        value(&flat, place - outward * (0.02 * radius)) > THRESHOLD,
+                        "{i}"
+                    );
+                }
+                for step in [0.02, 0.5, 1.2, 3.0] {
+                    let behind = value(&flat, place + outward * (step * radius));
+                    assert!(behind < THRESHOLD, "{kernel} {i} {step}: {behind}");
+                }
+            }
+        }
+        // Elsewhere both are the same.
+        for place in [
+            DVec3::new(5.0, 0.9, 0.1),
+            DVec3::new(10.0, 0.2, 0.9),
+            DVec3::new(13.0, 2.0, 0.8),
+        ] {
+            let [a, b] = [&flat, &round].map(|surface| value(surface, place));
+            assert!(
+                (a - b).abs() < 2e-3 * b.max(1.0),
+                "{kernel} {place}: {a} {b}"
+            );
+        }
+    }
+    // A single limb is cut at both ends, and each of its pieces counts once.
+    let compiled = compile("skeleton s, N n.swc ends flat", "n.swc", LIMB);
+    let surface = compiled.scene.surfaces().swap_remove(0);
+    assert!(matches!(surface, scene::Surface::Composed(_)));
+    for (x, is_inside) in [
+        (-0.02, false),
+        (0.02, true),
+        (10.0, true),
+        (19.98, true),
+        (20.02, false),
+    ] {
+        let inside = surface.function().jet(DVec3::X * x).value > THRESHOLD;
+        assert_eq!(inside, is_inside, "{x}");
+    }
+    let side = reach(&compiled, DVec3::X * 10.0, DVec3::Y, 4.0);
+    assert!((side - 1.0).abs() < 1e-3, "{side}");
+    // Too many are round, in words.
+    let many: String = (0..300)
+        .map(|i| {
+            format!(
+                "{} 3 {i} 0 0 .2 -1\n{} 3 {i} 3 0 .2 {}\n",
+                2 * i + 1,
+                2 * i + 2,
+                2 * i + 1
+            )
+        })
+        .collect();
+    let compiled = compile("verbose on\nskeleton s, N n.swc ends flat", "n.swc", &many);
+    assert!(
+        notes(&compiled)[0].contains("600 flat ends are round"),
+        "{:?}",
+        notes(&compiled)
+    );
+}

@@ -31,8 +31,9 @@ pub const EXAMPLES: [(&str, &str); 49] = examples![
 ];
 
 /// Names and texts of the examples that read meshes and strokes of their own.
-pub const EXAMPLES_WITH_FILES: [(&str, &str); 8] = examples![
-    "diamond" "dog" "elder" "fish" "heads" "queen" "slug" "triceratops"
+pub const EXAMPLES_WITH_FILES: [(&str, &str); 13] = examples![
+    "diamond" "dog" "elder" "fish" "heads" "lattice" "molecule" "neuron" "queen" "slug"
+    "triceratops" "vessels" "winter-tree"
 ];
 
 macro_rules! files {
@@ -46,7 +47,11 @@ macro_rules! files {
 
 const STROKES: [(&str, &str); 4] =
     files![include_str, "dog.strokes" "fish.strokes" "slug.strokes" "triceratops.strokes"];
-const MESHES: [(&str, &str); 3] = files![include_str, "elder.obj" "head.obj" "queen.obj"];
+const ASSETS: [(&str, &[u8]); 8] = files![
+    include_bytes,
+    "dodecahedrane.xyz" "elder.obj" "head.obj" "lattice.3mf" "neuron.swc" "queen.obj" "tree.csv"
+    "vessels.vtp"
+];
 
 macro_rules! bench {
     ($name:literal) => {
@@ -92,7 +97,7 @@ pub fn compile_text(text: &str) -> Scene {
     let project = Project {
         files: files.collect(),
     };
-    let assets = MESHES.map(|(name, text)| Asset::new(name, text.as_bytes()));
+    let assets = ASSETS.map(|(name, bytes)| Asset::new(name, bytes));
     let compiled = rats::compile_at(&project, &assets, 0.0);
     let mut errors = compiled.diagnostics.iter();
     assert_eq!(errors.find(|d| d.severity == rats::Severity::Error), None);

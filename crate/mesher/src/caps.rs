@@ -1,0 +1,150 @@
+//! Flat ends of skeletons as groups of triangles, so that they can be chosen in other programs.
+
+use glam::DVec3;
+use mesh::{Group, TriangleMesh};
+use scene::flat_ends::FlatEnd;
+
+/// Distance from its plane, in radii, within which a vertex is one of a flat end.
+const NEAR: f64 = 0.06;
+/// Distance from its middle, in radii, within which a vertex is one of a flat end.
+const WIDE: f64 = 1.2;
+/// Least cosine of the angle between the plane and a triangle of a flat end.
+const ALONG: f64 = 0.9;
+
+/// Parts the only group of a mesh: triangles of flat ends come last, with a group and a material
+/// for each, `inlet` for the widest end and `outlet-1` … for the others. Their vertices are moved
+/// into the plane.
+pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) {
+    let [whole] = &mesh.groups[..] else { return };
+    if ends.is_empty() {
+        return;
+    }
+    let whole = whole.clone();
+    let of: Vec<Option<usize>> = (0..mesh.triangles.len())
+        .map(|i| {
+            let corners = mesh.corners(i);
+            ends.iter().position(|end| is_on(corners, end))
+        })
+        .collect();
+    for (triangle, end) in mesh.triangles.iter().zip(&of) {
+        let Some(end) = end.map(|end| &ends[end]) else {
+            continue;
+        };
+        for corner in triangle {
+            let position = &mut mesh.positions[*corner as usize];
+            *position -= end.outward * end.outward.dot(*position - end.at);
+        }
+    }
+    let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
+    // Those of no end come first.
+    order.sort_by_key(|i| of[*i].map_or(0, |end| end + 1));
+    mesh.triangles = order.iter().map(|i| mesh.triangles[*i]).collect();
+    let widest = (0..ends.len()).reduce(|a, b| {
+        if ends[b].radius > ends[a].radius {
+            b
+        } else {
+            a
+        }
+    });
+    let mut outlets = 1..;
+    let mut start = of.iter().filter(|end| end.is_none()).count() as u32;
+    mesh.groups[0].triangles = 0..start;
+    for end in 0..ends.len() {
+        let name = match widest == Some(end) {
+            true => String::from("inlet"),
+            false => format!("outlet-{}", outlets.next().unwrap_or(1)),
+        };
+        let count = of.iter().filter(|own| **own == Some(end)).count() as u32;
+        if count == 0 {
+            continue;
+        }
+        let mut material = whole.material.clone().unwrap_or_default();
+        material.name.clone_from(&name);
+        mesh.groups.push(Group {
+            name,
+            material: Some(material),
+            triangles: start..start + count,
+        });
+        start += count;
+    }
+}
+
+/// Whether a triangle is one of a flat end.
+fn is_on(corners: [DVec3; 3], end: &FlatEnd) -> bool {
+    let is_near = corners.iter().all(|corner| {
+        let offset = *corner - end.at;
+        let across = end.outward.dot(offset).abs();
+        across <= NEAR * end.radius && offset.length() <= WIDE * end.radius
+    });
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a);
+    is_near && normal.dot(end.outward) >= ALONG * normal.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh::Material;
+
+    /// A prism of six sides around the x axis from 0 to 5, whose lids are shifted by 0.02.
+    fn prism() -> TriangleMesh {
+        let mut mesh = TriangleMesh::default();
+        for x in [0.02, 4.98] {
+            mesh.positions.push(DVec3::X * x);
+            for i in 0..6 {
+                let (sine, cosine) = libm::sincos(f64::from(i) * std::f64::consts::FRAC_PI_3);
+                mesh.positions.push(DVec3::new(x, cosine, sine));
+            }
+        }
+        for i in 0..6_u32 {
+            let [a, b] = [1 + i, 1 + (i + 1) % 6];
+            mesh.triangles.push([0, b, a]);
+            mesh.triangles.push([7, 7 + a, 7 + b]);
+            mesh.triangles.push([a, b, 7 + b]);
+            mesh.triangles.push([a, 7 + b, 7 + a]);
+        }
+        mesh.groups = vec![Group {
+            name: String::new(),
+            material: Some(Material::default()),
+            triangles: 0..24,
+        }];
+        mesh
+    }
+
+    #[test]
+    fn lids_are_groups_in_their_planes() {
+        let ends =
+            [(0.0, DVec3::NEG_X, 1.0), (5.0, DVec3::X, 1.01)].map(|(x, outward, radius)| FlatEnd {
+                at: DVec3::X * x,
+                outward,
+                radius,
+            });
+        let mut mesh = prism();
+        part(&mut mesh, &ends);
+        let names: Vec<(&str, u32)> = mesh
+            .groups
+            .iter()
+            .map(|group| (&group.name[..], group.triangles.len() as u32))
+            .collect();
+        assert_eq!(names, [("", 12), ("outlet-1", 6), ("inlet", 6)]);
+        for (group, x) in mesh.groups[1..].iter().zip([0.0, 5.0]) {
+            for i in group.triangles.clone() {
+                assert!(
+                    mesh.corners(i as usize)
+                        .iter()
+                        .all(|corner| (corner.x - x).abs() < 1e-12)
+                );
+            }
+            assert_eq!(group.material.as_ref().unwrap().name, group.name);
+        }
+        // Ends elsewhere, or that look the other way, are none of the mesh.
+        let mut same = prism();
+        let other = FlatEnd {
+            outward: DVec3::NEG_X,
+            ..ends[1]
+        };
+        part(&mut same, &[other]);
+        assert_eq!(same.triangles, prism().triangles);
+        assert_eq!(same.groups, prism().groups);
+    }
+}
