@@ -30,6 +30,7 @@ test('after the first visit everything works without a net', async () => {
   const closed = await sinew.page.evaluate(async () => (await sinew.mesh({ format: 'stl' })).length > 0);
   assert.ok(closed);
   await sinew.click('sculpt');
+  await sinew.click('begin ball');
   await sinew.place('sculpture');
   const manual = await sinew.page.context().newPage();
   await manual.goto(new URL('reference.html', sinew.page.url()).href);
