@@ -50,7 +50,7 @@ enum Command {
         /// Names of files without their extension; all if none is named.
         names: Vec<String>,
     },
-    /// Write the page of the thesis's figures, www/figures.html, and draw its pictures.
+    /// Write the page of the papers' figures and tables, www/figures.html, and draw its pictures.
     Figures,
     /// Write the reference page, www/reference.html, and draw the pictures of its examples.
     Reference,
