@@ -52,9 +52,9 @@ fn entries_of(text: &str) -> Result<Vec<Entry<'_>>> {
     let mut entries = Vec::new();
     for entry in text.trim_end().split("\n\n") {
         let mut lines = entry.lines();
-        let mut words = lines.next().unwrap_or_default().splitn(3, ' ');
-        let mut word = || words.next().with_context(|| format!("no title: {entry}"));
-        let (kind, number, title) = (word()?, word()?, word()?);
+        let words = lines.next().unwrap_or_default().splitn(3, ' ');
+        let words = <[&str; 3]>::try_from(words.collect::<Vec<_>>());
+        let [kind, number, title] = words.ok().with_context(|| format!("no title: {entry}"))?;
         if kind == "paper" {
             paper = number;
         }
@@ -93,7 +93,7 @@ pub fn figures() -> Result<()> {
         page += "</section>\n";
     }
     page += "</main>\n</html>\n";
-    for picture in drawn()? {
+    for picture in list_pictures()? {
         let name = picture.file_name().unwrap_or_default().to_string_lossy();
         if !page.contains(&format!("figures/{name}\"")) {
             fs::remove_file(&picture)?;
@@ -103,7 +103,7 @@ pub fn figures() -> Result<()> {
 }
 
 /// Returns the files of the page's pictures and drawings.
-fn drawn() -> Result<Vec<PathBuf>> {
+fn list_pictures() -> Result<Vec<PathBuf>> {
     let folder = root().join("www/figures");
     let mut all = files(&folder, "png")?;
     all.extend(files(&folder, "svg")?);
@@ -253,8 +253,9 @@ mod tests {
         let listed: Vec<_> = listed.collect();
         assert_eq!(listed.len(), 110, "figures and tables of the papers");
         for wanted in listed {
-            let is_wanted = |entry: &&Entry| (entry.paper, entry.kind, entry.number) == wanted;
-            let entry = entries.iter().find(is_wanted);
+            let entry = entries
+                .iter()
+                .find(|entry| (entry.paper, entry.kind, entry.number) == wanted);
             let entry = entry.unwrap_or_else(|| panic!("{wanted:?} is not in figures.txt"));
             let anchor = entry.anchor();
             let place = page.split(&format!("id=\"{anchor}\"")).nth(1);
@@ -296,7 +297,7 @@ mod tests {
             names.insert(root().join("www/figures").join(file));
         }
         assert_eq!(
-            drawn().unwrap(),
+            list_pictures().unwrap(),
             Vec::from_iter(names),
             "files that nothing uses, or some are missing"
         );
