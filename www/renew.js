@@ -38,6 +38,8 @@ export async function renew() {
     console.info(`Sinew will not work without a net: ${reason?.message ?? reason}`);
     return;
   }
+  // Nor where an extension of the browser keeps workers away.
+  if (!registration) return;
   const offer = (worker) =>
     say('A newer Sinew is here.', () => {
       reloads = true;
