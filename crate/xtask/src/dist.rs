@@ -30,10 +30,11 @@ fn weigh(folder: &Path) -> Result<()> {
         let path = folder.join(&file);
         let bytes = std::fs::metadata(&path)?.len() / 1000;
         let small = brotli_size(&path).with_context(|| format!("{file} is not compressed"))?;
-        let [kilobytes, most] = [small, module.budget].map(|bytes| bytes / 1000);
+        // They are compared as they are told, in kilobytes to the nearest.
+        let [kilobytes, most] = [small, module.budget].map(|bytes| (bytes + 500) / 1000);
         let sizes = format!("{file}: {bytes} kB, {kilobytes} kB with brotli (at most {most} kB)");
         tell(&sizes);
-        heavy.extend(Some(sizes).filter(|_| small > module.budget));
+        heavy.extend(Some(sizes).filter(|_| kilobytes > most));
     }
     if !heavy.is_empty() {
         bail!("Too large: {}", heavy.join("; "));

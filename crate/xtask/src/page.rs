@@ -77,7 +77,9 @@ const LEVEL: &str = "-O1";
 /// Optimises a wasm file with wasm-opt.
 pub fn optimise(wasm_opt: &Path, from: &Path, to: &Path) -> Result<()> {
     let [wasm_opt, from, to] = [wasm_opt, from, to].map(Path::to_string_lossy);
-    run(&mut command("node", &[&wasm_opt, &from, LEVEL, "-o", &to]))
+    // Without the sections for tools: who made the file, and what it needs.
+    let stripped = ["--strip-producers", "--strip-target-features"];
+    run(command("node", &[&wasm_opt, &from, LEVEL, "-o", &to]).args(stripped))
 }
 
 /// Compiles a package to wasm and returns the file.

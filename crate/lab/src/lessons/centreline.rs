@@ -358,7 +358,8 @@ mod tests {
             blobbiness: 1.0,
             ..steep
         };
-        assert!(soft.compute().fork > surfaces.fork + 0.2);
+        let swollen = soft.compute().fork;
+        assert!(swollen > surfaces.fork + 0.05, "{swollen}");
     }
 
     #[test]

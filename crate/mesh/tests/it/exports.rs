@@ -458,15 +458,15 @@ fn what_is_far_away_keeps_its_shape() {
         let file = write(&export, format).remove(0);
         let back = read(&format!("far.{}", format.extension()), &file.bytes).unwrap();
         assert_eq!(back.triangles.len(), mesh.triangles.len());
-        // Readers take GLB's nodes into account, whose own numbers have 32 bits.
-        let (moved, within) = match format {
-            Format::Glb => (shift, 1e-6 * shift.length()),
-            _ => (DVec3::ZERO, 0.0),
+        // Readers take GLB's nodes into account, which move by metres in 32 bits.
+        let (unit, moved, within) = match format {
+            Format::Glb => (1000.0, shift, 1e-7 * shift.length()),
+            _ => (1.0, DVec3::ZERO, 0.0),
         };
         for i in 0..mesh.triangles.len() {
             let wanted = mesh.corners(i).map(|p| p * 50.0 - shift);
             for (own, wanted) in back.corners(i).iter().zip(wanted) {
-                let own = *own - moved;
+                let own = *own * unit - moved;
                 assert!(
                     own.distance(wanted) <= 1e-4 + within,
                     "{format:?}: {own} {wanted}"

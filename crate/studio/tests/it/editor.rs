@@ -125,6 +125,46 @@ fn a_line_at_the_caret_says_which_operand_is_next() {
 }
 
 #[test]
+fn a_word_is_found_and_replaced_and_escape_closes_the_strip() {
+    let mut window = window();
+    window.edit();
+    window.key(Modifiers::CTRL, Key::Home);
+    window.key(Modifiers::COMMAND, Key::F);
+    window.steps(3);
+    assert!(has(&window, "find"));
+    type_in(&mut window, "flesh");
+    window.key(Modifiers::NONE, Key::Enter);
+    window.steps(3);
+    window.key(Modifiers::NONE, Key::Escape);
+    window.steps(3);
+    assert!(!has(&window, "find"));
+    // The place on show is selected, and is written over.
+    type_in(&mut window, "meat");
+    let second = TEXT.replacen("sphere flesh size, 0", "sphere meat size, 0", 1);
+    assert_eq!(window.text(), second);
+    window.key(Modifiers::COMMAND, Key::H);
+    window.steps(3);
+    let place = window.place("replace with");
+    window.click(place.center());
+    type_in(&mut window, "bone");
+    window.key(Modifiers::NONE, Key::Escape);
+    window.steps(3);
+    assert!(!has(&window, "find"), "from the other field, too");
+    assert_eq!(window.text(), second);
+    window.key(Modifiers::COMMAND, Key::G);
+    window.steps(3);
+    type_in(&mut window, "3");
+    window.key(Modifiers::NONE, Key::Enter);
+    window.steps(3);
+    type_in(&mut window, "# ");
+    assert!(
+        window.text().contains("# surface flesh"),
+        "{}",
+        window.text()
+    );
+}
+
+#[test]
 fn names_lead_to_their_definitions_and_can_be_renamed() {
     let mut window = window();
     window.edit();

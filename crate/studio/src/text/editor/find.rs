@@ -55,6 +55,21 @@ fn id() -> Id {
     Id::unique("find")
 }
 
+/// Returns the id of the field for the text that replaces.
+fn with_id() -> Id {
+    Id::unique("replace with")
+}
+
+/// Returns the keys that a field of the strip keeps: with Escape the strip closes.
+fn filter() -> egui::EventFilter {
+    egui::EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        escape: true,
+        tab: false,
+    }
+}
+
 impl Find {
     /// Opens the strip; what is selected is sought, from a byte on.
     pub(super) fn open(&mut self, seek: Seek, selected: &str, from: usize) {
@@ -154,6 +169,8 @@ impl Find {
             ui.horizontal(|ui| {
                 let width = (ui.available_width() - 180.0).clamp(90.0, 240.0);
                 let field = TextEdit::singleline(&mut self.with)
+                    .id(with_id())
+                    .event_filter(filter())
                     .hint_text("Replace with")
                     .desired_width(width);
                 let field = ui.add(field);
@@ -194,6 +211,7 @@ impl Find {
         }
         let field = TextEdit::singleline(text)
             .id(id())
+            .event_filter(filter())
             .hint_text(hint)
             .desired_width(width);
         let field = ui.add(field);
@@ -255,10 +273,11 @@ impl Find {
     }
 }
 
-/// Takes the keys of the strip while its field has the focus: Enter as a step, and whether it is
-/// Escape.
+/// Takes the keys of the strip while one of its fields has the focus: Enter as a step, and whether
+/// it is Escape.
 fn keys(ui: &Ui) -> (Option<isize>, bool) {
-    if !ui.memory(|memory| memory.has_focus(id())) {
+    let is_here = ui.memory(|memory| memory.has_focus(id()) || memory.has_focus(with_id()));
+    if !is_here {
         return (None, false);
     }
     ui.input_mut(|input| {
