@@ -50,20 +50,29 @@ export async function launch(kind = 'none', { free = false } = {}) {
     /** An empty tab in a new profile. */
     blank: async (options) => (await browser.newContext(options)).newPage(),
     /**
-     * Opens the page in a new profile. `fragment` ends the address; `before` may prepare the tab. Pictures are traced at
+     * Opens the page in a new profile, at its own `address` or another one. `fragment` ends the address; `before` may prepare the tab. Pictures are traced at
      * `size`, small as few tests are about one; null: as large as the window shows them.
      */
-    async open({ fragment = '', before, size = [160, 120], viewport = { width: 1200, height: 760 }, ...options } = {}) {
+    async open({
+      fragment = '',
+      before,
+      size = [160, 120],
+      viewport = { width: 1200, height: 760 },
+      address = server.address,
+      ...options
+    } = {}) {
       const context = await browser.newContext({
         viewport,
         colorScheme: 'dark',
         permissions: ['clipboard-read', 'clipboard-write'],
+        // It fetches all files; its own test allows it.
+        serviceWorkers: 'block',
         ...options,
       });
       const page = await context.newPage();
       await before?.(page);
       const sinew = new Sinew(page, kind, size);
-      await sinew.goto(server.address + asked + fragment);
+      await sinew.goto(address + asked + fragment);
       return sinew;
     },
     async close() {

@@ -1,5 +1,6 @@
 // Loads the program, and says so in words if it cannot run. Nearly everything else is Rust.
 import { open } from './keep.js';
+import { renew } from './renew.js';
 import init from './studio.js';
 
 const loading = document.getElementById('loading');
@@ -19,6 +20,8 @@ try {
   await window.sinew.ready;
   loading.className = 'done';
   setTimeout(() => loading.remove(), 300);
+  // The first picture goes before files that are not needed yet.
+  setTimeout(renew, 3000);
 } catch (reason) {
   fail(reason);
 }

@@ -7,6 +7,7 @@ pub mod dist;
 pub mod examples;
 pub mod figures;
 pub mod fuzz;
+pub mod offline;
 pub mod packages;
 pub mod page;
 pub mod pictures;

@@ -7,7 +7,7 @@ pub struct Module {
     pub package: &'static str,
     /// Features of that package, separated by commas.
     pub features: &'static str,
-    /// The profile of a release.
+    /// The profile of a release; modules that have one in common share what is compiled.
     pub profile: &'static str,
     /// Name of the files `NAME.js` and `NAME_bg.wasm`.
     pub name: &'static str,
@@ -48,7 +48,7 @@ pub const MODULES: [Module; 4] = [
     Module {
         package: "tools",
         features: "entry",
-        profile: "release",
+        profile: "worker",
         name: "tools",
         budget: 1_500_000,
     },

@@ -1,5 +1,6 @@
 //! Building the page: packages of wasm, and the files of `www/`.
 
+use crate::offline;
 use crate::packages::{MODULES, Module};
 use crate::shell::{artifacts, at_once, cargo, command, in_lane, root, run, target, tell};
 use crate::tools;
@@ -37,7 +38,11 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     }
     copy(&root().join("www"), folder)?;
     copy(&root().join("index.html"), &folder.join("index.html"))?;
-    copy(&modules, folder)
+    copy(&modules, folder)?;
+    if build == Build::Release {
+        offline::list(folder)?;
+    }
+    Ok(())
 }
 
 /// Makes NAME.js and NAME_bg.wasm.
