@@ -49,6 +49,8 @@ pub struct Spread {
     pub slope: f64,
     /// The largest |g″|, on either side where it jumps.
     pub curvature: f64,
+    /// The largest |g‴|; infinite where g″ jumps, or if it is not known.
+    pub third: f64,
 }
 
 impl Spread {
@@ -61,6 +63,7 @@ impl Spread {
             ],
             slope: self.slope.max(other.slope),
             curvature: self.curvature.max(other.curvature),
+            third: self.third.max(other.third),
         }
     }
 }
@@ -171,9 +174,14 @@ impl Bulge {
             value: [0.0; 2],
             slope: 0.0,
             curvature: 0.0,
+            third: 0.0,
         };
+        let mut pieces = 0;
         let mut all: Option<Spread> = None;
-        let mut add = |part: Spread| all = Some(all.map_or(part, |all| all.or(part)));
+        let mut add = |part: Spread| {
+            pieces += 1;
+            all = Some(all.map_or(part, |all| all.or(part)));
+        };
         if low <= c {
             add(zero);
         }
@@ -182,6 +190,7 @@ impl Bulge {
                 value: [THRESHOLD - high, THRESHOLD - low.max(THRESHOLD)],
                 slope: 1.0,
                 curvature: 0.0,
+                third: 0.0,
             });
         }
         let mut within = |from: f64, to: f64, part: &dyn Fn([f64; 2]) -> Spread| {
@@ -208,7 +217,11 @@ impl Bulge {
                 within(m, THRESHOLD, &|x| cubic(x, falling(m, h), THRESHOLD - m));
             }
         }
-        all.unwrap_or(zero)
+        let all = all.unwrap_or(zero);
+        Spread {
+            third: if pieces > 1 { f64::INFINITY } else { all.third },
+            ..all
+        }
     }
 }
 
@@ -245,6 +258,7 @@ fn cubic([low, high]: [f64; 2], [a, b, c, d]: [f64; 4], width: f64) -> Spread {
         value: [f64::INFINITY, f64::NEG_INFINITY],
         slope: 0.0,
         curvature: 0.0,
+        third: 6.0 * d.abs() / (width * width * width),
     };
     let root = (c * c - 3.0 * b * d).max(0.0).sqrt();
     // The ends; where the slope is greatest; where it is 0.
@@ -263,6 +277,7 @@ fn cubic([low, high]: [f64; 2], [a, b, c, d]: [f64; 4], width: f64) -> Spread {
                 value: [value; 2],
                 slope: slope.abs() / width,
                 curvature: bend.abs() / (width * width),
+                third: 0.0,
             });
         }
     }
@@ -273,12 +288,15 @@ fn cubic([low, high]: [f64; 2], [a, b, c, d]: [f64; 4], width: f64) -> Spread {
 fn ripples(x: [f64; 2], h: f64, n: u32, width: f64) -> Spread {
     let rise = cubic(x, [0.0, 0.0, 3.0 * h, -2.0 * h], width);
     let rate = half_waves(n) * core::f64::consts::PI / width;
-    // The wave is in [0, 1], its derivatives at most rate/2 and rate²/2.
+    // The wave is in [0, 1], its derivatives at most rate/2, rate²/2 and rate³/2.
     let most = rise.value[1].max(0.0);
     pad(Spread {
         value: [0.0, most],
         slope: rise.slope + 0.5 * rate * most,
         curvature: rise.curvature + rate * rise.slope + 0.5 * rate * rate * most,
+        third: rise.third
+            + 1.5 * rate * (rise.curvature + rate * rise.slope)
+            + 0.5 * rate * rate * rate * most,
     })
 }
 
@@ -290,5 +308,6 @@ fn pad(spread: Spread) -> Spread {
         value: [low - ROUNDING, high + ROUNDING],
         slope: spread.slope * (1.0 + ROUNDING),
         curvature: spread.curvature * (1.0 + ROUNDING),
+        third: spread.third * (1.0 + ROUNDING),
     }
 }

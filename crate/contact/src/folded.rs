@@ -163,7 +163,11 @@ impl Implicit for Folded {
         self.bounds(ball).0.variation()
     }
 
-    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+    fn variation_with_jet(
+        &self,
+        _part: Option<&Part>,
+        ball: Ball,
+    ) -> (Variation, Option<Jet<f64>>) {
         let (bounds, at_center) = self.bounds(ball);
         (bounds.variation(), at_center)
     }

@@ -58,7 +58,7 @@ impl Squashed {
     }
 
     /// Bounds on the deformation in a ball; `None` if there is none.
-    fn deformation(&self, ball: Ball) -> Option<Bounds> {
+    fn deformation(&self, ball: Ball) -> Option<Variation> {
         let near = self.partners.iter().filter(|partner| {
             let is_far = partner.reach.is_some_and(|reach| {
                 reach.center.distance(ball.center) > reach.radius + ball.radius
@@ -78,6 +78,7 @@ impl Squashed {
         let mut all: Option<Bounds> = None;
         let (mut candidates, mut active) = (0, 0);
         let (mut first, mut same) = (None, true);
+        let (mut third, mut rough) = (f64::INFINITY, 0.0);
         for (partner, bounds) in largest {
             let Enclosure { value, slope, .. } = bounds.range;
             let spread = partner.bulge.spread([value[0].max(floor), value[1]]);
@@ -93,6 +94,11 @@ impl Squashed {
                     + product(spread.slope, bounds.curvature),
                 jump,
             };
+            // The third derivative of g(f) is g‴f′³ + 3g″f′f″ + g′f‴.
+            third = product(spread.third, slope * slope * slope)
+                + product(3.0 * spread.curvature, slope * bounds.curvature)
+                + product(spread.slope, bounds.third);
+            rough = product(spread.slope, bounds.rough);
             same &= *first.get_or_insert(partner.bulge) == partner.bulge;
             candidates += 1;
             active += usize::from(spread.value != [0.0; 2] || spread.slope > 0.0);
@@ -115,7 +121,17 @@ impl Squashed {
         if jumps || active > 1 {
             all.jump = 2.0 * all.slope;
         }
-        Some(all)
+        let all = all.variation();
+        // Alone, and where g″ does not jump, a bulge is as smooth as its partner's field.
+        Some(if candidates == 1 && third.is_finite() {
+            Variation {
+                third,
+                rough,
+                ..all
+            }
+        } else {
+            all
+        })
     }
 }
 
@@ -181,7 +197,7 @@ impl Implicit for Squashed {
         match self.deformation(ball) {
             None => own,
             Some(deformation) => own
-                .plus(deformation.enclosure())
+                .plus(deformation.range)
                 .about(&self.jet(ball.center), ball.radius),
         }
     }
@@ -214,7 +230,7 @@ impl Implicit for Squashed {
         }
         match self.deformation(ball) {
             None => own,
-            Some(deformation) => own.plus(deformation.variation()),
+            Some(deformation) => own.plus(deformation),
         }
     }
 

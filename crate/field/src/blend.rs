@@ -90,22 +90,34 @@ impl Implicit for Blend {
         among: Option<&implicit::Part>,
         slack: implicit::Slack,
     ) -> Option<implicit::Part> {
-        self.sum.narrow(ball, among, slack)
+        match self.single() {
+            Some(function) => function.narrow(ball, among, slack),
+            None => self.sum.narrow(ball, among, slack),
+        }
     }
 
     fn jet_of(&self, part: &implicit::Part, point: DVec3) -> Jet<f64> {
+        if let Some(function) = self.single() {
+            return function.jet_of(part, point);
+        }
         let sum = self.sum.jet_of(part, point);
         let functions = self.parts.iter().map(|part| part.function.jet(point));
         functions.fold(sum, Jet::plus)
     }
 
     fn jet8_of(&self, part: &implicit::Part, points: [f32x8; 3]) -> Jet<f32x8> {
+        if let Some(function) = self.single() {
+            return function.jet8_of(part, points);
+        }
         let sum = self.sum.jet8_of(part, points);
         let functions = self.parts.iter().map(|part| part.function.jet8(points));
         functions.fold(sum, Jet::plus)
     }
 
     fn variation(&self, part: Option<&implicit::Part>, ball: Ball) -> Variation {
+        if let Some(function) = self.single() {
+            return function.variation(part, ball);
+        }
         let sum = self.sum.variation(part, ball);
         let functions = self
             .parts
@@ -124,16 +136,24 @@ impl Implicit for Blend {
         functions.fold(sum, |all, most| all + most)
     }
 
-    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+    fn variation_with_jet(
+        &self,
+        part: Option<&implicit::Part>,
+        ball: Ball,
+    ) -> (Variation, Option<Jet<f64>>) {
         match self.single() {
-            Some(function) => function.variation_with_jet(ball),
-            None => (self.variation(None, ball), None),
+            Some(function) => function.variation_with_jet(part, ball),
+            None => (self.variation(part, ball), None),
         }
     }
 
     fn clearance(&self, point: DVec3) -> Option<Clearance> {
         // A function does not know what others add to it.
         self.single()?.clearance(point)
+    }
+
+    fn clearance_of(&self, part: &implicit::Part, point: DVec3) -> Option<Clearance> {
+        self.single()?.clearance_of(part, point)
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
@@ -152,6 +172,9 @@ impl Implicit for Blend {
     }
 
     fn support_at(&self, level: f64) -> Option<Ball> {
+        if let Some(function) = self.single() {
+            return function.support_at(level);
+        }
         // Outside all balls no function has more than its share of the level.
         let functions = self.parts.iter().map(|part| &*part.function);
         let sum: Option<&dyn Implicit> = match self.sum.primitives.len() {

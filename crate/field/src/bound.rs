@@ -322,8 +322,12 @@ impl Bound {
     /// any, is smooth.
     #[must_use]
     pub fn slope(&self, near: Nearness) -> f64 {
+        let own = self.derivative(near, 1);
+        if self.ripple.is_none() {
+            return own;
+        }
         let [first, ..] = self.factor(near);
-        self.derivative(near, 1) + self.magnitude(near) * first
+        own + self.magnitude(near) * first
     }
 
     /// Estimates the largest |∇f|/|f|, for the effect of coordinates rounded to single precision:
@@ -365,9 +369,12 @@ impl Bound {
     /// slope along a ray in the ball), where the profile, if any, is smooth.
     #[must_use]
     pub fn curvature(&self, near: Nearness) -> f64 {
+        let own = self.derivative(near, 2);
+        if self.ripple.is_none() {
+            return own;
+        }
         let [first, second, ..] = self.factor(near);
-        let wave = 2.0 * self.derivative(near, 1) * first + self.magnitude(near) * second;
-        self.derivative(near, 2) + wave
+        own + (2.0 * self.derivative(near, 1) * first + self.magnitude(near) * second)
     }
 
     /// Returns a bound on the third derivative of f along any line in the ball, where the profile,

@@ -102,7 +102,7 @@ impl Enclosure {
 pub struct Part {
     /// The ball.
     pub ball: Ball,
-    /// Numbers of the terms, in ascending order.
+    /// Numbers of the terms, in the order in which the function adds them up.
     pub terms: Vec<u32>,
     /// Bounds on the sum of the others in the ball, but for those that the polynomial stands for.
     pub rest: Enclosure,
@@ -218,7 +218,7 @@ pub struct Clearance {
 ///
 /// [`Sum`](crate::Sum) is the convolution surface. Other implementations may compose functions;
 /// code that traces or meshes surfaces needs nothing but this trait.
-pub trait Implicit: core::fmt::Debug + Send + Sync {
+pub trait Implicit: Send + Sync {
     /// Value and gradient in double precision.
     fn jet(&self, point: DVec3) -> Jet<f64>;
 
@@ -281,6 +281,12 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
         self.jet8(points)
     }
 
+    /// Returns [`Implicit::clearance`] around a point of a part's ball, looking at the terms of the
+    /// part alone. It holds within that ball.
+    fn clearance_of(&self, _part: &Part, point: DVec3) -> Option<Clearance> {
+        self.clearance(point)
+    }
+
     /// Bounds on the whole function in a ball, which must be within that of the part, if there is
     /// one: then only the terms of the part are looked at.
     fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
@@ -302,7 +308,15 @@ pub trait Implicit: core::fmt::Debug + Send + Sync {
 
     /// Bounds on the function in a ball as [`Implicit::variation`] gives them, and value and
     /// gradient at its centre, where finding the bounds finds these, too.
-    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
-        (self.variation(None, ball), None)
+    fn variation_with_jet(&self, part: Option<&Part>, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        (self.variation(part, ball), None)
+    }
+}
+
+/// A function is told by no more than its kind: the numbers of each would take all programs that
+/// draw one 80 kB, which print none.
+impl core::fmt::Debug for dyn Implicit + '_ {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Implicit")
     }
 }

@@ -170,7 +170,11 @@ impl Implicit for Local {
         self.enclose_two(ball).first.variation()
     }
 
-    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+    fn variation_with_jet(
+        &self,
+        _part: Option<&Part>,
+        ball: Ball,
+    ) -> (Variation, Option<Jet<f64>>) {
         let two = self.enclose_two(ball);
         (two.first.variation(), two.at_center.map(|jets| jets.0))
     }

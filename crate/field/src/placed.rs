@@ -1,5 +1,5 @@
 //! Functions moved, turned and stretched.
-use crate::{Ball, Clearance, Enclosure, Implicit, Jet, Real, Variation};
+use crate::{Ball, Clearance, Enclosure, Implicit, Jet, Part, Real, Slack, Variation};
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 use wide::f32x8;
@@ -59,6 +59,37 @@ impl Placed {
     }
 }
 
+impl Placed {
+    /// Returns a ball, in the function's own coordinates, that holds a ball of the world.
+    fn own_ball(&self, ball: Ball) -> Ball {
+        Ball {
+            center: self.to_own.transform_point3(ball.center),
+            radius: ball.radius * self.shrinkage,
+        }
+    }
+
+    /// Bounds in the world of those in the function's own coordinates.
+    fn shrink(&self, own: Variation) -> Variation {
+        let k = self.shrinkage;
+        Variation {
+            range: shrink(own.range, k),
+            curvature: own.curvature * k * k,
+            third: own.third * k * k * k,
+            rough: own.rough * k * k,
+            jump: own.jump * k,
+            step: own.step,
+        }
+    }
+
+    /// Clearance in the world of that in the function's own coordinates.
+    fn grow(&self, own: Clearance) -> Clearance {
+        Clearance {
+            radius: own.radius / self.shrinkage,
+            scale: own.scale / self.shrinkage,
+        }
+    }
+}
+
 /// Returns an upper bound on how much a map stretches lengths, which is exact for a similarity: by
 /// Gershgorin's theorem, the root of the greatest sum of a row of |MᵀM|.
 fn stretch(map: &DMat3) -> f64 {
@@ -91,39 +122,42 @@ impl Implicit for Placed {
     }
 
     fn enclose(&self, ball: Ball) -> Enclosure {
-        let k = self.shrinkage;
-        let own = self.function.enclose(Ball {
-            center: self.to_own.transform_point3(ball.center),
-            radius: ball.radius * k,
-        });
-        shrink(own, k)
+        let own = self.function.enclose(self.own_ball(ball));
+        shrink(own, self.shrinkage)
     }
 
-    fn variation_with_jet(&self, ball: Ball) -> (Variation, Option<Jet<f64>>) {
-        let k = self.shrinkage;
-        let (own, jet) = self.function.variation_with_jet(Ball {
-            center: self.to_own.transform_point3(ball.center),
-            radius: ball.radius * k,
-        });
-        let variation = Variation {
-            range: shrink(own.range, k),
-            curvature: own.curvature * k * k,
-            third: own.third * k * k * k,
-            rough: own.rough * k * k,
-            jump: own.jump * k,
-            step: own.step,
-        };
-        (variation, jet.map(|jet| self.world(jet)))
+    /// The part is one of the inner function, but for its ball.
+    fn narrow(&self, ball: Ball, among: Option<&Part>, slack: Slack) -> Option<Part> {
+        let own = self.function.narrow(self.own_ball(ball), among, slack)?;
+        Some(Part { ball, ..own })
+    }
+
+    fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
+        let own = self.own(point.to_array());
+        self.world(self.function.jet_of(part, DVec3::from_array(own)))
+    }
+
+    fn jet8_of(&self, part: &Part, points: [f32x8; 3]) -> Jet<f32x8> {
+        self.world(self.function.jet8_of(part, self.own(points)))
+    }
+
+    fn variation(&self, part: Option<&Part>, ball: Ball) -> Variation {
+        self.shrink(self.function.variation(part, self.own_ball(ball)))
+    }
+
+    fn variation_with_jet(&self, part: Option<&Part>, ball: Ball) -> (Variation, Option<Jet<f64>>) {
+        let (own, jet) = self.function.variation_with_jet(part, self.own_ball(ball));
+        (self.shrink(own), jet.map(|jet| self.world(jet)))
     }
 
     fn clearance(&self, point: DVec3) -> Option<Clearance> {
-        let own = self
-            .function
-            .clearance(self.to_own.transform_point3(point))?;
-        Some(Clearance {
-            radius: own.radius / self.shrinkage,
-            scale: own.scale / self.shrinkage,
-        })
+        let own = self.to_own.transform_point3(point);
+        Some(self.grow(self.function.clearance(own)?))
+    }
+
+    fn clearance_of(&self, part: &Part, point: DVec3) -> Option<Clearance> {
+        let own = self.to_own.transform_point3(point);
+        Some(self.grow(self.function.clearance_of(part, own)?))
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {

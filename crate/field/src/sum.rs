@@ -1,4 +1,5 @@
 //! The sum of primitives: the field of a convolution surface.
+use crate::bound::Nearness;
 use crate::far_field::{Cell, FarField, power};
 use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
@@ -56,9 +57,13 @@ pub(crate) struct TermBounds {
 
 impl TermBounds {
     /// Bounds in a ball.
-    fn enclose(&self, Ball { center, radius }: Ball) -> Enclosure {
+    fn enclose(&self, ball: Ball) -> Enclosure {
+        self.enclose_near(ball, self.bound.nearness(ball.center, ball.radius))
+    }
+
+    /// Bounds in a ball that is so near to the skeleton.
+    fn enclose_near(&self, Ball { center, radius }: Ball, near: Nearness) -> Enclosure {
         let Self { bound, kinks } = self;
-        let near = bound.nearness(center, radius);
         let magnitude = bound.magnitude(near);
         let cut = kinks.iter().filter(|kink| kink.cuts(center, radius));
         let [kinked, jumps] = cut.fold([false, false], |[_, jumps], kink| {
@@ -278,9 +283,9 @@ impl Implicit for Sum {
             all.third += third;
         }
         let mut add = |term: &TermBounds| {
-            let range = term.enclose(ball);
-            all.range = all.range.plus(range);
             let near = term.bound.nearness(ball.center, ball.radius);
+            let range = term.enclose_near(ball, near);
+            all.range = all.range.plus(range);
             if range.curvature.is_finite() {
                 let third = term.bound.third(near);
                 all.curvature += range.curvature;

@@ -2,7 +2,7 @@
 
 use crate::function::{Metaballs, term};
 use crate::profile::{CUT, DEEP, FADE, FADING, Range, range};
-use field::{Ball, Clearance, Enclosure, Implicit, Jet, Real, THRESHOLD};
+use field::{Ball, Clearance, Enclosure, Implicit, Jet, Part, Real, THRESHOLD};
 use glam::DVec3;
 
 /// Nodes of the hierarchy smaller than this part of the ball's radius are bounded as a whole.
@@ -104,6 +104,7 @@ impl Metaballs {
     /// to 0: they are bounded by the exponential from above and by 0 from below.
     pub(crate) fn small_enclosure(
         &self,
+        part: Option<&Part>,
         Ball { center, radius }: Ball,
     ) -> Option<(Enclosure, Jet<f64>)> {
         let k = self.sharpness;
@@ -115,35 +116,44 @@ impl Metaballs {
         let [grows, falls] = [Real::exp(reach), reach.decay()];
         let mut jet = Jet::zero();
         let (mut low, mut high, mut slope, mut curvature) = (0.0, 0.0, 0.0, 0.0_f64);
-        self.bvh.descend(|_, bounds, facets| {
-            if k * (bounds.distance_squared(center).sqrt() - radius) > CUT * (1.0 + ROUNDING) {
-                return false;
+        let mut near = Vec::new();
+        let facets = match part {
+            Some(part) => &part.terms,
+            None => {
+                self.bvh.descend(|_, bounds, facets| {
+                    let gap = k * (bounds.distance_squared(center).sqrt() - radius);
+                    let is_far = gap > CUT * (1.0 + ROUNDING);
+                    if !is_far {
+                        near.extend_from_slice(facets);
+                    }
+                    !is_far
+                });
+                &near
             }
-            for facet in facets {
-                let (offset, thickness) = self.double.offset(*facet, place);
-                let distance = DVec3::from_array(offset).length();
-                let s = k * (distance - thickness);
-                if s - reach > CUT * (1.0 + ROUNDING) {
-                    continue;
-                }
-                let rounding = 4.0 * f64::EPSILON * (distance + center.abs().max_element());
-                let nearest = distance - radius - rounding;
-                let term = term(k, offset, thickness);
-                jet = jet.plus(term);
-                if s + reach < FADE {
-                    low += term.value * falls;
-                    high += term.value * grows;
-                    slope += term.value * grows;
-                    curvature += bend(k, term.value * grows, nearest, [1.0, 1.0]);
-                } else {
-                    let most = s.decay() * grows;
-                    high += most;
-                    slope += FADING[0] * most;
-                    curvature += bend(k, most, nearest, FADING);
-                }
+        };
+        for facet in facets {
+            let (offset, thickness) = self.double.offset(*facet, place);
+            let distance = DVec3::from_array(offset).length();
+            let s = k * (distance - thickness);
+            if s - reach > CUT * (1.0 + ROUNDING) {
+                continue;
             }
-            true
-        });
+            let rounding = 4.0 * f64::EPSILON * (distance + center.abs().max_element());
+            let nearest = distance - radius - rounding;
+            let term = term(k, offset, thickness);
+            jet = jet.plus(term);
+            if s + reach < FADE {
+                low += term.value * falls;
+                high += term.value * grows;
+                slope += term.value * grows;
+                curvature += bend(k, term.value * grows, nearest, [1.0, 1.0]);
+            } else {
+                let most = s.decay() * grows;
+                high += most;
+                slope += FADING[0] * most;
+                curvature += bend(k, most, nearest, FADING);
+            }
+        }
         let bounds = widen(Enclosure {
             value: [low, high],
             slope: k * slope,
@@ -169,19 +179,59 @@ impl Metaballs {
         let clear = if k * gap > AFAR {
             gap - scale * Real::ln(count)
         } else {
-            let [above, below] = self.exponentials(point, FEW * (k * gap).decay());
-            if above < THRESHOLD {
-                -scale * Real::ln(above)
-            } else if below > THRESHOLD {
-                scale * Real::ln(below).min(FADE - SAFE)
-            } else {
-                0.0
-            }
+            self.clear_of(self.exponentials(point, FEW * (k * gap).decay()))
         };
+        self.clearance_within(point, clear)
+    }
+
+    /// Returns [`Self::clear_ball`] within the ball of a part.
+    pub(crate) fn clear_ball_of(&self, part: &Part, point: DVec3) -> Clearance {
+        let mut sums = [0.0; 2];
+        self.add_exponentials(&part.terms, point.to_array(), &mut sums);
+        self.clearance_within(point, self.clear_of(sums))
+    }
+
+    /// Returns the distance within which the sums of [`Self::exponentials`] leave the threshold
+    /// out.
+    fn clear_of(&self, [above, below]: [f64; 2]) -> f64 {
+        let scale = 1.0 / self.sharpness;
+        if above < THRESHOLD {
+            -scale * Real::ln(above.max(f64::MIN_POSITIVE))
+        } else if below > THRESHOLD {
+            scale * Real::ln(below).min(FADE - SAFE)
+        } else {
+            0.0
+        }
+    }
+
+    /// Returns a ball of clearance, a little smaller than what rounded numbers say.
+    fn clearance_within(&self, point: DVec3, clear: f64) -> Clearance {
         let rounding = 1e-14 * (point.abs().max_element() + clear);
         Clearance {
             radius: (clear * (1.0 - ROUNDING) - rounding).max(0.0),
-            scale,
+            scale: 1.0 / self.sharpness,
+        }
+    }
+
+    /// Whether a facet acts in a ball.
+    pub(crate) fn acts(&self, facet: u32, Ball { center, radius }: Ball) -> bool {
+        let (offset, thickness) = self.double.offset(facet, center.to_array());
+        let distance = DVec3::from_array(offset).length();
+        // Also where distances are rounded to single precision.
+        let rounding = 1e-5 * (distance + center.abs().max_element() + radius);
+        self.sharpness * (distance - radius - rounding - thickness) <= CUT * (1.0 + 1e-5)
+    }
+
+    /// Adds the exponentials of some facets to the two sums of [`Self::exponentials`].
+    fn add_exponentials(&self, facets: &[u32], place: [f64; 3], sums: &mut [f64; 2]) {
+        for facet in facets {
+            let (offset, thickness) = self.double.offset(*facet, place);
+            let distance = DVec3::from_array(offset).length();
+            let term = (self.sharpness * (distance - thickness)).max(DEEP).decay();
+            sums[0] += term;
+            if term > SAFE.decay() {
+                sums[1] += term;
+            }
         }
     }
 
@@ -191,26 +241,18 @@ impl Metaballs {
     fn exponentials(&self, point: DVec3, little: f64) -> [f64; 2] {
         let k = self.sharpness;
         let place = point.to_array();
-        let (mut above, mut below) = (0.0, 0.0);
+        let (mut sums, mut groups) = ([0.0; 2], 0.0);
         self.bvh.descend(|node, bounds, facets| {
             let gap = bounds.distance_squared(point).sqrt();
             let most = f64::from(self.counts[node as usize]) * (k * gap).decay();
             if most < little {
-                above += most;
+                groups += most;
                 return false;
             }
-            for facet in facets {
-                let (offset, thickness) = self.double.offset(*facet, place);
-                let distance = DVec3::from_array(offset).length();
-                let term = (k * (distance - thickness)).max(DEEP).decay();
-                above += term;
-                if term > SAFE.decay() {
-                    below += term;
-                }
-            }
+            self.add_exponentials(facets, place, &mut sums);
             true
         });
-        [above, below]
+        [sums[0] + groups, sums[1]]
     }
 
     /// The largest ρ, from above.

@@ -5,7 +5,7 @@ use crate::profile::{CUT, profile};
 use crate::triangle::Triangle;
 use core::fmt;
 use field::real::Scalar;
-use field::{Implicit, Jet, Real, Variation};
+use field::{Implicit, Jet, Part, Real, Slack, THRESHOLD, Variation};
 use glam::DVec3;
 use mesh::limits::MAX_TRIANGLES;
 use mesh::{Aabb, Bvh};
@@ -184,6 +184,26 @@ impl Metaballs {
         self.bvh.overlapping(&self.around(point, point))
     }
 
+    /// Value and gradient of some facets.
+    fn sum_of<R: Real>(
+        &self,
+        facets: &Facets<R::Scalar>,
+        numbers: &[u32],
+        point: [R; 3],
+    ) -> Jet<R> {
+        let k = R::splat(self.sharpness);
+        numbers.iter().fold(Jet::zero(), |sum, facet| {
+            let (offset, radius) = facets.offset(*facet, point);
+            sum.plus(term(k, offset, radius))
+        })
+    }
+
+    /// Returns the facets that may act in a ball, in the order in which they are added up.
+    fn near_ball(&self, field::Ball { center, radius }: field::Ball) -> impl Iterator<Item = u32> {
+        self.bvh
+            .overlapping(&self.around(center - radius, center + radius))
+    }
+
     /// Returns a box around the points from which a facet must be looked for, a little wider than
     /// needed in single precision.
     fn around(&self, low: DVec3, high: DVec3) -> Aabb {
@@ -259,15 +279,52 @@ impl Implicit for Metaballs {
         self.enclosure(ball)
     }
 
-    fn variation_with_jet(&self, ball: field::Ball) -> (Variation, Option<Jet<f64>>) {
-        match self.small_enclosure(ball) {
+    /// The facets that act anywhere in the ball; all others add exactly 0.
+    fn narrow(&self, ball: field::Ball, among: Option<&Part>, _slack: Slack) -> Option<Part> {
+        let before = among.map_or(self.bvh.len(), |among| among.terms.len());
+        let terms: Vec<u32> = match among {
+            Some(among) => {
+                let terms = among.terms.iter().copied();
+                terms.filter(|facet| self.acts(*facet, ball)).collect()
+            }
+            None => {
+                let facets = self.near_ball(ball);
+                facets.filter(|facet| self.acts(*facet, ball)).collect()
+            }
+        };
+        (4 * terms.len() <= 3 * before).then_some(Part {
+            ball,
+            terms,
+            rest: field::Enclosure::ZERO,
+            far: None,
+        })
+    }
+
+    fn jet_of(&self, part: &Part, point: DVec3) -> Jet<f64> {
+        self.sum_of(&self.double, &part.terms, point.to_array())
+    }
+
+    fn jet8_of(&self, part: &Part, points: [f32x8; 3]) -> Jet<f32x8> {
+        self.sum_of(&self.single, &part.terms, points)
+    }
+
+    fn variation_with_jet(
+        &self,
+        part: Option<&Part>,
+        ball: field::Ball,
+    ) -> (Variation, Option<Jet<f64>>) {
+        match self.small_enclosure(part, ball) {
             Some((range, jet)) => (Variation::rough(range), Some(jet)),
-            None => (self.variation(None, ball), None),
+            None => (self.variation(part, ball), None),
         }
     }
 
     fn clearance(&self, point: DVec3) -> Option<field::Clearance> {
         Some(self.clear_ball(point))
+    }
+
+    fn clearance_of(&self, part: &Part, point: DVec3) -> Option<field::Clearance> {
+        Some(self.clear_ball_of(part, point))
     }
 
     fn shares(&self, point: DVec3, out: &mut Vec<(u32, f64)>) {
@@ -278,8 +335,12 @@ impl Implicit for Metaballs {
     }
 
     fn support(&self) -> Option<field::Ball> {
-        // n facets at the distance ln n/k beyond their ρ make 1 at most.
-        let count = self.bvh.len() as f64;
+        self.support_at(THRESHOLD)
+    }
+
+    fn support_at(&self, level: f64) -> Option<field::Ball> {
+        // n facets at the distance ln(n/a)/k beyond their ρ make a at most.
+        let count = (self.bvh.len() as f64 / level).max(1.0);
         let beyond = Real::ln(count).min(CUT) / self.sharpness;
         let Aabb { min, max } = self.bvh.bounds();
         Some(field::Ball {

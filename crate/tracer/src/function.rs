@@ -1,18 +1,12 @@
-//! Bodies whose surface is that of any implicit function: certified root isolation along single
-//! rays.
-//!
-//! On a piece of a ray with the middle m and the half-length h Taylor's theorem says
-//! `|f(m+x) − f(m) − f′(m)·x| ≤ C·x²/2 + J·|x|`, where C bounds the curvature in the ball around
-//! the piece, and J the jumps of the gradient. So a piece has no crossing if the function's range
-//! in that ball leaves the threshold out, or if `|f(m) − T| > (|f′(m)| + J)·h + C·h²/2`; and at
-//! most one if `|f′(m)| > C·h + J`, which the signs at its ends then tell. Any other piece is
-//! halved, down to a resolution.
+//! Bodies whose surface is that of any implicit function. Rays find it in [`cells`](crate::cells).
 use crate::body::Body;
+use crate::cells::search::Search;
+use crate::cells::{Cells, search_in};
 use crate::ray::Ray;
-use crate::roots::refine_root;
 use crate::unit::Unit;
 use crate::walk::Quest;
-use field::{Ball, Implicit, THRESHOLD};
+use core::sync::atomic::AtomicUsize;
+use field::{Ball, Implicit};
 use glam::DVec3;
 use scene::{ComposedSurface, Scene};
 use std::sync::Arc;
@@ -23,16 +17,9 @@ const RESOLUTION: f64 = 5e-7;
 const FURTHEST: f64 = 1e4;
 /// Offset of rays to the lights above a hit at t, over 1 + t.
 const LIFT: f64 = 1e-6;
-/// Most halvings of pieces of one ray; on the rest the signs at the ends decide.
-const MOST_HALVED: u32 = 1 << 16;
-/// Radius of a ball without crossings, in the function's scale, below which the surface is looked
-/// for.
-const NEAR: f64 = 0.25;
-/// Rounding of a function's value in double precision, in T.
-const VALUE_ERROR: f64 = 1e-12;
 
 /// The surface of an implicit function as a body of a picture.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct FunctionBody {
     /// The body's number in the scene.
     pub number: u32,
@@ -44,40 +31,61 @@ pub(crate) struct FunctionBody {
     /// that was added.
     pub element: Vec<u32>,
     /// Ball outside which there is no surface, in the function's coordinates.
-    pub support: Option<Ball>,
+    support: Option<Ball>,
+    /// Cells of that ball.
+    cells: Option<Cells>,
     /// The map from the function's coordinates to those of the unit scene.
     pub unit: Unit,
 }
 
-/// A query for the crossings along one ray.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RayQuery {
-    pub ray: Ray,
-    /// Parameters between which the ray is followed.
-    pub range: [f64; 2],
-    /// Length below which pieces are not halved.
-    pub resolution: f64,
-}
-
 impl FunctionBody {
-    /// Returns the function of a body of the unit scene.
-    pub fn of(surface: ComposedSurface, scene: &Scene) -> Self {
-        let elements = surface.element.iter();
+    /// Prepares the function of a body, given the finish of each of its elements and the scene's
+    /// element that it came from, if any, in coordinates from which `unit` leads to those of the
+    /// unit scene. `bytes` counts those of the cells of a whole world.
+    pub fn new(
+        number: u32,
+        function: Arc<dyn Implicit>,
+        (finish, element): (Vec<u32>, Vec<u32>),
+        unit: Unit,
+        bytes: &Arc<AtomicUsize>,
+    ) -> Self {
+        let support = function.support();
+        let bounded = support.filter(|ball| ball.radius > 0.0 && ball.radius.is_finite());
         Self {
-            number: surface.body,
-            support: surface.function.support(),
-            finish: elements
-                .map(|&e| scene.elements[e as usize].finish)
-                .collect(),
-            function: surface.function,
-            element: surface.element,
-            unit: Unit::IDENTITY,
+            number,
+            support,
+            cells: bounded.map(|ball| Cells::new(ball, bytes.clone())),
+            finish,
+            function,
+            element,
+            unit,
         }
     }
 
+    /// Returns the function of a body of the unit scene.
+    pub fn of(surface: ComposedSurface, scene: &Scene, bytes: &Arc<AtomicUsize>) -> Self {
+        let elements = surface.element.iter();
+        let finish = elements.map(|&e| scene.elements[e as usize].finish);
+        let finish = finish.collect();
+        Self::new(
+            surface.body,
+            surface.function,
+            (finish, surface.element),
+            Unit::IDENTITY,
+            bytes,
+        )
+    }
+
     /// Calls `tell` with each crossing of a ray of the unit scene, and whether the ray enters
-    /// there, until `tell` returns false. Returns the number of evaluations.
-    fn crossings(&self, ray: &Ray, limit: f64, mut tell: impl FnMut(f64, bool) -> bool) -> u64 {
+    /// there, until `tell` returns false; if it asks for entries alone, not with where they are
+    /// exactly. Returns the number of evaluations.
+    fn search(
+        &self,
+        ray: &Ray,
+        limit: f64,
+        entries: bool,
+        tell: &mut dyn FnMut(f64, bool) -> bool,
+    ) -> u64 {
         let scale = self.unit.length(1.0);
         let ray = Ray {
             origin: self.unit.world(ray.origin),
@@ -86,12 +94,14 @@ impl FunctionBody {
         let Some(range) = range(self.support, &ray, limit * scale, FURTHEST * scale) else {
             return 0;
         };
-        let along = RayQuery {
-            ray,
+        let asked = (RESOLUTION * scale, entries);
+        search_in(
+            self.cells.as_ref(),
+            Search::new(&*self.function, ray, asked, &mut |t, enters| {
+                tell(t / scale, enters)
+            }),
             range,
-            resolution: RESOLUTION * scale,
-        };
-        crossings(&*self.function, &along, |t, enters| tell(t / scale, enters))
+        )
     }
 }
 
@@ -102,18 +112,16 @@ impl Body for FunctionBody {
 
     fn first(&self, ray: &Ray, limit: f64, quest: Quest) -> (Option<f64>, u64) {
         let mut found = None;
-        let evaluations = self.crossings(ray, limit, |t, enters| {
-            if enters || quest != Quest::Entry {
-                found = Some(t);
-            }
-            found.is_none()
+        let evaluations = self.search(ray, limit, quest == Quest::Entry, &mut |t, _| {
+            found = Some(t);
+            false
         });
         (found, evaluations)
     }
 
     fn all(&self, ray: &Ray) -> Vec<(f64, DVec3)> {
         let mut found = Vec::new();
-        self.crossings(ray, f64::INFINITY, |t, _| {
+        self.search(ray, f64::INFINITY, false, &mut |t, _| {
             found.push((t, self.gradient(ray, t)));
             true
         });
@@ -165,119 +173,4 @@ pub(crate) fn range(
     };
     let far = far.min(limit);
     (near < far).then_some([near, far])
-}
-
-/// Returns the next piece of a ray, up to `end`, in which there may be crossings, and the number of
-/// evaluations that finding it took. If the function knows balls without crossings the ray goes
-/// from one to the next; the piece after them is as long as the function's scale. `None` if there
-/// is no crossing up to the end.
-fn next_piece(function: &dyn Implicit, ray: &Ray, from: f64, end: f64) -> (Option<[f64; 2]>, u64) {
-    let mut at = from;
-    let mut evaluations = 0;
-    while at < end {
-        let Some(clear) = function.clearance(ray.at(at)) else {
-            return (Some([at, end]), evaluations);
-        };
-        evaluations += 1;
-        // A shorter step would cost more than it saves.
-        if clear.radius < NEAR * clear.scale {
-            return (Some([at, (at + clear.scale).min(end)]), evaluations);
-        }
-        at += clear.radius;
-    }
-    (None, evaluations)
-}
-
-/// Calls `tell` with each crossing of a ray with the surface of a function, and whether the ray
-/// enters there, in order, until `tell` returns false. Returns the number of evaluations.
-pub(crate) fn crossings(
-    function: &dyn Implicit,
-    along: &RayQuery,
-    mut tell: impl FnMut(f64, bool) -> bool,
-) -> u64 {
-    let [mut from, end] = along.range;
-    let mut left = MOST_HALVED;
-    let mut evaluations = 0;
-    while from < end {
-        let (piece, more) = next_piece(function, &along.ray, from, end);
-        evaluations += more;
-        let Some(piece) = piece else { break };
-        if !isolate(
-            function,
-            along,
-            piece,
-            &mut left,
-            &mut evaluations,
-            &mut tell,
-        ) {
-            break;
-        }
-        from = piece[1];
-    }
-    evaluations
-}
-
-/// Calls `tell` with each crossing on a piece of a ray. Returns false if `tell` did.
-fn isolate(
-    function: &dyn Implicit,
-    along: &RayQuery,
-    piece: [f64; 2],
-    left: &mut u32,
-    evaluations: &mut u64,
-    tell: &mut impl FnMut(f64, bool) -> bool,
-) -> bool {
-    let ray = &along.ray;
-    let mut stack = vec![piece];
-    while let Some([a, b]) = stack.pop() {
-        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
-        let center = ray.at(middle);
-        let radius = half * (1.0 + 1e-9) + 4e-16 * (center.abs().max_element() + middle);
-        let ball = Ball { center, radius };
-        if function.most(ball) < THRESHOLD {
-            continue;
-        }
-        let (bounds, known) = function.variation_with_jet(ball);
-        *evaluations += 1;
-        let [least, most] = bounds.range.value;
-        if least > THRESHOLD || most < THRESHOLD {
-            continue;
-        }
-        let jet = known.unwrap_or_else(|| function.jet(center));
-        let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
-        // How much the slope may change between the middle and another point of the piece.
-        let bend = bounds.curvature * radius + bounds.jump;
-        let change = (slope.abs() + 0.5 * bounds.curvature * radius + bounds.jump) * radius;
-        let change = change.min(bounds.range.slope * radius) + bounds.step;
-        if (jet.value - THRESHOLD).abs() > change + VALUE_ERROR * (1.0 + jet.value.abs()) {
-            continue;
-        }
-        // False if the bound is infinite.
-        let monotone = slope.abs() > bend && bounds.step == 0.0;
-        if !monotone && b - a > along.resolution && *left > 0 {
-            *left -= 1;
-            stack.push([middle, b]);
-            stack.push([a, middle]);
-            continue;
-        }
-        let inside = [a, b].map(|t| function.jet(ray.at(t)).value >= THRESHOLD);
-        *evaluations += 2;
-        if inside[0] == inside[1] {
-            continue;
-        }
-        let t = refine_root(
-            |t| {
-                *evaluations += 1;
-                let jet = function.jet(ray.at(t));
-                let slope = DVec3::from_array(jet.gradient).dot(ray.direction);
-                (jet.value - THRESHOLD, slope)
-            },
-            a,
-            b,
-            1e-14 * (1.0 + b),
-        );
-        if !tell(t, inside[1]) {
-            return false;
-        }
-    }
-    true
 }

@@ -62,9 +62,10 @@
 //!   near anything but blobs, or with a ray that starts inside, and all packets of a square whose
 //!   beam meets more than 16 other primitives.
 //!
-//! Bodies that are met ray by ray ([`body`]) are those of other functions ([`function`]), and all
-//! if a picture is to be drawn by another root finder ([`root_finder`]); those of the literature
-//! are in the crate `digger`. `map` shows the cost of each pixel.
+//! Bodies that are met ray by ray ([`body`]) are those of other functions ([`function`], in
+//! [`cells`] of space that all rays share), and all if a picture is to be drawn by another root
+//! finder ([`root_finder`]); those of the literature are in the crate `digger`. `map` shows the
+//! cost of each pixel.
 //!
 //! Pictures are checked against the crate `oracle`, whose reference finds the surface by bisection
 //! with bounds of its own (`tests/it/certified.rs`, `examples/certify.rs`); `cast` traces single
@@ -115,6 +116,7 @@ mod blob_march;
 mod blob_set;
 mod body;
 mod cast;
+mod cells;
 mod clusters;
 mod exposure;
 mod far_march;

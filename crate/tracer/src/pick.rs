@@ -1,5 +1,7 @@
 //! Picking of the element that is seen in a direction.
-use crate::function::{RayQuery, crossings, range};
+use crate::cells::search::Search;
+use crate::cells::search_in;
+use crate::function::range;
 use crate::picture::Hit;
 use crate::ray::Ray;
 use crate::solids::Solids;
@@ -76,16 +78,16 @@ impl Picker {
             let Some(range) = range(*support, &ray, limit, FURTHEST) else {
                 continue;
             };
-            let along = RayQuery {
-                ray,
-                range,
-                resolution: PICK_RESOLUTION,
-            };
             let mut found = None;
-            crossings(surface.function(), &along, |t, _| {
-                found = Some(t);
-                false
-            });
+            let asked = (PICK_RESOLUTION, false);
+            search_in(
+                None,
+                Search::new(surface.function(), ray, asked, &mut |t, _| {
+                    found = Some(t);
+                    false
+                }),
+                range,
+            );
             if let Some(t) = found {
                 limit = t;
                 let point = ray.at(t);

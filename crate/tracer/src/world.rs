@@ -7,6 +7,7 @@ use crate::shade::Finish;
 use crate::soft::Soft;
 use crate::solids::Solids;
 use crate::unit::Unit;
+use core::sync::atomic::AtomicUsize;
 use field::Implicit;
 use glam::{DVec3, Vec3};
 use scene::{Light, Scene, Surface};
@@ -32,6 +33,8 @@ pub(crate) struct World {
     pub rich: Option<Rich>,
     /// Number of the scene's bodies.
     bodies: u32,
+    /// Bytes that the cells of its functions take.
+    cells: Arc<AtomicUsize>,
 }
 
 /// [`World::hard_lift`] where `epsilon` is [`EPSILON`].
@@ -100,11 +103,12 @@ impl World {
         let epsilon = settings.epsilon.clamp(1e-9, 0.1);
         let mut sums = Vec::new();
         let mut others: Vec<Box<dyn Body>> = Vec::new();
+        let cells = Arc::default();
         for surface in scene.surfaces() {
             match surface {
                 Surface::Sum(sum) => sums.push(sum),
                 Surface::Composed(composed) => {
-                    others.push(Box::new(FunctionBody::of(composed, &scene)));
+                    others.push(Box::new(FunctionBody::of(composed, &scene, &cells)));
                 }
             }
         }
@@ -121,6 +125,7 @@ impl World {
             background,
             one_sided: !settings.double_sided,
             bodies,
+            cells,
         }
     }
 
@@ -129,14 +134,14 @@ impl World {
     pub fn add(&mut self, function: Arc<dyn Implicit>, finish: Vec<u32>) -> u32 {
         let number = self.bodies;
         self.bodies += 1;
-        self.others.push(Box::new(FunctionBody {
+        let body = FunctionBody::new(
             number,
-            support: function.support(),
             function,
-            finish,
-            element: Vec::new(),
-            unit: self.unit,
-        }));
+            (finish, Vec::new()),
+            self.unit,
+            &self.cells,
+        );
+        self.others.push(Box::new(body));
         number
     }
 

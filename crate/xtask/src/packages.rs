@@ -31,9 +31,9 @@ pub const MODULES: [Module; 4] = [
         profile: "worker",
         name: "tracer",
         // 400 kB is the aim. Made small but for the field and the tracer it was at 395; local
-        // convolution, motion, far fields and implicit meshes took it to 449, a quarter of which,
-        // before compression, are the formulas of the chart in two precisions. Without what only
-        // comparisons need it is at 422.
+        // convolution, motion, far fields and implicit meshes took it to 450. Cells add 8, and 14
+        // went with the words that told functions. A quarter of it, before compression, are the
+        // formulas of the chart in two precisions; what only comparisons need are 27.
         budget: 450_000,
     },
     // The same worker with the root finders for comparison, fetched when a text first says

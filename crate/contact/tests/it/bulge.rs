@@ -125,7 +125,7 @@ fn slopes_are_differences() {
 #[test]
 fn bounds_hold_and_are_not_far_off() {
     for bulge in all() {
-        let mut wide = 0;
+        let (mut wide, mut smooth) = (0, 0);
         for i in 0..60 {
             let low = -0.1 + f64::from(i) * 0.02;
             for width in [0.0, 1e-3, 0.05, 0.4, 3.0] {
@@ -148,11 +148,22 @@ fn bounds_hold_and_are_not_far_off() {
                             "{bulge:?} {f} {bend}"
                         );
                     }
+                    let step = (1e-3_f64).min(width / 4.0);
+                    if step > 0.0 && f - step >= low && f + step <= low + width {
+                        let slopes = [f - step, f, f + step].map(|f| bulge.jet(f).1);
+                        let third = slopes[0] - 2.0 * slopes[1] + slopes[2];
+                        smooth += u32::from(spread.third.is_finite());
+                        assert!(
+                            third.abs() <= spread.third * step * step + 1e-13,
+                            "{bulge:?} {f} {third}"
+                        );
+                    }
                 }
                 let loose = (spread.value[1] - most).max(least - spread.value[0]);
                 wide += u32::from(loose > 0.02);
             }
         }
+        assert!(smooth > 2000, "{bulge:?} {smooth}");
         if !matches!(bulge, Bulge::Ripple { .. }) {
             assert_eq!(wide, 0, "{bulge:?}");
         }

@@ -259,6 +259,51 @@ fn enclosures_hold() {
     );
 }
 
+/// Differences of gradients, once and twice, keep within the bounds on the second and the third
+/// derivative, and on what is rough.
+#[test]
+fn variations_hold() {
+    let (mut alone, mut tight) = (0, 0.0_f64);
+    for seed in 0..count(40) as u64 {
+        let (bodies, squashed, _) = crowd(seed, 2 + seed as usize % 2);
+        let random = &mut Random::new(seed + 7000);
+        for _ in 0..40 {
+            let center = 0.8 * random.vector(1.0);
+            let radius = random.decades(-3.0, -1.0);
+            let ball = Ball { center, radius };
+            let bounds = squashed[0].variation(None, ball);
+            if !(bounds.curvature.is_finite() && bounds.step == 0.0) {
+                continue;
+            }
+            let own = bodies[0].variation(None, ball);
+            // A bulge that is known to be smooth.
+            let is_alone = bounds.third > own.third && bounds.rough == own.rough;
+            alone += usize::from(is_alone);
+            for _ in 0..20 {
+                let along = random.direction();
+                let length = radius * random.decades(-2.0, -0.7);
+                let middle = center + random.direction() * ((radius - length) * random.unit());
+                let [before, here, after] = [-length, 0.0, length].map(|s| {
+                    let jet = squashed[0].jet(middle + along * s);
+                    DVec3::from_array(jet.gradient)
+                });
+                let slack = 1e-9 * (1.0 + before.length() + after.length());
+                let second = (after - before).length();
+                let most = 2.0 * bounds.curvature * length + bounds.jump;
+                assert!(second <= most + slack, "{seed} {second} {bounds:?}");
+                let third = (after - here * 2.0 + before).length();
+                let rough = 2.0 * (bounds.rough * length + bounds.jump);
+                let most = bounds.third * length * length + rough;
+                assert!(third <= most + slack, "{seed} {third} {bounds:?}");
+                if is_alone {
+                    tight = tight.max(third / most);
+                }
+            }
+        }
+    }
+    assert!(alone > count(60) && tight > 0.2, "{alone} {tight}");
+}
+
 #[test]
 fn outside_the_support_is_nothing() {
     let mut inside = 0;

@@ -1,7 +1,7 @@
 //! The function against a plain sum, differences and samples.
 
 use crate::common::lumpy_sphere;
-use field::{Ball, Enclosure, Implicit, Jet, THRESHOLD};
+use field::{Ball, Enclosure, Implicit, Jet, Slack, THRESHOLD};
 use glam::DVec3;
 use metaballs::{Error, Kind, Metaballs, circumcircle, nearest};
 use trials::{Random, count};
@@ -147,7 +147,7 @@ fn enclosures_hold() {
             let enclosure = if random.chance(0.5) {
                 balls.enclose(ball)
             } else {
-                let (variation, jet) = balls.variation_with_jet(ball);
+                let (variation, jet) = balls.variation_with_jet(None, ball);
                 if let Some(jet) = jet {
                     together += 1;
                     assert_eq!(jet, balls.jet(center));
@@ -357,5 +357,68 @@ fn balls_of_clearance_hold_no_crossing_and_are_not_small() {
         }
         assert!(6 * outside > turns, "{kind:?} {outside}");
         assert!(150 * inside > turns || k > 100.0, "{kind:?} {inside}");
+    }
+}
+
+#[test]
+fn parts_are_the_whole_function_in_their_balls() {
+    const NOTHING: Slack = Slack {
+        left_out: 0.0,
+        far: 0.0,
+    };
+    for (kind, k) in KINDS {
+        // So sharp that few facets act in small balls.
+        let (balls, _) = balls(kind, 5.0 * k, 12);
+        let mut random = Random::new(8);
+        let [mut narrow, mut narrower, mut clear, mut bounded] = [0; 4];
+        for _ in 0..count(300) {
+            let ball = Ball {
+                center: random.direction() * random.range(0.7, 1.3),
+                radius: random.decades(-2.0, -0.5),
+            };
+            let Some(large) = balls.narrow(ball, None, NOTHING) else {
+                continue;
+            };
+            narrow += 1;
+            let inner = Ball {
+                center: ball.center + random.vector(0.4 * ball.radius),
+                radius: 0.3 * ball.radius,
+            };
+            let small = balls.narrow(inner, Some(&large), NOTHING);
+            narrower += usize::from(small.is_some());
+            let part = small.as_ref().unwrap_or(&large);
+            for _ in 0..20 {
+                let away = inner.radius * libm::cbrt(random.unit());
+                let p = inner.center + random.direction() * away;
+                let whole = balls.jet(p);
+                assert_eq!(balls.jet_of(part, p), whole, "{kind:?} {p}");
+                let lanes = p.to_array().map(|x| f32x8::splat(x as f32));
+                assert_eq!(
+                    balls.jet8_of(part, lanes),
+                    balls.jet8(lanes),
+                    "{kind:?} {p}"
+                );
+                // Clearances hold within the part's ball.
+                let own = balls.clearance_of(part, p).expect("a ball");
+                for _ in 0..10 {
+                    let q = p + random.direction() * (own.radius * libm::cbrt(random.unit()));
+                    if own.radius > 0.0 && q.distance(inner.center) <= inner.radius {
+                        clear += 1;
+                        let side = balls.jet(q).value >= THRESHOLD;
+                        assert_eq!(side, whole.value >= THRESHOLD, "{kind:?} {p} {q}");
+                    }
+                }
+            }
+            let (own, jet) = balls.variation_with_jet(Some(part), inner);
+            let (all, _) = balls.variation_with_jet(None, inner);
+            if let Some(jet) = jet {
+                bounded += 1;
+                assert_eq!(jet, balls.jet(inner.center));
+                let off = own.range.value[1] - all.range.value[1];
+                assert!(off.abs() <= 1e-9 * all.range.value[1], "{own:?} {all:?}");
+            }
+        }
+        let met = [narrow, narrower, clear, bounded];
+        assert!(met.iter().all(|met| *met > count(30)), "{kind:?} {met:?}");
     }
 }
