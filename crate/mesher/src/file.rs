@@ -2,9 +2,9 @@
 //!
 //! [Cells](crate::grow) of the size that curvature asks for give a fine mesh which is closed and
 //! does not cut itself. It is [decimated](crate::decimate), then measured: points of all its
-//! triangles are looked for on the surface, and points of the surface on it. Where it cuts itself
-//! or is too far from the surface it is decimated once more with more care, at last with finer
-//! cells.
+//! triangles are looked for on the surface, and points of the surface on it. Where it is too far
+//! from the surface it is [mended](crate::mend). Where it cuts itself, or that does not help, it is
+//! decimated once more with more care, at last with finer cells.
 
 use crate::certify::{Vertex, at, descend};
 use crate::decimate::{Decimated, Decimation};
@@ -14,6 +14,7 @@ use crate::grow::{Corners, FINEST, FLAT, HIDING, LEVELS, Sizes, grow_tetrahedra}
 use crate::lattice::Lattice;
 use crate::march::{Raw, march};
 use crate::measure::{Measured, along_ray, root_of, spread};
+use crate::mend::{match_triangles, mend};
 use crate::options::{MeshError, Options, Phase, Progress};
 use crate::parallel::{LARGE, map_by, map_told};
 use crate::refine::crossing;
@@ -27,6 +28,11 @@ use mesh::{Aabb, Bvh, TriangleMesh, closest_point, self_intersections};
 const ATTEMPTS: usize = 4;
 /// Shares of the progress at which the work on each of the fine meshes begins.
 const FINE_MESHES: [f32; 3] = [0.3, 0.7, 0.9];
+/// Most times that a coarse mesh is mended.
+const MENDINGS: usize = 6;
+/// A mesh is mended if it is too far from the surface at no more places than one for so many
+/// triangles.
+const MENDED: usize = 20;
 /// Share of the tolerance that is left to a place in the next attempt.
 const LESS: f64 = 0.4;
 /// Shares below which a vertex is kept.
@@ -236,11 +242,64 @@ struct Fine<'a> {
     threads: usize,
 }
 
-/// Result of a measurement.
-struct Found {
-    measured: Measured,
-    /// Places that are too far, and how far around them the mesh is to blame.
-    far: Vec<(DVec3, f64)>,
+/// A mesh with distances between it and the surface.
+struct Survey {
+    mesh: TriangleMesh,
+    /// The sample of each triangle that is farthest from the surface; `None` for lids.
+    there: Vec<Option<(DVec3, f64)>>,
+    /// The triangle nearest to each place of the surface.
+    back: Vec<(u32, f64)>,
+}
+
+/// A place where a mesh is too far from the surface.
+struct Far {
+    place: DVec3,
+    triangle: u32,
+    /// Distance around the place in which the mesh is to blame.
+    reach: f64,
+}
+
+impl Survey {
+    /// Returns the places that are too far: samples of triangles, then places of the surface.
+    fn far(&self, places: &[DVec3], tolerance: f64) -> Vec<Far> {
+        let mut far = Vec::new();
+        for (triangle, worst) in (0..).zip(&self.there) {
+            let Some((place, distance)) = *worst else {
+                continue;
+            };
+            // Not so for NaN.
+            let is_within = distance <= tolerance;
+            if !is_within {
+                let corners = self.mesh.corners(triangle as usize);
+                let reach = corners.map(|corner| corner.distance(place));
+                far.push(Far {
+                    place,
+                    triangle,
+                    reach: reach.into_iter().fold(0.0, f64::max),
+                });
+            }
+        }
+        let back = places.iter().zip(&self.back);
+        let missed = back.filter(|(_, (_, distance))| *distance > tolerance);
+        far.extend(missed.map(|(place, (triangle, distance))| Far {
+            place: *place,
+            triangle: *triangle,
+            reach: 2.0 * distance,
+        }));
+        far
+    }
+
+    fn measured(&self) -> Measured {
+        let mut measured = Measured::default();
+        for (_, distance) in self.there.iter().flatten() {
+            measured.add(0, &[*distance]);
+            measured.samples[0] += SAMPLES.len() - 1;
+        }
+        for (_, distance) in &self.back {
+            measured.add(1, &[*distance]);
+        }
+        measured
+    }
 }
 
 impl Fine<'_> {
@@ -259,6 +318,7 @@ impl Fine<'_> {
             .iter()
             .map(|v| Aabb::of_points([v.position]));
         let points = Bvh::new(&points.collect::<Vec<Aabb>>());
+        let places = self.places(progress)?;
         let mut left = Vec::new();
         for attempt in 0..ATTEMPTS {
             let [start, end] = [0, 1].map(|i| (attempt + i) as f32 / ATTEMPTS as f32);
@@ -300,11 +360,23 @@ impl Fine<'_> {
                 }
                 continue;
             }
-            let Found { measured, far } = self.measure(&mesh, progress)?;
-            if far.is_empty() {
-                return Ok(Ok((mesh, measured)));
+            let mut survey = self.survey(mesh, &places, progress)?;
+            let mut far = survey.far(&places, self.tolerance);
+            for _ in 0..MENDINGS {
+                if far.is_empty() {
+                    break;
+                }
+                let Some(mended) = self.mend(&survey, &places, progress)? else {
+                    break;
+                };
+                survey = mended;
+                far = survey.far(&places, self.tolerance);
             }
-            for (place, reach) in &far {
+            if far.is_empty() {
+                let measured = survey.measured();
+                return Ok(Ok((survey.mesh, measured)));
+            }
+            for Far { place, reach, .. } in &far {
                 for i in points.overlapping(&cube(*place, *reach)) {
                     let share = &mut shares[i as usize];
                     *share = if *share * LESS < KEPT {
@@ -314,7 +386,7 @@ impl Fine<'_> {
                     };
                 }
             }
-            left = far.into_iter().map(|(place, _)| place).collect();
+            left = far.into_iter().map(|far| far.place).collect();
         }
         Ok(Err(left))
     }
@@ -331,81 +403,139 @@ impl Fine<'_> {
         Ok((!crossings.is_free()).then(|| places.collect()))
     }
 
-    /// Measures both distances.
-    fn measure(
-        &self,
-        mesh: &TriangleMesh,
-        progress: &mut Progress<'_>,
-    ) -> Result<Found, MeshError> {
-        let (tolerance, threads) = (self.tolerance, self.threads);
-        let mut measured = Measured::default();
-        let mut far = Vec::new();
-
-        // From the mesh.
-        let there = self.farthest_of_all(mesh, progress)?;
-        for (i, worst) in there.into_iter().enumerate() {
-            let Some((place, distance)) = worst else {
-                continue;
-            };
-            measured.add(0, &[distance]);
-            measured.samples[0] += SAMPLES.len() - 1;
-            // Not so for NaN.
-            let is_within = distance <= tolerance;
-            if !is_within {
-                let corners = mesh.corners(i);
-                let reach = corners.map(|corner| corner.distance(place));
-                far.push((place, reach.into_iter().fold(0.0, f64::max)));
-            }
-        }
-
-        // From the surface.
-        let bvh = Bvh::new(&mesh.triangle_boxes());
-        let vertices = self.raw.vertices.iter();
-        let on = vertices.filter(|v| v.value.abs() <= ON * tolerance * v.gradient.length());
+    /// The places of the surface that are looked for on meshes.
+    fn places(&self, progress: &mut Progress<'_>) -> Result<Vec<DVec3>, MeshError> {
+        let raw = self.raw;
+        let on = raw.vertices.iter().filter(|v| self.is_on(v));
         let mut places: Vec<DVec3> = on.map(|v| v.position).collect();
-        let fine = (0..self.raw.triangles.len()).filter(|i| !self.raw.is_lid[*i]);
+        let fine = (0..raw.triangles.len()).filter(|i| !raw.is_lid[*i]);
         let fine = spread(fine.collect(), PLACES);
         let goals = fine.into_iter().map(|i| {
-            let corners = self.raw.triangles[i].map(|v| self.raw.vertices[v as usize].position);
+            let corners = raw.triangles[i].map(|v| raw.vertices[v as usize].position);
             let [a, b, c] = corners;
             let reach = a.distance(b).max(b.distance(c)).max(c.distance(a));
             ((a + b + c) / 3.0, reach)
         });
         let goals: Vec<(DVec3, f64)> = goals.collect();
-        let others = descend(self.space, &goals, STEPS, tolerance, threads, progress)?;
-        let on = others.into_iter().filter(|v| {
-            let is_on = v.value.abs() <= ON * tolerance * v.gradient.length();
-            is_on && self.space.forest.contains(v.position)
-        });
-        places.extend(on.map(|v| v.position));
-        let back = map_told(threads, &places, progress, |p| {
-            root_of(bvh.nearest(*p, f64::INFINITY, |i| {
-                closest_point(&mesh.corners(i as usize), *p).distance_squared(*p)
-            }))
-        })?;
-        measured.add(1, &back);
-        let missed = places.iter().zip(&back).filter(|(_, d)| **d > tolerance);
-        far.extend(missed.map(|(place, distance)| (*place, 2.0 * distance)));
-        Ok(Found { measured, far })
+        let (space, tolerance) = (self.space, self.tolerance);
+        let found = descend(space, &goals, STEPS, tolerance, self.threads, progress)?;
+        let on = found.into_iter().filter(|v| self.is_on(v));
+        places.extend(on.map(|v| v.position).filter(|p| space.forest.contains(*p)));
+        Ok(places)
     }
 
-    /// Measures all triangles: the sample of each that is farthest from the surface, and its
-    /// distance: infinite if no surface was found within the tolerance. `None` for lids.
-    fn farthest_of_all(
+    /// Whether a vertex is so near the surface that it counts as a place of it.
+    fn is_on(&self, vertex: &Vertex) -> bool {
+        vertex.value.abs() <= ON * self.tolerance * vertex.gradient.length()
+    }
+
+    /// Measures both distances.
+    fn survey(
+        &self,
+        mesh: TriangleMesh,
+        places: &[DVec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<Survey, MeshError> {
+        let all: Vec<usize> = (0..mesh.triangles.len()).collect();
+        Ok(Survey {
+            there: self.measure_triangles(&mesh, &all, progress)?,
+            back: self.measure_places(&mesh, places, progress)?,
+            mesh,
+        })
+    }
+
+    /// Mends the mesh where it is too far from the surface, and measures what has changed; `None`
+    /// if there is too much to mend, or if that fails.
+    fn mend(
+        &self,
+        survey: &Survey,
+        places: &[DVec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<Survey>, MeshError> {
+        let (tolerance, old) = (self.tolerance, &survey.mesh);
+        let far = survey.far(places, tolerance);
+        if MENDED * far.len() > old.triangles.len() || self.raw.is_lid.contains(&true) {
+            return Ok(None);
+        }
+        let goals: Vec<(DVec3, f64)> = far.iter().map(|far| (far.place, tolerance)).collect();
+        let (space, threads) = (self.space, self.threads);
+        let found = descend(space, &goals, STEPS, tolerance, threads, progress)?;
+        let gaps = far
+            .iter()
+            .zip(found)
+            .filter(|(_, vertex)| self.is_on(vertex) && space.forest.contains(vertex.position));
+        let gaps: Vec<(u32, Vertex)> = gaps.map(|(far, v)| (far.triangle, v)).collect();
+        let Some(mesh) = mend(old, &gaps, tolerance) else {
+            return Ok(None);
+        };
+        let crossings =
+            self_intersections(&mesh, 1).map_err(|error| MeshError::Failed(error.to_string()))?;
+        if !crossings.is_free() {
+            return Ok(None);
+        }
+        let matches = match_triangles(&old.triangles, &mesh.triangles);
+        let fresh = (0..matches.len()).filter(|i| matches[*i].is_none());
+        let fresh: Vec<usize> = fresh.collect();
+        let there = matches.iter().map(|i| survey.there[(*i)? as usize]);
+        let mut there: Vec<Option<(DVec3, f64)>> = there.collect();
+        let found = self.measure_triangles(&mesh, &fresh, progress)?;
+        for (i, worst) in fresh.into_iter().zip(found) {
+            there[i] = worst;
+        }
+        // A place is no farther from the mesh than it was from a triangle that is still there.
+        let mut numbers = vec![None; old.triangles.len()];
+        for (i, old) in (0..).zip(&matches) {
+            if let Some(old) = old {
+                numbers[*old as usize] = Some(i);
+            }
+        }
+        let mut back = survey.back.clone();
+        let lost = (0..back.len()).filter(|i| numbers[back[*i].0 as usize].is_none());
+        let lost: Vec<usize> = lost.collect();
+        for (triangle, _) in &mut back {
+            *triangle = numbers[*triangle as usize].unwrap_or(0);
+        }
+        let moved: Vec<DVec3> = lost.iter().map(|i| places[*i]).collect();
+        let found = self.measure_places(&mesh, &moved, progress)?;
+        for (i, nearest) in lost.into_iter().zip(found) {
+            back[i] = nearest;
+        }
+        Ok(Some(Survey { mesh, there, back }))
+    }
+
+    /// The nearest triangle of a mesh to each of some places of the surface, and its distance.
+    fn measure_places(
         &self,
         mesh: &TriangleMesh,
+        places: &[DVec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<(u32, f64)>, MeshError> {
+        let bvh = Bvh::new(&mesh.triangle_boxes());
+        map_told(self.threads, places, progress, |p| {
+            let nearest = bvh.nearest(*p, f64::INFINITY, |i| {
+                closest_point(&mesh.corners(i as usize), *p).distance_squared(*p)
+            });
+            (nearest.map_or(0, |(i, _)| i), root_of(nearest))
+        })
+    }
+
+    /// Measures some triangles: the sample of each that is farthest from the surface, and its
+    /// distance: infinite if no surface was found within the tolerance. `None` for lids.
+    fn measure_triangles(
+        &self,
+        mesh: &TriangleMesh,
+        some: &[usize],
         progress: &mut Progress<'_>,
     ) -> Result<Vec<Option<(DVec3, f64)>>, MeshError> {
-        let all = 0..mesh.triangles.len();
-        let goals = all.clone().flat_map(|i| {
-            let [a, b, c] = mesh.corners(i);
+        let goals = some.iter().flat_map(|i| {
+            let [a, b, c] = mesh.corners(*i);
             SAMPLES.map(|[u, v, w]| (a * u + b * v + c * w, 0.0))
         });
         let goals: Vec<(DVec3, f64)> = goals.collect();
         let (space, tolerance) = (self.space, self.tolerance);
         let samples = descend(space, &goals, 0, tolerance, self.threads, progress)?;
-        let triangles: Vec<(usize, &[Vertex])> =
-            all.zip(samples.chunks_exact(SAMPLES.len())).collect();
+        let samples = samples.chunks_exact(SAMPLES.len());
+        let triangles: Vec<(usize, &[Vertex])> = some.iter().copied().zip(samples).collect();
         map_by(LARGE, self.threads, &triangles, progress, |(i, samples)| {
             let corners = mesh.corners(*i);
             if self.is_lid(corners) {

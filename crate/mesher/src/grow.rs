@@ -251,14 +251,16 @@ fn look(
             return Fate::Leaf(Side::Crossing);
         }
         let (mut least, mut bend) = (middle.value.abs(), 0.0_f64);
+        let mut slope = middle.gradient.length();
         for corner in corners {
             let turn = corner.gradient - middle.gradient;
             let way = corner.position - middle.position;
             (least, bend) = (least.min(corner.value.abs()), bend.max(turn.dot(way).abs()));
+            slope = slope.min(corner.gradient.length());
         }
-        // Between samples the function is as far from its interpolant as along their edges.
-        // Not so for NaN.
-        let is_far = least > BEND * bend / 8.0;
+        // Between samples the function is as far from its interpolant as along their edges. If
+        // that is too far, the surface bulges into the cell, but not much. Not so for NaN.
+        let is_far = BEND * bend / 8.0 < least + SAG * tolerance * slope;
         if is_far || is_usual {
             return Fate::Leaf(if own { Side::Inside } else { Side::Outside });
         }
