@@ -289,7 +289,8 @@ impl Survey {
         far
     }
 
-    fn measured(&self) -> Measured {
+    /// Returns the largest distances.
+    fn sum_up(&self) -> Measured {
         let mut measured = Measured::default();
         for (_, distance) in self.there.iter().flatten() {
             measured.add(0, &[*distance]);
@@ -373,7 +374,7 @@ impl Fine<'_> {
                 far = survey.far(&places, self.tolerance);
             }
             if far.is_empty() {
-                let measured = survey.measured();
+                let measured = survey.sum_up();
                 return Ok(Ok((survey.mesh, measured)));
             }
             for Far { place, reach, .. } in &far {
@@ -590,5 +591,85 @@ impl Fine<'_> {
             }
         }
         least
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::box_of;
+    use core::ops::ControlFlow;
+    use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Sum};
+
+    /// A mesh that was decimated for a larger tolerance is mended for this one, and what was
+    /// measured of it then is no less than a new measurement tells.
+    #[test]
+    fn mended_meshes_are_near_the_surface() {
+        let shaping = Shaping {
+            kernel: Kernel::Gauss,
+            radius: 0.3,
+            blobbiness: 2.0,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        let (base, apex) = (DVec3::ZERO, DVec3::new(1.0, 0.3, 0.2));
+        let ball = Skeleton::Point {
+            center: DVec3::new(0.2, 0.5, 0.0),
+        };
+        let parts = [Skeleton::Segment { base, apex }, ball];
+        let parts = parts.map(|skeleton| Primitive::new(skeleton, &shaping, None));
+        let sum: Sum = parts.into_iter().flatten().collect();
+        let domain = box_of(sum.support().unwrap());
+        let sizes = Sizes {
+            tolerance: 0.005,
+            hiding: HIDING[0],
+            most: LEAST_CELLS,
+            threads: 1,
+        };
+        let forest = Forest::new(&domain, FINEST * sizes.tolerance, LEVELS);
+        let mut space = Space::new(&sum, forest, sizes.tolerance);
+        let mut report = |_| ControlFlow::Continue(());
+        let progress = &mut Progress::new(&mut report);
+        let raw = dual(&mut space, &mut Corners::default(), &sizes, progress);
+        let raw = raw.unwrap().unwrap();
+        let fine = Fine {
+            space: &space,
+            raw: &raw,
+            domain: &domain,
+            tolerance: sizes.tolerance,
+            threads: 1,
+        };
+        let (shares, free) = (
+            vec![1.0; raw.vertices.len()],
+            vec![false; raw.vertices.len()],
+        );
+        let coarse = 1.4 * sizes.tolerance;
+        let decimation = Decimation::new(&space, &raw, 1, coarse, &shares, &free).unwrap();
+        let mesh = decimation.run(progress).unwrap().mesh;
+        let places = fine.places(progress).unwrap();
+        let mut survey = fine.survey(mesh, &places, progress).unwrap();
+        let before = survey.far(&places, sizes.tolerance).len();
+        assert!(before > 0);
+        for _ in 0..MENDINGS {
+            if let Some(mended) = fine.mend(&survey, &places, progress).unwrap() {
+                survey = mended;
+            }
+        }
+        println!("{before} of {}", survey.mesh.triangles.len());
+        assert!(survey.far(&places, sizes.tolerance).is_empty());
+        let again = fine.survey(survey.mesh.clone(), &places, progress).unwrap();
+        for (own, new) in survey.there.iter().zip(&again.there) {
+            let [own, new] = [own, new].map(|worst| worst.unwrap().1);
+            assert!((own - new).abs() < 1e-3 * sizes.tolerance);
+        }
+        for ((triangle, own), place) in survey.back.iter().zip(&places) {
+            let nearest = closest_point(&survey.mesh.corners(*triangle as usize), *place);
+            assert!((nearest.distance(*place) - own).abs() < 1e-9);
+        }
+        for (own, new) in survey.back.iter().zip(&again.back) {
+            assert!(own.1 >= new.1 - 1e-9);
+        }
     }
 }

@@ -634,6 +634,55 @@ fn follow(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use field::Sum;
+    use mesh::Aabb;
+    use trials::{Random, count};
+
+    /// A ball bulges into cells whose corners it does not reach by less than the part of the
+    /// tolerance that they may hide.
+    #[test]
+    fn cells_hide_a_small_bulge() {
+        fn on_ball(position: DVec3) -> Vertex {
+            Vertex {
+                position,
+                value: 0.5 * (1.0 - position.length_squared()),
+                gradient: -position,
+            }
+        }
+        let (nothing, side) = (Sum::default(), DVec3::splat(2.0));
+        let domain = Aabb::of_points([-side, side]);
+        let space = Space::new(&nothing, Forest::new(&domain, 0.01, LEVELS), 1e-3);
+        let cell = space.forest.cells[0];
+        assert!(cell.level < space.forest.usual);
+        let mut random = Random::new(5);
+        let [mut hidden, mut seen] = [0; 2];
+        for _ in 0..count(20_000) {
+            let half = random.range(0.01, 0.15);
+            let tolerance = half * half * random.range(0.1, 5.0);
+            let center = random.direction() * (1.0 + half * random.range(0.8, 1.8));
+            let corners: [Vertex; 8] = core::array::from_fn(|i| {
+                let way = [0, 1, 2].map(|k| if i >> k & 1 == 0 { -half } else { half });
+                on_ball(center + DVec3::from(way))
+            });
+            let nearest = DVec3::ZERO.clamp(center - half, center + half);
+            let depth = 1.0 - nearest.length();
+            if depth < 0.0 || corners.iter().any(|corner| corner.value > 0.0) {
+                continue;
+            }
+            let middle = on_ball(center);
+            if look(&space, &cell, &middle, corners.each_ref(), tolerance, false) == Fate::Split {
+                seen += 1;
+            } else {
+                assert!(
+                    depth <= 1.05 * SAG * tolerance,
+                    "{depth} of {tolerance}, {half}"
+                );
+                hidden += 1;
+            }
+        }
+        println!("{hidden} hidden, {seen} seen");
+        assert!(hidden > count(100) && seen > count(100));
+    }
 
     #[test]
     fn edges_join_corners_that_differ_along_one_axis() {

@@ -55,17 +55,17 @@ pub fn mend(mesh: &TriangleMesh, gaps: &[(u32, Vertex)], tolerance: f64) -> Opti
 
 /// For each of some new triangles the number of the old one that has the same corners.
 pub fn match_triangles(old: &[[u32; 3]], new: &[[u32; 3]]) -> Vec<Option<u32>> {
-    /// The least corner first.
-    fn turned(mut triangle: [u32; 3]) -> [u32; 3] {
+    /// Turns a triangle so that its least corner is the first.
+    fn turn(mut triangle: [u32; 3]) -> [u32; 3] {
         while triangle[0] > triangle[1].min(triangle[2]) {
             triangle.rotate_left(1);
         }
         triangle
     }
-    let mut sorted: Vec<([u32; 3], u32)> = (0..).zip(old).map(|(i, t)| (turned(*t), i)).collect();
+    let mut sorted: Vec<([u32; 3], u32)> = (0..).zip(old).map(|(i, t)| (turn(*t), i)).collect();
     sorted.sort_unstable();
     let found = new.iter().map(|triangle| {
-        let place = sorted.binary_search_by_key(&turned(*triangle), |(own, _)| *own);
+        let place = sorted.binary_search_by_key(&turn(*triangle), |(own, _)| *own);
         place.ok().map(|place| sorted[place].1)
     });
     found.collect()
