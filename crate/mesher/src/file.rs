@@ -604,7 +604,7 @@ mod tests {
     /// A mesh that was decimated for a larger tolerance is mended for this one, and what was
     /// measured of it then is no less than a new measurement tells.
     #[test]
-    fn mended_meshes_are_near_the_surface() {
+    fn repairs_bring_meshes_near_the_surface() {
         let shaping = Shaping {
             kernel: Kernel::Gauss,
             radius: 0.3,

@@ -53,7 +53,7 @@ pub fn mend(mesh: &TriangleMesh, gaps: &[(u32, Vertex)], tolerance: f64) -> Opti
     Some(mended)
 }
 
-/// For each of some new triangles the number of the old one that has the same corners.
+/// Returns the number of the old triangle with the same corners, for each new one.
 pub fn match_triangles(old: &[[u32; 3]], new: &[[u32; 3]]) -> Vec<Option<u32>> {
     /// Turns a triangle so that its least corner is the first.
     fn turn(mut triangle: [u32; 3]) -> [u32; 3] {
