@@ -367,7 +367,7 @@ fn parts_are_the_whole_function_in_their_balls() {
         far: 0.0,
     };
     for (kind, k) in KINDS {
-        // So sharp that few facets act in small balls.
+        // At this sharpness few facets act in small balls.
         let (balls, _) = balls(kind, 5.0 * k, 12);
         let mut random = Random::new(8);
         let [mut narrow, mut narrower, mut clear, mut bounded] = [0; 4];

@@ -446,8 +446,8 @@ mod tests {
             }
             let bytes = kept.bytes.load(Ordering::Relaxed);
             let [none, few] = [&full, &part].map(|bytes| bytes.load(Ordering::Relaxed));
-            // Of the cells that are forgotten only the root is kept; and only the last ones that
-            // are kept may be too many.
+            // A world without room keeps the root alone, and one with little room exceeds it by
+            // the cells that were being made when it ran out.
             assert!(
                 none - MOST_BYTES < 4000 && few - MOST_BYTES < 12_000,
                 "{none} {few}"
@@ -518,7 +518,7 @@ mod tests {
             for ray in &rays {
                 let all = search(&cells, &sum, support, ray, false);
                 let entries = search(&cells, &sum, support, ray, true);
-                // From outside every second crossing is an exit.
+                // Rays that start outside enter and leave in turn.
                 assert_eq!(entries.len(), all.len().div_ceil(2));
                 entered += entries.len();
                 missed += usize::from(entries.is_empty());

@@ -712,7 +712,7 @@ fn implicit_meshes_are_seen_where_they_are() {
                     let place = ray.0 + ray.1 * (t + s);
                     function.jet(place).value >= THRESHOLD
                 });
-                // Where the ray grazes the sides may be alike.
+                // A grazing ray may have the same side on both ends.
                 let value = function.jet(ray.0 + ray.1 * *t).value;
                 let is_on = sides[0] != sides[1] || (value - THRESHOLD).abs() < 1e-9;
                 assert!(is_on, "{seed}: invented {t}");
