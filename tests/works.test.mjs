@@ -135,14 +135,16 @@ test('undo steps, versions and files of any size are there again', async () => {
 test('works that were kept before are found', async () => {
   const file = (text) => ({ files: [{ name: 'main.rat', text }] });
   const before = async (page) => {
-    await page.goto(`${browser.address}icon.svg`);
     const history = { past: [file('# before\n')], future: [] };
     const kept = { project: file(OWN), camera: null, history };
     const record = `a.1\n${JSON.stringify({ version: 1, name: 'Old', saved: 1, kept })}`;
     const image = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==';
     const assets = JSON.stringify([{ name: 'dot.png', bytes: image }]);
-    await page.evaluate(
+    await page.addInitScript(
       ([record, assets]) => {
+        // Only once, and not with each reload.
+        if (sessionStorage.getItem('given')) return;
+        sessionStorage.setItem('given', 'yes');
         localStorage.setItem('sinew/document/x', record);
         localStorage.setItem('sinew/assets/x', assets);
         localStorage.setItem('sinew/current', 'x');

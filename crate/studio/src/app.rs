@@ -493,8 +493,9 @@ impl App {
             Told::Mine(id) if open == Some(&id) => {
                 let mut shelf = page.parts.shelf.borrow_mut();
                 let was_theirs = shelf.is_theirs();
-                shelf.set_theirs(false);
                 let is_behind = shelf.is_behind();
+                // Until it is read anew, changes still become a copy.
+                shelf.set_theirs(is_behind);
                 drop(shelf);
                 if is_behind {
                     self.carry_out(WorkWish::OpenSaved(id).into(), at);
