@@ -5,7 +5,7 @@
 //! It is closed where the surface does not reach the end of the box, and a manifold where the
 //! polygons around each leaf make one ring: other leaves are split.
 
-use crate::certify::{descend, sag};
+use crate::certify::{Vertex, descend, sag};
 use crate::forest::{Forest, NONE, Side};
 use crate::grow::{Corners, Sizes, each_crossed_edge, grow, on_edge, split_all};
 use crate::march::Raw;
@@ -19,6 +19,10 @@ use glam::DVec3;
 const ROUNDS: usize = 24;
 /// Most leaves that are split at once for its sake.
 const MOST_PINCHED: usize = 5000;
+/// Largest distances from the surface of the middle of a triangle and of a vertex, by first-order
+/// estimates in tolerances. Leaves with others are split, but not below the usual size.
+const OFF: f64 = 0.8;
+const ON: f64 = 0.1;
 /// Newton's steps that put a vertex onto the surface.
 const STEPS: usize = 3;
 /// Distance from its leaf's centre that a vertex may have along an axis, in sides of the leaf.
@@ -76,7 +80,12 @@ pub fn dual(
             let mut mesh = Mesh::new(space, &polygons, sizes, progress)?;
             bad = mesh.triangulate(&polygons);
             if bad.is_empty() {
-                return Ok(Some(mesh.raw));
+                bad = mesh.find_far(space, sizes, progress)?;
+                if bad.is_empty() {
+                    return Ok(Some(mesh.raw));
+                }
+                split_all(space, &bad, sizes.threads, progress)?;
+                continue;
             }
         }
         let cells = &space.forest.cells;
@@ -233,6 +242,47 @@ impl Mesh {
         self.raw.triangles = triangles;
         let bad = bad.into_iter().map(|i| self.leaves[i as usize]);
         bad.collect()
+    }
+}
+
+/// Whether a place is near the surface by a first-order estimate. Not so for NaN.
+fn is_near(place: &Vertex, most: f64) -> bool {
+    place.value.abs() <= most * place.gradient.length()
+}
+
+impl Mesh {
+    /// Returns the leaves, in ascending order, in which the mesh is far from the surface and which
+    /// are larger than usual: samples at their corners did not tell how the surface bends there.
+    fn find_far(
+        &self,
+        space: &Space<'_>,
+        sizes: &Sizes,
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<u32>, MeshError> {
+        let Raw {
+            vertices,
+            triangles,
+            ..
+        } = &self.raw;
+        let middles = triangles.iter().map(|corners| {
+            let [a, b, c] = corners.map(|i| vertices[i as usize].position);
+            ((a + b + c) / 3.0, 0.0)
+        });
+        let middles: Vec<(DVec3, f64)> = middles.collect();
+        let found = descend(space, &middles, 0, sizes.tolerance, sizes.threads, progress)?;
+        let [off, on] = [OFF, ON].map(|most| most * sizes.tolerance);
+        let corners = triangles.iter().zip(&found);
+        let corners = corners.filter(|(_, middle)| !is_near(middle, off));
+        let corners = corners.flat_map(|(corners, _)| *corners);
+        let astray = (0..).zip(vertices).filter(|(_, own)| !is_near(own, on));
+        let astray = astray.map(|(i, _)| i);
+        let far = corners.chain(astray).map(|i| self.leaves[i as usize]);
+        let forest = &space.forest;
+        let large = far.filter(|leaf| forest.cells[*leaf as usize].level < forest.usual);
+        let mut far: Vec<u32> = large.collect();
+        far.sort_unstable();
+        far.dedup();
+        Ok(far)
     }
 }
 

@@ -2,9 +2,9 @@
 //!
 //! [Cells](crate::grow) of the size that curvature asks for give a fine mesh which is closed and
 //! does not cut itself. It is [decimated](crate::decimate), then measured: points of all its
-//! triangles are looked for on the surface, and points of the surface on it. Where it cuts itself
-//! or is too far from the surface it is decimated once more with more care, at last with finer
-//! cells.
+//! triangles are looked for on the surface, and points of the surface on it. Where it is too far
+//! from the surface it is [mended](crate::mend). Where it cuts itself, or that does not help, it is
+//! decimated once more with more care, at last with finer cells.
 
 use crate::certify::{Vertex, at, descend};
 use crate::decimate::{Decimated, Decimation};
@@ -14,6 +14,7 @@ use crate::grow::{Corners, FINEST, FLAT, HIDING, LEVELS, Sizes, grow_tetrahedra}
 use crate::lattice::Lattice;
 use crate::march::{Raw, march};
 use crate::measure::{Measured, along_ray, root_of, spread};
+use crate::mend::{match_triangles, mend};
 use crate::options::{MeshError, Options, Phase, Progress};
 use crate::parallel::{LARGE, map_by, map_told};
 use crate::refine::crossing;
@@ -27,6 +28,13 @@ use mesh::{Aabb, Bvh, TriangleMesh, closest_point, self_intersections};
 const ATTEMPTS: usize = 4;
 /// Shares of the progress at which the work on each of the fine meshes begins.
 const FINE_MESHES: [f32; 3] = [0.3, 0.7, 0.9];
+/// Most times that cells are divided where a fine mesh cuts itself.
+const SEPARATIONS: usize = 8;
+/// Most times that a coarse mesh is mended.
+const MENDINGS: usize = 6;
+/// A mesh is mended if it is too far from the surface at no more places than one for so many
+/// triangles.
+const MENDED: usize = 20;
 /// Share of the tolerance that is left to a place in the next attempt.
 const LESS: f64 = 0.4;
 /// Shares below which a vertex is kept.
@@ -38,6 +46,8 @@ const SURE: f64 = 0.4;
 
 /// Newton's steps that look for a place of the surface.
 const STEPS: usize = 4;
+/// Largest distance by a first-order estimate, in tolerances, of a place that Newton's steps found.
+const FOOT: f64 = 0.01;
 /// Largest distance by a first-order estimate, in tolerances, of places of the surface from it.
 const ON: f64 = 0.1;
 
@@ -78,7 +88,7 @@ pub fn approximate(
     let tolerance = tolerance.min(LARGEST * size);
     let most = max_triangles.saturating_mul(2).max(LEAST_CELLS);
     let mut grown = None;
-    for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
+    for (start, hiding) in [0.0, 0.1].into_iter().zip(HIDING) {
         let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
         let mut space = Space::new(function, forest, tolerance / size);
         let mut corners = Corners::default();
@@ -114,7 +124,7 @@ pub fn approximate(
         let raw = match first.take() {
             Some(raw) => Ok(Some(raw)),
             None if i == 0 || i + 1 == FINE_MESHES.len() => Ok(None),
-            None => dual(&mut space, &mut corners, &sizes, cells),
+            None => separate(&mut space, &mut corners, &sizes, cells),
         };
         let raw = match raw {
             Ok(Some(raw)) => Ok(raw),
@@ -171,6 +181,36 @@ pub fn approximate(
     Err(too_rough())
 }
 
+/// Makes the mesh that is dual to cells, of smaller cells where it cuts itself.
+fn separate(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Option<Raw>, MeshError> {
+    for _ in 0..SEPARATIONS {
+        let Some(raw) = dual(space, corners, sizes, progress)? else {
+            return Ok(None);
+        };
+        let Some(places) = find_crossings(&raw)? else {
+            return Ok(Some(raw));
+        };
+        refine(space, &places);
+    }
+    Ok(None)
+}
+
+/// The places where a mesh cuts itself; `None` if it does not.
+fn find_crossings(raw: &Raw) -> Result<Option<Vec<DVec3>>, MeshError> {
+    let positions = raw.vertices.iter().map(|v| v.position).collect();
+    let mesh = TriangleMesh::new(positions, raw.triangles.clone());
+    let crossings = self_intersections(&mesh, MOST_CROSSINGS)
+        .map_err(|error| MeshError::Failed(error.to_string()))?;
+    let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
+    let places = faces.map(|i| Aabb::of_points(mesh.corners(*i as usize)).center());
+    Ok((!crossings.is_free()).then(|| places.collect()))
+}
+
 /// The mesh of the level set of tetrahedra, which may be cut off by the box.
 fn march_all(
     space: &mut Space<'_>,
@@ -219,6 +259,11 @@ fn refine(space: &mut Space<'_>, places: &[DVec3]) {
     }
 }
 
+/// A first-order estimate of a place's distance from the surface.
+fn estimate(place: &Vertex) -> f64 {
+    place.value.abs() / place.gradient.length()
+}
+
 /// A cube by its centre and half its side.
 fn cube(center: DVec3, half: f64) -> Aabb {
     Aabb {
@@ -236,11 +281,65 @@ struct Fine<'a> {
     threads: usize,
 }
 
-/// Result of a measurement.
-struct Found {
-    measured: Measured,
-    /// Places that are too far, and how far around them the mesh is to blame.
-    far: Vec<(DVec3, f64)>,
+/// A mesh with distances between it and the surface.
+struct Survey {
+    mesh: TriangleMesh,
+    /// The sample of each triangle that is farthest from the surface; `None` for lids.
+    there: Vec<Option<(DVec3, f64)>>,
+    /// The triangle nearest to each place of the surface.
+    back: Vec<(u32, f64)>,
+}
+
+/// A place where a mesh is too far from the surface.
+struct Far {
+    place: DVec3,
+    triangle: u32,
+    /// Distance around the place in which the mesh is to blame.
+    reach: f64,
+}
+
+impl Survey {
+    /// Returns the places that are too far: samples of triangles, then places of the surface.
+    fn far(&self, places: &[DVec3], tolerance: f64) -> Vec<Far> {
+        let mut far = Vec::new();
+        for (triangle, worst) in (0..).zip(&self.there) {
+            let Some((place, distance)) = *worst else {
+                continue;
+            };
+            // Not so for NaN.
+            let is_within = distance <= tolerance;
+            if !is_within {
+                let corners = self.mesh.corners(triangle as usize);
+                let reach = corners.map(|corner| corner.distance(place));
+                far.push(Far {
+                    place,
+                    triangle,
+                    reach: reach.into_iter().fold(0.0, f64::max),
+                });
+            }
+        }
+        let back = places.iter().zip(&self.back);
+        let missed = back.filter(|(_, (_, distance))| *distance > tolerance);
+        far.extend(missed.map(|(place, (triangle, distance))| Far {
+            place: *place,
+            triangle: *triangle,
+            reach: 2.0 * distance,
+        }));
+        far
+    }
+
+    /// Returns the largest distances.
+    fn sum_up(&self) -> Measured {
+        let mut measured = Measured::default();
+        for (_, distance) in self.there.iter().flatten() {
+            measured.add(0, &[*distance]);
+            measured.samples[0] += SAMPLES.len() - 1;
+        }
+        for (_, distance) in &self.back {
+            measured.add(1, &[*distance]);
+        }
+        measured
+    }
 }
 
 impl Fine<'_> {
@@ -259,6 +358,7 @@ impl Fine<'_> {
             .iter()
             .map(|v| Aabb::of_points([v.position]));
         let points = Bvh::new(&points.collect::<Vec<Aabb>>());
+        let places = self.places(progress)?;
         let mut left = Vec::new();
         for attempt in 0..ATTEMPTS {
             let [start, end] = [0, 1].map(|i| (attempt + i) as f32 / ATTEMPTS as f32);
@@ -278,7 +378,7 @@ impl Fine<'_> {
             if !crossings.is_free() {
                 left.clear();
                 if attempt == 0
-                    && let Some(places) = self.find_crossings()?
+                    && let Some(places) = find_crossings(self.raw)?
                 {
                     return Ok(Err(places));
                 }
@@ -300,11 +400,23 @@ impl Fine<'_> {
                 }
                 continue;
             }
-            let Found { measured, far } = self.measure(&mesh, progress)?;
-            if far.is_empty() {
-                return Ok(Ok((mesh, measured)));
+            let mut survey = self.survey(mesh, &places, progress)?;
+            let mut far = survey.far(&places, self.tolerance);
+            for _ in 0..MENDINGS {
+                if far.is_empty() {
+                    break;
+                }
+                let Some(mended) = self.mend(&survey, &places, progress)? else {
+                    break;
+                };
+                survey = mended;
+                far = survey.far(&places, self.tolerance);
             }
-            for (place, reach) in &far {
+            if far.is_empty() {
+                let measured = survey.sum_up();
+                return Ok(Ok((survey.mesh, measured)));
+            }
+            for Far { place, reach, .. } in &far {
                 for i in points.overlapping(&cube(*place, *reach)) {
                     let share = &mut shares[i as usize];
                     *share = if *share * LESS < KEPT {
@@ -314,120 +426,181 @@ impl Fine<'_> {
                     };
                 }
             }
-            left = far.into_iter().map(|(place, _)| place).collect();
+            left = far.into_iter().map(|far| far.place).collect();
         }
         Ok(Err(left))
     }
 
-    /// The places where the fine mesh cuts itself; `None` if it does not.
-    fn find_crossings(&self) -> Result<Option<Vec<DVec3>>, MeshError> {
-        let vertices = self.raw.vertices.iter();
-        let positions = vertices.map(|v| v.position).collect();
-        let mesh = TriangleMesh::new(positions, self.raw.triangles.clone());
-        let crossings = self_intersections(&mesh, MOST_CROSSINGS)
-            .map_err(|error| MeshError::Failed(error.to_string()))?;
-        let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
-        let places = faces.map(|i| Aabb::of_points(mesh.corners(*i as usize)).center());
-        Ok((!crossings.is_free()).then(|| places.collect()))
-    }
-
-    /// Measures both distances.
-    fn measure(
-        &self,
-        mesh: &TriangleMesh,
-        progress: &mut Progress<'_>,
-    ) -> Result<Found, MeshError> {
-        let (tolerance, threads) = (self.tolerance, self.threads);
-        let mut measured = Measured::default();
-        let mut far = Vec::new();
-
-        // From the mesh.
-        let there = self.farthest_of_all(mesh, progress)?;
-        for (i, worst) in there.into_iter().enumerate() {
-            let Some((place, distance)) = worst else {
-                continue;
-            };
-            measured.add(0, &[distance]);
-            measured.samples[0] += SAMPLES.len() - 1;
-            // Not so for NaN.
-            let is_within = distance <= tolerance;
-            if !is_within {
-                let corners = mesh.corners(i);
-                let reach = corners.map(|corner| corner.distance(place));
-                far.push((place, reach.into_iter().fold(0.0, f64::max)));
-            }
-        }
-
-        // From the surface.
-        let bvh = Bvh::new(&mesh.triangle_boxes());
-        let vertices = self.raw.vertices.iter();
-        let on = vertices.filter(|v| v.value.abs() <= ON * tolerance * v.gradient.length());
+    /// The places of the surface that are looked for on meshes.
+    fn places(&self, progress: &mut Progress<'_>) -> Result<Vec<DVec3>, MeshError> {
+        let raw = self.raw;
+        let on = raw.vertices.iter().filter(|v| self.is_on(v));
         let mut places: Vec<DVec3> = on.map(|v| v.position).collect();
-        let fine = (0..self.raw.triangles.len()).filter(|i| !self.raw.is_lid[*i]);
+        let fine = (0..raw.triangles.len()).filter(|i| !raw.is_lid[*i]);
         let fine = spread(fine.collect(), PLACES);
         let goals = fine.into_iter().map(|i| {
-            let corners = self.raw.triangles[i].map(|v| self.raw.vertices[v as usize].position);
+            let corners = raw.triangles[i].map(|v| raw.vertices[v as usize].position);
             let [a, b, c] = corners;
             let reach = a.distance(b).max(b.distance(c)).max(c.distance(a));
             ((a + b + c) / 3.0, reach)
         });
         let goals: Vec<(DVec3, f64)> = goals.collect();
-        let others = descend(self.space, &goals, STEPS, tolerance, threads, progress)?;
-        let on = others.into_iter().filter(|v| {
-            let is_on = v.value.abs() <= ON * tolerance * v.gradient.length();
-            is_on && self.space.forest.contains(v.position)
-        });
-        places.extend(on.map(|v| v.position));
-        let back = map_told(threads, &places, progress, |p| {
-            root_of(bvh.nearest(*p, f64::INFINITY, |i| {
-                closest_point(&mesh.corners(i as usize), *p).distance_squared(*p)
-            }))
-        })?;
-        measured.add(1, &back);
-        let missed = places.iter().zip(&back).filter(|(_, d)| **d > tolerance);
-        far.extend(missed.map(|(place, distance)| (*place, 2.0 * distance)));
-        Ok(Found { measured, far })
+        let (space, tolerance) = (self.space, self.tolerance);
+        let found = descend(space, &goals, STEPS, tolerance, self.threads, progress)?;
+        let on = found.into_iter().filter(|v| self.is_on(v));
+        places.extend(on.map(|v| v.position).filter(|p| space.forest.contains(*p)));
+        Ok(places)
     }
 
-    /// Measures all triangles: the sample of each that is farthest from the surface, and its
-    /// distance: infinite if no surface was found within the tolerance. `None` for lids.
-    fn farthest_of_all(
+    /// Whether a vertex is so near the surface that it counts as a place of it.
+    fn is_on(&self, vertex: &Vertex) -> bool {
+        vertex.value.abs() <= ON * self.tolerance * vertex.gradient.length()
+    }
+
+    /// Measures both distances.
+    fn survey(
+        &self,
+        mesh: TriangleMesh,
+        places: &[DVec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<Survey, MeshError> {
+        let all: Vec<usize> = (0..mesh.triangles.len()).collect();
+        Ok(Survey {
+            there: self.measure_triangles(&mesh, &all, progress)?,
+            back: self.measure_places(&mesh, places, progress)?,
+            mesh,
+        })
+    }
+
+    /// Mends the mesh where it is too far from the surface, and measures what has changed; `None`
+    /// if there is too much to mend, or if that fails.
+    fn mend(
+        &self,
+        survey: &Survey,
+        places: &[DVec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<Option<Survey>, MeshError> {
+        let (tolerance, old) = (self.tolerance, &survey.mesh);
+        let far = survey.far(places, tolerance);
+        if MENDED * far.len() > old.triangles.len() || self.raw.is_lid.contains(&true) {
+            return Ok(None);
+        }
+        let goals: Vec<(DVec3, f64)> = far.iter().map(|far| (far.place, tolerance)).collect();
+        let (space, threads) = (self.space, self.threads);
+        let found = descend(space, &goals, STEPS, tolerance, threads, progress)?;
+        let gaps = far
+            .iter()
+            .zip(found)
+            .filter(|(_, vertex)| self.is_on(vertex) && space.forest.contains(vertex.position));
+        let gaps: Vec<(u32, Vertex)> = gaps.map(|(far, v)| (far.triangle, v)).collect();
+        let Some(mesh) = mend(old, &gaps, tolerance) else {
+            return Ok(None);
+        };
+        let crossings =
+            self_intersections(&mesh, 1).map_err(|error| MeshError::Failed(error.to_string()))?;
+        if !crossings.is_free() {
+            return Ok(None);
+        }
+        let matches = match_triangles(&old.triangles, &mesh.triangles);
+        let fresh = (0..matches.len()).filter(|i| matches[*i].is_none());
+        let fresh: Vec<usize> = fresh.collect();
+        let there = matches.iter().map(|i| survey.there[(*i)? as usize]);
+        let mut there: Vec<Option<(DVec3, f64)>> = there.collect();
+        let found = self.measure_triangles(&mesh, &fresh, progress)?;
+        for (i, worst) in fresh.into_iter().zip(found) {
+            there[i] = worst;
+        }
+        // A place is no farther from the mesh than it was from a triangle that is still there.
+        let mut numbers = vec![None; old.triangles.len()];
+        for (i, old) in (0..).zip(&matches) {
+            if let Some(old) = old {
+                numbers[*old as usize] = Some(i);
+            }
+        }
+        let mut back = survey.back.clone();
+        let lost = (0..back.len()).filter(|i| numbers[back[*i].0 as usize].is_none());
+        let lost: Vec<usize> = lost.collect();
+        for (triangle, _) in &mut back {
+            *triangle = numbers[*triangle as usize].unwrap_or(0);
+        }
+        let moved: Vec<DVec3> = lost.iter().map(|i| places[*i]).collect();
+        let found = self.measure_places(&mesh, &moved, progress)?;
+        for (i, nearest) in lost.into_iter().zip(found) {
+            back[i] = nearest;
+        }
+        Ok(Some(Survey { mesh, there, back }))
+    }
+
+    /// The nearest triangle of a mesh to each of some places of the surface, and its distance.
+    fn measure_places(
         &self,
         mesh: &TriangleMesh,
+        places: &[DVec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<(u32, f64)>, MeshError> {
+        let bvh = Bvh::new(&mesh.triangle_boxes());
+        map_told(self.threads, places, progress, |p| {
+            let nearest = bvh.nearest(*p, f64::INFINITY, |i| {
+                closest_point(&mesh.corners(i as usize), *p).distance_squared(*p)
+            });
+            (nearest.map_or(0, |(i, _)| i), root_of(nearest))
+        })
+    }
+
+    /// Measures some triangles: the sample of each that is farthest from the surface, and its
+    /// distance: infinite if no surface was found within the tolerance. `None` for lids.
+    fn measure_triangles(
+        &self,
+        mesh: &TriangleMesh,
+        some: &[usize],
         progress: &mut Progress<'_>,
     ) -> Result<Vec<Option<(DVec3, f64)>>, MeshError> {
-        let all = 0..mesh.triangles.len();
-        let goals = all.clone().flat_map(|i| {
-            let [a, b, c] = mesh.corners(i);
+        let goals = some.iter().flat_map(|i| {
+            let [a, b, c] = mesh.corners(*i);
             SAMPLES.map(|[u, v, w]| (a * u + b * v + c * w, 0.0))
         });
         let goals: Vec<(DVec3, f64)> = goals.collect();
         let (space, tolerance) = (self.space, self.tolerance);
         let samples = descend(space, &goals, 0, tolerance, self.threads, progress)?;
-        let triangles: Vec<(usize, &[Vertex])> =
-            all.zip(samples.chunks_exact(SAMPLES.len())).collect();
-        map_by(LARGE, self.threads, &triangles, progress, |(i, samples)| {
-            let corners = mesh.corners(*i);
-            if self.is_lid(corners) {
+        let mut distances: Vec<f64> = samples.iter().map(estimate).collect();
+        // Newton's steps from those that are not near for certain. Not so for NaN.
+        let mut open: Vec<usize> = (0..samples.len()).collect();
+        open.retain(|i| {
+            let is_sure = distances[*i] <= SURE * tolerance;
+            !is_sure
+        });
+        let goals = open.iter().map(|i| (samples[*i].position, tolerance));
+        let goals: Vec<(DVec3, f64)> = goals.collect();
+        let feet = descend(space, &goals, STEPS, tolerance, self.threads, progress)?;
+        let mut unsure = Vec::new();
+        for (i, foot) in open.into_iter().zip(&feet) {
+            let off = estimate(foot);
+            let distance = samples[i].position.distance(foot.position) + off;
+            if off <= FOOT * tolerance && distance <= tolerance {
+                distances[i] = distance;
+            } else if !self.is_lid(mesh.corners(some[i / SAMPLES.len()])) {
+                unsure.push(i);
+            }
+        }
+        let found = map_by(LARGE, self.threads, &unsure, progress, |i| {
+            let [a, b, c] = mesh.corners(some[*i / SAMPLES.len()]);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            self.distance(samples[*i].position, normal)
+        })?;
+        for (i, distance) in unsure.into_iter().zip(found) {
+            distances[i] = distance;
+        }
+        let samples = samples.chunks_exact(SAMPLES.len());
+        let samples = samples.zip(distances.chunks_exact(SAMPLES.len()));
+        let worst = some.iter().zip(samples).map(|(i, (samples, distances))| {
+            if self.is_lid(mesh.corners(*i)) {
                 return None;
             }
-            let [a, b, c] = corners;
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            let distances = samples.iter().map(|sample| {
-                let first = sample.value.abs() / sample.gradient.length();
-                let is_sure = first <= SURE * tolerance;
-                let place = sample.position;
-                (
-                    place,
-                    if is_sure {
-                        first
-                    } else {
-                        self.distance(place, normal)
-                    },
-                )
-            });
-            distances.reduce(|one, other| if other.1 <= one.1 { one } else { other })
-        })
+            let places = samples.iter().map(|sample| sample.position);
+            let all = places.zip(distances.iter().copied());
+            all.reduce(|one, other| if other.1 <= one.1 { one } else { other })
+        });
+        Ok(worst.collect())
     }
 
     /// Whether a triangle lies on a side of the box.
@@ -442,7 +615,7 @@ impl Fine<'_> {
     /// The distance of a point from the surface; infinite if it is more than the tolerance.
     fn distance(&self, place: DVec3, normal: DVec3) -> f64 {
         let vertex = at(self.space, place);
-        let first = vertex.value.abs() / vertex.gradient.length();
+        let first = estimate(&vertex);
         let uphill = vertex.gradient.normalize_or_zero();
         let toward = if vertex.value > 0.0 { -uphill } else { uphill };
         let reach = (1.05 * first).clamp(1e-3 * self.tolerance, self.tolerance);
@@ -460,5 +633,85 @@ impl Fine<'_> {
             }
         }
         least
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::box_of;
+    use core::ops::ControlFlow;
+    use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Sum};
+
+    /// A mesh that was decimated for a larger tolerance is mended for this one, and what was
+    /// measured of it then is no less than a new measurement tells.
+    #[test]
+    fn repairs_bring_meshes_near_the_surface() {
+        let shaping = Shaping {
+            kernel: Kernel::Gauss,
+            radius: 0.3,
+            blobbiness: 2.0,
+            blob_scale: BlobScale::Relative,
+            strength: 1.0,
+            influence: 1e-3,
+            taper: None,
+        };
+        let (base, apex) = (DVec3::ZERO, DVec3::new(1.0, 0.3, 0.2));
+        let ball = Skeleton::Point {
+            center: DVec3::new(0.2, 0.5, 0.0),
+        };
+        let parts = [Skeleton::Segment { base, apex }, ball];
+        let parts = parts.map(|skeleton| Primitive::new(skeleton, &shaping, None));
+        let sum: Sum = parts.into_iter().flatten().collect();
+        let domain = box_of(sum.support().unwrap());
+        let sizes = Sizes {
+            tolerance: 0.005,
+            hiding: HIDING[0],
+            most: LEAST_CELLS,
+            threads: 1,
+        };
+        let forest = Forest::new(&domain, FINEST * sizes.tolerance, LEVELS);
+        let mut space = Space::new(&sum, forest, sizes.tolerance);
+        let mut report = |_| ControlFlow::Continue(());
+        let progress = &mut Progress::new(&mut report);
+        let raw = dual(&mut space, &mut Corners::default(), &sizes, progress);
+        let raw = raw.unwrap().unwrap();
+        let fine = Fine {
+            space: &space,
+            raw: &raw,
+            domain: &domain,
+            tolerance: sizes.tolerance,
+            threads: 1,
+        };
+        let (shares, free) = (
+            vec![1.0; raw.vertices.len()],
+            vec![false; raw.vertices.len()],
+        );
+        let coarse = 1.4 * sizes.tolerance;
+        let decimation = Decimation::new(&space, &raw, 1, coarse, &shares, &free).unwrap();
+        let mesh = decimation.run(progress).unwrap().mesh;
+        let places = fine.places(progress).unwrap();
+        let mut survey = fine.survey(mesh, &places, progress).unwrap();
+        let before = survey.far(&places, sizes.tolerance).len();
+        assert!(before > 0);
+        for _ in 0..MENDINGS {
+            if let Some(mended) = fine.mend(&survey, &places, progress).unwrap() {
+                survey = mended;
+            }
+        }
+        println!("{before} of {}", survey.mesh.triangles.len());
+        assert!(survey.far(&places, sizes.tolerance).is_empty());
+        let again = fine.survey(survey.mesh.clone(), &places, progress).unwrap();
+        for (own, new) in survey.there.iter().zip(&again.there) {
+            let [own, new] = [own, new].map(|worst| worst.unwrap().1);
+            assert!((own - new).abs() < 1e-3 * sizes.tolerance);
+        }
+        for ((triangle, own), place) in survey.back.iter().zip(&places) {
+            let nearest = closest_point(&survey.mesh.corners(*triangle as usize), *place);
+            assert!((nearest.distance(*place) - own).abs() < 1e-9);
+        }
+        for (own, new) in survey.back.iter().zip(&again.back) {
+            assert!(own.1 >= new.1 - 1e-9);
+        }
     }
 }

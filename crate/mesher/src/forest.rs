@@ -73,6 +73,8 @@ pub struct Cell {
     /// Bound on the second derivative where nothing hides between samples any more, in this cell or
     /// one that it was a part of; infinite elsewhere.
     pub bend: f64,
+    /// Bounds on the jumps of the gradient and of the value there.
+    pub jumps: [f64; 2],
 }
 
 /// Cells of a box.
@@ -135,6 +137,7 @@ impl Forest {
                         undecided: false,
                         bounds: Bounds::NONE,
                         bend: f64::INFINITY,
+                        jumps: [0.0; 2],
                     });
                 }
             }
@@ -267,6 +270,7 @@ impl Forest {
                 },
                 part: parent.part,
                 bend: parent.bend,
+                jumps: parent.jumps,
             });
         }
         first

@@ -22,13 +22,16 @@ use std::collections::HashMap;
 /// Cells are taken to hide nothing if the second derivative's bound times the square of their size
 /// is at most so many thresholds: first the least, then more where that asks for too many cells, as
 /// where bounds are far from the truth.
-pub const HIDING: [f64; 3] = [6.0, 60.0, 600.0];
-/// Nor if they are no larger than this share of the width of the kernels that matter there.
-const WIDTHS: f64 = 0.8;
+pub const HIDING: [f64; 2] = [60.0, 600.0];
+/// Nor if they are no larger than so many widths of the kernels that matter there: a limb is some
+/// two widths thick, and no place is farther than 0.56 sides from a sample.
+const WIDTHS: f64 = 1.2;
 /// Largest height of the surface's arc between two of its places in a cell, in tolerances.
-const SAG: f64 = 0.5;
+const SAG: f64 = 0.8;
+/// Largest height of a bulge of the surface that a cell hides between samples, in tolerances.
+const HIDDEN: f64 = 0.5;
 /// Least cosine of the angle between the surface's normal in a cell and the mean of all there.
-const EVEN: f64 = 0.7;
+const EVEN: f64 = 0.5;
 /// Cells are not divided below so many tolerances where only normals ask for it, as at creases.
 pub const FINEST: f64 = 2.0;
 /// Levels below that of the finest cells, for parts that are thinner.
@@ -159,22 +162,30 @@ struct Bounded {
 impl Bounded {
     fn new(space: &Space<'_>, cell: &Cell, hiding: f64) -> Self {
         let size = space.forest.size(cell.level);
+        let (center, longest) = (space.forest.center(cell), size.max_element());
         let off = error(space, cell.part, size);
-        if cell.bend.is_finite() {
+        let mut known = cell.bend;
+        if known.is_infinite() {
+            let radius = 0.5 * size.length();
+            let width = space.least_width(cell.part, Ball { center, radius });
+            if longest <= WIDTHS * width {
+                known = f64::MAX;
+            }
+        }
+        if known.is_finite() {
+            let [jump, step] = cell.jumps;
             return Self {
                 range: [f64::NEG_INFINITY, f64::INFINITY],
                 slope: f64::INFINITY,
-                bend: cell.bend,
-                jump: 0.0,
-                step: 0.0,
+                bend: known,
+                jump,
+                step,
                 off,
                 is_tame: true,
             };
         }
-        let center = space.forest.center(cell);
         let variation = around(space, cell.part, center, size);
-        let longest = size.max_element();
-        let mut own = Self {
+        Self {
             range: coarse_range(&variation, off),
             slope: variation.range.slope,
             bend: variation.curvature,
@@ -182,13 +193,7 @@ impl Bounded {
             step: variation.step,
             off,
             is_tame: variation.curvature * longest * longest <= hiding * THRESHOLD,
-        };
-        if !own.is_tame && side(own.range) == Side::Crossing {
-            let radius = 0.5 * size.length();
-            let width = space.least_width(cell.part, Ball { center, radius });
-            own.is_tame = longest <= WIDTHS * width;
         }
-        own
     }
 
     /// The bounds on values with the function at the cell's centre, which may be single.
@@ -251,14 +256,16 @@ fn look(
             return Fate::Leaf(Side::Crossing);
         }
         let (mut least, mut bend) = (middle.value.abs(), 0.0_f64);
+        let mut slope = middle.gradient.length();
         for corner in corners {
             let turn = corner.gradient - middle.gradient;
             let way = corner.position - middle.position;
             (least, bend) = (least.min(corner.value.abs()), bend.max(turn.dot(way).abs()));
+            slope = slope.min(corner.gradient.length());
         }
-        // Between samples the function is as far from its interpolant as along their edges.
-        // Not so for NaN.
-        let is_far = least > BEND * bend / 8.0;
+        // Between samples the function is as far from its interpolant as along their edges. If
+        // that is too far, the surface bulges into the cell, but not much. Not so for NaN.
+        let is_far = BEND * bend / 8.0 < least + HIDDEN * tolerance * slope;
         if is_far || is_usual {
             return Fate::Leaf(if own { Side::Inside } else { Side::Outside });
         }
@@ -574,8 +581,9 @@ fn decide(
         if !is_crossed && sure != Side::Crossing {
             fates[*i] = Fate::Leaf(sure);
         } else if own.is_tame || cell.level >= space.forest.deepest {
-            if own.is_tame && own.jump == 0.0 && own.step == 0.0 {
-                space.forest.cells[leaves[*i] as usize].bend = own.bend;
+            if own.is_tame {
+                let cell = &mut space.forest.cells[leaves[*i] as usize];
+                (cell.bend, cell.jumps) = (own.bend, [own.jump, own.step]);
             }
             near.push((*i, Vertex::new(*center, jet)));
         }
@@ -632,6 +640,56 @@ fn follow(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use field::Sum;
+    use mesh::Aabb;
+    use trials::{Random, count};
+
+    /// A ball bulges into cells whose corners it does not reach by less than the part of the
+    /// tolerance that they may hide.
+    #[test]
+    fn cells_hide_a_small_bulge() {
+        fn on_ball(position: DVec3) -> Vertex {
+            Vertex {
+                position,
+                value: 0.5 * (1.0 - position.length_squared()),
+                gradient: -position,
+            }
+        }
+        let (nothing, side) = (Sum::default(), DVec3::splat(2.0));
+        let domain = Aabb::of_points([-side, side]);
+        let space = Space::new(&nothing, Forest::new(&domain, 0.01, LEVELS), 1e-3);
+        let cell = space.forest.cells[0];
+        assert!(cell.level < space.forest.usual);
+        let mut random = Random::new(5);
+        let [mut hidden, mut seen] = [0; 2];
+        for _ in 0..count(20_000) {
+            let half = random.range(0.01, 0.15);
+            let tolerance = half * half * random.range(0.1, 5.0);
+            let mut center = random.direction() * 0.3 * half;
+            center[random.below(3)] = 1.0 + half * (1.0 - half * random.range(-0.3, 1.2));
+            let corners: [Vertex; 8] = core::array::from_fn(|i| {
+                let way = [0, 1, 2].map(|k| if i >> k & 1 == 0 { -half } else { half });
+                on_ball(center + DVec3::from(way))
+            });
+            let nearest = DVec3::ZERO.clamp(center - half, center + half);
+            let depth = 1.0 - nearest.length();
+            if depth < 0.0 || corners.iter().any(|corner| corner.value > 0.0) {
+                continue;
+            }
+            let middle = on_ball(center);
+            if look(&space, &cell, &middle, corners.each_ref(), tolerance, false) == Fate::Split {
+                seen += 1;
+            } else {
+                assert!(
+                    depth <= 1.05 * HIDDEN * tolerance,
+                    "{depth} of {tolerance}, {half}"
+                );
+                hidden += 1;
+            }
+        }
+        println!("{hidden} hidden, {seen} seen");
+        assert!(hidden > count(100) && seen > count(100));
+    }
 
     #[test]
     fn edges_join_corners_that_differ_along_one_axis() {

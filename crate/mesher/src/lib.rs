@@ -30,8 +30,8 @@
 //!
 //! A mesh for a file ([`approximate`]): `grow.rs` finds cells of the size that curvature asks for,
 //! `dual.rs` makes a mesh of them (`march.rs` where the box cuts the surface off), `decimate.rs`
-//! makes its triangles fewer, and `file.rs` measures the error both ways and mends what is too far,
-//! or cuts itself.
+//! makes its triangles fewer, and `file.rs` measures the error both ways, mends what is too far
+//! with `mend.rs`, and begins anew with more care where that is not enough.
 //!
 //! The way of a proven mesh, a file each:
 //! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with
@@ -82,6 +82,7 @@ mod lattice;
 mod level;
 mod march;
 mod measure;
+mod mend;
 mod model;
 mod options;
 mod paint;

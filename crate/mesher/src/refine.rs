@@ -192,8 +192,7 @@ pub fn extent(
         let hull = boxes.fold(Aabb::EMPTY, |all, one| all.union(&one));
         let longest = hull.size().max_element();
         if crossing.len() <= MANY_CELLS {
-            // All cells down to a sixteenth, so that no part is missed; then those that say where
-            // the box ends.
+            // Cells that say where the box ends: what the others hold is within it.
             let is_coarse = |node: &u32| {
                 let cell = &space.forest.cells[*node as usize];
                 let size = space.forest.size(cell.level);
@@ -204,7 +203,7 @@ pub fn extent(
                 let is_last =
                     own.min.cmple(hull.min + 0.25 * size) | own.max.cmpge(hull.max - 0.25 * size);
                 let is_wide = size.cmpgt(DVec3::splat(EXCESS * longest));
-                16.0 * size.max_element() > longest || (is_last & is_wide).any()
+                (is_last & is_wide).any()
             };
             open = crossing.extract_if(.., |node| is_coarse(node)).collect();
         }
