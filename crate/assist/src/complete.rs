@@ -2,7 +2,7 @@
 
 use crate::grammar::Param;
 use crate::index::{Here, Index, SymbolKind};
-use crate::mend::mend;
+use crate::mend::with_index;
 use crate::place;
 use crate::slots::{Type, Want, What};
 use rats::commands::{self, Group, Kind, Names, OptionSpec, options};
@@ -88,31 +88,25 @@ pub fn complete(project: &Project, file: usize, byte: usize) -> Completions {
             items: Vec::new(),
         };
     }
-    let mut index = Index::at(project, Some((file, byte)));
-    let mended = match index.here {
-        Some(_) => None,
-        None => mend(project, file, byte),
-    };
-    if let Some(mended) = &mended {
-        index = Index::at(mended, Some((file, byte)));
-    }
-    let mut offers = Offers::default();
-    match &index.here {
-        Some(here) if byte > here.word_span.end => {
-            if let Some((span, slot)) = here.slot(byte)
-                && matches!(slot.what, What::File)
-            {
-                replace = span.clone();
-                offers.files(project, file);
-            } else {
-                offers.operand(&index, here, project, file, replace.start);
+    with_index(project, file, byte, |index| {
+        let mut offers = Offers::default();
+        match &index.here {
+            Some(here) if byte > here.word_span.end => {
+                if let Some((span, slot)) = here.slot(byte)
+                    && matches!(slot.what, What::File)
+                {
+                    replace = span.clone();
+                    offers.files(project, file);
+                } else {
+                    offers.operand(index, here, project, file, replace.start);
+                }
             }
+            _ if place::begins_command(text, replace.start) => offers.commands(index),
+            _ => {}
         }
-        _ if place::begins_command(text, replace.start) => offers.commands(&index),
-        _ => {}
-    }
-    let items = rank(offers.items, &text[replace.start..byte]);
-    Completions { replace, items }
+        let items = rank(offers.items, &text[replace.start..byte]);
+        Completions { replace, items }
+    })
 }
 
 /// Collects completions, the most likely first.

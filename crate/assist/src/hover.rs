@@ -3,7 +3,7 @@
 use crate::complete::{describe, hex};
 use crate::grammar::{Grammar, comment_before};
 use crate::index::{Here, Index, Place, SymbolKind};
-use crate::mend::mend;
+use crate::mend::with_index;
 use crate::place;
 use crate::slots::{Slot, What};
 use crate::swatches;
@@ -46,45 +46,39 @@ pub fn hover(project: &Project, file: usize, byte: usize) -> Option<Card> {
     if !place::is_in(text, byte) || place::in_comment(text, byte) {
         return None;
     }
-    let mut index = Index::at(project, Some((file, byte)));
-    let mended = match index.here {
-        Some(_) => None,
-        None => mend(project, file, byte),
-    };
-    if let Some(mended) = &mended {
-        index = Index::at(mended, Some((file, byte)));
-    }
-    let here = index.here.as_ref()?;
-    if here.word_span.start <= byte && byte <= here.word_span.end {
-        return command(project, here);
-    }
-    let Some((span, slot)) = here.slot(byte) else {
-        return name_card(&index, file, byte);
-    };
-    let card = match slot.what {
-        What::Option => Some(option(span, slot.option?, here)),
-        What::Word(word) => Some(Card {
-            span: span.clone(),
-            title: word.name.to_owned(),
-            lines: vec![word.meaning.to_owned()],
-            command: here.spec.map(|spec| spec.name),
-            ..Card::default()
-        }),
-        _ => None,
-    };
-    card.or_else(|| name_card(&index, file, byte).map(|card| with_role(card, slot)))
-        .or_else(|| value(text, span, slot, byte))
-        .map(|card| Card {
-            command: card.command.or(here.spec.map(|spec| spec.name)),
-            picture: match (here.spec, &slot.what) {
-                (Some(spec), What::Option) => slot
-                    .option
-                    .and_then(|option| swatches::picture(spec.name, option.name)),
-                (Some(spec), What::Word(word)) => swatches::picture(spec.name, word.name),
-                _ => None,
-            },
-            ..card
-        })
+    with_index(project, file, byte, |index| {
+        let here = index.here.as_ref()?;
+        if here.word_span.start <= byte && byte <= here.word_span.end {
+            return command(project, here);
+        }
+        let Some((span, slot)) = here.slot(byte) else {
+            return name_card(index, file, byte);
+        };
+        let card = match slot.what {
+            What::Option => Some(option(span, slot.option?, here)),
+            What::Word(word) => Some(Card {
+                span: span.clone(),
+                title: word.name.to_owned(),
+                lines: vec![word.meaning.to_owned()],
+                command: here.spec.map(|spec| spec.name),
+                ..Card::default()
+            }),
+            _ => None,
+        };
+        card.or_else(|| name_card(index, file, byte).map(|card| with_role(card, slot)))
+            .or_else(|| value(text, span, slot, byte))
+            .map(|card| Card {
+                command: card.command.or(here.spec.map(|spec| spec.name)),
+                picture: match (here.spec, &slot.what) {
+                    (Some(spec), What::Option) => slot
+                        .option
+                        .and_then(|option| swatches::picture(spec.name, option.name)),
+                    (Some(spec), What::Word(word)) => swatches::picture(spec.name, word.name),
+                    _ => None,
+                },
+                ..card
+            })
+    })
 }
 
 /// Makes the card of the command's word.

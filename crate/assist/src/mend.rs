@@ -1,13 +1,33 @@
 //! Completes the blocks of a text that is being written, so that the parser keeps the commands in
 //! them.
 
+use crate::index::Index;
 use rats::Project;
 use rats::lexer::{TokenKind, lex};
+
+/// Reads the index of a project whose command at a byte is looked at; of the mended project, if
+/// there is none in the text as it stands.
+pub fn with_index<T>(
+    project: &Project,
+    file: usize,
+    byte: usize,
+    read: impl FnOnce(&Index<'_>) -> T,
+) -> T {
+    let index = Index::at(project, Some((file, byte)));
+    let mended = match index.here {
+        Some(_) => None,
+        None => mend(project, file, byte),
+    };
+    match &mended {
+        Some(mended) => read(&Index::at(mended, Some((file, byte)))),
+        None => read(&index),
+    }
+}
 
 /// Closes the blocks of a file of a project: a loop or choice whose line ends at the caret
 /// without `{` gets an empty block, and blocks that are open at the end of the text end there.
 /// Bytes up to the caret stay where they are. `None` if there is nothing to mend.
-pub fn mend(project: &Project, file: usize, byte: usize) -> Option<Project> {
+fn mend(project: &Project, file: usize, byte: usize) -> Option<Project> {
     let text = &project.files.get(file)?.text;
     let mut mended = text.clone();
     let line = text[..byte].rfind(['\n', '{', '}']).map_or(0, |at| at + 1);

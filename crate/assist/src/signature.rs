@@ -2,8 +2,7 @@
 
 use crate::complete::describe;
 use crate::grammar::Param;
-use crate::index::Index;
-use crate::mend::mend;
+use crate::mend::with_index;
 use crate::place;
 use rats::Project;
 
@@ -45,47 +44,41 @@ pub fn signature(project: &Project, file: usize, byte: usize) -> Option<Signatur
     if !place::is_in(text, byte) || place::in_comment(text, byte) {
         return None;
     }
-    let mut index = Index::at(project, Some((file, byte)));
-    let mended = match index.here {
-        Some(_) => None,
-        None => mend(project, file, byte),
-    };
-    if let Some(mended) = &mended {
-        index = Index::at(mended, Some((file, byte)));
-    }
-    let here = index.here.as_ref()?;
-    if here.spec.is_none() && here.own.is_none() {
-        return None;
-    }
-    let word = here.spec.map_or(here.word, |spec| spec.name);
-    let active = (byte > here.word_span.end)
-        .then(|| here.active(byte))
-        .flatten();
-    if let Some(active) = active
-        && let Some(option) = active.option
-    {
-        return Some(Signature {
-            command: format!("{word} … {}", option.name),
-            parameters: option.parameters.iter().map(|p| part(&p.into())).collect(),
-            active: Some(active.index),
-        });
-    }
-    let mut parameters: Vec<Part> = here.grammar.parameters.iter().map(part).collect();
-    if !here.grammar.options.is_empty() {
-        let names: Vec<_> = here.grammar.options.iter().map(|o| o.name).collect();
-        parameters.push(Part {
-            text: String::from("[option …]"),
-            meaning: names.join(", "),
-        });
-    }
-    let at_options =
-        byte > here.word_span.end && active.is_none() && !here.grammar.options.is_empty();
-    Some(Signature {
-        command: word.to_owned(),
-        active: active
-            .map(|active| active.index)
-            .or(at_options.then(|| parameters.len() - 1)),
-        parameters,
+    with_index(project, file, byte, |index| {
+        let here = index.here.as_ref()?;
+        if here.spec.is_none() && here.own.is_none() {
+            return None;
+        }
+        let word = here.spec.map_or(here.word, |spec| spec.name);
+        let active = (byte > here.word_span.end)
+            .then(|| here.active(byte))
+            .flatten();
+        if let Some(active) = active
+            && let Some(option) = active.option
+        {
+            return Some(Signature {
+                command: format!("{word} … {}", option.name),
+                parameters: option.parameters.iter().map(|p| part(&p.into())).collect(),
+                active: Some(active.index),
+            });
+        }
+        let mut parameters: Vec<Part> = here.grammar.parameters.iter().map(part).collect();
+        if !here.grammar.options.is_empty() {
+            let names: Vec<_> = here.grammar.options.iter().map(|o| o.name).collect();
+            parameters.push(Part {
+                text: String::from("[option …]"),
+                meaning: names.join(", "),
+            });
+        }
+        let at_options =
+            byte > here.word_span.end && active.is_none() && !here.grammar.options.is_empty();
+        Some(Signature {
+            command: word.to_owned(),
+            active: active
+                .map(|active| active.index)
+                .or(at_options.then(|| parameters.len() - 1)),
+            parameters,
+        })
     })
 }
 

@@ -283,19 +283,18 @@ impl Recording {
 
     /// Writes a frame to the file, or gives it to the encoder.
     fn write(&mut self, picture: &Picture) -> Result<(), String> {
-        let in_words = |problem: ::picture::Problem| problem.to_string();
         match &mut self.sink {
-            Sink::Pictures(_, Some(writer)) => writer.add(picture).map_err(in_words)?,
+            Sink::Pictures(_, Some(writer)) => writer.add(picture).map_err(say)?,
             Sink::Pictures(bytes, writer) => {
                 let format = match self.kind {
                     Kind::Gif => Format::Gif,
                     _ => Format::Png,
                 };
                 let repeats = self.playback != Playback::Once;
-                let timing = Timing::new(f64::from(self.rate), repeats).map_err(in_words)?;
+                let timing = Timing::new(f64::from(self.rate), repeats).map_err(say)?;
                 let length = self.playback.length(self.count);
                 let new = Writer::begin(bytes.clone(), format, picture, length, timing, true);
-                *writer = Some(new.map_err(in_words)?);
+                *writer = Some(new.map_err(say)?);
             }
             Sink::Video(encoder) => {
                 let time = u64::from(self.written) * frame_time(self.rate);
@@ -307,6 +306,11 @@ impl Recording {
         self.written += 1;
         Ok(())
     }
+}
+
+/// Returns a problem in words.
+fn say(problem: ::picture::Problem) -> String {
+    problem.to_string()
 }
 
 /// Returns the time for which a frame is shown, microseconds.

@@ -3,7 +3,7 @@
 //! A dataset may `read` others. The compiler only ever sees the texts of a project, so the ones it
 //! asks for are fetched here, from the folder of the first file, until it asks for no more.
 
-use crate::{Outcome, skeleton};
+use crate::{Outcome, view};
 use rats::{Asset, Compiled, File, Project};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ pub fn load(path: &Path) -> Result<Loaded, String> {
         None => path.display().to_string(),
     };
     if rats::is_skeleton(&name) || rats::is_mesh(&name) {
-        let (project, asset) = skeleton::make_project(path)?;
+        let (project, asset) = view::make_project(path, read_bounded(path, MAX_ASSET)?)?;
         return Ok(compile(project, vec![asset]));
     }
     let mut project = Project {

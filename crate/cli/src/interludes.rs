@@ -1,7 +1,7 @@
 //! Requests of a dataset to the program besides its pictures: to wait for a key, to keep a log,
 //! to tell the time.
 
-use crate::classic::Said;
+use crate::said::Said;
 use crate::tools;
 use rats::compiled::{Act, Interlude};
 use std::io::IsTerminal;

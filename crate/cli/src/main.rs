@@ -17,6 +17,7 @@ mod plot;
 mod probe;
 mod render;
 mod report;
+mod said;
 mod scan;
 mod sculpt;
 mod share;
@@ -24,6 +25,7 @@ mod skeleton;
 mod time;
 mod tools;
 mod trace;
+mod view;
 mod whole;
 
 use clap::{CommandFactory, Parser, Subcommand};

@@ -35,11 +35,13 @@
 //! picture each, so that a page can draw in between.
 
 mod bench;
+mod files;
 pub mod name;
 mod shelf;
 mod work;
 
-pub use bench::{Bench, Done, Step, write};
+pub use bench::{Bench, Step};
+pub use files::{Done, write};
 pub use shelf::{Shelf, Target};
 
 #[cfg(test)]

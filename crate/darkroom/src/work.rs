@@ -1,6 +1,6 @@
 //! Jobs of many pictures, which go on picture by picture.
 
-use crate::bench::{self, Done, Turn, create, measures, read, resize_within_room, say};
+use crate::files::{Done, create, measures, read, resize_within_room, say, write};
 use crate::{Shelf, Target};
 use picture::animation::{self, Frames, Timing, Writer};
 use picture::{Format, Picture, collage_at_most};
@@ -14,6 +14,12 @@ pub enum Work {
     Split(Split),
     Collage(Collage),
     Count(Count),
+}
+
+/// The state of a job after a step.
+pub(crate) enum Turn {
+    Working(Work),
+    Done(Done),
 }
 
 impl Work {
@@ -172,7 +178,7 @@ impl Split {
         };
         let frame = frame.map_err(|problem| format!("{file}: after {count} frames: {problem}"))?;
         let to = format!("{stem}{count:03}{ending}");
-        bench::write(shelf, &to, &frame)?;
+        write(shelf, &to, &frame)?;
         self.files.push(to);
         Ok(Turn::Working(Work::Split(self)))
     }
@@ -216,7 +222,7 @@ impl Collage {
         }
         let sheet =
             collage_at_most(&self.pictures, self.columns, shelf.most_pixels()).map_err(say)?;
-        let said = bench::write(shelf, &self.to, &sheet)?;
+        let said = write(shelf, &self.to, &sheet)?;
         let files = vec![self.to];
         Ok(Turn::Done(Done { said, files }))
     }

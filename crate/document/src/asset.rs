@@ -398,12 +398,13 @@ mod tests {
                 assert!(describe(name, bytes).is_err(), "{name}");
             }
         }
-        let png = |size: [u32; 2]| {
-            let rgba = vec![9; 4 * size[0] as usize * size[1] as usize];
-            crate::picture::png(&pool::Image { size, rgba }).unwrap()
-        };
         assert_eq!(describe("a.png", &png([2, 3])).unwrap(), "2 × 3 pixels");
         let wide = describe("a.png", &png([MAX_SIDE + 1, 1]));
         assert!(wide.unwrap_err().contains("limit"));
+    }
+
+    fn png(size: [u32; 2]) -> Vec<u8> {
+        let rgba = vec![9; 4 * size[0] as usize * size[1] as usize];
+        crate::picture::png(&pool::Image { size, rgba }).unwrap()
     }
 }

@@ -1,9 +1,8 @@
 //! Files that the user drops on the page or opens, sorted into texts of the work, images and meshes
 //! beside it, measured points, and refused files with the reason.
 
-use crate::asset::{self, Asset, MAX_ASSET};
-use crate::project_file;
-use crate::session::MAX_TEXT;
+use crate::asset::{self, Asset, MAX_ALL, MAX_ASSET, MAX_ASSETS};
+use crate::session::{MAX_FILES, MAX_TEXT};
 use rats::File;
 use rats::link::MAX_NAME;
 
@@ -13,6 +12,10 @@ const TEXTS: [&str; 6] = ["rat", "art", "ice", "dat", "txt", "strokes"];
 const MEASURED: [&str; 2] = ["xyz", "json"];
 /// Most files that are read at once.
 pub const MOST: usize = 32;
+/// Most files that are taken from an archive.
+const MOST_ARCHIVED: usize = MAX_FILES + MAX_ASSETS;
+/// Largest archive that is read, bytes.
+pub const MAX_ARCHIVE: usize = MAX_ALL + MAX_TEXT + (1 << 20);
 
 /// Returns the kinds of files that are accepted, in words.
 #[must_use]
@@ -24,6 +27,12 @@ pub fn kinds() -> String {
         ::picture::Format::ENDINGS,
         mesh::Format::ENDINGS
     )
+}
+
+/// Whether a file of this name is a [work in an archive](crate::project_file).
+#[must_use]
+pub fn is_project(name: &str) -> bool {
+    asset::extension(name) == "zip"
 }
 
 /// A file from outside.
@@ -53,8 +62,8 @@ pub struct Sorted {
 /// # Errors
 /// If it is larger; the message says the limit.
 pub fn check_length(name: &str, bytes: f64) -> Result<(), String> {
-    let (most, what) = if project_file::is_project(name) {
-        (project_file::MAX_BYTES, "a project")
+    let (most, what) = if is_project(name) {
+        (MAX_ARCHIVE, "a project")
     } else if asset::kind(name).is_some() || MEASURED.contains(&asset::extension(name).as_str()) {
         (
             MAX_ASSET,
@@ -97,7 +106,7 @@ pub fn sort_archive(files: Vec<Incoming>) -> Sorted {
             ..file
         }
     });
-    sort_named(plain.collect(), project_file::MOST)
+    sort_named(plain.collect(), MOST_ARCHIVED)
 }
 
 fn sort_named(files: Vec<Incoming>, most: usize) -> Sorted {

@@ -843,7 +843,6 @@ mod tests {
         );
         // Another model; joints need no new triangles either.
         export.order.format = Format::Glb;
-        let glb = |export: &MeshExport| export.files()[0].bytes.clone();
         let mut arm = arm;
         assert_eq!(arm.generation(), ball.generation());
         arm.set_film_frame(0);
@@ -864,6 +863,10 @@ mod tests {
         let rigged = glb(&export);
         follow(&mut export, &arm);
         assert_eq!(glb(&export), rigged);
+    }
+
+    fn glb(export: &MeshExport) -> Vec<u8> {
+        export.files()[0].bytes.clone()
     }
 
     #[test]

@@ -5,16 +5,14 @@
 //! of its texts, the one that is run first. The files of an archive without a description are taken
 //! in as if they were dropped on the page one by one.
 
-use crate::asset::{Asset, MAX_ALL, MAX_ASSET, MAX_ASSETS};
-use crate::intake::{self, Incoming, Sorted};
-use crate::session::{MAX_FILES, MAX_TEXT};
+use crate::asset::{Asset, MAX_ALL, MAX_ASSET};
+use crate::intake::{self, Incoming, MAX_ARCHIVE, Sorted};
+use crate::session::MAX_TEXT;
 use ::archive::{Archive, Entry, Error, Member};
 use rats::File;
 use scene::Camera;
 use serde::{Deserialize, Serialize};
 
-/// Largest archive that is read, bytes.
-pub const MAX_BYTES: usize = MAX_ALL + MAX_TEXT + (1 << 20);
 /// Most members of an archive, including those that are ignored.
 pub const MAX_MEMBERS: usize = 1000;
 /// Name of the description.
@@ -42,12 +40,6 @@ struct Description {
     texts: Vec<String>,
     #[serde(default)]
     camera: Option<Camera>,
-}
-
-/// Whether a file of this name is such an archive.
-#[must_use]
-pub fn is_project(name: &str) -> bool {
-    crate::asset::extension(name) == "zip"
 }
 
 /// Writes the archive of a work.
@@ -91,8 +83,8 @@ fn is_compressed(name: &str) -> bool {
 /// If the archive cannot be read or has nothing for a work: the end of a sentence that begins with
 /// "it".
 pub fn unpack(bytes: &[u8]) -> Result<(Project, Vec<String>), String> {
-    if bytes.len() > MAX_BYTES {
-        let most = crate::asset::size(MAX_BYTES);
+    if bytes.len() > MAX_ARCHIVE {
+        let most = crate::asset::size(MAX_ARCHIVE);
         return Err(format!("is larger than {most}"));
     }
     let archive = Archive::open(bytes, MAX_MEMBERS).map_err(|error: Error| error.to_string())?;
@@ -226,9 +218,6 @@ fn content(
     Ok(bytes)
 }
 
-/// Most files that are taken from an archive.
-pub const MOST: usize = MAX_FILES + MAX_ASSETS;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -309,9 +298,8 @@ mod tests {
 
     #[test]
     fn bombs_and_broken_archives_are_refused() {
-        let reason = |bytes: &[u8]| unpack(bytes).unwrap_err();
         assert!(reason(b"PK").contains("no zip archive"));
-        assert!(reason(&vec![0; MAX_BYTES + 1]).contains("larger than"));
+        assert!(reason(&vec![0; MAX_ARCHIVE + 1]).contains("larger than"));
         assert!(reason(&zip(&[("a.txt/", b"")])).contains("no texts"));
         let zeros = vec![b' '; MAX_TEXT + 1];
         assert!(reason(&zip(&[("a.rat", &zeros)])).contains("bytes when it is unpacked"));
@@ -328,5 +316,9 @@ mod tests {
         let description = br#"{"name": "a", "texts": ["main.rat"]}"#;
         let lacking = zip(&[("sinew.json", description)]);
         assert_eq!(reason(&lacking), "lacks its text main.rat");
+    }
+
+    fn reason(bytes: &[u8]) -> String {
+        unpack(bytes).unwrap_err()
     }
 }

@@ -70,7 +70,7 @@ impl std::fmt::Display for Refused {
             Self::TooManyAssets { assets, bytes } => write!(
                 f,
                 "That would make {assets} images and meshes of {}; \
-                    a work takes {MAX_ASSETS} of {}. None was added; remove some first.",
+                    a work takes {MAX_ASSETS}, of {} together. None was added; remove some first.",
                 asset::size(*bytes),
                 asset::size(MAX_ALL)
             ),
@@ -842,7 +842,6 @@ mod tests {
 
     #[test]
     fn a_contact_draws_a_new_picture() {
-        let body = |name, at| format!("body {name}\nsphere a 1, {at} 0 0\nclose\n");
         let text = format!(
             "surface a, diffuse Red, blobbiness -1\n{}{}",
             body("L", -1),
@@ -855,6 +854,10 @@ mod tests {
         assert_eq!(session.generation(), generation + 1);
     }
 
+    fn body(name: &str, at: i32) -> String {
+        format!("body {name}\nsphere a 1, {at} 0 0\nclose\n")
+    }
+
     #[test]
     fn scene_is_shared_and_ready_for_clicks_until_it_changes() {
         let mut session = Session::of_text(TEXT);
@@ -862,14 +865,15 @@ mod tests {
             session.scene().unwrap(),
             &session.compilation().scene
         ));
-        let pick = |session: &Session| {
-            let picker = session.picker(true).unwrap();
-            let hit = picker.pick(glam::DVec3::new(0.0, 0.0, 5.0), glam::DVec3::NEG_Z);
-            hit.map(|hit| hit.t)
-        };
         assert_eq!(pick(&session), Some(4.5));
         edit(&mut session, &TEXT.replace("0.5", "1.5"), 1.0);
         assert_eq!(pick(&session), Some(3.5));
+    }
+
+    fn pick(session: &Session) -> Option<f64> {
+        let picker = session.picker(true).unwrap();
+        let hit = picker.pick(glam::DVec3::new(0.0, 0.0, 5.0), glam::DVec3::NEG_Z);
+        hit.map(|hit| hit.t)
     }
 
     #[test]
@@ -970,7 +974,6 @@ mod tests {
     #[test]
     fn images_come_and_go_within_their_limits() {
         let mut session = Session::of_text(TEXT);
-        let image = |name: &str, bytes: usize| Asset::await_mesh(name, vec![0; bytes]);
         let revision = session.revision();
         session.put_assets(vec![image("a.png", 3)]).unwrap();
         session.put_assets(vec![image("a.png", 4)]).unwrap();
@@ -990,13 +993,13 @@ mod tests {
         assert_eq!(session.remove_asset("a.png"), None);
     }
 
+    fn image(name: &str, bytes: usize) -> Asset {
+        Asset::await_mesh(name, vec![0; bytes])
+    }
+
     #[test]
     fn files_from_outside_are_one_step() {
         let mut session = Session::of_text(TEXT);
-        let file = |name: &str, text: &str| File {
-            name: name.to_owned(),
-            text: text.to_owned(),
-        };
         let files = vec![file("main.rat", "# new\n"), file("leg.rat", "# leg\n")];
         session.put_files(files, 1.0).unwrap();
         assert_eq!(session.text(0), "# new\n");
@@ -1008,19 +1011,19 @@ mod tests {
         assert_eq!(session.project().files.len(), 1);
     }
 
+    fn file(name: &str, text: &str) -> File {
+        File {
+            name: name.to_owned(),
+            text: text.to_owned(),
+        }
+    }
+
     #[test]
     fn steps_back_and_forth_are_one_history() {
         let mut session = Session::of_text(TEXT);
-        let file = |text: &str| File {
-            name: String::from("main.rat"),
-            text: text.to_owned(),
-        };
-        let strokes = File {
-            name: String::from("a.strokes"),
-            text: String::from("strokes 1\n"),
-        };
+        let strokes = file("a.strokes", "strokes 1\n");
         let project = session.project().clone();
-        let files = vec![file("# other\n"), strokes];
+        let files = vec![file("main.rat", "# other\n"), strokes];
         session.set_files(files, 1.0).unwrap();
         for text in ["strokes 1\na\n", "strokes 1\na\nb\n"] {
             session.step(TextEdit::whole(1, text), 1.1).unwrap();
@@ -1048,7 +1051,11 @@ mod tests {
         assert!(!session.can_redo());
         let long = "x".repeat(MAX_TEXT + 1);
         assert!(session.step(TextEdit::whole(1, long.clone()), 3.0).is_err());
-        assert!(session.set_files(vec![file(&long)], 3.0).is_err());
+        assert!(
+            session
+                .set_files(vec![file("main.rat", &long)], 3.0)
+                .is_err()
+        );
         assert_eq!(session.text(1), "strokes 1\na\nc\n");
     }
 

@@ -33,6 +33,7 @@
 mod bench;
 mod command;
 mod dataset;
+mod figure;
 pub mod formulas;
 mod lesson;
 mod lessons;
@@ -45,6 +46,7 @@ mod tools;
 
 pub use command::Command;
 pub use dataset::Dataset;
-pub use lesson::{Lesson, Words};
+pub use figure::Words;
+pub use lesson::Lesson;
 pub use page::{Frame, show};
 pub use state::{Lab, Report};

@@ -1,6 +1,7 @@
 //! State of the lab: the open lesson and the numbers of all lessons.
 
-use crate::lesson::{Figure, Lesson, Words};
+use crate::figure::{Figure, Words};
+use crate::lesson::Lesson;
 use crate::pictures::Pictures;
 use pool::Pool;
 use serde::Serialize;

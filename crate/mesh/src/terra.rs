@@ -4,6 +4,7 @@ use crate::error::{Error, fail};
 use crate::heights::Heights;
 use crate::limits::MAX_TERRA;
 use crate::triangle_mesh::TriangleMesh;
+use core::ops::RangeInclusive;
 use glam::DVec3;
 
 /// The surface over the rectangle from the origin to `size.x`, `size.y`, with heights from 0 to
@@ -67,20 +68,12 @@ fn cells(columns: usize, rows: usize) -> [usize; 2] {
 /// The heights at the corners of a grid: the mean of the pixels nearer to a corner than to the
 /// next.
 fn average(heights: &Heights, across: usize, down: usize) -> Vec<f64> {
-    let range = |i: usize, cells: usize, pixels: usize| {
-        // Pixels lie at the corners of as many cells as there are steps between them.
-        let step = (pixels - 1) as f64 / cells as f64;
-        let first = ((i as f64 - 0.5) * step).ceil().max(0.0) as usize;
-        let last = ((i as f64 + 0.5) * step).floor() as usize;
-        let last = last.min(pixels - 1);
-        first.min(last)..=last
-    };
     let mut values = Vec::with_capacity((across + 1) * (down + 1));
     for j in 0..=down {
         for i in 0..=across {
             let (mut sum, mut count) = (0.0, 0.0);
-            for y in range(j, down, heights.height()) {
-                for x in range(i, across, heights.width()) {
+            for y in pixels_near(j, down, heights.height()) {
+                for x in pixels_near(i, across, heights.width()) {
                     sum += f64::from(heights.at(x, y));
                     count += 1.0;
                 }
@@ -89,6 +82,16 @@ fn average(heights: &Heights, across: usize, down: usize) -> Vec<f64> {
         }
     }
     values
+}
+
+/// Returns the pixels nearer to a corner than to the next, of a row of so many cells.
+fn pixels_near(i: usize, cells: usize, pixels: usize) -> RangeInclusive<usize> {
+    // Pixels lie at the corners of as many cells as there are steps between them.
+    let step = (pixels - 1) as f64 / cells as f64;
+    let first = ((i as f64 - 0.5) * step).ceil().max(0.0) as usize;
+    let last = ((i as f64 + 0.5) * step).floor() as usize;
+    let last = last.min(pixels - 1);
+    first.min(last)..=last
 }
 
 struct Grid {

@@ -297,14 +297,12 @@ impl Cage {
                         let [start, end] = bone.radii(radius);
                         lines.push([(*base, start), (*apex, end)]);
                     }
-                    line @ (Skeleton::Arc { .. } | Skeleton::Curve { .. }) => {
-                        lines.extend(chords(line, radius));
-                    }
                     Skeleton::Triangle { corners } => {
                         others.extend(Self::around_face(&[corners.to_vec()], radius));
                     }
                     Skeleton::Polygon { rings } => others.extend(Self::around_face(rings, radius)),
                     Skeleton::Plane { .. } => {}
+                    line => lines.extend(chords(line, radius)),
                 },
                 Shape::Function(function) => {
                     let place = |p: DVec3| function.to_world.transform_point3(p);

@@ -9,7 +9,7 @@ pub const KEYS: [(&str, &str); 19] = [
     ),
     ("wheel, two fingers", "zoom; two fingers also turn"),
     ("Shift", "smooth instead"),
-    ("Ctrl", "the other way about: swell, let go, take out"),
+    ("Ctrl", "the reverse: swell, let go, take out"),
     ("L P M C B", "pull, push, mask, paint (colour), region"),
     (
         "G",
@@ -24,7 +24,7 @@ pub const KEYS: [(&str, &str); 19] = [
         "D, Shift+D",
         "divide the region; smooth it by Loop's subdivision",
     ),
-    ("A", "the region is all; Alt+A none, I the others"),
+    ("A", "choose all faces; Alt+A: none, I: the others"),
     (". (period)", "turn about the point under the pointer"),
     (
         "1 3 7, Home",

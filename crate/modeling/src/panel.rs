@@ -245,7 +245,7 @@ fn symmetry(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
                 ui,
                 name,
                 planes[axis],
-                "What the tool does is done on the other side, too",
+                "Repeats each stroke on the other side",
             )
             .clicked()
             {
@@ -318,7 +318,7 @@ fn refinement(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
             ),
             (
                 "Simplify",
-                "Half of the faces go, those first that change the shape least",
+                "Removes half of the faces, first those that change the shape least",
                 Stroke::Simplify(0.5),
             ),
             ("Fill holes", "Closes holes by a centre", Stroke::Fill),
@@ -370,7 +370,7 @@ fn region(place: &mut Sculpting, ui: &mut Ui, commands: &mut Vec<Command>) {
             ),
             (
                 "Swap mask",
-                "Free vertices are held and held ones free",
+                "Swaps the vertices that are held with the free ones",
                 Stroke::Masks(MaskChange::Invert),
             ),
         ] {
@@ -389,7 +389,7 @@ fn view(place: &mut Sculpting, ui: &mut Ui) {
             (
                 Turning::Light,
                 "the light",
-                "The light goes around, and with it the tool's shadow",
+                "Turns the light around the mesh, and with it the tool's shadow",
             ),
         ] {
             if chip(ui, name, place.turning == turning, tip).clicked() {

@@ -16,6 +16,7 @@ mod pieces;
 mod range;
 mod shell;
 mod skeleton;
+mod terms;
 #[cfg(test)]
 mod tests;
 mod touching;
@@ -26,8 +27,9 @@ pub use touching::{Substance, TouchingBody};
 
 use field::local::LocalError;
 use field::{Kink, Primitive, THRESHOLD};
-use function::{Evaluation, FieldTerms, Function, ULP};
+use function::Function;
 use glam::DVec3;
+use terms::{Evaluation, FieldTerms, ULP};
 use touching::Touching;
 
 /// The points `origin + t·direction`, t > 0.

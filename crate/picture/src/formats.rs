@@ -103,7 +103,7 @@ pub struct AnimatedGif<W: Write> {
 
 impl<W: Write> AnimatedGif<W> {
     /// Begins a file.
-    pub fn begin(to: W, timing: crate::animation::Timing, dither: bool) -> Result<Self, Problem> {
+    pub fn begin(to: W, timing: crate::timing::Timing, dither: bool) -> Result<Self, Problem> {
         let mut encoder = GifEncoder::new_with_speed(to, HASTE);
         if timing.repeats {
             encoder

@@ -37,6 +37,7 @@ mod png_file;
 mod problem;
 mod resize;
 mod swatches;
+mod timing;
 
 pub use collage::{collage, collage_at_most};
 pub use file::Format;

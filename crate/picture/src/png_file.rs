@@ -1,7 +1,7 @@
 //! PNG files of one picture, and animated ones.
 
-use crate::animation::Timing;
 use crate::picture::{check_room, check_size};
+use crate::timing::Timing;
 use crate::{Picture, Problem};
 use std::io::{Cursor, Write};
 

@@ -221,7 +221,6 @@ mod tests {
 
     #[test]
     fn values() {
-        let code = |name| find(name).map(|c| c.map(|v| (v * 255.0).round() as u8));
         assert_eq!(code("OrangeRed"), Some([255, 69, 0]));
         assert_eq!(code("orangered"), Some([255, 69, 0]));
         assert_eq!(code("DarkRed"), Some([139, 0, 0]));
@@ -235,5 +234,9 @@ mod tests {
         assert_eq!(code("Gray+5"), None);
         assert_eq!(code("nosuch"), None);
         assert_eq!(name_of([1.0, 0.0, 0.0]), Some("Red"));
+    }
+
+    fn code(name: &str) -> Option<[u8; 3]> {
+        find(name).map(|c| c.map(|v| (v * 255.0).round() as u8))
     }
 }

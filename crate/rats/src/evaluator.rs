@@ -9,6 +9,7 @@ mod air;
 mod call;
 mod camera;
 mod contact;
+mod curves;
 mod deform;
 mod frozen;
 mod image_list;

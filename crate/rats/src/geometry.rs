@@ -154,9 +154,6 @@ pub fn crosses_itself(rings: &[Vec<DVec3>]) -> bool {
         .iter()
         .flat_map(|ring| (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()])))
         .collect();
-    // On which side of a line: points on it, where corners touch edges, are on neither.
-    let side = |(a, b): (DVec2, DVec2), p: DVec2| (b - a).perp_dot(p - a);
-    let splits = |e, (p, q)| side(e, p) * side(e, q) < 0.0;
     for (i, &e) in edges.iter().enumerate() {
         if edges[i + 1..].iter().any(|&f| splits(e, f) && splits(f, e)) {
             return true;
@@ -168,6 +165,16 @@ pub fn crosses_itself(rings: &[Vec<DVec3>]) -> bool {
         let mut others = flat.iter().enumerate().skip(1);
         !is_inside(&flat[0], p) || others.any(|(j, other)| j != i && is_inside(other, p))
     })
+}
+
+/// Whether the ends of an edge are on different sides of the line through another one.
+fn splits(line: (DVec2, DVec2), (p, q): (DVec2, DVec2)) -> bool {
+    side(line, p) * side(line, q) < 0.0
+}
+
+/// Tells by its sign on which side of a line a point is; 0 on it, as where corners touch edges.
+fn side((a, b): (DVec2, DVec2), p: DVec2) -> f64 {
+    (b - a).perp_dot(p - a)
 }
 
 /// Returns whether a point is inside a ring: a ray from it along x crosses an odd number of edges.

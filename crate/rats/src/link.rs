@@ -145,7 +145,6 @@ pub fn decode(fragment: &str) -> Result<Shared, LinkError> {
 
 /// Checks the limits of every project that a link carries.
 fn check(shared: &Shared) -> Result<(), LinkError> {
-    let refuse = |why: &str| Err(LinkError::NotAProject(why.to_owned()));
     let files = &shared.project.files;
     if files.is_empty() {
         return refuse("it has no file");
@@ -175,4 +174,8 @@ fn check(shared: &Shared) -> Result<(), LinkError> {
         }
     }
     Ok(())
+}
+
+fn refuse(why: &str) -> Result<(), LinkError> {
+    Err(LinkError::NotAProject(why.to_owned()))
 }

@@ -44,7 +44,6 @@ pub fn hint<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Op
 /// Computes the optimal string alignment distance, ignoring case: insertions, deletions,
 /// replacements and swaps of neighbours. Both words have at most [`MAX_WORD`] bytes.
 fn distance(a: &[u8], b: &[u8]) -> usize {
-    let same = |x: u8, y: u8| x.eq_ignore_ascii_case(&y);
     let mut rows = [[0_usize; MAX_WORD + 1]; 3];
     for (j, cell) in rows[0].iter_mut().enumerate() {
         *cell = j;
@@ -54,9 +53,14 @@ fn distance(a: &[u8], b: &[u8]) -> usize {
         let mut row = [0; MAX_WORD + 1];
         row[0] = i;
         for j in 1..=b.len() {
-            let replace = rows[last][j - 1] + usize::from(!same(a[i - 1], b[j - 1]));
+            let replace =
+                rows[last][j - 1] + usize::from(!a[i - 1].eq_ignore_ascii_case(&b[j - 1]));
             row[j] = replace.min(rows[last][j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]) {
+            let is_swap = i > 1
+                && j > 1
+                && a[i - 1].eq_ignore_ascii_case(&b[j - 2])
+                && a[i - 2].eq_ignore_ascii_case(&b[j - 1]);
+            if is_swap {
                 row[j] = row[j].min(rows[before][j - 2] + 1);
             }
         }

@@ -90,11 +90,6 @@ mod tests {
 
     #[test]
     fn polygons_keep_their_area() {
-        let square = |half: f64| {
-            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-                .map(|[x, y]| DVec3::new(x * half, y * half, 0.5 * x * half))
-                .to_vec()
-        };
         let slant = 1.25f64.sqrt();
         let whole = Shape::polygon(vec![square(2.0)], 0.1);
         assert!((area(&whole.parts(0.1)) - 16.0 * slant).abs() < 1e-12);
@@ -107,6 +102,12 @@ mod tests {
             let holed = Shape::polygon(vec![square(2.0), hole], 0.1);
             assert!((area(&holed.parts(0.1)) - 12.0 * slant).abs() < 1e-12);
         }
+    }
+
+    fn square(half: f64) -> Vec<DVec3> {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| DVec3::new(x * half, y * half, 0.5 * x * half))
+            .to_vec()
     }
 
     #[test]

@@ -138,7 +138,6 @@ mod tests {
 
     #[test]
     fn quadrics_without_a_surface_are_refused() {
-        let new = |a: DMat3, b, high| Quadric::new(a, b, 1.0, DVec3::ZERO, high);
         assert!(new(DMat3::IDENTITY, DVec3::ZERO, DVec3::ONE).is_some());
         assert!(new(DMat3::ZERO, DVec3::X, DVec3::ONE).is_some());
         assert!(new(DMat3::ZERO, DVec3::ZERO, DVec3::ONE).is_none());
@@ -148,5 +147,9 @@ mod tests {
             assert!(new(DMat3::IDENTITY, DVec3::splat(bad), DVec3::splat(1e200)).is_none());
             assert!(new(DMat3::IDENTITY * bad, DVec3::ZERO, DVec3::splat(1e200)).is_none());
         }
+    }
+
+    fn new(a: DMat3, b: DVec3, high: DVec3) -> Option<Quadric> {
+        Quadric::new(a, b, 1.0, DVec3::ZERO, high)
     }
 }

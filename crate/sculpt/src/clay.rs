@@ -1,6 +1,5 @@
 //! The clay: a mesh with masks, colours and a region.
 
-use crate::delta::{Delta, Topology};
 use crate::error::{Error, fail};
 use crate::grid::Grid;
 use crate::limits::{FARTHEST, MAX_FACES};
@@ -252,43 +251,6 @@ impl Clay {
             Region::Faces(faces) => faces.binary_search(&f).is_ok(),
         }
     }
-
-    /// Carries out a change of the elements. If it fails, everything is as it was before.
-    pub(crate) fn change(
-        &mut self,
-        change: impl FnOnce(&mut Self) -> Result<(), Error>,
-    ) -> Result<Delta, Error> {
-        let old = State {
-            mesh: self.mesh.clone(),
-            colors: self.colors.clone(),
-            masks: self.masks.clone(),
-        };
-        let region = self.region.clone();
-        match change(self) {
-            Ok(()) => {
-                self.index_vertices();
-                Ok(Delta {
-                    topology: Some(Box::new(Topology::between(&old, self))),
-                    region: (region != self.region).then_some(region),
-                    ..Delta::default()
-                })
-            }
-            Err(error) => {
-                self.mesh = old.mesh;
-                self.colors = old.colors;
-                self.masks = old.masks;
-                self.region = region;
-                Err(error)
-            }
-        }
-    }
-}
-
-/// The elements of a mesh, and what is kept beside them.
-pub(crate) struct State {
-    pub mesh: HalfEdgeMesh,
-    pub colors: Vec<[f32; 3]>,
-    pub masks: Vec<f32>,
 }
 
 /// Checks the number of faces and the places of vertices.

@@ -1,8 +1,9 @@
 //! Changes that a stroke has made, for undo.
 
-use crate::clay::{Clay, Region, State};
+use crate::clay::{Clay, Region};
+use crate::error::Error;
 use glam::DVec3;
-use mesh::{ListPatch, MeshPatch};
+use mesh::{HalfEdgeMesh, ListPatch, MeshPatch};
 
 /// The changes of a stroke: [`Delta::swap`] takes them back, and again carries them out.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +27,7 @@ pub(crate) struct Topology {
 
 impl Topology {
     /// The changes since an earlier state.
-    pub fn between(old: &State, new: &Clay) -> Self {
+    fn between(old: &State, new: &Clay) -> Self {
         Self {
             mesh: MeshPatch::between(&old.mesh, &new.mesh),
             colors: ListPatch::between(&old.colors, &new.colors, |a, b| {
@@ -83,4 +84,43 @@ impl Delta {
             + 16 * self.colors.len()
             + 8 * self.masks.len()
     }
+}
+
+impl Clay {
+    /// Carries out a change of the elements. If it fails, everything is as it was before.
+    pub(crate) fn change(
+        &mut self,
+        change: impl FnOnce(&mut Self) -> Result<(), Error>,
+    ) -> Result<Delta, Error> {
+        let old = State {
+            mesh: self.mesh.clone(),
+            colors: self.colors.clone(),
+            masks: self.masks.clone(),
+        };
+        let region = self.region.clone();
+        match change(self) {
+            Ok(()) => {
+                self.index_vertices();
+                Ok(Delta {
+                    topology: Some(Box::new(Topology::between(&old, self))),
+                    region: (region != self.region).then_some(region),
+                    ..Delta::default()
+                })
+            }
+            Err(error) => {
+                self.mesh = old.mesh;
+                self.colors = old.colors;
+                self.masks = old.masks;
+                self.region = region;
+                Err(error)
+            }
+        }
+    }
+}
+
+/// The elements of a mesh, and what is kept beside them.
+struct State {
+    mesh: HalfEdgeMesh,
+    colors: Vec<[f32; 3]>,
+    masks: Vec<f32>,
 }

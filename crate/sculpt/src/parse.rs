@@ -10,6 +10,7 @@ use crate::script::{Diagnostic, Place, Script};
 use crate::start::{Shape, Start};
 use crate::stroke::{Action, Beginning, Constraint, MaskChange, PathPoint, Stroke, Sweep};
 use crate::tool::{Form, Tool};
+use core::str::FromStr;
 use glam::DVec3;
 
 /// Problems that are told at most.
@@ -17,41 +18,55 @@ const MOST_PROBLEMS: usize = 20;
 
 type Parsed<T> = Result<T, Diagnostic>;
 
-pub fn script(text: &str) -> Result<Script, Vec<Diagnostic>> {
-    if text.len() > MAX_BYTES {
-        let message = format!(
-            "this text has {} bytes; strokes have at most {MAX_BYTES}",
-            text.len()
-        );
-        return Err(vec![Place::default().problem(message)]);
+impl FromStr for Script {
+    type Err = Diagnostic;
+
+    fn from_str(text: &str) -> Result<Self, Diagnostic> {
+        Self::parse(text).map_err(|mut problems| problems.swap_remove(0))
     }
-    let mut reader = ScriptReader::default();
-    let mut problems = Vec::new();
-    let mut offset = 0;
-    for (number, content) in (1..).zip(text.split('\n')) {
-        let mut line = Line::new(content, number, offset);
-        offset += content.len() + 1;
-        if line.is_done() {
-            continue;
+}
+
+impl Script {
+    /// Parses a text. Returns all problems if there are any, at most twenty.
+    ///
+    /// # Errors
+    /// The problems.
+    pub fn parse(text: &str) -> Result<Self, Vec<Diagnostic>> {
+        if text.len() > MAX_BYTES {
+            let message = format!(
+                "this text has {} bytes; strokes have at most {MAX_BYTES}",
+                text.len()
+            );
+            return Err(vec![Place::default().problem(message)]);
         }
-        if let Err(problem) = reader.line(&mut line) {
-            problems.push(problem);
-            if problems.len() == MOST_PROBLEMS {
-                break;
+        let mut reader = ScriptReader::default();
+        let mut problems = Vec::new();
+        let mut offset = 0;
+        for (number, content) in (1..).zip(text.split('\n')) {
+            let mut line = Line::new(content, number, offset);
+            offset += content.len() + 1;
+            if line.is_done() {
+                continue;
+            }
+            if let Err(problem) = reader.line(&mut line) {
+                problems.push(problem);
+                if problems.len() == MOST_PROBLEMS {
+                    break;
+                }
             }
         }
-    }
-    let end = Line::new("", text.split('\n').count(), text.len());
-    if problems.is_empty() && reader.start.is_none() {
-        problems.push(end.problem_here("there must be `strokes 1`, then a `start`"));
-    }
-    match reader.start {
-        Some(start) if problems.is_empty() => Ok(Script {
-            start,
-            strokes: reader.strokes,
-            places: reader.places,
-        }),
-        _ => Err(problems),
+        let end = Line::new("", text.split('\n').count(), text.len());
+        if problems.is_empty() && reader.start.is_none() {
+            problems.push(end.problem_here("there must be `strokes 1`, then a `start`"));
+        }
+        match reader.start {
+            Some(start) if problems.is_empty() => Ok(Self {
+                start,
+                strokes: reader.strokes,
+                places: reader.places,
+            }),
+            _ => Err(problems),
+        }
     }
 }
 

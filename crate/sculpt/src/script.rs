@@ -2,13 +2,11 @@
 
 use crate::clay::Clay;
 use crate::error::Error;
-use crate::parse;
-use crate::sculpture::{Loader, begin, carry_out};
+use crate::perform::{Loader, begin, carry_out};
 use crate::stroke::{Beginning, Stroke};
 use crate::write;
 use core::fmt;
 use core::ops::Range;
-use core::str::FromStr;
 
 /// Sculpture as text: what it starts from, and strokes. Parsing what is displayed gives the same.
 ///
@@ -80,14 +78,6 @@ impl Script {
         }
     }
 
-    /// Parses a text. Returns all problems if there are any, at most twenty.
-    ///
-    /// # Errors
-    /// The problems.
-    pub fn parse(text: &str) -> Result<Self, Vec<Diagnostic>> {
-        parse::script(text)
-    }
-
     /// The line of the start, from 1; 0 if it was not parsed.
     #[must_use]
     pub fn start_line(&self) -> usize {
@@ -148,14 +138,6 @@ impl Place {
             span: self.span,
             message,
         }
-    }
-}
-
-impl FromStr for Script {
-    type Err = Diagnostic;
-
-    fn from_str(text: &str) -> Result<Self, Diagnostic> {
-        Self::parse(text).map_err(|mut problems| problems.swap_remove(0))
     }
 }
 

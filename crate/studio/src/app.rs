@@ -465,7 +465,7 @@ impl App {
             Request::Late { of, wish, .. } if of == page.work.number() => self.carry_out(wish, at),
             Request::Late { what, .. } => page.warn(format!(
                 "{what} came after another work was opened, and was left out. \
-                    Go back to the work that it was for, and ask for it again."
+                    Open the work that it was for, and ask for it again."
             )),
             Request::Storage(told) => self.heed(told, at),
             Request::Videos(formats) => self.panels.film.formats = Some(formats),

@@ -1,14 +1,13 @@
 //! The menu of everything that the page can save as a file.
 
-use crate::film::FilmPanel;
 use crate::page::Page;
 use crate::wish::{Dialog, FilmWish, ViewWish, Wish, Wishes, WorkWish};
 use crate::{places, theme};
-use browser::recording::Kind;
+use browser::recording::{Kind, VideoFormat};
 use egui::{Button, RichText, Ui};
 
-/// Lists what there is to download.
-pub fn menu(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
+/// Lists what there is to download. `formats`: those of films that the browser can write.
+pub fn menu(page: &Page, formats: &[VideoFormat], ui: &mut Ui, wishes: &mut Wishes) {
     ui.set_width(270.0);
     let size = page.renderer.image().map(|image| image.size);
     let picture = match size {
@@ -36,13 +35,12 @@ pub fn menu(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     }
     if page.work.session.is_animated() {
         ui.separator();
-        films(film, ui, wishes);
+        films(formats, ui, wishes);
     }
 }
 
-/// Lists the kinds of files that a film can become.
-pub fn films(film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
-    let formats = film.formats.as_deref().unwrap_or_default();
+/// Lists the kinds of files that a film can become, of those that need no encoder and of `formats`.
+pub fn films(formats: &[VideoFormat], ui: &mut Ui, wishes: &mut Wishes) {
     for kind in Kind::ALL {
         if kind.is_video() && formats.iter().all(|format| format.kind != kind) {
             continue;

@@ -169,7 +169,7 @@ fn picture_head(page: &Page, panels: &Panels, ui: &mut Ui, place: Rect, wishes: 
         let tip = "Download: picture (Ctrl+S), project";
         let save = icon::button(ui, Icon::Save, tip, true);
         places::note(ui.ctx(), "download", save.rect);
-        Popup::menu(&save).show(|ui| download::menu(page, &panels.film, ui, wishes));
+        Popup::menu(&save).show(|ui| download::menu(page, panels.film.formats(), ui, wishes));
         if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
             wishes.push(ViewWish::ShowAll);
         }

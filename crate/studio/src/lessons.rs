@@ -87,9 +87,12 @@ mod tests {
 
     #[test]
     fn the_example_that_the_lab_offers_is_there() {
-        let open = |file| wish(lab::Command::OpenExample { file });
         let found = open("tshape.rat");
         assert!(matches!(found, Some(Wish::Work(WorkWish::OpenExample(_)))));
         assert_eq!(open("nothing.rat"), None);
+    }
+
+    fn open(file: &'static str) -> Option<Wish> {
+        wish(lab::Command::OpenExample { file })
     }
 }

@@ -197,7 +197,17 @@ mod tests {
 
     #[test]
     fn the_summary_counts_each_kind() {
-        let one = |severity| Diagnostic {
+        assert_eq!(summary(&[]), "");
+        let list = [
+            diagnostic(Severity::Error),
+            diagnostic(Severity::Note),
+            diagnostic(Severity::Error),
+        ];
+        assert_eq!(summary(&list), "2 errors, 1 note");
+    }
+
+    fn diagnostic(severity: Severity) -> Diagnostic {
+        Diagnostic {
             severity,
             message: String::new(),
             file: String::new(),
@@ -208,13 +218,6 @@ mod tests {
             fix: None,
             related: Vec::new(),
             command: None,
-        };
-        assert_eq!(summary(&[]), "");
-        let list = [
-            one(Severity::Error),
-            one(Severity::Note),
-            one(Severity::Error),
-        ];
-        assert_eq!(summary(&list), "2 errors, 1 note");
+        }
     }
 }

@@ -90,10 +90,6 @@ fn grow(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
                 .is_some_and(|name| name == file || name == bare)
     })?;
     let old = line.split_whitespace().nth(1)?.trim_end_matches(',');
-    let short = |x: f64| {
-        let digits = (2.0 - libm::floor(libm::log10(x.max(1e-9)))).clamp(0.0, 9.0) as usize;
-        format!("{x:.digits$}")
-    };
     // The material of flesh has a name of its own, so that the hard one can be found again.
     let hard = old
         .strip_suffix("Flesh")
@@ -104,8 +100,8 @@ fn grow(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
         Flesh::Hard => format!("mesh {hard} {file}"),
         Flesh::Metaballs => format!(
             "mesh {hard} {file} metaballs triangular {} {}",
-            short(0.15 * edge),
-            short(14.0 / edge.max(1e-9))
+            write_length(0.15 * edge),
+            write_length(14.0 / edge.max(1e-9))
         ),
         Flesh::Convolved => {
             let command = format!("mesh {soft} {file}");
@@ -113,7 +109,7 @@ fn grow(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
             let material = format!(
                 "surface {soft}, diffuse Coral, specular White, shine 40, kernel quartic, \
                     blobbiness -2, radius {}\n",
-                short(0.5 * edge)
+                write_length(0.5 * edge)
             );
             if is_there {
                 command
@@ -123,6 +119,12 @@ fn grow(text: &str, file: &str, flesh: Flesh, edge: f64) -> Option<String> {
         }
     };
     Some(text.replacen(line, &new, 1))
+}
+
+/// Writes a length in three digits.
+fn write_length(x: f64) -> String {
+    let digits = (2.0 - libm::floor(libm::log10(x.max(1e-9)))).clamp(0.0, 9.0) as usize;
+    format!("{x:.digits$}")
 }
 
 /// Whether the file that a text of strokes starts from is there and not read yet.
@@ -434,21 +436,12 @@ pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         ui.add_space(10.0);
         ui.label(RichText::new(text).size(13.0).color(palette.weak));
     };
-    let choice = |ui: &mut Ui, name: &str| {
-        let button = ui.add(Button::new(RichText::new(name).size(14.5)));
-        places::note(
-            ui.ctx(),
-            format!("begin {}", name.to_lowercase()),
-            button.rect,
-        );
-        button.clicked()
-    };
     let id = egui::Id::unique("sculpt in this work");
     let mut here = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false);
     heading(ui, "Begin with");
     ui.horizontal_wrapped(|ui| {
         for (name, start) in SHAPES {
-            if choice(ui, name) {
+            if choose(ui, name) {
                 wishes.push(SculptWish::Begin {
                     start: start.to_owned(),
                     is_new: !here,
@@ -480,7 +473,7 @@ pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         heading(ui, "A mesh of this work");
         ui.horizontal_wrapped(|ui| {
             for name in meshes {
-                if choice(ui, name) {
+                if choose(ui, name) {
                     wishes.push(SculptWish::Begin {
                         start: format!("start file {name}"),
                         is_new: false,
@@ -498,7 +491,7 @@ pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         heading(ui, "Go on with");
         ui.horizontal_wrapped(|ui| {
             for name in texts {
-                if choice(ui, name) {
+                if choose(ui, name) {
                     wishes.push(SculptWish::Open(name.to_owned()));
                 }
             }
@@ -507,16 +500,27 @@ pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
     heading(ui, "An example, stroke by stroke");
     ui.horizontal_wrapped(|ui| {
         for (index, example) in examples::ALL.iter().enumerate() {
-            if example.group == document::examples::SCULPTED && choice(ui, example.title) {
+            if example.group == document::examples::SCULPTED && choose(ui, example.title) {
                 wishes.push(WorkWish::OpenExample(index));
                 wishes.push(SculptWish::Show);
             }
         }
     });
     ui.add_space(12.0);
-    if choice(ui, "Close") {
+    if choose(ui, "Close") {
         wishes.push(Wish::Close);
     }
+}
+
+/// Shows a button of the dialog. Returns whether it was clicked.
+fn choose(ui: &mut Ui, name: &str) -> bool {
+    let button = ui.add(Button::new(RichText::new(name).size(14.5)));
+    places::note(
+        ui.ctx(),
+        format!("begin {}", name.to_lowercase()),
+        button.rect,
+    );
+    button.clicked()
 }
 
 #[cfg(test)]

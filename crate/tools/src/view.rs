@@ -305,17 +305,20 @@ mod tests {
             blobbiness: Some(2.0),
             ..Flesh::default()
         });
-        let ball = |x: f64, finish, flesh| Element {
-            flesh,
-            finish,
-            ..Element::new(Shape::sphere(DVec3::new(x, 0.0, 0.0), 1.0))
-        };
         scene.elements = vec![
             ball(0.0, 0, Some(0)),
             ball(x, 1, Some(0)),
             ball(9.0, 0, None),
         ];
         scene
+    }
+
+    fn ball(x: f64, finish: u32, flesh: Option<u32>) -> Element {
+        Element {
+            flesh,
+            finish,
+            ..Element::new(Shape::sphere(DVec3::new(x, 0.0, 0.0), 1.0))
+        }
     }
 
     fn looks() -> Vec<[f32; 10]> {

@@ -33,7 +33,6 @@ pub fn mp4(video: &Video) -> Result<Vec<u8>, Error> {
 fn movie(video: &Video, configuration: &[u8], start: u32) -> Vec<u8> {
     let end = video.end();
     let [width, height] = video.size.map(|side| u32::from(side) << 16);
-    let head = |after: &[u8]| [&0_u64.to_be_bytes(), &0_u64.to_be_bytes(), after].concat();
     let matrix = words(&UPRIGHT);
     // Version 1, as the times may need more than 32 bits.
     let movie_head = [
@@ -83,6 +82,11 @@ fn movie(video: &Video, configuration: &[u8], start: u32) -> Vec<u8> {
     );
     let track = atom(b"trak", &[&atom(b"tkhd", &track_head), &media]);
     atom(b"moov", &[&atom(b"mvhd", &movie_head), &track])
+}
+
+/// Returns two times that nobody asks for, and what comes after them.
+fn head(after: &[u8]) -> Vec<u8> {
+    [&0_u64.to_be_bytes(), &0_u64.to_be_bytes(), after].concat()
 }
 
 /// The tables of frames.

@@ -89,7 +89,6 @@ mod tests {
 
     #[test]
     fn square_darkens_what_is_behind_it() {
-        let corner = |x, y| Vec3::new(x, y, 0.0);
         let square = Surface {
             positions: vec![
                 corner(-1.0, -1.0),
@@ -109,5 +108,9 @@ mod tests {
         );
         assert_eq!(shadow.at(Vec3::new(6.3, 0.3, 0.0)), 0.0, "beside it");
         assert_eq!(shadow.at(Vec3::new(60.0, 0.3, 0.0)), 0.0, "far away");
+    }
+
+    fn corner(x: f32, y: f32) -> Vec3 {
+        Vec3::new(x, y, 0.0)
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::plot::{self, number};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, heading, reading, remark, slider};
@@ -128,7 +128,7 @@ impl Figure for Centreline {
             );
             remark(
                 controls,
-                "Drag the nodes. Dashes: the capsules that the file means.",
+                "Drag the nodes. Dashed: the capsules that the file describes.",
             );
             let readings = &mut bench.readings;
             readings.insert("middle", surfaces.middles[0]);

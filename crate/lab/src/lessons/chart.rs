@@ -3,8 +3,8 @@
 use super::grid::note_refusal;
 use crate::bench::Bench;
 use crate::command::Command;
+use crate::figure::{Figure, Words};
 use crate::formulas::{self, BONES, Bone};
-use crate::lesson::{Figure, Words};
 use crate::plot::number;
 use crate::sample;
 use crate::tools::{self, heading, remark};

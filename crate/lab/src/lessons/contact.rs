@@ -4,7 +4,7 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::plot::{self, Axis, Plot};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};

@@ -6,7 +6,7 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::plot::{self, Axis, Plot, number};
 use crate::tools::{self, Stage, heading, reading, remark, slider};
 use egui::{Align2, Button, Color32, CursorIcon, FontId, Rect, Sense, Stroke, Ui, pos2, vec2};

@@ -3,7 +3,7 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::plot::{self, Axis, Plot, grip, number};
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use egui::{CursorIcon, Rect, Stroke, Ui, vec2};

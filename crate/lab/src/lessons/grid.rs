@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::pictures::Shown;
 use crate::plot::number;
 use crate::tools::{self, Stage, heading, remark, slider};

@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::plot::{self, Axis, Plot, number};
 use crate::sample;
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
@@ -98,8 +98,8 @@ impl Figure for Kernels {
                 }
             }
             if self.chosen.iter().any(|kernel| !kernel.is_compact()) {
-                let text = "A kernel without end counts as over where its \
-                    field is below a thousandth of T.";
+                let text = "A kernel that never ends counts as faded where \
+                    its field is below a thousandth of T.";
                 remark(controls, text);
             }
             if (self.strength - 1.0).abs() > 1e-6 {

@@ -3,7 +3,7 @@
 use super::grid::note_refusal;
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::plot::{self, Axis, Plot};
 use crate::tools::{Stage, heading, remark, slider};
 use core::f64::consts::PI;

@@ -6,7 +6,7 @@
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::dataset::Dataset;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::plot::{self, number};
 use crate::sample::{self, Filling, Window};
 use crate::tools::{Stage, choice, heading, reading, remark, slider};

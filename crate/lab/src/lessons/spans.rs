@@ -8,7 +8,7 @@ use super::grid::note_refusal;
 use super::slice::shade;
 use crate::bench::Bench;
 use crate::command::Command;
-use crate::lesson::{Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::pictures::Shown;
 use crate::tools::{Stage, choice, heading, reading, remark, slider};
 use digger::errors::Pixel;
@@ -184,7 +184,7 @@ impl Figure for Spans {
         if self.key.kernel == Kernel::Cauchy {
             remark(
                 controls,
-                "It reaches further, so that its spans are longer.",
+                "This kernel reaches further, so its spans are longer.",
             );
         }
         slider(
@@ -204,7 +204,7 @@ impl Figure for Spans {
         let [two, four, certified] = self.maps.each_ref().map(Map::alone);
         let text = format!(
             "In per cent of the bars' radius, along the ray. Red: a hit where there should be \
-             none, or none where there should be one; so in {two}, {four} and {certified} pixels."
+             none, or none where there should be one: {two}, {four} and {certified} pixels."
         );
         remark(controls, text);
         bench.readings.insert("alone of 2", two as f64);

@@ -25,78 +25,86 @@ struct Open {
     depth: usize,
 }
 
-pub(super) fn build(boxes: &[Aabb]) -> Bvh {
-    assert!(boxes.len() < 1 << 31, "fewer than 2³¹ boxes");
-    let boxes: Vec<Aabb> = boxes.iter().copied().map(sanitize).collect();
-    let mut bvh = Bvh {
-        nodes: Vec::new(),
-        parents: Vec::new(),
-        order: (0..boxes.len() as u32).collect(),
-        leaves: vec![0; boxes.len()],
-        boxes,
-    };
-    if bvh.boxes.is_empty() {
-        return bvh;
-    }
-    let centers: Vec<DVec3> = bvh.boxes.iter().map(center).collect();
-    let unset = Node {
-        bounds: Aabb::EMPTY,
-        first: 0,
-        count: 0,
-    };
-    bvh.nodes.push(unset);
-    bvh.parents.push(0);
-    let mut open = vec![Open {
-        node: 0,
-        start: 0,
-        end: bvh.boxes.len(),
-        depth: 0,
-    }];
-    while let Some(Open {
-        node,
-        start,
-        end,
-        depth,
-    }) = open.pop()
-    {
-        let range = &mut bvh.order[start..end];
-        let bounds = range
-            .iter()
-            .fold(Aabb::EMPTY, |all, i| all.union(&bvh.boxes[*i as usize]));
-        if range.len() <= LEAF {
-            range.sort_unstable();
-            for i in &*range {
-                bvh.leaves[*i as usize] = node;
-            }
-            bvh.nodes[node as usize] = Node {
-                bounds,
-                first: start as u32,
-                count: range.len() as u32,
-            };
-            continue;
+impl Bvh {
+    /// Builds the hierarchy: splits by the surface area heuristic over 16 bins of box centres, and
+    /// by the median where that makes no progress. Takes time in proportion to n log n.
+    ///
+    /// # Panics
+    /// If there are 2³¹ boxes or more.
+    #[must_use]
+    pub fn new(boxes: &[Aabb]) -> Self {
+        assert!(boxes.len() < 1 << 31, "fewer than 2³¹ boxes");
+        let boxes: Vec<Aabb> = boxes.iter().copied().map(sanitize).collect();
+        let mut bvh = Self {
+            nodes: Vec::new(),
+            parents: Vec::new(),
+            order: (0..boxes.len() as u32).collect(),
+            leaves: vec![0; boxes.len()],
+            boxes,
+        };
+        if bvh.boxes.is_empty() {
+            return bvh;
         }
-        let by_area = (depth < MEDIAN_FROM)
-            .then(|| split_by_area(range, &bvh.boxes, &centers))
-            .flatten();
-        let middle = start + by_area.unwrap_or_else(|| split_by_median(range, &centers));
-        let first = bvh.nodes.len() as u32;
-        bvh.nodes[node as usize] = Node {
-            bounds,
-            first,
+        let centers: Vec<DVec3> = bvh.boxes.iter().map(center).collect();
+        let unset = Node {
+            bounds: Aabb::EMPTY,
+            first: 0,
             count: 0,
         };
-        bvh.nodes.extend([unset, unset]);
-        bvh.parents.extend([node, node]);
-        for (node, start, end) in [(first + 1, middle, end), (first, start, middle)] {
-            open.push(Open {
-                node,
-                start,
-                end,
-                depth: depth + 1,
-            });
+        bvh.nodes.push(unset);
+        bvh.parents.push(0);
+        let mut open = vec![Open {
+            node: 0,
+            start: 0,
+            end: bvh.boxes.len(),
+            depth: 0,
+        }];
+        while let Some(Open {
+            node,
+            start,
+            end,
+            depth,
+        }) = open.pop()
+        {
+            let range = &mut bvh.order[start..end];
+            let bounds = range
+                .iter()
+                .fold(Aabb::EMPTY, |all, i| all.union(&bvh.boxes[*i as usize]));
+            if range.len() <= LEAF {
+                range.sort_unstable();
+                for i in &*range {
+                    bvh.leaves[*i as usize] = node;
+                }
+                bvh.nodes[node as usize] = Node {
+                    bounds,
+                    first: start as u32,
+                    count: range.len() as u32,
+                };
+                continue;
+            }
+            let by_area = (depth < MEDIAN_FROM)
+                .then(|| split_by_area(range, &bvh.boxes, &centers))
+                .flatten();
+            let middle = start + by_area.unwrap_or_else(|| split_by_median(range, &centers));
+            let first = bvh.nodes.len() as u32;
+            bvh.nodes[node as usize] = Node {
+                bounds,
+                first,
+                count: 0,
+            };
+            bvh.nodes.extend([unset, unset]);
+            bvh.parents.extend([node, node]);
+            for (node, start, end) in [(first + 1, middle, end), (first, start, middle)] {
+                open.push(Open {
+                    node,
+                    start,
+                    end,
+                    depth: depth + 1,
+                });
+            }
         }
+        bvh
     }
-    bvh
 }
 
 /// The middle of a box, or the origin where that is not finite.

@@ -68,16 +68,6 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the hierarchy: splits by the surface area heuristic over 16 bins of box centres, and
-    /// by the median where that makes no progress. Takes time in proportion to n log n.
-    ///
-    /// # Panics
-    /// If there are 2³¹ boxes or more.
-    #[must_use]
-    pub fn new(boxes: &[Aabb]) -> Self {
-        super::build::build(boxes)
-    }
-
     /// Number of primitives.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -2,9 +2,11 @@
 
 use super::export::{Export, ExportedFile};
 use super::prepared::prepare;
+use super::rig::Rig;
 use super::{glb, obj, ply, stl, three_mf};
-use crate::error::Error;
+use crate::error::{Error, fail};
 use crate::format::Format;
+use glam::DVec3;
 
 impl Export {
     /// The files of a format: one, or two for OBJ (the second has the materials, if there are any).
@@ -32,5 +34,26 @@ impl Export {
             }
         };
         Ok(vec![file(format.extension(), bytes)])
+    }
+
+    /// Returns a GLB file of the meshes with joints, weights and, if there are two frames or more,
+    /// an animation.
+    ///
+    /// # Errors
+    /// As [`Export::write`], and if the rig does not fit the meshes.
+    pub fn write_rigged(&self, rig: &Rig) -> Result<ExportedFile, Error> {
+        let parts = prepare(self)?;
+        if self.shift() != DVec3::ZERO {
+            return fail(
+                "the model is too far from its origin for a rig, whose numbers would spoil its \
+                 shape; move it nearer, or write it without a rig",
+            );
+        }
+        let vertices: Vec<usize> = parts.iter().map(|part| part.positions.len()).collect();
+        rig.check(&vertices)?;
+        Ok(ExportedFile {
+            name: format!("{}.glb", self.name),
+            bytes: glb::write(self, &parts, Some(rig))?,
+        })
     }
 }

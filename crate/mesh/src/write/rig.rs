@@ -1,8 +1,5 @@
 //! Rigs: joints that move the vertices of a mesh, in GLB files.
 
-use super::export::{Export, ExportedFile};
-use super::glb;
-use super::prepared::prepare;
 use crate::error::{Error, fail};
 use glam::{DQuat, DVec3};
 
@@ -114,7 +111,7 @@ impl Rig {
             .collect()
     }
 
-    fn check(&self, vertices: &[usize]) -> Result<(), Error> {
+    pub(super) fn check(&self, vertices: &[usize]) -> Result<(), Error> {
         let joints = self.joints.len();
         if joints == 0 || joints > MOST_JOINTS {
             return fail(format!(
@@ -152,28 +149,5 @@ impl Rig {
             return fail("a rig has a number that is not finite");
         }
         Ok(())
-    }
-}
-
-impl Export {
-    /// Returns a GLB file of the meshes with joints, weights and, if there are two frames or more,
-    /// an animation.
-    ///
-    /// # Errors
-    /// As [`Export::write`], and if the rig does not fit the meshes.
-    pub fn write_rigged(&self, rig: &Rig) -> Result<ExportedFile, Error> {
-        let parts = prepare(self)?;
-        if self.shift() != DVec3::ZERO {
-            return fail(
-                "the model is too far from its origin for a rig, whose numbers would spoil its \
-                 shape; move it nearer, or write it without a rig",
-            );
-        }
-        let vertices: Vec<usize> = parts.iter().map(|part| part.positions.len()).collect();
-        rig.check(&vertices)?;
-        Ok(ExportedFile {
-            name: format!("{}.glb", self.name),
-            bytes: glb::write(self, &parts, Some(rig))?,
-        })
     }
 }

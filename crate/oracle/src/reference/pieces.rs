@@ -341,10 +341,9 @@ impl Body {
                     .into()
             }
             Piece::Curve([a, b, c, d]) => {
-                let half = |a: DVec3, b: DVec3| a.lerp(b, 0.5);
-                let (ab, bc, cd) = (half(*a, *b), half(*b, *c), half(*c, *d));
-                let (abc, bcd) = (half(ab, bc), half(bc, cd));
-                let m = half(abc, bcd);
+                let (ab, bc, cd) = (halfway(*a, *b), halfway(*b, *c), halfway(*c, *d));
+                let (abc, bcd) = (halfway(ab, bc), halfway(bc, cd));
+                let m = halfway(abc, bcd);
                 let (left, right) = ([*a, ab, abc, m], [m, bcd, cd, *d]);
                 // Fraction of the length at the middle: bounds from chords and control polygons.
                 let (least, most) = (|p: &[DVec3; 4]| p[0].distance(p[3]), outline);
@@ -395,13 +394,14 @@ impl Body {
     }
 }
 
+/// Computes the middle of two points.
+fn halfway(a: DVec3, b: DVec3) -> DVec3 {
+    a.lerp(b, 0.5)
+}
+
 impl Piece {
     /// Returns centre and radius of a ball around the piece, and its length or area (or more).
     fn hull(&self) -> (DVec3, f64, f64) {
-        let furthest = |c: DVec3, points: &[DVec3]| {
-            let far = points.iter().map(|p| p.distance(c));
-            far.fold(0.0, f64::max)
-        };
         match self {
             Self::Point(c) => (*c, 0.0, 1.0),
             Self::Line(a, b) => {
@@ -443,6 +443,12 @@ impl Piece {
             }
         }
     }
+}
+
+/// Computes the distance of the furthest of some points.
+fn furthest(from: DVec3, points: &[DVec3]) -> f64 {
+    let far = points.iter().map(|p| p.distance(from));
+    far.fold(0.0, f64::max)
 }
 
 /// Returns the length of a control polygon.

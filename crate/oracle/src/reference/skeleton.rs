@@ -1,9 +1,9 @@
 //! Local convolution of the reference, by its definition: windows by Simpson's rule between their
 //! kinks, distances by Floyd and Warshall's method, all pairs of pieces, bounds by interval
 //! arithmetic. It shares nothing with [`field::Local`] but the pieces.
-use super::function::{Evaluation, FIELD_ERROR};
 use super::pieces::Pieces;
 use super::range::{Deformation, Range};
+use super::terms::{Evaluation, FIELD_ERROR};
 use field::Primitive;
 use field::local::{Limb, LocalError};
 use glam::DVec3;

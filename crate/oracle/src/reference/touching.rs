@@ -1,7 +1,7 @@
 //! Bodies that touch, as one function: the largest of the bodies' own, each as the others press it.
-use super::function::{Evaluation, FieldTerms};
 use super::range::{Deformation, Range};
 use super::skeleton::SkeletonTerms;
+use super::terms::{Evaluation, FieldTerms};
 use field::Primitive;
 use field::local::{Limb, LocalError};
 use glam::DVec3;

@@ -11,21 +11,7 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::Instant;
 use worker::{Answer, Engine, Request, Step};
 
-pub use workers::Threads as PlatformWorkers;
-
-/// Sends a packed answer. Returns whether it is taken.
-pub type Outlet<'a> = dyn Fn(Vec<u8>) -> bool + 'a;
-
-/// The program that threads run.
-#[derive(Clone, Copy)]
-pub struct Program {
-    /// Serves requests until its inbox is closed or its answers are not taken any more. The number
-    /// is that of the work wanted from it, as the last request said; it changes when the present
-    /// work is given up.
-    pub serve: fn(&Receiver<Vec<u8>>, &AtomicU64, &Outlet<'_>),
-    /// Reads the number of the work that a packed request wants.
-    pub number: fn(&[u8]) -> Option<u64>,
-}
+pub use workers::{Outlet, Program, Threads as PlatformWorkers};
 
 /// The program of tracing workers that have the root finders for comparison, as all have here.
 pub const DIGGER: Program = TRACER;

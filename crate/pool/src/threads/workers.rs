@@ -1,11 +1,24 @@
 //! Threads as workers.
 
-use super::Program;
 use crate::workers::{Message, Workers};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+
+/// Sends a packed answer. Returns whether it is taken.
+pub type Outlet<'a> = dyn Fn(Vec<u8>) -> bool + 'a;
+
+/// The program that threads run.
+#[derive(Clone, Copy)]
+pub struct Program {
+    /// Serves requests until its inbox is closed or its answers are not taken any more. The number
+    /// is that of the work wanted from it, as the last request said; it changes when the present
+    /// work is given up.
+    pub serve: fn(&Receiver<Vec<u8>>, &AtomicU64, &Outlet<'_>),
+    /// Reads the number of the work that a packed request wants.
+    pub number: fn(&[u8]) -> Option<u64>,
+}
 
 struct Thread {
     requests: Sender<Vec<u8>>,

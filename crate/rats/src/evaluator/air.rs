@@ -40,8 +40,8 @@ pub static BACKGROUND: CommandSpec = row(
     "There is one background at a time, the last one. With `to` it goes from the first colour, \
      above, to the last, below; they change over around the horizon. An image lies around the \
      scene: the whole way round across, its middle towards −z, from straight up to straight down. \
-     It is seen in mirrors and through glass, but it gives no light: `sky` does. What is above is \
-     said by `vup`.",
+     It is seen in mirrors and through glass, but it gives no light: `sky` does. Up is the \
+     direction `vup`.",
 )
 .example(clay!(
     "background SteelBlue to White to SaddleBrown\n\
@@ -202,9 +202,9 @@ pub static FOG: CommandSpec = row("fog", "fog over everything")
     ))
     .default("none")
     .details(
-        "Of light that comes from the distance x the share e^(−x/d) is left; the rest is the \
-         fog's own colour. With a `height` it lies low: thinner the higher, and as dense below 0 \
-         as at 0. What is high is said by `vup`. One fog at a time: the last one counts.",
+        "Of the light from a distance x, the share e^(−x/d) arrives; the rest has the fog's own \
+         colour. With a `height` the fog lies low: it is thinner the higher one is (up is `vup`), \
+         and below 0 as dense as at 0. There is one fog at a time, the last one.",
     )
     .example(clay!(
         "fog LightSteelBlue, distance 12\nbackground LightSteelBlue\neyep 0 2 9\n\

@@ -92,8 +92,8 @@ pub static APERTURE: CommandSpec = row("aperture", "radius of the lens")
     .details(
         "0 is a pinhole, which draws everything sharp. A lens draws sharp what is as far away as \
          `focus` says, measured along the direction of view; a point at another distance z \
-         becomes a disc, of the radius radius·|focus − z|/z where it is sharp. More samples \
-         (`sample`) make the blur smoother.",
+         becomes a disc, whose radius is radius·|focus − z|/z, measured at the distance `focus`. \
+         More samples (`sample`) make the blur smoother.",
     )
     .example(clay!(
         "aperture 0.3\nfocus 8\nsample 3\nsphere Clay 1, -1.5 0 -3\nsphere Clay 1, 0 0 2\n\
@@ -120,8 +120,8 @@ pub static SHUTTER: CommandSpec = row("shutter", "how long the shutter is open")
     .default("0")
     .details(
         "A share of the time from one frame of an animation to the next: 0 is no blur, with 1 \
-         whatever moves is blurred along its whole way. What moves is what is made of variables \
-         that change with every frame; `transform` holds an object still meanwhile. More samples \
+         whatever moves is blurred along its whole way. Shapes move that are made of variables \
+         which change with every frame; `transform` holds an object still meanwhile. More samples \
          (`sample`) make the blur smoother.",
     )
     .example(clay!(

@@ -20,7 +20,6 @@ impl<'a> Evaluator<'a> {
         self.scope.step(assets::cost(asset), &name.span)?;
         let image =
             assets::image(asset).map_err(|error| Problem::new(&name.span, error.to_string()))?;
-        let pixels = |image: &Rgb8| u64::from(image.size[0]) * u64::from(image.size[1]);
         let total: u64 = self.images.all.iter().map(|image| pixels(image)).sum();
         if total + pixels(&image) > MAX_IMAGE_PIXELS {
             return Err(Problem::new(
@@ -31,4 +30,9 @@ impl<'a> Evaluator<'a> {
         }
         Ok(self.images.add(asset.name.clone(), image))
     }
+}
+
+/// Returns the number of an image's pixels.
+fn pixels(image: &Rgb8) -> u64 {
+    u64::from(image.size[0]) * u64::from(image.size[1])
 }

@@ -246,7 +246,6 @@ fn set_finish(options: &Options<'_>, finish: &mut Finish, colours: &mut Colours)
 
 /// The colours that follow from those the text gives.
 fn settle_colours(finish: &mut Finish, colours: &Colours) {
-    let scaled = |colour: Rgb, share: f32| colour.map(|c| c * share);
     let own = Finish::default();
     let body = colours.body.unwrap_or(match colours.diffuse {
         Some(Share::Colour(colour)) => colour,
@@ -254,14 +253,19 @@ fn settle_colours(finish: &mut Finish, colours: &Colours) {
     });
     finish.diffuse = match colours.diffuse {
         Some(Share::Colour(colour)) => colour,
-        Some(Share::Percent(share)) => scaled(body, share),
+        Some(Share::Percent(share)) => scale(body, share),
         None => body,
     };
     finish.ambient = match colours.ambient {
         Some(Share::Colour(colour)) => colour,
-        Some(Share::Percent(share)) => scaled(body, share),
-        None => scaled(finish.diffuse, Finish::AMBIENT_SHARE),
+        Some(Share::Percent(share)) => scale(body, share),
+        None => scale(finish.diffuse, Finish::AMBIENT_SHARE),
     };
+}
+
+/// Scales a colour.
+fn scale(colour: Rgb, share: f32) -> Rgb {
+    colour.map(|c| c * share)
 }
 
 /// A colour, or a share of the light that comes.

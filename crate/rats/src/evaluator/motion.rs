@@ -407,10 +407,6 @@ fn obstacles<'a>(
 
 /// Adds a shape to what stands in the way; returns false if it cannot stand there.
 fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
-    let rod = |a, b, from, to| Obstacle::Rod {
-        ends: [a, b],
-        radii: [from, to],
-    };
     match &part.element.shape {
         Shape::Bone(bone) => {
             let [from, to] = bone.radii(bone.radius);
@@ -437,6 +433,14 @@ fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
         Shape::Quadric(_) => return false,
     }
     true
+}
+
+/// Returns an obstacle between two places with the radii there.
+fn rod(a: DVec3, b: DVec3, from: f64, to: f64) -> Obstacle {
+    Obstacle::Rod {
+        ends: [a, b],
+        radii: [from, to],
+    }
 }
 
 /// Motion at a moment.

@@ -148,8 +148,8 @@ pub static INSTANCE: CommandSpec = row("instance", "copy an object")
         new("copy", Names::Object, "the copy's name").optional("the same name")
     ))
     .details(
-        "The transforms move the copy and leave the object; they are carried out in the order in \
-         which they are written, as often as they are.",
+        "The transforms move the copy and leave the object. They are carried out in the order in \
+         which they are written; each may be written several times.",
     )
     .example(clay!(
         "object BALL\n  sphere Clay 1, -1.5 0 0\nclose\ninstance BALL, OTHER translate 3 0 0\n\

@@ -1,19 +1,20 @@
 //! `skeleton`: subdivision curves through named nodes, with flesh around them.
 
+use super::curves::{SCHEMES, keep_apart, weigh};
 use super::model::{Group, Part};
 use super::skeleton_file::{self, FILE, FILE_OPTIONS, NAME};
 use super::state::{Evaluator, Flow};
-use crate::commands::build::{by_itself, options, plain, row, word_of};
+use crate::commands::build::{by_itself, options, plain, row};
 use crate::commands::slot::{Named, Placed, SN, Word, existing, length, new, vector, whole, word};
 use crate::commands::{CommandSpec, Names, OptionSpec, Parameter, Role};
 use crate::given::{Chosen, Options};
-use crate::limits::{CURVE_WEIGHT, MAX_BLOCK_OPERANDS};
+use crate::limits::MAX_BLOCK_OPERANDS;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
 use crate::suggest;
 use crate::syntax::Command;
 use crate::{is_mesh, is_skeleton};
-use field::{Kernel, Shaping, Taper};
+use field::Kernel;
 use glam::{DAffine3, DVec3};
 use scene::{Curves, Element, Form, Function, Shape};
 use skeleton::{Node, Scheme, Skeleton};
@@ -21,16 +22,6 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
-
-/// Schemes of subdivision.
-pub(super) const SCHEMES: &[OptionSpec] = &[
-    word_of("cubic", "the smoothest: cubic B-splines"),
-    word_of(
-        "chaikin",
-        "nearer to the nodes: corners are cut, quadratic B-splines",
-    ),
-    word_of("fourpoint", "through every node"),
-];
 
 /// Levels of subdivision, if the text gives none.
 const LEVELS: u32 = 3;
@@ -220,64 +211,6 @@ fn add_block<'a>(
     pushed?;
     run.palette.surfaces[material].used = true;
     Ok(Flow::Next)
-}
-
-/// Returns the number of shapes as which the limbs of an element count: those that taper count as
-/// [`CURVE_WEIGHT`], unless they are [cones](Shaping::is_cone).
-pub(super) fn weigh(run: &Evaluator<'_>, element: &Element) -> usize {
-    let flesh = element
-        .flesh
-        .map(|material| &run.palette.surfaces[material as usize].flesh);
-    let (Some(curves), Some(flesh)) = (element.shape.curves(), flesh) else {
-        return 0;
-    };
-    let blobbiness = flesh.blobbiness.unwrap_or(scene::curves::BLOBBINESS);
-    let mut weight = 0;
-    for [(base, start), (apex, end)] in curves.pieces() {
-        let shaping = Shaping {
-            kernel: flesh.kernel.unwrap_or(element.kernel),
-            radius: start,
-            blobbiness,
-            blob_scale: run.settings.blob_scale,
-            strength: 1.0,
-            influence: run.settings.influence,
-            taper: Some(Taper {
-                radius: end,
-                blobbiness,
-            }),
-        };
-        let is_one = start == end || shaping.is_cone(&field::Skeleton::Segment { base, apex });
-        weight += if is_one { 1 } else { CURVE_WEIGHT };
-    }
-    weight
-}
-
-/// Length along its curves within which flesh blends as if all of it counted, in its largest radii.
-const SUITABLE_REACH: f64 = 4.0;
-/// Least length along its curves within which flesh may blend, in its largest radii.
-const LEAST_REACH: f64 = 0.2;
-
-/// Returns curves whose flesh blends within a reach along them. Refuses a reach within which so few
-/// of the field's sources count that no flesh is left, and warns of one that leaves it thinner than
-/// the radii say.
-pub(super) fn keep_apart(
-    run: &mut Evaluator<'_>,
-    curves: Curves,
-    (reach, span): (f64, Range<usize>),
-) -> Outcome<Curves> {
-    let thickest = curves.points().fold(0.0, |most: f64, (_, r)| most.max(r));
-    let flesh =
-        format_args!("flesh as thick as {thickest} blends along {reach} of its curves only");
-    if reach < LEAST_REACH * thickest {
-        let hint = "let it blend about as far as it is thick, and a fifth of that at least";
-        return Err(Problem::new(&span, format!("{flesh}, and vanishes")).hint(hint));
-    }
-    if reach < thickest {
-        let enough = (1e3 * SUITABLE_REACH * thickest - 1e-6).ceil() / 1e3;
-        let message = format_args!("{flesh}, and is thinner than that");
-        run.warn(&span, message, format_args!("write `local {enough}`"));
-    }
-    Ok(curves.within(reach))
 }
 
 /// Content of a block.

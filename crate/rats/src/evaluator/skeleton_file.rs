@@ -1,7 +1,7 @@
 //! `skeleton sn, name file …`: skeletons that people have in files.
 
+use super::curves::{SCHEMES, keep_apart, weigh};
 use super::model::{Group, Part};
-use super::skeleton::{SCHEMES, keep_apart, weigh};
 use super::skeleton_radii;
 use super::state::{Evaluator, Flow};
 use crate::assets;

@@ -191,15 +191,19 @@ impl<'a> Evaluator<'a> {
     /// Returns the origin of an element of this command: a place in the user's text, even if the
     /// library makes it.
     pub(super) fn origin(&self, command: &Command) -> Origin {
-        let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let (file, span) = match self.uses.last() {
             Some((file, span)) if !self.is_own() => (*file, span),
             _ => (self.file, &command.span),
         };
         Origin {
-            file: small(file),
-            start: small(span.start),
-            end: small(span.end),
+            file: shorten(file),
+            start: shorten(span.start),
+            end: shorten(span.end),
         }
     }
+}
+
+/// Returns a place in a text in fewer bits; the largest number if it does not fit.
+fn shorten(place: usize) -> u32 {
+    u32::try_from(place).unwrap_or(u32::MAX)
 }

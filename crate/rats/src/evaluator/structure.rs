@@ -58,8 +58,8 @@ pub static DEFINE: CommandSpec = row("define", "make a new command")
     ]))
     .details(
         "A parameter in CAPITALS takes a triple, one written `surface s` the name of a material, \
-         any other a number. `c = 1` may be left out by who calls; calls may name parameters: \
-         `leg length=2`. `return` leaves the command.",
+         any other a number. A parameter with a value, `c = 1`, may be left out in a call; calls \
+         may name parameters: `leg length=2`. `return` leaves the command.",
     )
     .example(clay!(
         "define leg(surface s, BASE, length = 2) {\n  \

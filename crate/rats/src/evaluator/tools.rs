@@ -210,56 +210,41 @@ fn name_to_save(options: &Options<'_>, own: &str) -> Option<String> {
     Some(name.map_or_else(|| own.to_owned(), |name| text_of(&name)))
 }
 
+/// Writes the function of a command that makes one picture of two.
+macro_rules! join {
+    ($function:ident, $Tool:ident, $own:literal) => {
+        fn $function<'a>(
+            run: &mut Evaluator<'a>,
+            command: &'a Command,
+            options: &Options<'a>,
+            a: Name<'a>,
+            b: Name<'a>,
+        ) -> Outcome<Flow> {
+            let [a, b] = [a, b].map(|name| text_of(&name));
+            let save = name_to_save(options, $own);
+            job(run, command, Tool::$Tool { a, b, save })
+        }
+    };
+}
+
+join!(diff, Diff, "diff.png");
+join!(and, And, "and.png");
+join!(xor, Xor, "xor.png");
+
 pub static DIFF: CommandSpec = row("diff", "difference of two pictures")
     .with(takes!(diff, [SAVE_OPTIONS], FILE, OTHER))
     .details(WORK)
     .example("diff one.png two.png save difference.png");
-
-fn diff<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    options: &Options<'a>,
-    a: Name<'a>,
-    b: Name<'a>,
-) -> Outcome<Flow> {
-    let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = name_to_save(options, "diff.png");
-    job(run, command, Tool::Diff { a, b, save })
-}
 
 pub static AND: CommandSpec = row("and", "AND of two pictures")
     .with(takes!(and, [SAVE_OPTIONS], FILE, OTHER))
     .details(WORK)
     .example("and one.png two.png save both.png");
 
-fn and<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    options: &Options<'a>,
-    a: Name<'a>,
-    b: Name<'a>,
-) -> Outcome<Flow> {
-    let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = name_to_save(options, "and.png");
-    job(run, command, Tool::And { a, b, save })
-}
-
 pub static XOR: CommandSpec = row("xor", "XOR of two pictures")
     .with(takes!(xor, [SAVE_OPTIONS], FILE, OTHER))
     .details(WORK)
     .example("xor one.png two.png save either.png");
-
-fn xor<'a>(
-    run: &mut Evaluator<'a>,
-    command: &'a Command,
-    options: &Options<'a>,
-    a: Name<'a>,
-    b: Name<'a>,
-) -> Outcome<Flow> {
-    let [a, b] = [a, b].map(|name| text_of(&name));
-    let save = name_to_save(options, "xor.png");
-    job(run, command, Tool::Xor { a, b, save })
-}
 
 options! {
     /// Options of `show`.
@@ -312,8 +297,8 @@ fn show<'a>(run: &mut Evaluator<'a>, command: &'a Command, options: &Options<'a>
 pub static TABLE: CommandSpec = row("table", "plot numbers")
     .with(takes!(table, number("v", "a number").many()))
     .details(
-        "A polyline of 2 to 256 points. The program draws it as a picture `table.png`, and the \
-         page shows it below its own picture.",
+        "A polyline of 2 to 256 points. The program writes it as a picture, `table.png`; the page \
+         shows it below the picture of the model.",
     )
     .example("table 1 4 9 16 25");
 

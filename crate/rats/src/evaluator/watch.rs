@@ -256,7 +256,6 @@ mod tests {
 
     #[test]
     fn numbers_that_are_written_out() {
-        let spans = |text: &str| literals(text, 0..text.len());
         assert_eq!(spans("1 2"), Some(vec![0..1, 2..3]));
         assert_eq!(spans("<1, -2 3>"), Some(vec![1..2, 4..6, 7..8]));
         assert_eq!(spans("−.5 # half\n 2"), Some(vec![0..5, 14..15]));
@@ -264,5 +263,9 @@ mod tests {
         assert_eq!(spans("2*3"), None);
         assert_eq!(spans("--3"), None);
         assert_eq!(spans("3 -"), None);
+    }
+
+    fn spans(text: &str) -> Option<Vec<Range<usize>>> {
+        literals(text, 0..text.len())
     }
 }

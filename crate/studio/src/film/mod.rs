@@ -44,6 +44,12 @@ impl FilmPanel {
         }
     }
 
+    /// Returns the formats of videos that the browser can write, as far as it has said so.
+    #[must_use]
+    pub fn formats(&self) -> &[VideoFormat] {
+        self.formats.as_deref().unwrap_or_default()
+    }
+
     /// Carries out a wish.
     pub fn act(&mut self, wish: FilmWish, page: &mut Page, at: &Moment<'_>) {
         let player = &mut self.player;
@@ -74,7 +80,7 @@ impl FilmPanel {
     /// Begins to save all frames.
     fn begin(&mut self, kind: Kind, page: &mut Page, at: &Moment<'_>) {
         let size = kind.size(page.size(at.ctx));
-        let formats = self.formats.as_deref().unwrap_or_default();
+        let formats = self.formats();
         let result = Recording::begin(kind, &self.player, size, formats, at.now);
         if let Some(recording) = page.accept(result) {
             self.saving = Some(Saving {

@@ -44,7 +44,7 @@ pub fn show(film: &FilmPanel, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
             places::note(ui.ctx(), "save film", save.rect);
             Popup::menu(&save).show(|ui| {
                 ui.set_width(270.0);
-                download::films(film, ui, wishes);
+                download::films(film.formats(), ui, wishes);
             });
             if wide {
                 playback(ui, player, wishes);

@@ -3,7 +3,7 @@
 use crate::wish::{Wishes, WorkWish};
 use crate::{places, theme};
 use egui::text::{LayoutJob, TextFormat};
-use egui::{CollapsingHeader, FontId, Label, RichText, TextEdit, Ui};
+use egui::{CollapsingHeader, Color32, FontId, Label, RichText, TextEdit, Ui};
 use rats::commands::{CommandSpec, GROUPS, Group};
 use rats::{library, manual};
 
@@ -98,8 +98,6 @@ fn heading(spec: &CommandSpec, palette: &theme::Palette) -> LayoutJob {
 /// Shows the synopsis of a command, the meanings of operands and options, and an example to try.
 pub fn card(ui: &mut Ui, spec: &CommandSpec, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
-    let small = |text: &str, colour| RichText::new(text).size(13.0).color(colour);
-    let code = |text: &str, colour| RichText::new(text).monospace().size(12.5).color(colour);
     ui.add(Label::new(code(&spec.synopsis(), palette.command)).wrap());
     if !spec.details.is_empty() {
         ui.add(Label::new(small(spec.details, palette.text)).wrap());
@@ -156,12 +154,18 @@ pub fn card(ui: &mut Ui, spec: &CommandSpec, wishes: &mut Wishes) {
     ui.add_space(6.0);
 }
 
+/// Returns a text in the letters of explanations.
+fn small(text: &str, colour: Color32) -> RichText {
+    RichText::new(text).size(13.0).color(colour)
+}
+
+/// Returns a text in the letters of code.
+fn code(text: &str, colour: Color32) -> RichText {
+    RichText::new(text).monospace().size(12.5).color(colour)
+}
+
 /// Returns spelling and meaning of operands and options, and whether each is an option.
 fn rows(spec: &CommandSpec) -> Vec<(String, String, bool)> {
-    let with_default = |meaning: &str, default: &str| match default {
-        "" => meaning.to_owned(),
-        default => format!("{meaning} (by default {default})"),
-    };
     let mut rows: Vec<(String, String, bool)> = spec
         .parameters
         .iter()
@@ -171,14 +175,22 @@ fn rows(spec: &CommandSpec) -> Vec<(String, String, bool)> {
         })
         .collect();
     for parameter in library::parameters(spec.name) {
-        let meaning = with_default(&parameter.meaning, parameter.default);
+        let meaning = add_default(&parameter.meaning, parameter.default);
         rows.push((parameter.name.to_owned(), meaning, false));
     }
     for option in spec.options {
-        let meaning = with_default(option.meaning, option.default);
+        let meaning = add_default(option.meaning, option.default);
         rows.push((option.synopsis(), meaning, true));
     }
     rows
+}
+
+/// Adds to a meaning what is taken if nothing is given.
+fn add_default(meaning: &str, default: &str) -> String {
+    match default {
+        "" => meaning.to_owned(),
+        default => format!("{meaning} (by default {default})"),
+    }
 }
 
 /// Whether a command's name, meaning or options contain all words of the search.
@@ -208,16 +220,17 @@ mod tests {
 
     #[test]
     fn names_meanings_and_options_are_searched() {
-        let find = |search| -> Vec<&str> {
-            commands::all()
-                .filter(|spec| matches(spec, search))
-                .map(|spec| spec.name)
-                .collect()
-        };
         assert!(find("SPHERE").contains(&"sphere"));
         assert!(find("blobbiness").contains(&"surface"));
         assert!(find("colour").len() > 1);
         assert_eq!(find("sphere xyzzy"), Vec::<&str>::new());
         assert_eq!(find(" ").len(), commands::all().count());
+    }
+
+    fn find(search: &str) -> Vec<&'static str> {
+        commands::all()
+            .filter(|spec| matches(spec, search))
+            .map(|spec| spec.name)
+            .collect()
     }
 }

@@ -318,9 +318,9 @@ fn order_of(options: &JsValue) -> Result<Order, JsValue> {
 
 /// Returns the project of texts that a script gives.
 fn project(texts: &JsValue) -> Result<Project, JsValue> {
-    let file = |name: String, text: String| File { name, text };
     if let Some(text) = texts.as_string() {
-        let files = vec![file(String::from("main.rat"), text)];
+        let name = String::from("main.rat");
+        let files = vec![File { name, text }];
         return Ok(Project { files });
     }
     let wrong = || js_sys::TypeError::new("load() takes a text or an object {name: text, …}");
@@ -331,7 +331,7 @@ fn project(texts: &JsValue) -> Result<Project, JsValue> {
         let (Some(name), Some(text)) = (name.as_string(), text.as_string()) else {
             return Err(wrong().into());
         };
-        files.push(file(name, text));
+        files.push(File { name, text });
     }
     if files.is_empty() {
         return Err(wrong().into());

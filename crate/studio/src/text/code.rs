@@ -34,10 +34,6 @@ pub fn colour(text: &str, palette: &Palette) -> LayoutJob {
         keep_trailing_whitespace: true,
         ..LayoutJob::default()
     };
-    let format = |color: Color32| TextFormat {
-        line_height: Some(CODE_SIZE * 1.45),
-        ..TextFormat::simple(FontId::monospace(CODE_SIZE), color)
-    };
     let mut done = 0;
     for (range, kind) in highlight(text) {
         let (Some(gap), Some(word)) = (text.get(done..range.start), text.get(range.clone())) else {
@@ -49,6 +45,14 @@ pub fn colour(text: &str, palette: &Palette) -> LayoutJob {
     }
     job.append(&text[done..], 0.0, format(palette.text));
     job
+}
+
+/// Returns the letters of code in a colour.
+fn format(color: Color32) -> TextFormat {
+    TextFormat {
+        line_height: Some(CODE_SIZE * 1.45),
+        ..TextFormat::simple(FontId::monospace(CODE_SIZE), color)
+    }
 }
 
 fn token_colour(palette: &Palette, kind: TokenKind) -> Color32 {

@@ -166,7 +166,6 @@ mod tests {
 
     #[test]
     fn our_keys_come_first_in_a_frame_and_one_at_a_time() {
-        let undo = || press(Key::Z, Modifiers::COMMAND);
         let events = [
             text("a"),
             key(Key::A),
@@ -179,6 +178,10 @@ mod tests {
         assert_eq!(count(&events[2..], Focus::Stays), 2);
         assert_eq!(count(&events[4..], Focus::Stays), 1);
         assert_eq!(count(&events[5..], Focus::Stays), 1);
+    }
+
+    fn undo() -> Event {
+        press(Key::Z, Modifiers::COMMAND)
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub(super) fn fetch_example(page: &Page, index: usize) {
 pub(super) fn take_in(page: &mut Page, taken: Vec<Incoming>, show: bool, at: &Moment<'_>) {
     let (projects, taken): (Vec<_>, Vec<_>) = taken
         .into_iter()
-        .partition(|file| project_file::is_project(&file.name));
+        .partition(|file| intake::is_project(&file.name));
     at.ctx.request_repaint();
     if let Some(project) = projects.into_iter().next() {
         // Other files that were dropped with it would mix with its own.

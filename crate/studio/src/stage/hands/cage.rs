@@ -1,7 +1,7 @@
 //! The control points of a `deform` as knobs on the picture, with the cage between them.
 
-use super::knob;
-use super::{Around, stroke};
+use super::around::Around;
+use super::knob::{self, stroke};
 use crate::wish::{TextWish, Wishes};
 use assist::handles::{self, Handle};
 use document::session::Session;

@@ -178,3 +178,17 @@ fn caption(painter: &Painter, rect: Rect, at: Pos2, handle: &Handle, fixed: Opti
     painter.rect_filled(place, 7.0, Color32::from_black_alpha(175));
     painter.galley(place.min + vec2(8.0, 4.0), galley, Color32::WHITE);
 }
+
+/// Draws a line through places, bright within a dark seam, so that it is seen on any picture.
+pub fn stroke(painter: &Painter, sight: &Sight, places: &[DVec3], strength: f32) {
+    let pieces: Vec<_> = places
+        .windows(2)
+        .filter_map(|ends| sight.line(ends[0], ends[1]))
+        .collect();
+    for (width, colour) in [(3.6, Color32::from_black_alpha(110)), (1.5, LIT)] {
+        let stroke = Stroke::new(width, colour.gamma_multiply(strength));
+        for piece in &pieces {
+            painter.line_segment(*piece, stroke);
+        }
+    }
+}

@@ -4,16 +4,19 @@
 //! The chosen shape also follows the caret of the editor. Nothing is kept here that the text does
 //! not say: each change goes through [`TextWish::Edit`], and a drag is one undo step.
 
+mod around;
 mod cage;
 mod knob;
 
 use crate::stage::handles::Handles;
 use crate::wish::{TextWish, Wishes};
+pub use around::Around;
 use assist::handles::{self, Handle};
 use document::session::Session;
-use egui::{Color32, Key, Modifiers, Painter, Rect, Response, Stroke, Ui};
+use egui::{Key, Modifiers, Painter, Rect, Response, Ui};
 use field::Skeleton;
 use glam::DVec3;
+use knob::stroke;
 use scene::{Origin, Scene};
 use sketch::Sight;
 use std::ops::Range;
@@ -37,20 +40,6 @@ pub struct Hands {
     drag: Option<(usize, DVec3)>,
     /// The deformation whose control points are shown.
     cage: cage::Cage,
-}
-
-/// Surroundings of the handles.
-pub struct Around<'a> {
-    /// The user's work.
-    pub session: &'a Session,
-    /// The file and byte of the editor's caret, once it had one.
-    pub caret: Option<(usize, usize)>,
-    /// Whether something lies over the page.
-    pub covered: bool,
-    /// Whether the draft is on show, in which shapes have not melted together.
-    pub draft: bool,
-    /// Whether fingers are likely.
-    pub touch: bool,
 }
 
 impl Hands {
@@ -273,19 +262,5 @@ fn paint(painter: &Painter, sight: &Sight, scene: &Scene, chosen: usize) {
             center + (axes.x_axis * cosine + axes.y_axis * sine) * radius
         });
         stroke(painter, sight, &rim.collect::<Vec<_>>(), 0.6);
-    }
-}
-
-/// Draws a line through places, bright within a dark seam, so that it is seen on any picture.
-fn stroke(painter: &Painter, sight: &Sight, places: &[DVec3], strength: f32) {
-    let pieces: Vec<_> = places
-        .windows(2)
-        .filter_map(|ends| sight.line(ends[0], ends[1]))
-        .collect();
-    for (width, colour) in [(3.6, Color32::from_black_alpha(110)), (1.5, knob::LIT)] {
-        let stroke = Stroke::new(width, colour.gamma_multiply(strength));
-        for piece in &pieces {
-            painter.line_segment(*piece, stroke);
-        }
     }
 }

@@ -6,7 +6,7 @@ use assist::Signature;
 use browser;
 use document::session::Session;
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Area, FontId, Frame, Order, Rect, Ui, pos2, vec2};
+use egui::{Area, Color32, FontId, Frame, Order, Rect, Ui, pos2, vec2};
 
 /// Seconds of rest after which a line that takes long is made.
 const REST: f64 = 0.2;
@@ -124,14 +124,13 @@ impl Line {
 
 fn lay_out(signature: &Signature, ui: &Ui, width: f32) -> LayoutJob {
     let palette = theme::palette(ui.visuals());
-    let code = |colour| TextFormat::simple(FontId::monospace(12.0), colour);
     let mut job = LayoutJob::default();
     job.wrap.max_width = width;
-    job.append(&signature.command, 0.0, code(palette.command));
+    job.append(&signature.command, 0.0, format(palette.command));
     for (index, part) in signature.parameters.iter().enumerate() {
         let active = signature.active == Some(index);
         let colour = if active { palette.accent } else { palette.weak };
-        job.append(&part.text, 7.0, code(colour));
+        job.append(&part.text, 7.0, format(colour));
     }
     if let Some(part) = signature
         .active
@@ -141,6 +140,11 @@ fn lay_out(signature: &Signature, ui: &Ui, width: f32) -> LayoutJob {
         job.append(&format!("\n{}", part.meaning), 0.0, words);
     }
     job
+}
+
+/// Returns the letters of a signature in a colour.
+fn format(colour: Color32) -> TextFormat {
+    TextFormat::simple(FontId::monospace(12.0), colour)
 }
 
 /// Returns the text for screen readers.

@@ -1,0 +1,78 @@
+//! Curves with flesh around them, whether a block or a file says them.
+
+use super::state::Evaluator;
+use crate::commands::OptionSpec;
+use crate::commands::build::word_of;
+use crate::limits::CURVE_WEIGHT;
+use crate::problem::{Outcome, Problem};
+use field::{Shaping, Taper};
+use scene::{Curves, Element};
+use std::ops::Range;
+
+/// Schemes of subdivision.
+pub(super) const SCHEMES: &[OptionSpec] = &[
+    word_of("cubic", "the smoothest: cubic B-splines"),
+    word_of(
+        "chaikin",
+        "nearer to the nodes: corners are cut, quadratic B-splines",
+    ),
+    word_of("fourpoint", "through every node"),
+];
+
+/// Returns the number of shapes as which the limbs of an element count: those that taper count as
+/// [`CURVE_WEIGHT`], unless they are [cones](Shaping::is_cone).
+pub(super) fn weigh(run: &Evaluator<'_>, element: &Element) -> usize {
+    let flesh = element
+        .flesh
+        .map(|material| &run.palette.surfaces[material as usize].flesh);
+    let (Some(curves), Some(flesh)) = (element.shape.curves(), flesh) else {
+        return 0;
+    };
+    let blobbiness = flesh.blobbiness.unwrap_or(scene::curves::BLOBBINESS);
+    let mut weight = 0;
+    for [(base, start), (apex, end)] in curves.pieces() {
+        let shaping = Shaping {
+            kernel: flesh.kernel.unwrap_or(element.kernel),
+            radius: start,
+            blobbiness,
+            blob_scale: run.settings.blob_scale,
+            strength: 1.0,
+            influence: run.settings.influence,
+            taper: Some(Taper {
+                radius: end,
+                blobbiness,
+            }),
+        };
+        let is_one = start == end || shaping.is_cone(&field::Skeleton::Segment { base, apex });
+        weight += if is_one { 1 } else { CURVE_WEIGHT };
+    }
+    weight
+}
+
+/// Length along its curves within which flesh blends as if all of it counted, in its largest radii.
+const SUITABLE_REACH: f64 = 4.0;
+/// Least length along its curves within which flesh may blend, in its largest radii.
+const LEAST_REACH: f64 = 0.2;
+
+/// Returns curves whose flesh blends within a reach along them. Refuses a reach within which so few
+/// of the field's sources count that no flesh is left, and warns of one that leaves it thinner than
+/// the radii say.
+pub(super) fn keep_apart(
+    run: &mut Evaluator<'_>,
+    curves: Curves,
+    (reach, span): (f64, Range<usize>),
+) -> Outcome<Curves> {
+    let thickest = curves.points().fold(0.0, |most: f64, (_, r)| most.max(r));
+    let flesh =
+        format_args!("flesh as thick as {thickest} blends along {reach} of its curves only");
+    if reach < LEAST_REACH * thickest {
+        let hint = "let it blend about as far as it is thick, and a fifth of that at least";
+        return Err(Problem::new(&span, format!("{flesh}, and vanishes")).hint(hint));
+    }
+    if reach < thickest {
+        let enough = (1e3 * SUITABLE_REACH * thickest - 1e-6).ceil() / 1e3;
+        let message = format_args!("{flesh}, and is thinner than that");
+        run.warn(&span, message, format_args!("write `local {enough}`"));
+    }
+    Ok(curves.within(reach))
+}

@@ -1,0 +1,17 @@
+//! The surroundings of the handles.
+
+use document::session::Session;
+
+/// Surroundings of the handles.
+pub struct Around<'a> {
+    /// The user's work.
+    pub session: &'a Session,
+    /// The file and byte of the editor's caret, once it had one.
+    pub caret: Option<(usize, usize)>,
+    /// Whether something lies over the page.
+    pub covered: bool,
+    /// Whether the draft is on show, in which shapes have not melted together.
+    pub draft: bool,
+    /// Whether fingers are likely.
+    pub touch: bool,
+}
