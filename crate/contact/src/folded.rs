@@ -1,7 +1,7 @@
 //! Local convolution of a skeleton whose folds press each other flat.
 use crate::Bulge;
 use crate::squashed::product;
-use field::local::{Bounds, Two};
+use field::local::{Bounds, Halves, Two};
 use field::{Ball, Enclosure, Implicit, Jet, Local, Part, Real, THRESHOLD, Variation};
 use glam::DVec3;
 use wide::f32x8;
@@ -100,6 +100,7 @@ impl Folded {
                 first.curvature = own.curvature.max(once * other.curvature + bend);
             }
             crease = first.slope + second.slope;
+            first.halves = Halves::UNKNOWN;
         }
         let [low, high] = first.value;
         let spread = self.bulge.spread(second.value);
@@ -125,6 +126,12 @@ impl Folded {
                 true => 2.0 * slope,
                 false => (1.0 + spread.slope) * crease,
             },
+            halves: Halves {
+                curvature: first.halves.curvature
+                    + product(spread.curvature, second.slope * second.slope),
+                ..first.halves
+            }
+            .plus(spread.slope, &second.halves),
         };
         (bounds, at_center)
     }
@@ -169,7 +176,11 @@ impl Implicit for Folded {
         ball: Ball,
     ) -> (Variation, Option<Jet<f64>>) {
         let (bounds, at_center) = self.bounds(ball);
-        (bounds.variation(), at_center)
+        (bounds.variation_by_halves(ball.radius), at_center)
+    }
+
+    fn turn_smoothly(&self, part: Option<&Part>, ball: Ball, step: f64) -> Option<[DVec3; 3]> {
+        self.local.turn_smoothly(part, ball, step)
     }
 
     fn most(&self, ball: Ball) -> f64 {

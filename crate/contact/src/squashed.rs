@@ -1,6 +1,6 @@
 //! Function deformed by those that its surface touches.
 use crate::Bulge;
-use field::local::Bounds;
+use field::local::{Bounds, Halves};
 use field::{Ball, Enclosure, Implicit, Jet, Part, Real, Slack, THRESHOLD, Variation};
 use glam::DVec3;
 use std::sync::Arc;
@@ -93,6 +93,7 @@ impl Squashed {
                 curvature: product(spread.curvature, slope * slope)
                     + product(spread.slope, bounds.curvature),
                 jump,
+                halves: Halves::UNKNOWN,
             };
             // The third derivative of g(f) is g‴f′³ + 3g″f′f″ + g′f‴.
             third = product(spread.third, slope * slope * slope)
@@ -110,6 +111,7 @@ impl Squashed {
                 slope: all.slope.max(deformed.slope),
                 curvature: all.curvature.max(deformed.curvature),
                 jump: all.jump.max(deformed.jump),
+                halves: Halves::UNKNOWN,
             }));
         }
         let mut all = all?;

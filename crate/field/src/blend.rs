@@ -147,6 +147,15 @@ impl Implicit for Blend {
         }
     }
 
+    fn turn_smoothly(
+        &self,
+        part: Option<&implicit::Part>,
+        ball: Ball,
+        step: f64,
+    ) -> Option<[DVec3; 3]> {
+        self.single()?.turn_smoothly(part, ball, step)
+    }
+
     fn clearance(&self, point: DVec3) -> Option<Clearance> {
         // A function does not know what others add to it.
         self.single()?.clearance(point)

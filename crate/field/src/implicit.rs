@@ -142,7 +142,8 @@ pub struct Variation {
     pub third: f64,
     /// The largest size of the second derivative along any line, of all other terms, between kinks.
     pub rough: f64,
-    /// The sum of the jumps of the gradient at kinks in the ball.
+    /// The sum of the jumps of the gradient at kinks in the ball, and of what else it changes there
+    /// beside the curvature.
     pub jump: f64,
     /// The sum of the jumps of the value in the ball; the derivatives are then those on either
     /// side.
@@ -310,6 +311,13 @@ pub trait Implicit: Send + Sync {
     /// gradient at its centre, where finding the bounds finds these, too.
     fn variation_with_jet(&self, part: Option<&Part>, ball: Ball) -> (Variation, Option<Jet<f64>>) {
         (self.variation(part, ball), None)
+    }
+
+    /// Returns the change of the gradient over a step along each axis from a ball's centre, of
+    /// those terms whose third derivative [`Implicit::variation_with_jet`] bounds there; `None` if
+    /// the function cannot tell them from others.
+    fn turn_smoothly(&self, _part: Option<&Part>, _ball: Ball, _step: f64) -> Option<[DVec3; 3]> {
+        None
     }
 }
 

@@ -37,7 +37,7 @@ mod mean;
 mod tree;
 pub mod window;
 
-pub use bounds::{Bounds, Two};
+pub use bounds::{Bounds, Halves, Two};
 pub use build::{Limb, LimbPiece, LocalError, MOST_LINKS};
 
 use crate::term::Evaluate;
@@ -176,7 +176,12 @@ impl Implicit for Local {
         ball: Ball,
     ) -> (Variation, Option<Jet<f64>>) {
         let two = self.enclose_two(ball);
-        (two.first.variation(), two.at_center.map(|jets| jets.0))
+        let variation = two.first.variation_by_halves(ball.radius);
+        (variation, two.at_center.map(|jets| jets.0))
+    }
+
+    fn turn_smoothly(&self, _part: Option<&Part>, ball: Ball, step: f64) -> Option<[DVec3; 3]> {
+        Some(self.turn_mean(ball, step))
     }
 
     fn most(&self, ball: Ball) -> f64 {

@@ -98,9 +98,14 @@ fn bounds_hold_in_balls() {
             let radius = 0.3 * random.decades(-3.0, 0.0);
             let ball = Ball { center, radius };
             let bounds = folded.enclose(ball);
-            let variation = folded.variation(None, ball);
-            let bend = variation.curvature * radius + variation.jump;
+            let (traced, jet) = folded.variation_with_jet(None, ball);
+            let bends = [folded.variation(None, ball), traced];
+            let bends = bends.map(|bounds| bounds.curvature * radius + bounds.jump);
             let at_center = DVec3::from_array(folded.jet(center).gradient);
+            if let Some(jet) = jet {
+                let exact = folded.jet(center);
+                assert!((jet.value - exact.value).abs() <= 1e-9 * (1.0 + exact.value));
+            }
             all += 1;
             finite += u32::from(bounds.slope.is_finite());
             for _ in 0..10 {
@@ -116,7 +121,9 @@ fn bounds_hold_in_balls() {
                 let steep = gradient.length();
                 assert!(steep <= bounds.slope * (1.0 + 1e-9), "{steep} {bounds:?}");
                 let change = gradient.distance(at_center);
-                assert!(change <= bend * (1.0 + 1e-6) + 1e-7, "{change} {bend}");
+                for bend in bends {
+                    assert!(change <= bend * (1.0 + 1e-6) + 1e-7, "{change} {bend}");
+                }
             }
         }
     }

@@ -27,6 +27,40 @@ pub struct Bounds {
     /// The gradients at two points differ by no more than the curvature times their distance and
     /// this.
     pub jump: f64,
+    /// Bounds on the two functions that it is the sum of.
+    pub halves: Halves,
+}
+
+/// Bounds on a function as the sum of a main one, the mean by constant shares, and of the rest,
+/// which is small where neighbouring stretches are alike, however fast the shares change.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Halves {
+    /// The main function's largest second derivative along any line.
+    pub curvature: f64,
+    /// The main function's largest third derivative along any line; infinite if none is known.
+    pub third: f64,
+    /// The largest length of the gradient of the rest.
+    pub rest: f64,
+}
+
+impl Halves {
+    /// Halves of which nothing is known.
+    pub const UNKNOWN: Self = Self {
+        curvature: f64::INFINITY,
+        third: f64::INFINITY,
+        rest: f64::INFINITY,
+    };
+
+    /// Returns bounds on the sum with a multiple of another function, whose third derivative is
+    /// not known.
+    #[must_use]
+    pub fn plus(self, factor: f64, other: &Self) -> Self {
+        Self {
+            curvature: self.curvature + times(factor, other.curvature),
+            third: f64::INFINITY,
+            rest: self.rest + times(factor, other.rest),
+        }
+    }
 }
 
 /// Bounds on F and F₂ in a ball.
@@ -55,6 +89,7 @@ impl Bounds {
             slope: f64::INFINITY,
             curvature: f64::INFINITY,
             jump: f64::INFINITY,
+            halves: Halves::UNKNOWN,
         }
     }
 
@@ -87,6 +122,42 @@ impl Bounds {
             step: 0.0,
         }
     }
+
+    /// Returns the bounds as [`Bounds::variation`] does, with a third derivative of the main half.
+    /// Where the gradient of the rest changes less by its slope than by its curvature in a ball of
+    /// this radius, that counts as a jump.
+    #[must_use]
+    pub fn variation_by_halves(&self, radius: f64) -> Variation {
+        let whole = self.variation();
+        let Halves {
+            curvature,
+            third,
+            rest,
+        } = self.halves;
+        let [bend, jump] = [self.curvature - curvature, 2.0 * rest];
+        let is_split = jump < bend * radius;
+        if self.jump > 0.0 || !(is_split || third.is_finite()) {
+            return whole;
+        }
+        if !is_split {
+            return Variation {
+                third,
+                rough: bend,
+                ..whole
+            };
+        }
+        let [third, rough] = match third.is_finite() {
+            true => [third, 0.0],
+            false => [0.0, curvature],
+        };
+        Variation {
+            curvature,
+            third,
+            rough,
+            jump,
+            ..whole
+        }
+    }
 }
 
 /// Bounds on a piece's field in a ball.
@@ -96,6 +167,7 @@ struct Close {
     most: f64,
     slope: f64,
     curvature: f64,
+    third: f64,
 }
 
 /// Bounds on pieces in a ball, each made once.
@@ -103,7 +175,7 @@ pub(super) struct Nearby<'a> {
     local: &'a Local,
     ball: Ball,
     slots: &'a Slots,
-    calm: &'a [Option<[f32; 2]>],
+    calm: &'a [Option<[f32; 3]>],
     known: Vec<u8>,
     /// Upper bounds on fields in the ball.
     most: Vec<f64>,
@@ -150,19 +222,21 @@ impl<'a> Nearby<'a> {
         let piece = self.piece(number);
         let jet = piece.jet(center.to_array());
         let (mut most, mut least) = (f64::INFINITY, 0.0);
-        let [slope, curvature] = match self.calm[slot] {
+        let [slope, curvature, third] = match self.calm[slot] {
             Some(bounds) => bounds.map(f64::from),
             None => {
-                let mut sums = [0.0; 4];
+                let mut sums = [0.0; 5];
                 for (_, bound) in &piece.parts {
                     let near = bound.nearness(center, radius);
                     let magnitude = bound.magnitude(near);
                     let least = bound.least(center, radius);
-                    let own = [bound.slope(near), bound.curvature(near), magnitude, least];
+                    let third = bound.third(near);
+                    let [slope, curvature] = [bound.slope(near), bound.curvature(near)];
+                    let own = [slope, curvature, third, magnitude, least];
                     sums = core::array::from_fn(|i| sums[i] + own[i]);
                 }
-                [most, least] = [sums[2], sums[3]];
-                [sums[0], sums[1]]
+                [most, least] = [sums[3], sums[4]];
+                [sums[0], sums[1], sums[2]]
             }
         };
         let steep = DVec3::from_array(jet.gradient).length() * (1.0 + 1e-12);
@@ -181,6 +255,7 @@ impl<'a> Nearby<'a> {
             most,
             slope,
             curvature,
+            third,
         };
         self.jets[slot] = jet;
         self.most[slot] = most;
@@ -343,6 +418,7 @@ impl<'a> Nearby<'a> {
                 curvature: mean.curvature * (1.0 + 1e-12),
                 value: -mean.value,
                 gradient: -mean.gradient,
+                halves: Halves::default(),
             };
             for run in local.links(*piece) {
                 let first = self.slots.of(run.first);
@@ -406,6 +482,8 @@ struct Change {
     gradient: DVec3,
     slope: f64,
     curvature: f64,
+    /// Bounds on the two functions that a mean is the sum of.
+    halves: Halves,
 }
 
 impl Change {
@@ -414,6 +492,8 @@ impl Change {
         self.gradient += weight * DVec3::from_array(jet.gradient);
         self.slope += weight * close.slope;
         self.curvature += weight * close.curvature;
+        self.halves.curvature += weight * close.curvature;
+        self.halves.third += weight * close.third;
     }
 }
 
@@ -454,7 +534,9 @@ fn enclose_mean(
     let ea = t1.min(radius * (tg + t2));
     let eb = qb.min(radius * (qg + t1b + times(t1, qb)));
     let plain = (mean.gradient.length() + radius * mean.curvature).min(mean.slope);
-    let slope = plain + qg + t1b + times(ea, eb);
+    // Of all but the mean by the shares at the centre.
+    let rest = qg + t1b + times(ea, eb);
+    let slope = plain + rest;
     let curvature = mean.curvature
         + qc
         + 2.0 * (t1g + times(ea, qg))
@@ -464,12 +546,18 @@ fn enclose_mean(
     let steep = DVec3::from_array(at_center.gradient).length();
     let slope = slope.min(or_infinity(steep + radius * curvature)) * (1.0 + 1e-9) + LEFT_OUT;
     let change = (slope * radius).min(or_infinity((steep + 0.5 * curvature * radius) * radius));
+    let change = change.min(or_infinity(plain * radius + eb)) * (1.0 + 1e-9);
     let change = change + LEFT_OUT * at_center.value.abs();
     Bounds {
         value: [-1.0, 1.0].map(|side| at_center.value + side * change),
         slope,
         curvature,
         jump: 0.0,
+        halves: Halves {
+            curvature: mean.halves.curvature * (1.0 + 1e-9),
+            third: mean.halves.third * (1.0 + 1e-9),
+            rest: or_infinity(mean.halves.rest + rest) * (1.0 + 1e-9) + LEFT_OUT,
+        },
     }
 }
 
@@ -527,12 +615,9 @@ impl Local {
             first.value[0].max(range[0] - margin),
             first.value[1].min(range[1] + margin),
         ];
-        let second = (terms.far.as_ref()).map(|far| {
-            for piece in &far.pieces {
-                near.least_of(*piece);
-            }
+        let second = (terms.far.as_ref()).and_then(|far| {
             let rows = far.rows(self, &terms.lead);
-            self.enclose_second((far, rows), &terms.lead, &near, (&items, &shares))
+            self.enclose_second((far, rows), &terms.lead, &mut near, (&items, &shares))
         });
         let level = self.level.unwrap_or(f64::INFINITY);
         Two {
@@ -545,51 +630,79 @@ impl Local {
     }
 
     /// Computes bounds on F₂, and its value and gradient at the centre, from the shares of those
-    /// that lead and count.
+    /// that lead and count; `None` if it is nowhere above its level.
     fn enclose_second(
         &self,
         (far, rows): (&Far, &Rows),
         lead: &[u32],
-        near: &Nearby,
+        near: &mut Nearby,
         (items, shares): (&[(u32, f64)], &[Share]),
-    ) -> (Bounds, Jet<f64>) {
-        let radius = near.ball.radius;
+    ) -> Option<(Bounds, Jet<f64>)> {
+        let (radius, level) = (near.ball.radius, self.level?);
+        let weights = near.weights(&far.pieces);
+        for piece in &far.pieces {
+            near.least_of(*piece);
+        }
+        let most = far.pieces.iter().map(|piece| near.recall_most_of(*piece));
+        let most: Vec<f64> = most.collect();
+        let mut high = 0.0f64;
+        // Far pieces of each row that count somewhere in the ball. Rows that differ in no others
+        // are one class. The first one has none: from there F₂ⱼ is below half of the level.
+        let mut groups: Vec<Vec<(u32, f64)>> = vec![Vec::new()];
+        let mut known: Vec<Option<usize>> = vec![None; rows.count()];
         let mut leading = lead.iter().zip(&rows.classes);
         let classes = items.iter().map(|(piece, _)| {
             let found = leading.find(|(lead, _)| *lead == piece);
-            found.map_or(rows.count(), |(_, class)| rows.number(*class))
+            let number = found.map_or(rows.count(), |(_, class)| rows.number(*class));
+            let Some(known) = known.get_mut(number) else {
+                return 0;
+            };
+            *known.get_or_insert_with(|| {
+                let row = rows.row(number).iter().zip(&weights);
+                let floor = row.clone().map(|(apart, [low, _])| apart * low);
+                let floor = floor.fold(0.0, f64::max) * CUT;
+                let (mut group, mut top) = (Vec::new(), 0.0f64);
+                for ((piece, most), (apart, [_, weight])) in far.pieces.iter().zip(&most).zip(row) {
+                    if *apart > 0.0 && apart * weight >= floor {
+                        group.push((*piece, *apart));
+                        top = top.max(apart * most);
+                    }
+                }
+                if top * (1.0 + LEFT_OUT) <= 0.5 * level {
+                    return 0;
+                }
+                high = high.max(top);
+                let same = groups.iter().position(|other| *other == group);
+                same.unwrap_or_else(|| {
+                    groups.push(group);
+                    groups.len() - 1
+                })
+            })
         });
         let classes: Vec<usize> = classes.collect();
-        let mut totals = vec![(0.0, 0.0); rows.count() + 1];
-        let level = self.level.unwrap_or(THRESHOLD);
+        if high * (1.0 + LEFT_OUT) < level {
+            return None;
+        }
+        let mut totals = vec![(0.0, 0.0); groups.len()];
         for (class, share) in classes.iter().zip(shares) {
             let (center, most) = &mut totals[*class];
             *center += share.center;
             *most += share.most;
         }
-        let most: Vec<f64> = far
-            .pieces
-            .iter()
-            .map(|piece| near.recall_most_of(*piece))
-            .collect();
-        let mut high = 0.0f64;
         // The mean by the shares at the centre of the means of all classes.
         let mut mean = Change::default();
-        let means = totals.iter().enumerate().map(|(number, (center, total))| {
-            if *total == 0.0 || number == rows.count() {
+        let means = totals.iter().zip(&groups).map(|((center, total), items)| {
+            if *total == 0.0 || items.is_empty() {
                 return Change::default();
             }
-            let pairs = far.pieces.iter().zip(rows.row(number));
-            let items: Vec<(u32, f64)> = pairs.map(|(piece, apart)| (*piece, *apart)).collect();
-            let counted = items.iter().zip(&most);
-            high = counted.fold(high, |high, ((_, apart), most)| high.max(apart * most));
-            let shares = near.enclose_shares(&items);
-            let (own, changes) = near.compare(&items, &shares);
-            let jet = near.mean_of((&own, &changes), &items, &shares);
+            let shares = near.enclose_shares(items);
+            let (own, changes) = near.compare(items, &shares);
+            let jet = near.mean_of((&own, &changes), items, &shares);
             let Bounds {
                 value: [low, most],
                 slope,
                 curvature,
+                halves,
                 ..
             } = enclose_mean((&own, &changes), &shares, &jet, radius);
             // Bounds on the derivatives of the ramp.
@@ -604,11 +717,17 @@ impl Local {
                 gradient: steep * DVec3::from_array(jet.gradient),
                 slope: times(once, slope),
                 curvature: times(once, curvature) + times(twice, slope * slope),
+                halves: Halves {
+                    curvature: times(twice, slope * slope),
+                    ..Halves::default()
+                }
+                .plus(once, &halves),
             };
             mean.value += center * own.value;
             mean.gradient += *center * own.gradient;
             mean.slope += times(*center, own.slope);
             mean.curvature += times(*center, own.curvature);
+            mean.halves = mean.halves.plus(*center, &own.halves);
             own
         });
         let means: Vec<Change> = means.collect();
@@ -623,6 +742,7 @@ impl Local {
                 gradient: own.gradient - mean.gradient,
                 slope: own.slope + mean.slope,
                 curvature: own.curvature + mean.curvature,
+                halves: Halves::default(),
             }
         });
         let changes: Vec<Change> = changes.collect();
@@ -630,6 +750,6 @@ impl Local {
         let mut bounds = enclose_mean((&mean, &changes), shares, &jet, radius);
         let margin = LEFT_OUT * high;
         bounds.value = [bounds.value[0].max(0.0), bounds.value[1].min(high) + margin];
-        (bounds, jet)
+        Some((bounds, jet))
     }
 }

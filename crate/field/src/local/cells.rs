@@ -41,8 +41,9 @@ pub(super) struct Terms {
     pub lead: Vec<u32>,
     /// Pieces of all stretches around pieces that have a weight in F or F₂.
     pub slots: Slots,
-    /// Bounds on slope and curvature in all of the ball, of pieces that are far away from it.
-    pub calm: Vec<Option<[f32; 2]>>,
+    /// Bounds on the first three derivatives in all of the ball, of pieces that are far away from
+    /// it.
+    pub calm: Vec<Option<[f32; 3]>>,
     /// Pieces with a weight in F₂, if it may be above its level.
     pub far: Option<Far>,
 }
@@ -264,10 +265,10 @@ impl Local {
         }
     }
 
-    /// Returns bounds on slope and curvature in a ball of pieces that are far away from it.
-    fn find_calm(&self, slots: &Slots, ball: &Ball) -> Vec<Option<[f32; 2]>> {
+    /// Returns bounds on the first three derivatives in a ball of pieces that are far away from it.
+    fn find_calm(&self, slots: &Slots, ball: &Ball) -> Vec<Option<[f32; 3]>> {
         let calm = slots.pieces().map(|piece| {
-            let mut sum = [0.0; 2];
+            let mut sum = [0.0; 3];
             for (_, bound) in &self.pieces[piece as usize].parts {
                 let near = bound.nearness(ball.center, ball.radius);
                 if near.distance < FAR_AWAY * ball.radius {
@@ -275,6 +276,7 @@ impl Local {
                 }
                 sum[0] += bound.slope(near);
                 sum[1] += bound.curvature(near);
+                sum[2] += bound.third(near);
             }
             Some(sum.map(|x| (x * (1.0 + 1e-6)) as f32 + f32::MIN_POSITIVE))
         });

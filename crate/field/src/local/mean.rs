@@ -2,7 +2,8 @@
 use super::cells::{Far, Slots, Terms};
 use super::{Local, Piece};
 use crate::term::Evaluate;
-use crate::{Jet, Real, THRESHOLD};
+use crate::{Ball, Jet, Real, THRESHOLD};
+use glam::DVec3;
 
 /// The power of a piece's density in its weight: three squarings.
 pub(super) const POWER: f64 = 8.0;
@@ -146,6 +147,32 @@ impl Local {
         let far = terms.far.as_ref();
         let second = far.map(|far| self.second(terms, far, &shares, &jets).jet(&jets));
         (first, second)
+    }
+
+    /// Returns the change of the gradient over a step along each axis from a ball's centre, of the
+    /// mean of stretches by their shares at the centre.
+    pub(super) fn turn_mean(&self, ball: Ball, step: f64) -> [DVec3; 3] {
+        let Ball { center, .. } = ball;
+        let terms = self.terms_in(&ball);
+        let pieces = terms.slots.pieces();
+        let pieces: Vec<&Piece> = pieces.map(|piece| &self.pieces[piece as usize]).collect();
+        let jets = pieces.iter().map(|piece| piece.jet(center.to_array()));
+        let jets: Vec<Jet<f64>> = jets.collect();
+        let shares = shares(&self.densities(&terms.lead, &terms.slots, &jets));
+        let mut factors = vec![0.0; jets.len()];
+        for (piece, share) in terms.lead.iter().zip(shares) {
+            self.add_stretch((*piece, share), &terms.slots, &mut factors);
+        }
+        DVec3::AXES.map(|axis| {
+            let beside = (center + axis * step).to_array();
+            let all = pieces.iter().zip(&factors).zip(&jets);
+            all.filter(|((_, factor), _)| **factor > 0.0)
+                .map(|((piece, factor), jet)| {
+                    let beside = DVec3::from_array(piece.jet(beside).gradient);
+                    (beside - DVec3::from_array(jet.gradient)) * *factor
+                })
+                .sum()
+        })
     }
 
     fn first<R: Real>(&self, terms: &Terms, shares: &[R], jets: &[Jet<R>]) -> Mean<R> {

@@ -408,7 +408,7 @@ fn gradients_are_derivatives() {
 #[test]
 fn bounds_hold_in_balls() {
     let mut random = Random::new(73);
-    let (mut finite, mut all, mut sharpest) = (0, 0, [0.0f64; 2]);
+    let (mut finite, mut all, mut sharpest, mut bent) = (0, 0, [0.0f64; 2], 0);
     for kernel in [Kernel::Cubed, Kernel::Cauchy, Kernel::Quartic] {
         for figure in figures(&mut random, kernel) {
             let local = figure.local().with_folds(0.05);
@@ -419,12 +419,35 @@ fn bounds_hold_in_balls() {
                 let Two { first, second, .. } = local.enclose_two(ball);
                 let (at_center, other_at_center) = local.two(center.to_array());
                 let most = local.most(ball);
+                let step = 1e-3 * radius;
+                let (variation, _) = local.variation_with_jet(None, ball);
+                let turns = local.turn_smoothly(None, ball, step).unwrap();
+                bent += u32::from(variation.third > 0.0 && variation.jump.is_finite());
                 all += 1;
                 finite += u32::from(first.slope.is_finite());
                 for _ in 0..12 {
                     let point = center + random.direction() * (radius * random.unit());
                     let (own, other) = local.two(point.to_array());
                     assert!(own.value <= most * (1.0 + 1e-9), "{own:?} {most}");
+                    // As by both halves: along the gradient at the centre, and with the main half's
+                    // second derivative.
+                    let (offset, far) = (point - center, point.distance(center));
+                    let change =
+                        DVec3::from_array(own.gradient) - DVec3::from_array(at_center.gradient);
+                    let most = variation.curvature * far + variation.jump;
+                    let doubt = 1e-7 + 1e-12 / step;
+                    assert!(
+                        change.length() <= most * (1.0 + 1e-6) + doubt,
+                        "{change} {most}"
+                    );
+                    if variation.third > 0.0 {
+                        let [x, y, z] = turns;
+                        let series = (x * offset.x + y * offset.y + z * offset.z) / step;
+                        let third = variation.third * (0.5 * far + 2.0 * step) * far;
+                        let most = third + variation.rough * far + variation.jump;
+                        let off = change.distance(series);
+                        assert!(off <= most * (1.0 + 1e-6) + doubt, "{off} {most} {ball:?}");
+                    }
                     let bounded = other.map(|other| (other, second, other_at_center));
                     for (i, (own, bounds, center)) in
                         [Some((own, Some(first), Some(at_center))), bounded]
@@ -463,10 +486,10 @@ fn bounds_hold_in_balls() {
             }
         }
     }
-    println!("{finite} of {all}, {sharpest:?}");
+    println!("{finite} of {all}, {sharpest:?} {bent}");
     assert!(
-        2 * finite > all && sharpest[0] > 0.1 && sharpest[1] > 0.02,
-        "{finite} of {all}, {sharpest:?}"
+        2 * finite > all && 3 * bent > all && sharpest[0] > 0.1 && sharpest[1] > 0.02,
+        "{finite} of {all}, {sharpest:?} {bent}"
     );
 }
 

@@ -296,13 +296,20 @@ impl Cells {
         let root = 3f64.sqrt();
         flat.second = (1.0 + root) * bounds.rough + root * 0.5 * step * bounds.third;
         flat.third = bounds.third;
+        let mut turns = None;
         if flat.is_flat() {
-            let columns = DVec3::AXES.map(|axis| {
-                let beside = ball.center + axis * step;
-                let beside = jet_of(function, flat.part.as_deref(), beside);
-                (DVec3::from_array(beside.gradient) - gradient) / step
-            });
-            let [x, y, z] = columns;
+            turns = function.turn_smoothly(flat.part.as_deref(), ball, step);
+            // Where the gradient jumps its differences would not tell a second derivative.
+            if turns.is_none() && bend.jump == 0.0 {
+                turns = Some(DVec3::AXES.map(|axis| {
+                    let beside = ball.center + axis * step;
+                    let beside = jet_of(function, flat.part.as_deref(), beside);
+                    DVec3::from_array(beside.gradient) - gradient
+                }));
+            }
+        }
+        if let Some(turns) = turns {
+            let [x, y, z] = turns.map(|turn| turn / step);
             let found = DMat3::from_cols(x, y, z);
             flat.hessian = (found + found.transpose()) * 0.5;
             // Rounding of the gradients.
