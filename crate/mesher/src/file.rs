@@ -639,6 +639,7 @@ impl Fine<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::Step;
     use crate::surface::box_of;
     use core::ops::ControlFlow;
     use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Sum};
@@ -672,7 +673,10 @@ mod tests {
         };
         let forest = Forest::new(&domain, FINEST * sizes.tolerance, LEVELS);
         let mut space = Space::new(&sum, forest, sizes.tolerance);
-        let mut report = |_| ControlFlow::Continue(());
+        fn go_on(_: Step) -> ControlFlow<()> {
+            ControlFlow::Continue(())
+        }
+        let mut report = go_on;
         let progress = &mut Progress::new(&mut report);
         let raw = dual(&mut space, &mut Corners::default(), &sizes, progress);
         let raw = raw.unwrap().unwrap();
