@@ -229,7 +229,7 @@ fn bounds(terms: &[Term], radius: f64) -> Bounds {
         let ratio = (term.value - largest.value + (apart + square * radius) * radius)
             .min(term.range[1] - largest.range[0]);
         // A value that is too small to be known bounds nothing.
-        let ratio = if term.doubt > 0.0 {
+        let ratio = if term.doubt > 0.0 || term.value == f64::NEG_INFINITY {
             term.range[1] - largest.range[0]
         } else {
             ratio

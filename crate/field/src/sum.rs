@@ -313,19 +313,32 @@ impl Implicit for Sum {
 
     fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
         let terms = self.bounds();
-        let width = |least: Option<f64>, term: &TermBounds| {
+        // Of terms that matter by themselves, and of the others, which may matter together.
+        let mut least = [Some(f64::INFINITY); 2];
+        let mut sum = 0.0;
+        let mut add = |term: &TermBounds| {
             let bound = &term.bound;
-            let near = bound.nearness(ball.center, ball.radius);
-            if bound.magnitude(near) < MATTERS * THRESHOLD {
-                return least;
+            let size = bound.magnitude(bound.nearness(ball.center, ball.radius));
+            if size == 0.0 {
+                return;
             }
+            let is_small = size < MATTERS * THRESHOLD;
             let own = (!bound.has_profile()).then(|| bound.kernel_width());
-            Some(least?.at_most(own?))
+            let all = &mut least[usize::from(is_small)];
+            *all = all.zip(own).map(|(all, own)| all.at_most(own));
+            if is_small {
+                sum += size;
+            }
         };
-        let none = Some(f64::INFINITY);
         match part {
-            Some(part) => (part.terms.iter()).fold(none, |all, i| width(all, &terms[*i as usize])),
-            None => terms.iter().fold(none, width),
+            Some(part) => part.terms.iter().for_each(|i| add(&terms[*i as usize])),
+            None => terms.iter().for_each(add),
+        }
+        let [own, others] = least;
+        if sum < MATTERS * THRESHOLD {
+            own
+        } else {
+            own.zip(others).map(|(own, others)| own.at_most(others))
         }
     }
 

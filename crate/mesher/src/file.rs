@@ -88,7 +88,7 @@ pub fn approximate(
     let tolerance = tolerance.min(LARGEST * size);
     let most = max_triangles.saturating_mul(2).max(LEAST_CELLS);
     let mut grown = None;
-    for (start, hiding) in [0.0, 0.1].into_iter().zip(HIDING) {
+    for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
         let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
         let mut space = Space::new(function, forest, tolerance / size);
         let mut corners = Corners::default();
@@ -488,10 +488,12 @@ impl Fine<'_> {
         let goals: Vec<(DVec3, f64)> = far.iter().map(|far| (far.place, tolerance)).collect();
         let (space, threads) = (self.space, self.threads);
         let found = descend(space, &goals, STEPS, tolerance, threads, progress)?;
-        let gaps = far
-            .iter()
-            .zip(found)
-            .filter(|(_, vertex)| self.is_on(vertex) && space.forest.contains(vertex.position));
+        // A step that leads far away tells of another part of the surface.
+        let gaps = far.iter().zip(found).filter(|(far, vertex)| {
+            self.is_on(vertex)
+                && space.forest.contains(vertex.position)
+                && vertex.position.distance(far.place) <= far.reach.max(tolerance)
+        });
         let gaps: Vec<(u32, Vertex)> = gaps.map(|(far, v)| (far.triangle, v)).collect();
         let Some(mesh) = mend(old, &gaps, tolerance) else {
             return Ok(None);
@@ -510,7 +512,8 @@ impl Fine<'_> {
         for (i, worst) in fresh.into_iter().zip(found) {
             there[i] = worst;
         }
-        // A place is no farther from the mesh than it was from a triangle that is still there.
+        // A place is no farther from the mesh than it was from a triangle that is still there. If
+        // that is too far, another may be nearer now.
         let mut numbers = vec![None; old.triangles.len()];
         for (i, old) in (0..).zip(&matches) {
             if let Some(old) = old {
@@ -518,7 +521,10 @@ impl Fine<'_> {
             }
         }
         let mut back = survey.back.clone();
-        let lost = (0..back.len()).filter(|i| numbers[back[*i].0 as usize].is_none());
+        let lost = (0..back.len()).filter(|i| {
+            let (triangle, distance) = back[*i];
+            numbers[triangle as usize].is_none() || distance > tolerance
+        });
         let lost: Vec<usize> = lost.collect();
         for (triangle, _) in &mut back {
             *triangle = numbers[*triangle as usize].unwrap_or(0);

@@ -22,10 +22,9 @@ use std::collections::HashMap;
 /// Cells are taken to hide nothing if the second derivative's bound times the square of their size
 /// is at most so many thresholds: first the least, then more where that asks for too many cells, as
 /// where bounds are far from the truth.
-pub const HIDING: [f64; 2] = [60.0, 600.0];
-/// Nor if they are no larger than so many widths of the kernels that matter there: a limb is some
-/// two widths thick, and no place is farther than 0.56 sides from a sample.
-const WIDTHS: f64 = 1.2;
+pub const HIDING: [f64; 3] = [6.0, 60.0, 600.0];
+/// Nor if they are no larger than this share of the width of the kernels that matter there.
+const WIDTHS: f64 = 0.8;
 /// Largest height of the surface's arc between two of its places in a cell, in tolerances.
 const SAG: f64 = 0.8;
 /// Largest height of a bulge of the surface that a cell hides between samples, in tolerances.
@@ -185,6 +184,10 @@ impl Bounded {
             };
         }
         let variation = around(space, cell.part, center, size);
+        // Largest change of the gradient's part along a side of the cell, times that side.
+        let turn = (variation.curvature * longest + variation.jump) * longest;
+        // No cell is so small that bounds tell nothing of a kink in it.
+        let is_small = variation.jump > 0.0 && cell.level >= space.forest.usual;
         Self {
             range: coarse_range(&variation, off),
             slope: variation.range.slope,
@@ -192,7 +195,7 @@ impl Bounded {
             jump: variation.jump,
             step: variation.step,
             off,
-            is_tame: variation.curvature * longest * longest <= hiding * THRESHOLD,
+            is_tame: turn <= hiding * THRESHOLD || is_small,
         }
     }
 
@@ -581,7 +584,8 @@ fn decide(
         if !is_crossed && sure != Side::Crossing {
             fates[*i] = Fate::Leaf(sure);
         } else if own.is_tame || cell.level >= space.forest.deepest {
-            if own.is_tame {
+            // Where derivatives are not known, cells inside may be calmer.
+            if own.is_tame && own.jump.is_finite() {
                 let cell = &mut space.forest.cells[leaves[*i] as usize];
                 (cell.bend, cell.jumps) = (own.bend, [own.jump, own.step]);
             }

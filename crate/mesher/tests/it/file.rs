@@ -5,11 +5,14 @@ use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, Tape
 use glam::DVec3;
 use mesh::{Aabb, Topology};
 use mesher::{
-    MeshError, Options, Progress, SurfaceMesh, Tolerance, Wishes, approximate, box_of, mesh_scene,
+    MeshError, Model, Options, Progress, SurfaceMesh, Tolerance, Wishes, approximate, box_of,
+    mesh_scene,
 };
 use oracle::Reference;
 use oracle::reference::Near;
+use scene::Scene;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use trials::{Random, count};
 
 fn primitive(skeleton: Skeleton, kernel: Kernel, radius: f64) -> Primitive {
@@ -234,27 +237,118 @@ fn limits_hold() {
     }
 }
 
+/// The scene of a text that has no faults.
+fn compile(text: String) -> Arc<Scene> {
+    let name = "scene.rat".into();
+    let files = vec![rats::File { name, text }];
+    let outcome = rats::compile_at(&rats::Project { files }, &[], 0.0);
+    outcome.scene
+}
+
+fn mesh(scene: &Scene, tolerance: Tolerance) -> Result<Model, MeshError> {
+    let wishes = Wishes {
+        tolerance,
+        prove: false,
+        ..Wishes::default()
+    };
+    let progress = &mut |_| ControlFlow::Continue(());
+    mesh_scene(scene, &wishes, &mut Progress::new(progress))
+}
+
+/// Balls much smaller than their distances, however steep or wide their fields are.
+#[test]
+fn small_balls_are_not_missed() {
+    let mut random = Random::new(11);
+    for kernel in Kernel::ALL {
+        for blobbiness in [0.3, 1.0, 2.0, 10.0] {
+            let name = format!("{kernel:?} {blobbiness}");
+            let mut centers: Vec<DVec3> = Vec::new();
+            while centers.len() < 18 {
+                let center = DVec3::from([(); 3].map(|()| random.range(-8.0, 8.0)));
+                if centers.iter().all(|other| center.distance(*other) > 4.0) {
+                    centers.push(center);
+                }
+            }
+            let balls = centers.iter().filter_map(|center| {
+                let shaping = Shaping {
+                    kernel,
+                    radius: 0.1,
+                    blobbiness,
+                    blob_scale: BlobScale::Relative,
+                    strength: 1.0,
+                    influence: 1e-3,
+                    taper: None,
+                };
+                Primitive::new(Skeleton::Point { center: *center }, &shaping, None)
+            });
+            let sum: Sum = balls.collect();
+            let surface = build(&sum, &Options::new(0.01)).unwrap();
+            assert_manifold(&name, &surface.mesh);
+            let shells = Topology::of(&surface.mesh).unwrap().genera;
+            assert_eq!(shells, [0; 18], "{name}");
+        }
+    }
+}
+
+/// Clusters of points, none of which has a surface by itself.
+#[test]
+fn weak_points_are_not_missed_together() {
+    let mut random = Random::new(12);
+    for kernel in Kernel::ALL {
+        let mut points = Vec::new();
+        for cluster in [[-5.0, -5.0, -5.0], [5.0, 5.0, 5.0], [1.2, 3.2, -3.1]] {
+            let cluster = DVec3::from(cluster);
+            for _ in 0..200 {
+                let shaping = Shaping {
+                    kernel,
+                    radius: 0.2,
+                    blobbiness: 2.0,
+                    blob_scale: BlobScale::Relative,
+                    strength: 0.01,
+                    influence: 1e-3,
+                    taper: None,
+                };
+                let center = cluster + 0.02 * random.direction();
+                points.extend(Primitive::new(Skeleton::Point { center }, &shaping, None));
+            }
+        }
+        let sum: Sum = points.into_iter().collect();
+        let domain = Aabb::of_points([DVec3::splat(-6.0), DVec3::splat(6.0)]);
+        let surface = build_in(&sum, &domain, &Options::new(0.02)).unwrap();
+        assert_manifold(&format!("{kernel:?}"), &surface.mesh);
+        let shells = Topology::of(&surface.mesh).unwrap().genera;
+        assert_eq!(shells, [0; 3], "{kernel:?}");
+    }
+}
+
+/// Bounds on local convolution tell nothing of large cells.
+#[test]
+fn thin_limbs_of_local_convolution_are_not_missed() {
+    let text = "surface s diffuse White blob -2\n\
+        skeleton s, THICK local 5 {\n\
+            node A <0 0 0> radius 0.4 node B <3 0 0> radius 0.4 curve A B\n\
+        }\n\
+        skeleton s, THIN local 5 {\n\
+            node A <0 2 1> radius 0.08 node B <3 -1 2> radius 0.08 curve A B\n\
+        }\n";
+    let scene = compile(text.into());
+    let model = mesh(&scene, Tolerance::Absolute(0.05)).unwrap();
+    let meshes = model
+        .parts
+        .iter()
+        .map(|part| Topology::of(&part.mesh).unwrap());
+    assert_eq!(meshes.map(|mesh| mesh.genera.len()).sum::<usize>(), 2);
+}
+
 #[test]
 fn bodies_on_each_other_end_with_words() {
     let ball = "sphere s 1 0 0 0\n";
     let text = format!(
         "surface s diffuse White blob -2\nbody A\n{ball}close\nbody B\n{ball}close\ncontact A B\n"
     );
-    let project = rats::Project {
-        files: vec![rats::File {
-            name: "same.rat".into(),
-            text,
-        }],
-    };
-    let scene = rats::compile_at(&project, &[], 0.0).scene;
+    let scene = compile(text);
     assert_eq!(scene.surfaces().len(), 2);
-    let wishes = Wishes {
-        tolerance: Tolerance::Relative(1e-2),
-        prove: false,
-        ..Wishes::default()
-    };
-    let progress = &mut |_| ControlFlow::Continue(());
-    let result = mesh_scene(&scene, &wishes, &mut Progress::new(progress));
+    let result = mesh(&scene, Tolerance::Relative(1e-2));
     // As the one takes away what the other has, nothing is left of either.
     assert!(
         matches!(result, Err(MeshError::Nothing | MeshError::Flat { .. })),
