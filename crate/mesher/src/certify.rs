@@ -18,6 +18,9 @@ use crate::space::{SLACK, Space};
 use field::{Ball, Jet, THRESHOLD, Variation};
 use glam::DVec3;
 
+/// Largest value above the threshold, in thresholds, that tells how far the surface is.
+const DEEP: f64 = 0.3;
+
 /// A vertex of the mesh: position, and the function there.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertex {
@@ -42,6 +45,15 @@ impl Vertex {
     /// Outward unit normal of the level set; 0 where the gradient is.
     pub fn normal(&self) -> DVec3 {
         -self.gradient.normalize_or_zero()
+    }
+
+    /// Returns a first-order estimate of the distance from the surface; infinite so deep inside
+    /// that it tells nothing, as where the function rises faster than the distance.
+    pub fn distance(&self) -> f64 {
+        if self.value > DEEP * THRESHOLD {
+            return f64::INFINITY;
+        }
+        self.value.abs() / self.gradient.length()
     }
 }
 

@@ -81,7 +81,7 @@ pub fn dual(
             bad = mesh.triangulate(&polygons);
             if bad.is_empty() {
                 bad = mesh.find_far(space, sizes, progress)?;
-                if bad.is_empty() {
+                if bad.is_empty() || round + 1 == ROUNDS {
                     return Ok(Some(mesh.raw));
                 }
                 split_all(space, &bad, sizes.threads, progress)?;
@@ -245,9 +245,10 @@ impl Mesh {
     }
 }
 
-/// Whether a place is near the surface by a first-order estimate. Not so for NaN.
-fn is_near(place: &Vertex, most: f64) -> bool {
-    place.value.abs() <= most * place.gradient.length()
+/// Whether a place is too far from the surface by a first-order estimate, or that is no number.
+fn is_beyond(place: &Vertex, most: f64) -> bool {
+    let is_near = place.distance() <= most;
+    !is_near
 }
 
 impl Mesh {
@@ -272,9 +273,9 @@ impl Mesh {
         let found = descend(space, &middles, 0, sizes.tolerance, sizes.threads, progress)?;
         let [off, on] = [OFF, ON].map(|most| most * sizes.tolerance);
         let corners = triangles.iter().zip(&found);
-        let corners = corners.filter(|(_, middle)| !is_near(middle, off));
+        let corners = corners.filter(|(_, middle)| is_beyond(middle, off));
         let corners = corners.flat_map(|(corners, _)| *corners);
-        let astray = (0..).zip(vertices).filter(|(_, own)| !is_near(own, on));
+        let astray = (0..).zip(vertices).filter(|(_, own)| is_beyond(own, on));
         let astray = astray.map(|(i, _)| i);
         let far = corners.chain(astray).map(|i| self.leaves[i as usize]);
         let forest = &space.forest;

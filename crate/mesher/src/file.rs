@@ -259,11 +259,6 @@ fn refine(space: &mut Space<'_>, places: &[DVec3]) {
     }
 }
 
-/// A first-order estimate of a place's distance from the surface.
-fn estimate(place: &Vertex) -> f64 {
-    place.value.abs() / place.gradient.length()
-}
-
 /// A cube by its centre and half its side.
 fn cube(center: DVec3, half: f64) -> Aabb {
     Aabb {
@@ -454,7 +449,7 @@ impl Fine<'_> {
 
     /// Whether a vertex is so near the surface that it counts as a place of it.
     fn is_on(&self, vertex: &Vertex) -> bool {
-        vertex.value.abs() <= ON * self.tolerance * vertex.gradient.length()
+        vertex.distance() <= ON * self.tolerance
     }
 
     /// Measures both distances.
@@ -568,7 +563,7 @@ impl Fine<'_> {
         let goals: Vec<(DVec3, f64)> = goals.collect();
         let (space, tolerance) = (self.space, self.tolerance);
         let samples = descend(space, &goals, 0, tolerance, self.threads, progress)?;
-        let mut distances: Vec<f64> = samples.iter().map(estimate).collect();
+        let mut distances: Vec<f64> = samples.iter().map(Vertex::distance).collect();
         // Newton's steps from those that are not near for certain. Not so for NaN.
         let mut open: Vec<usize> = (0..samples.len()).collect();
         open.retain(|i| {
@@ -580,7 +575,7 @@ impl Fine<'_> {
         let feet = descend(space, &goals, STEPS, tolerance, self.threads, progress)?;
         let mut unsure = Vec::new();
         for (i, foot) in open.into_iter().zip(&feet) {
-            let off = estimate(foot);
+            let off = foot.distance();
             let distance = samples[i].position.distance(foot.position) + off;
             if off <= FOOT * tolerance && distance <= tolerance {
                 distances[i] = distance;
@@ -621,7 +616,7 @@ impl Fine<'_> {
     /// The distance of a point from the surface; infinite if it is more than the tolerance.
     fn distance(&self, place: DVec3, normal: DVec3) -> f64 {
         let vertex = at(self.space, place);
-        let first = estimate(&vertex);
+        let first = vertex.distance();
         let uphill = vertex.gradient.normalize_or_zero();
         let toward = if vertex.value > 0.0 { -uphill } else { uphill };
         let reach = (1.05 * first).clamp(1e-3 * self.tolerance, self.tolerance);

@@ -81,6 +81,14 @@ impl Mending {
         corners.map(|v| self.mesh.position(v))
     }
 
+    /// Whether triangles from some edges to a new vertex look outward there.
+    fn faces_outward(&self, edges: &[[VertexId; 2]], vertex: &Vertex) -> bool {
+        edges.iter().all(|ends| {
+            let [a, b] = ends.map(|v| self.mesh.position(v));
+            (b - a).cross(vertex.position - a).dot(vertex.normal()) > 0.0
+        })
+    }
+
     /// Puts a vertex into a face, or onto one of its edges.
     fn add(&mut self, f: FaceId, vertex: &Vertex) -> Option<()> {
         if self.is_changed[f.index()] {
@@ -90,17 +98,27 @@ impl Mending {
         let triangle = self.positions(corners);
         let weights = weigh(&triangle, closest_point(&triangle, vertex.position));
         let beyond: Vec<usize> = (0..3).filter(|i| weights[*i] < WITHIN).collect();
+        let [a, b, c] = corners;
         let v = match beyond[..] {
-            [] => self.mesh.poke_face(f, vertex.position).ok()?,
+            [] if self.faces_outward(&[[a, b], [b, c], [c, a]], vertex) => {
+                self.mesh.poke_face(f, vertex.position).ok()?
+            }
             [i] => {
                 let [from, to] = [1, 2].map(|k| corners[(i + k) % 3]);
                 let h = self.mesh.find_half_edge(from, to)?;
-                if self.is_changed[self.mesh.face(self.mesh.twin(h))?.index()] {
+                let twin = self.mesh.twin(h);
+                if self.is_changed[self.mesh.face(twin)?.index()] {
+                    return None;
+                }
+                let [one, other] = [corners[i], self.mesh.target(self.mesh.next(twin))];
+                let edges = [[to, one], [one, from], [from, other], [other, to]];
+                if !self.faces_outward(&edges, vertex) {
                     return None;
                 }
                 self.mesh.bisect_edge(h, vertex.position).ok()?
             }
-            // Beside a corner it would make triangles that are too narrow.
+            // Beside a corner it would make triangles that are too narrow. On another part of the
+            // surface, some that look inward.
             _ => return None,
         };
         self.vertices.push(*vertex);
@@ -251,6 +269,19 @@ mod tests {
             }
             let new = mended.triangles.iter().filter(|t| t.contains(&12));
             assert_eq!(same + new.count(), 22);
+        }
+    }
+
+    /// Places of another sheet, which looks the other way, are not taken.
+    #[test]
+    fn places_of_other_sheets_are_left() {
+        let mesh = ball();
+        let [a, b, c] = mesh.corners(3);
+        for place in [(a + b + c) / 3.0, 0.5 * (a + b)] {
+            let mut vertex = on_ball(place);
+            assert!(mend(&mesh, &[(3, vertex)], 1.0).is_some());
+            vertex.gradient = -vertex.gradient;
+            assert!(mend(&mesh, &[(3, vertex)], 1.0).is_none());
         }
     }
 

@@ -348,7 +348,9 @@ impl<'a> Plan<'a> {
         let finite = finite.size().max_element();
         if is_endless && tolerance > finite {
             return Err(MeshError::Failed(format!(
-                "the box is so large that the tolerance of {tolerance:.2e} is more than the size of all that is finite, {finite:.2e}, and nothing thinner would be seen; choose a smaller box or tolerance"
+                "the box is so large that the tolerance of {tolerance:.2e} is more than the size \
+                 of all that is finite, {finite:.2e}, and nothing thinner would be seen; choose a \
+                 smaller box or tolerance"
             )));
         }
         let with_domain = |(surface, domain): (Surface, Option<Aabb>)| {
@@ -476,7 +478,8 @@ fn soft_part(
     };
     if crossings > 0 {
         model.notes.push(format!(
-            "{name}: {crossings} pairs of triangles or more touch each other: the tolerance is too small for the numbers' precision",
+            "{name}: {crossings} pairs of triangles or more touch each other: the tolerance is too \
+             small for the numbers' precision",
         ));
     }
     Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
@@ -488,7 +491,8 @@ fn soft_part(
     }
     if let Some(first) = undecided.first() {
         model.notes.push(format!(
-            "{name}: the topology is not proved in {} cells, the first near {:.4} {:.4} {:.4}: the surface may touch itself or have a kink there",
+            "{name}: the topology is not proved in {} cells, the first near {:.4} {:.4} {:.4}: the \
+             surface may touch itself or have a kink there",
             undecided.len(),
             first.x,
             first.y,
@@ -497,7 +501,8 @@ fn soft_part(
     }
     if unproved > 0 {
         model.notes.push(format!(
-            "{name}: of {unproved} of {} triangles the distance from the surface is not proved; samples found {:.2e} from mesh to surface and {:.2e} back",
+            "{name}: of {unproved} of {} triangles the distance from the surface is not proved; \
+             samples found {:.2e} from mesh to surface and {:.2e} back",
             mesh.triangles.len(),
             measured.largest[0],
             measured.largest[1],

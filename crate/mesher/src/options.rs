@@ -62,12 +62,15 @@ pub enum MeshError {
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Nothing => f.write_str("there is no surface: the field is below its threshold everywhere"),
+            Self::Nothing => {
+                f.write_str("there is no surface: the field is below its threshold everywhere")
+            }
             Self::AllInside => f.write_str(
                 "there is no surface within the box: all of it is inside; a larger box may help",
             ),
             Self::Unbounded => f.write_str(
-                "the surface is infinite, and nothing finite in the scene says how far to go; give a box",
+                "the surface is infinite, and nothing finite in the scene says how far to go; \
+                 give a box",
             ),
             Self::NotFinite(what) => write!(f, "{what} must be a positive, finite number"),
             Self::TooMany { limit, fitting } => {
@@ -79,7 +82,8 @@ impl fmt::Display for MeshError {
             }
             Self::Flat { near: [x, y, z] } => write!(
                 f,
-                "surfaces lie on each other throughout a region, as near {x:.4} {y:.4} {z:.4}, so that no triangle is sure; move the bodies or elements there a little apart"
+                "surfaces lie on each other throughout a region, as near {x:.4} {y:.4} {z:.4}, so \
+                 that no triangle is sure; move the bodies or elements there a little apart"
             ),
             Self::Cancelled => f.write_str("cancelled"),
             Self::Failed(why) => f.write_str(why),

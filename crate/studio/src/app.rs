@@ -4,6 +4,7 @@
 //! [`App::show`] draws one frame. Panels only list wishes ([`crate::wish`]), which are carried out
 //! afterwards.
 
+use crate::clicks::Clicks;
 use crate::export::MeshPanel;
 use crate::film::FilmPanel;
 use crate::fit::FitPanel;
@@ -106,6 +107,7 @@ impl App {
         ctx.set_fonts(fonts::definitions());
         ctx.add_plugin(Voice::new(parts.acts.clone()));
         ctx.add_plugin(Keyboard::default());
+        ctx.add_plugin(Clicks::default());
         let settings: Settings = parts.shelf.borrow().settings();
         ctx.set_theme(settings.theme);
         let rest = if is_drawn_by_processor(backend, render_state.as_ref()) {

@@ -8,6 +8,7 @@
 
 pub mod app;
 mod bar;
+mod clicks;
 #[cfg(target_arch = "wasm32")]
 pub mod crash;
 mod download;

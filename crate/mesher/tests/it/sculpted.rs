@@ -35,7 +35,9 @@ fn sculpture_with_flesh_on_it_is_printed() {
     for (name, main, volumes) in [
         (
             "convolved",
-            "soft on\nsurface Flesh, diffuse Coral, kernel quartic, blobbiness -2, radius 0.25\nmesh Flesh clay.strokes\n",
+            "soft on\n\
+             surface Flesh, diffuse Coral, kernel quartic, blobbiness -2, radius 0.25\n\
+             mesh Flesh clay.strokes\n",
             6.5..11.0,
         ),
         (

@@ -11,6 +11,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use studio::app::App;
 use studio::page::Parts;
+use studio::places;
 use studio::scripts::request::Request;
 
 const TEXT: &str = "\
@@ -21,6 +22,26 @@ surface flesh, diffuse Coral, blobbiness -2
 var size = 0.5 hot
 sphere flesh size, 0 0 0
 ";
+
+/// A frame that takes two seconds comes between press and release: still a click. Two frames are a
+/// hand that stays.
+#[test]
+fn clicks_are_taken_when_frames_are_late() {
+    let mut window = Window::with_text(TEXT);
+    let at = window.place("download").center();
+    for frames in [2, 1] {
+        window.harness.event(Event::PointerMoved(at));
+        window.steps(1);
+        window.press(at, true);
+        window.steps(frames);
+        let now = window.harness.ctx.input(|input| input.time);
+        window.harness.input_mut().time = Some(now + 2.0);
+        window.press(at, false);
+        window.steps(2);
+        let is_open = places::all(&window.harness.ctx).contains_key("download mesh");
+        assert_eq!(is_open, frames == 1);
+    }
+}
 
 #[test]
 fn typing_edits_and_an_error_is_listed_while_the_picture_stays() {
