@@ -102,6 +102,17 @@ impl Bulge {
         }
     }
 
+    /// Returns the least share of the field's range, 0 … 1, in which the bulge rises or falls: on
+    /// a way on which the field changes by the threshold it has details as small as that.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        match *self {
+            Self::Fast { c } => 0.5 * (THRESHOLD - c),
+            Self::Height { c, m, .. } => (m - c).min(THRESHOLD - m),
+            Self::Ripple { c, n, .. } => (THRESHOLD - c) / (4.0 * f64::from(n) + 3.0),
+        }
+    }
+
     /// Field at which the bulge is highest, about.
     #[must_use]
     pub fn crest(&self) -> f64 {

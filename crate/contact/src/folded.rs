@@ -183,6 +183,10 @@ impl Implicit for Folded {
         self.local.turn_smoothly(part, ball, step)
     }
 
+    fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
+        Some(self.bulge.share() * self.local.least_width(part, ball)?)
+    }
+
     fn most(&self, ball: Ball) -> f64 {
         self.local.most(ball) + self.height
     }

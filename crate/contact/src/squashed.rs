@@ -236,6 +236,19 @@ impl Implicit for Squashed {
         }
     }
 
+    fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
+        let own = self.own.least_width(part, ball)?;
+        let near = self.partners.iter().filter(|partner| {
+            !partner.reach.is_some_and(|reach| {
+                reach.center.distance(ball.center) > reach.radius + ball.radius
+            })
+        });
+        near.into_iter().try_fold(own, |least, partner| {
+            let width = partner.function.least_width(None, ball)?;
+            Some(least.min(partner.bulge.share() * width))
+        })
+    }
+
     fn most(&self, ball: Ball) -> f64 {
         self.own.most(ball) + self.height
     }

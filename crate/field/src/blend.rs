@@ -126,6 +126,16 @@ impl Implicit for Blend {
         functions.fold(sum, Variation::plus)
     }
 
+    fn least_width(&self, part: Option<&implicit::Part>, ball: Ball) -> Option<f64> {
+        if let Some(function) = self.single() {
+            return function.least_width(part, ball);
+        }
+        let sum = self.sum.least_width(part, ball)?;
+        self.parts.iter().try_fold(sum, |least, part| {
+            Some(least.min(part.function.least_width(None, ball)?))
+        })
+    }
+
     fn most(&self, ball: Ball) -> f64 {
         // A sum of primitives has no bound that is cheaper than the whole.
         let sum = match self.sum.primitives.len() {

@@ -40,6 +40,7 @@ pub mod window;
 pub use bounds::{Bounds, Halves, Two};
 pub use build::{Limb, LimbPiece, LocalError, MOST_LINKS};
 
+use crate::sum::MATTERS;
 use crate::term::Evaluate;
 use crate::{Ball, Bound, Enclosure, Implicit, Jet, Part, Primitive, THRESHOLD, Variation};
 use cells::Cells;
@@ -137,6 +138,23 @@ impl Local {
         self.two_of(&self.terms_in(&ball), point)
     }
 
+    /// Returns the least width of a kernel among the pieces that count in a ball, or that may be
+    /// another fold there; infinite if all pieces together do not matter. `None` if one has a
+    /// profile.
+    fn least_width_in(&self, ball: &Ball) -> Option<f64> {
+        let enough = MATTERS * THRESHOLD;
+        if self.tree.most(&self.pieces, ball, enough) < enough {
+            return Some(f64::INFINITY);
+        }
+        let terms = self.terms_in(ball);
+        let far = terms.far.iter().flat_map(|far| &far.pieces);
+        let pieces = terms.lead.iter().chain(far);
+        let mut parts = pieces.flat_map(|piece| &self.pieces[*piece as usize].parts);
+        parts.try_fold(f64::INFINITY, |least, (_, bound)| {
+            (!bound.has_profile()).then(|| least.min(bound.kernel_width()))
+        })
+    }
+
     /// Returns the runs of the stretch around a piece.
     fn links(&self, piece: u32) -> &[Run] {
         let Range { start, end } = self.pieces[piece as usize].links;
@@ -182,6 +200,10 @@ impl Implicit for Local {
 
     fn turn_smoothly(&self, _part: Option<&Part>, ball: Ball, step: f64) -> Option<[DVec3; 3]> {
         Some(self.turn_mean(ball, step))
+    }
+
+    fn least_width(&self, _part: Option<&Part>, ball: Ball) -> Option<f64> {
+        self.least_width_in(&ball)
     }
 
     fn most(&self, ball: Ball) -> f64 {

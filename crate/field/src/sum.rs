@@ -44,7 +44,7 @@ pub struct Sum {
 /// Fewest terms with an expansion for which a hierarchy pays.
 const MANY: usize = 64;
 /// Least size of a term, in thresholds, at which its kernel's width matters.
-const MATTERS: f64 = 0.05;
+pub(crate) const MATTERS: f64 = 0.05;
 /// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
 const ROOM: f64 = 1.25;
 

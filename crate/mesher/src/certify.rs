@@ -18,9 +18,6 @@ use crate::space::{SLACK, Space};
 use field::{Ball, Jet, THRESHOLD, Variation};
 use glam::DVec3;
 
-/// Largest value above the threshold, in thresholds, that tells how far the surface is.
-const DEEP: f64 = 0.3;
-
 /// A vertex of the mesh: position, and the function there.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertex {
@@ -47,13 +44,16 @@ impl Vertex {
         -self.gradient.normalize_or_zero()
     }
 
-    /// Returns a first-order estimate of the distance from the surface; infinite so deep inside
-    /// that it tells nothing, as where the function rises faster than the distance.
+    /// Returns a first-order estimate of the distance from the surface: (T − F)/|∇F| outside, and
+    /// inside that of the logarithm, F·ln(F/T)/|∇F|, which is the larger one there: fields that
+    /// fall off as steeply as Gaussians are far above the threshold a little way in.
     pub fn distance(&self) -> f64 {
-        if self.value > DEEP * THRESHOLD {
-            return f64::INFINITY;
-        }
-        self.value.abs() / self.gradient.length()
+        let way = if self.value > 0.0 {
+            (THRESHOLD + self.value) * libm::log1p(self.value / THRESHOLD)
+        } else {
+            -self.value
+        };
+        way / self.gradient.length()
     }
 }
 

@@ -6,6 +6,7 @@
 //! polygons around each leaf make one ring: other leaves are split.
 
 use crate::certify::{Vertex, descend, sag};
+use crate::crease::{self, TURNED, meet};
 use crate::forest::{Forest, NONE, Side};
 use crate::grow::{Corners, Sizes, each_crossed_edge, grow, on_edge, split_all};
 use crate::march::Raw;
@@ -77,7 +78,7 @@ pub fn dual(
         let rings = polygons.iter().map(Polygon::corners);
         let mut bad = find_pinched(rings);
         if bad.is_empty() {
-            let mut mesh = Mesh::new(space, &polygons, sizes, progress)?;
+            let mut mesh = Mesh::new(space, corners, &polygons, sizes, progress)?;
             bad = mesh.triangulate(&polygons);
             if bad.is_empty() {
                 bad = mesh.find_far(space, sizes, progress)?;
@@ -163,6 +164,7 @@ impl Mesh {
     /// The vertices.
     fn new(
         space: &Space<'_>,
+        corners: &Corners,
         polygons: &[Polygon],
         sizes: &Sizes,
         progress: &mut Progress<'_>,
@@ -197,11 +199,7 @@ impl Mesh {
             progress,
         )?;
         // A vertex that has left its leaf could make triangles cut others.
-        let away = (0..leaves.len()).filter(|i| {
-            let center = forest.center(&forest.cells[leaves[*i] as usize]);
-            let off = (vertices[*i].position - center).abs();
-            off.cmpgt(ROOM * size(forest, leaves[*i])).any()
-        });
+        let away = (0..leaves.len()).filter(|i| !has_room(forest, leaves[*i], &vertices[*i]));
         let away: Vec<usize> = away.collect();
         let middles: Vec<(DVec3, f64)> = away.iter().map(|i| middles[*i]).collect();
         let back = descend(space, &middles, 0, sizes.tolerance, sizes.threads, progress)?;
@@ -212,7 +210,72 @@ impl Mesh {
             vertices,
             ..Raw::default()
         };
-        Ok(Self { raw, leaves })
+        let mut mesh = Self { raw, leaves };
+        mesh.sharpen(space, corners, polygons, sizes, progress)?;
+        Ok(mesh)
+    }
+
+    /// Moves the vertices of leaves with a crease onto it.
+    fn sharpen(
+        &mut self,
+        space: &Space<'_>,
+        corners: &Corners,
+        polygons: &[Polygon],
+        sizes: &Sizes,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), MeshError> {
+        let (forest, vertices) = (&space.forest, &mut self.raw.vertices);
+        let is_turned = self.leaves.iter().zip(&*vertices).map(|(leaf, vertex)| {
+            let normal = vertex.normal();
+            corners.of(*leaf).is_some_and(|ends| {
+                let mut turns = ends.iter().map(|end| end.normal().dot(normal));
+                turns.any(|turn| turn < TURNED)
+            })
+        });
+        let is_turned: Vec<bool> = is_turned.collect();
+        let mut places: Vec<(usize, DVec3)> = Vec::new();
+        for polygon in polygons {
+            for leaf in polygon.corners() {
+                let found = self.leaves.binary_search(leaf);
+                places.extend(
+                    found
+                        .ok()
+                        .filter(|i| is_turned[*i])
+                        .map(|i| (i, polygon.place)),
+                );
+            }
+        }
+        // The sort keeps the order of each leaf's places.
+        places.sort_by_key(|(i, _)| *i);
+        let goals = places.iter().map(|(i, place)| {
+            let size = forest.size(forest.cells[self.leaves[*i] as usize].level);
+            (*place, 0.1 * size.max_element())
+        });
+        let goals: Vec<(DVec3, f64)> = goals.collect();
+        let (tolerance, threads) = (sizes.tolerance, sizes.threads);
+        let found = descend(space, &goals, 1, tolerance, threads, progress)?;
+        let mut edges = Vec::new();
+        let mut at = 0;
+        for same in places.chunk_by(|one, other| one.0 == other.0) {
+            let own = &found[at..at + same.len()];
+            at += same.len();
+            if crease::is_turned(own) {
+                edges.push((same[0].0, meet(own)));
+            }
+        }
+        let goals = edges.iter().map(|(i, edge)| {
+            let size = forest.size(forest.cells[self.leaves[*i] as usize].level);
+            (*edge, 0.1 * size.max_element())
+        });
+        let goals: Vec<(DVec3, f64)> = goals.collect();
+        let found = descend(space, &goals, STEPS, tolerance, threads, progress)?;
+        for ((i, _), vertex) in edges.into_iter().zip(found) {
+            let is_near = vertex.distance() <= ON * tolerance;
+            if is_near && has_room(forest, self.leaves[i], &vertex) {
+                vertices[i] = vertex;
+            }
+        }
+        Ok(())
     }
 
     /// Makes triangles of the polygons, and returns the leaves at which they are no manifold.
@@ -243,6 +306,13 @@ impl Mesh {
         let bad = bad.into_iter().map(|i| self.leaves[i as usize]);
         bad.collect()
     }
+}
+
+/// Whether a vertex is so near its leaf that its triangles cut no others.
+fn has_room(forest: &Forest, leaf: u32, vertex: &Vertex) -> bool {
+    let cell = &forest.cells[leaf as usize];
+    let off = (vertex.position - forest.center(cell)).abs();
+    off.cmple(ROOM * forest.size(cell.level)).all()
 }
 
 /// Whether a place is too far from the surface by a first-order estimate, or that is no number.

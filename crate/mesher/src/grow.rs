@@ -7,6 +7,7 @@
 //! cells that were taken for all of it, it is followed into those beside them.
 
 use crate::certify::{Vertex, sag};
+use crate::crease::{is_turned, meet};
 use crate::forest::{Cell, Forest, NONE, Side};
 use crate::lattice::{Key, Lattice, pack, tetrahedra, unpack};
 use crate::march::crossing_share;
@@ -27,6 +28,8 @@ pub const HIDING: [f64; 3] = [6.0, 60.0, 600.0];
 const WIDTHS: f64 = 0.8;
 /// Largest height of the surface's arc between two of its places in a cell, in tolerances.
 const SAG: f64 = 0.8;
+/// Largest distance from the surface, in tolerances, of a crease and of places on both sides of it.
+const CREASED: f64 = 0.4;
 /// Largest height of a bulge of the surface that a cell hides between samples, in tolerances.
 const HIDDEN: f64 = 0.5;
 /// Least cosine of the angle between the surface's normal in a cell and the mean of all there.
@@ -310,11 +313,34 @@ fn look(
             .iter()
             .all(|other| sag(one, other) <= SAG * tolerance);
     }
-    if is_fine {
+    if is_fine || is_creased(space, cell, found, tolerance) {
         Fate::Leaf(Side::Crossing)
     } else {
         Fate::Split
     }
+}
+
+/// Whether the surface has a crease in a cell, and is flat between it and the places where edges of
+/// the cell cross the surface.
+fn is_creased(space: &Space<'_>, cell: &Cell, found: &[Vertex], tolerance: f64) -> bool {
+    if !is_turned(found) {
+        return false;
+    }
+    let edge = meet(found);
+    let room = 0.5 * space.forest.size(cell.level);
+    let off = (edge - space.forest.center(cell)).abs();
+    // Not so for NaN.
+    let is_within = off.cmple(room).all();
+    if !is_within {
+        return false;
+    }
+    let mut places = [edge; 8];
+    for (place, own) in places[1..].iter_mut().zip(found) {
+        *place = 0.5 * (edge + own.position);
+    }
+    let jets = space.jets(cell.part, &places, tolerance);
+    let mut places = places.iter().zip(&jets);
+    places.all(|(place, jet)| Vertex::new(*place, jet).distance() <= CREASED * tolerance)
 }
 
 /// The place of the surface on an edge whose ends are on different sides, by the function there.

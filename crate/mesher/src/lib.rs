@@ -71,6 +71,7 @@ mod cages;
 mod caps;
 mod certify;
 mod coating;
+mod crease;
 mod decimate;
 mod dual;
 mod file;

@@ -146,12 +146,16 @@ fn judge(scene: &Scene, care: Care) -> Result<Row, String> {
             ));
         }
     }
+    let mut seen: Vec<&str> = Vec::new();
     for surface in &surfaces {
         let body = scene.bodies.get(surface.body() as usize);
         let body = body.map_or("", |body| body.name.as_str());
         let name = if body.is_empty() { "model" } else { body };
+        // Bodies may share a name; their meshes have the same order.
+        let before = seen.iter().filter(|own| **own == name).count();
+        seen.push(name);
         let own = |part: &&mesher::ModelPart| part.name == name;
-        let Some(part) = model.parts.iter().find(own) else {
+        let Some(part) = model.parts.iter().filter(own).nth(before) else {
             continue;
         };
         distances(surface, &part.mesh, &model, care, &mut row)
