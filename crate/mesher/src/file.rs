@@ -27,7 +27,7 @@ use mesh::{Aabb, Bvh, TriangleMesh, closest_point, self_intersections};
 /// Attempts to decimate a fine mesh.
 const ATTEMPTS: usize = 4;
 /// Shares of the progress at which the work on each of the fine meshes begins.
-const FINE_MESHES: [f32; 3] = [0.3, 0.7, 0.9];
+const FINE_MESHES: [f32; 5] = [0.3, 0.6, 0.75, 0.85, 0.93];
 /// Most times that cells are divided where a fine mesh cuts itself.
 const SEPARATIONS: usize = 8;
 /// Most times that a coarse mesh is mended.
@@ -123,7 +123,7 @@ pub fn approximate(
         let cells = &mut progress.part(0.0, 0.5).in_phase(Phase::Cells);
         let raw = match first.take() {
             Some(raw) => Ok(Some(raw)),
-            None if i == 0 || i + 1 == FINE_MESHES.len() => Ok(None),
+            None if i == 0 => Ok(None),
             None => separate(&mut space, &mut corners, &sizes, cells),
         };
         let raw = match raw {
