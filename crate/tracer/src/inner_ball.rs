@@ -60,15 +60,18 @@ impl InnerBall {
             let square = radius * radius - (away.length_squared() - along * along);
             square.at_least(0.0).sqrt() - along
         };
-        let width = |t: f64| beam.width(t) + beam.lag(t);
-        let is_inside = |t: f64| beam.axis.at(t).distance(self.center) + width(t) <= self.radius;
         // A beam never narrows, and a ball is convex.
-        let t = end(self.radius - width(end(self.radius))) * (1.0 - 1e-9);
-        if is_inside(0.0) && is_inside(t) {
+        let t = end(self.radius - beam.extent(end(self.radius))) * (1.0 - 1e-9);
+        if self.holds(beam, 0.0) && self.holds(beam, t) {
             t.at_least(0.0)
         } else {
             0.0
         }
+    }
+
+    /// Whether the rays of a beam are in the ball at a parameter.
+    fn holds(&self, beam: &Beam, t: f64) -> bool {
+        beam.axis.at(t).distance(self.center) + beam.extent(t) <= self.radius
     }
 }
 
@@ -159,7 +162,7 @@ mod tests {
                 }
             }
             let after = beam.axis.at(t + 1e-6).distance(ball.center);
-            let wide = beam.width(2.0 * ball.radius) + beam.lag(2.0 * ball.radius);
+            let wide = beam.extent(2.0 * ball.radius);
             assert!(
                 after + wide + 1e-3 > ball.radius || wide > 0.4,
                 "{after} {wide}"

@@ -7,7 +7,7 @@
 use crate::beam::Beam;
 use crate::blob_march::{MarchRays, Marched, RayBlob, RayBlobs, RayInterval, extremes, march};
 use crate::lanes::least;
-use crate::layout::PACKET;
+use crate::layout::{PACKET, lanes_in};
 use crate::nearby::{Marks, Nearby, indices_of};
 use crate::ray::Ray;
 use crate::soft::Soft;
@@ -282,7 +282,7 @@ impl Soft {
         quest: Quest,
         work: &mut Quick,
     ) -> Option<(Looked, f64)> {
-        let lanes = (0..PACKET).filter(|i| alive >> i & 1 != 0);
+        let lanes = lanes_in(alive);
         let followed: Vec<Ray> = lanes.clone().map(|i| rays[i]).collect();
         let furthest = lanes.map(|i| limits[i]).fold(0.0, f64::max);
         let beam = Beam::around(&followed)?;

@@ -233,25 +233,19 @@ impl Shared {
                 (slope - straight) as f32
             })
         });
-        // NaN counts as 0.
-        let greatest = |all: f32x8, nothing: f32x8| {
-            let numbers = nothing.simd_lt(all).select(all, nothing);
-            -least(-numbers)
-        };
-        let value = greatest(sum.0[0], f32x8::splat(f32::NEG_INFINITY));
-        let bends = excess.map(|all| greatest(f32x8::new(all).abs(), f32x8::ZERO));
+        let value = greatest_number(sum.0[0], f32x8::splat(f32::NEG_INFINITY));
+        let bends = excess.map(|all| greatest_number(f32x8::new(all).abs(), f32x8::ZERO));
         // |x(1−x)²| + |x²(1−x)| ≤ ¼.
         let bends = 0.25 * bends.iter().sum::<f32>();
         let top = value + bends + 1e-6 * (value.abs() + bends);
         let rows: [Row; 4] = core::array::from_fn(|i| {
-            let ends = |of: &[f32; 8]| (of[2 * i], of[2 * i + 1]);
-            let ((f, g), (a, b)) = (ends(&values), ends(&excess[0]));
-            let and_change = |(start, end): (f32, f32)| [start, end - start];
+            let [[f, g], [a, b], y, z] = [&values, &excess[0], &excess[1], &excess[2]]
+                .map(|corners| [corners[2 * i], corners[2 * i + 1]]);
             Row {
                 // f + (g−f)x + a·x(1−x)² − b·x²(1−x).
                 value: [f, g - f + a, -(a + a + b), a + b],
-                y: and_change(ends(&excess[1])),
-                z: and_change(ends(&excess[2])),
+                y: [y[0], y[1] - y[0]],
+                z: [z[0], z[1] - z[0]],
             }
         });
         Self {
@@ -349,6 +343,13 @@ impl<L: Lanes> Bend<L> {
             rise + lean * self.tilt - both * self.bulge,
         )
     }
+}
+
+/// Returns the greatest of eight numbers and `nothing`, for which NaN counts.
+#[inline(always)]
+fn greatest_number(all: f32x8, nothing: f32x8) -> f32 {
+    let numbers = nothing.simd_lt(all).select(all, nothing);
+    -least(-numbers)
 }
 
 #[cfg(test)]
