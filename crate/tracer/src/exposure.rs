@@ -42,7 +42,7 @@ struct Moment {
 struct ThinLens {
     /// The disc's radius; 0 is a pinhole.
     aperture: f64,
-    /// Distance of what is sharp.
+    /// Distance at which things are sharp.
     focus: f64,
 }
 

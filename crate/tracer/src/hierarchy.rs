@@ -195,8 +195,8 @@ fn vector(lanes: f64x4) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Appends the nodes of a tree over items, of which the first has the number `first` in the whole
-/// tree, and puts the items in the tree's order.
+/// Appends the nodes of a tree over items, which are numbered from `first` on in the whole tree,
+/// and puts the items in the tree's order.
 fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut Vec<Node>) {
     let (center, radius, extent) = around(items);
     let index = nodes.len();
@@ -289,7 +289,7 @@ mod tests {
             assert_eq!((i, center, radius), items[i as usize]);
             larger[i as usize].2
         });
-        // How much larger than it need be the loosest ball of a node is.
+        // Radius of the loosest ball of a node over the least radius that would do.
         let [loosest, loosest_of_larger] =
             [(&tree, &items), (&other, &larger)].map(|(tree, items)| {
                 let mut loosest = 0.0f64;

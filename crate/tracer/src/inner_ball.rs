@@ -28,21 +28,17 @@ impl InnerBall {
     /// or if some term carves: near its pole nothing is inside.
     #[must_use]
     pub fn new(bounds: &[Bound], (center, skeletons): (DVec3, f64)) -> Option<Self> {
-        let is_inside = |radius: f64| {
-            let least = bounds.iter().map(|bound| bound.least(center, radius));
-            least.sum::<f64>() > THRESHOLD * (1.0 + MARGIN)
-        };
         let carves = bounds.iter().any(Bound::carves);
-        if carves || !(skeletons > 0.0 && is_inside(skeletons)) {
+        if carves || !(skeletons > 0.0 && is_inside(bounds, center, skeletons)) {
             return None;
         }
         let mut radius = skeletons;
-        while radius < LARGEST && is_inside(2.0 * radius) {
+        while radius < LARGEST && is_inside(bounds, center, 2.0 * radius) {
             radius *= 2.0;
         }
         let mut step = 0.5 * radius;
         for _ in 0..STEPS {
-            if is_inside(radius + step) {
+            if is_inside(bounds, center, radius + step) {
                 radius += step;
             }
             step *= 0.5;
@@ -73,6 +69,12 @@ impl InnerBall {
     fn holds(&self, beam: &Beam, t: f64) -> bool {
         beam.axis.at(t).distance(self.center) + beam.extent(t) <= self.radius
     }
+}
+
+/// Whether the field is known to be above T in a ball.
+fn is_inside(bounds: &[Bound], center: DVec3, radius: f64) -> bool {
+    let least = bounds.iter().map(|bound| bound.least(center, radius));
+    least.sum::<f64>() > THRESHOLD * (1.0 + MARGIN)
 }
 
 #[cfg(test)]

@@ -139,6 +139,22 @@ struct Row {
     z: [f32; 2],
 }
 
+impl Row {
+    /// Returns the value at x, its slope, and the coefficients by y and by z.
+    #[inline(always)]
+    fn jet<L: Lanes>(&self, x: L) -> (L, L, L, L) {
+        let [a, b, c, d] = self.value.map(L::single);
+        let dx = d * x;
+        let second = c + dx;
+        let first = b + second * x;
+        let value = a + first * x;
+        let slope = first + (second + dx) * x;
+        let [by_y, by_z] =
+            [self.y, self.z].map(|[start, change]| L::single(start) + L::single(change) * x);
+        (value, slope, by_y, by_z)
+    }
+}
+
 /// Value and gradient at the corners.
 #[derive(Clone, Copy)]
 struct Corners([f32x8; 4]);
@@ -267,24 +283,12 @@ impl Shared {
     #[must_use]
     pub fn jet<L: Lanes>(&self, [x, y, z]: [L; 3]) -> (L, [L; 3]) {
         let single = L::single;
-        // Along x: the value and its slope, and the coefficients by y and by z.
-        let row = |row: &Row| {
-            let [a, b, c, d] = row.value.map(single);
-            let dx = d * x;
-            let second = c + dx;
-            let first = b + second * x;
-            let value = a + first * x;
-            let slope = first + (second + dx) * x;
-            let [by_y, by_z] =
-                [row.y, row.z].map(|[start, change]| single(start) + single(change) * x);
-            (value, slope, by_y, by_z)
-        };
         let (across, along) = (Bend::at(y), Bend::at(z));
         // Along y: value, slopes by x and y; the coefficient by z, and its slopes.
         let face = |i: usize| {
             let [near, far] = [&self.rows[2 * i], &self.rows[2 * i + 1]];
-            let (p, px, q, r) = row(near);
-            let (p1, p1x, q1, r1) = row(far);
+            let (p, px, q, r) = near.jet(x);
+            let (p1, p1x, q1, r1) = far.jet(x);
             let (value, by_y) = across.jet(p, p1, q, q + q1);
             let by_x = across.value(px, p1x, single(near.y[1]), single(self.bends[i]));
             let twist = r1 - r;

@@ -364,6 +364,18 @@ mod tests {
         assert_eq!(first(outside, 1.0), Some(0));
     }
 
+    fn trace_middle(picture: &crate::Picture) -> Vec<u8> {
+        let tile = crate::Tile {
+            x: 192,
+            y: 128,
+            width: 128,
+            height: 128,
+        };
+        let stats = &mut crate::Stats::default();
+        let pixels = picture.trace(tile, crate::Pass::Full, &|| false, stats);
+        pixels.expect("pixels")
+    }
+
     /// A scene in which one ball has moved takes over cells of the scene before, and gives the same
     /// picture as if it were made anew.
     #[test]
@@ -380,32 +392,19 @@ mod tests {
         scene.camera.eye = DVec3::new(0.5, -4.0, 1.0).to_array().into();
         // Packets are narrow among so many pixels, of which those in the middle are enough.
         let size = [512, 384];
-        let trace = |picture: &crate::Picture| {
-            let tile = crate::Tile {
-                x: 192,
-                y: 128,
-                width: 128,
-                height: 128,
-            };
-            let never = &|| false;
-            let stats = &mut crate::Stats::default();
-            picture
-                .trace(tile, crate::Pass::Full, never, stats)
-                .expect("pixels")
-        };
         let mut picture = crate::Picture::new(&scene, size);
-        let mut pixels = trace(&picture);
+        let mut pixels = trace_middle(&picture);
         for number in [7, 100, 101] {
             let shape = &mut scene.elements[number].shape;
             let center = 0.2 * scene.camera.eye + numbers.vector(0.15);
             *shape = Shape::sphere(center, shape.radius());
             let mut next = crate::Picture::new(&scene, size);
-            let fresh = trace(&next);
+            let fresh = trace_middle(&next);
             assert!(fresh != pixels, "the edit shows");
             next = crate::Picture::new(&scene, size);
             assert!(picture.can_be_followed());
             next.follow(&mut picture);
-            pixels = trace(&next);
+            pixels = trace_middle(&next);
             let body = next.sampler.world.soft.bodies[0].far_body();
             let body = body.expect("many points");
             assert!(body.field.is_helped(), "{number}");

@@ -91,8 +91,8 @@ impl Points {
         Some(changed)
     }
 
-    /// Collects the blobs of a piece, and the backdrop of all that is not among them, with its
-    /// error. `None` if the field is below T in the whole piece.
+    /// Collects the blobs of a piece, and the backdrop of all other points, with its error. `None`
+    /// if the field is below T in the whole piece.
     pub fn prepare(&self, piece: &Piece<'_>, work: &mut FarWork) -> Option<Known> {
         let cell = piece.cell;
         let count = cell.near.len();
