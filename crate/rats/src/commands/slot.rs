@@ -26,7 +26,7 @@ pub struct Word;
 /// Type of colours and names of images.
 #[derive(Debug)]
 pub struct Backdrop;
-/// Type of text to the end of the line, of which the place is kept.
+/// Type of text to the end of the line; only its place is kept.
 #[derive(Debug)]
 pub struct Text;
 /// Type of operands that their command reads by itself.

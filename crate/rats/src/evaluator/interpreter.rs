@@ -39,7 +39,7 @@ impl<'a> Evaluator<'a> {
             let flow = self.node(node).or_else(|mut problem| {
                 let fatal = problem.fatal;
                 let span = problem.span.clone();
-                // What follows from an error that was reported is found and dropped soon.
+                // Errors that follow from a reported one are found and dropped quickly.
                 let cost = if problem.quiet {
                     20
                 } else {
