@@ -83,13 +83,7 @@ struct Surfaces {
 impl Figure for Centreline {
     fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
+        tools::renew(&mut self.computed, key, Key::compute);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.8);
         let palette = theme::palette(ui.visuals());
         plot::panel(ui, stage.figure);

@@ -88,13 +88,7 @@ impl Default for Contact {
 impl Figure for Contact {
     fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
+        tools::renew(&mut self.computed, key, Key::compute);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
         let palette = theme::palette(ui.visuals());
         let all = stage.figure;
@@ -256,10 +250,9 @@ impl Contact {
         let y = Axis::new([-0.4, top], "added to a drop's own field");
         let plot = Plot::new(ui, place, x, y);
         let bulge = self.key.bulge();
-        let added = |f: f64| bulge.jet(f).0;
         let tint = palette.note.gamma_multiply(0.25);
-        plot.fill(tint, [bulge.start(), 1.0], added);
-        plot.curve(Stroke::new(2.5, palette.note), added);
+        plot.fill(tint, [bulge.start(), 1.0], |f| bulge.jet(f).0);
+        plot.curve(Stroke::new(2.5, palette.note), |f| bulge.jet(f).0);
         plot.upright(THRESHOLD, Stroke::new(1.0, palette.text), "its surface");
         let grip = |name: &str, x: f64, y: f64| {
             let at = plot.at(x, y);

@@ -80,13 +80,7 @@ impl Default for Superposition {
 impl Figure for Superposition {
     fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
+        tools::renew(&mut self.computed, key, Key::compute);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
         let palette = theme::palette(ui.visuals());
         let all = stage.figure;
@@ -131,13 +125,8 @@ impl Figure for Superposition {
         );
         slider(controls, "Cut at", &mut self.key.cut, 0.02..=0.98, "");
         slider(controls, "Radius R", &mut self.key.radius, 0.15..=0.9, "");
-        slider(
-            controls,
-            "Blobbiness |B|",
-            &mut self.key.blobbiness,
-            0.3..=6.0,
-            "",
-        );
+        let blobbiness = &mut self.key.blobbiness;
+        slider(controls, "Blobbiness |B|", blobbiness, 0.3..=6.0, "");
         heading(controls, "Kernel");
         if let Some(kernel) = tools::kernels(controls, |kernel| kernel == key.kernel) {
             self.key.kernel = kernel;
