@@ -46,8 +46,8 @@ fn xyz(bytes: &[u8]) -> Result<Vec<DVec3>, Error> {
             .split(|c: char| c.is_ascii_whitespace() || c == ',' || c == ';')
             .filter(|word| !word.is_empty());
         let mut values = words.take(3).map(|word| word.parse::<f64>().ok());
-        let mut next = || values.next().flatten().filter(|v| v.is_finite());
-        let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
+        let numbers = [0; 3].map(|_| values.next().flatten().filter(|v| v.is_finite()));
+        let [Some(x), Some(y), Some(z)] = numbers else {
             return fail(format!("line {number}: three numbers are expected"));
         };
         points.push(DVec3::new(x, y, z));
