@@ -5,12 +5,13 @@
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::figure::{Figure, Words};
+use crate::plane::Plane;
 use crate::plot::{self, Axis, Plot};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
 use contact::Bulge;
 use core::f64::consts::PI;
-use egui::{Align2, Color32, CursorIcon, FontId, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Rect, Stroke, Ui, pos2, vec2};
 use field::{Kernel, Primitive, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use picture::contour::Grid;
@@ -99,12 +100,12 @@ impl Figure for Contact {
         if let Some((_, drops)) = &self.computed {
             draw(ui, upper, drops);
         }
-        let map = Map::new(upper);
+        let map = Plane::titled(upper, HALF, SAMPLES);
         for (name, sign) in [("left drop", -1.0), ("right drop", 1.0)] {
-            let at = map.at(sign * key.apart, 0.0);
+            let at = map.at([sign * key.apart, 0.0]);
             let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
             if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
-                self.key.apart = (sign * map.x(pointer)).clamp(APART[0], APART[1]);
+                self.key.apart = (sign * map.world(pointer)[0]).clamp(APART[0], APART[1]);
             }
         }
         self.chart(ui, lower);
@@ -343,59 +344,15 @@ impl Contact {
     }
 }
 
-/// Converts the plane to the screen.
-struct Map {
-    center: Pos2,
-    scale: f32,
-}
-
-impl Map {
-    fn new(place: Rect) -> Self {
-        let inner = place.shrink2(vec2(8.0, 6.0)).with_min_y(place.top() + 26.0);
-        let scale =
-            (inner.width() / (2.0 * HALF[0] as f32)).min(inner.height() / (2.0 * HALF[1] as f32));
-        Self {
-            center: inner.center(),
-            scale,
-        }
-    }
-
-    fn at(&self, x: f64, y: f64) -> Pos2 {
-        self.center + self.scale * vec2(x as f32, -(y as f32))
-    }
-
-    fn x(&self, at: Pos2) -> f64 {
-        f64::from((at.x - self.center.x) / self.scale.max(1e-6))
-    }
-
-    fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
-        let [x, y] = [(x, 0), (y, 1)].map(|(sample, axis)| {
-            let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;
-            HALF[axis] * (2.0 * share - 1.0)
-        });
-        self.at(x, y)
-    }
-}
-
 /// Draws the drops, pressed and alone.
 fn draw(ui: &Ui, place: Rect, drops: &Drops) {
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, place);
     let painter = ui.painter_at(place.shrink(1.0));
-    let map = Map::new(place);
+    let map = Plane::titled(place, HALF, SAMPLES);
     let colours: [Color32; 2] = [palette.note, palette.accent];
     for (inside, colour) in drops.insides.iter().zip(colours) {
-        let mut mesh = Mesh::default();
-        for polygon in inside {
-            let base = mesh.vertices.len() as u32;
-            for corner in polygon {
-                mesh.colored_vertex(map.sample(*corner), colour.gamma_multiply(0.22));
-            }
-            for corner in 2..polygon.len() as u32 {
-                mesh.add_triangle(base, base + corner - 1, base + corner);
-            }
-        }
-        painter.add(Shape::mesh(mesh));
+        map.fill(&painter, inside, colour.gamma_multiply(0.22));
     }
     let thin = Stroke::new(1.0, palette.weak);
     // Every other piece: dashes.
