@@ -17,7 +17,7 @@ use glam::DVec3;
 /// ```
 pub fn cloud(name: &str, bytes: &[u8]) -> Result<Vec<DVec3>, Error> {
     let points = if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
-        mesh::read_points(bytes).map_err(|error| Error(error.to_string()))?
+        mesh::read_points(bytes)?
     } else if name.to_ascii_lowercase().ends_with(".ply") {
         return fail("this is no PLY file: it does not begin with `ply`");
     } else {
