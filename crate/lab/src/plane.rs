@@ -24,7 +24,7 @@ impl Plane {
     }
 
     /// Fits it into a panel with a title.
-    pub fn titled(panel: Rect, half: [f64; 2], samples: [usize; 2]) -> Self {
+    pub fn below_title(panel: Rect, half: [f64; 2], samples: [usize; 2]) -> Self {
         let inner = panel.shrink2(vec2(8.0, 6.0));
         Self::new(inner.with_min_y(panel.top() + 26.0), half, samples)
     }

@@ -42,7 +42,7 @@ struct Hits<'a> {
 
 impl Hits<'_> {
     /// Returns a part of the error of the slab in which each hit is.
-    fn spent(&self, part: fn(&Spent) -> f64) -> [f64; PACKET] {
+    fn error(&self, part: fn(&Spent) -> f64) -> [f64; PACKET] {
         let mut off = [0.0; PACKET];
         for &(slab, lanes) in self.places {
             let own = part(&self.slabs.slab(slab).spent);
@@ -115,12 +115,12 @@ impl Soft {
             isolated,
         };
         self.refine_hits(&hits, true, scratch);
-        let error = hits.spent(|spent| spent.shared);
+        let error = hits.error(|spent| spent.shared);
         let shared = self.off(&hits, &scratch.samples, base, &error) == 0;
         if !shared {
             self.refine_hits(&hits, false, scratch);
         }
-        let error = hits.spent(|spent| spent.noise);
+        let error = hits.error(|spent| spent.noise);
         let mut blurred = self.off(&hits, &scratch.samples, base, &error);
         if blurred != 0 {
             // The slab's bound is larger than the noise at one point of it.

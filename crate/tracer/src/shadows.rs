@@ -29,8 +29,8 @@ pub(crate) fn towards_distant(light: &Light) -> Option<(DVec3, f64)> {
     matches!(light.kind, LightKind::Distant { .. }).then(|| towards(light, DVec3::ZERO))
 }
 
-/// Returns the ray from a place to a light, if it leaves the surface there and the light shines that
-/// way. `distant` is from [`towards_distant`]; the place has a normal, and a height above the
+/// Returns the ray from a place to a light, if it leaves the surface there and the light shines
+/// that way. `distant` is from [`towards_distant`]; the place has a normal, and a height above the
 /// surface at which rays start.
 #[inline]
 pub(crate) fn shadow(

@@ -100,7 +100,7 @@ impl Figure for Contact {
         if let Some((_, drops)) = &self.computed {
             draw(ui, upper, drops);
         }
-        let map = Plane::titled(upper, HALF, SAMPLES);
+        let map = Plane::below_title(upper, HALF, SAMPLES);
         for (name, sign) in [("left drop", -1.0), ("right drop", 1.0)] {
             let at = map.at([sign * key.apart, 0.0]);
             let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
@@ -349,7 +349,7 @@ fn draw(ui: &Ui, place: Rect, drops: &Drops) {
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, place);
     let painter = ui.painter_at(place.shrink(1.0));
-    let map = Plane::titled(place, HALF, SAMPLES);
+    let map = Plane::below_title(place, HALF, SAMPLES);
     let colours: [Color32; 2] = [palette.note, palette.accent];
     for (inside, colour) in drops.insides.iter().zip(colours) {
         map.fill(&painter, inside, colour.gamma_multiply(0.22));

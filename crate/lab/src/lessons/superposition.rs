@@ -111,7 +111,7 @@ impl Figure for Superposition {
         }
         // The cut is one, so it can be taken hold of in both.
         for (name, place) in [("cut", upper), ("cut below", lower)] {
-            let map = Plane::titled(place, HALF, SAMPLES);
+            let map = Plane::below_title(place, HALF, SAMPLES);
             let at = map.at(key.place(key.cut).truncate().into());
             let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
             if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
@@ -390,7 +390,7 @@ fn outline(
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, place);
     let painter = ui.painter_at(place.shrink(1.0));
-    let map = Plane::titled(place, HALF, SAMPLES);
+    let map = Plane::below_title(place, HALF, SAMPLES);
     let tint = colour.gamma_multiply(0.2);
     map.fill(&painter, inside, tint);
     let stroke = Stroke::new(2.5, colour);
