@@ -184,7 +184,7 @@ impl Marks {
     /// A space before item `first` and one after item `last`.
     fn breathe(&mut self, tokens: &[Token], items: &[Item], first: usize, last: usize) {
         // Between `=` and `=` a space would part what belongs together, and before `*=` it would
-        // make a sign with space around of what is none now.
+        // turn it into a sign with spaces around it.
         let next_begins_pair = is_equal_next(items, last + 1)
             && matches!(items[last + 1].datum, Datum::Sign(b'+' | b'*' | b'!'))
             && sign_before(items, last + 1).is_some();

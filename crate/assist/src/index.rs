@@ -1,4 +1,4 @@
-//! An index of a project: the things that its texts name, and every place where they do.
+//! An index of a project: the things that its texts name, and all places of their names.
 //!
 //! `resolve` fills it; here are its types and the questions that it answers.
 

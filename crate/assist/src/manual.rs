@@ -361,7 +361,7 @@ fn sentence(text: &str) -> String {
     mark(&(first.unwrap_or_default() + letters.as_str()))
 }
 
-/// Writes text for HTML, with `code` and the mark of what is ours.
+/// Writes text for HTML, with `code` and the mark of our own extensions.
 fn mark(text: &str) -> String {
     let mut out = String::new();
     for (index, part) in text.split('`').enumerate() {

@@ -1,4 +1,4 @@
-//! The cost of fields that never end: against those that do, and with more elements.
+//! The cost of fields that never end: compared with fields that do, and as elements become more.
 
 use crate::povray;
 use crate::report::{Report, Short, or_dash};

@@ -24,7 +24,7 @@ pub fn or_dash(thing: Option<impl Display>) -> String {
     thing.map_or("–".into(), |thing| thing.to_string())
 }
 
-/// Rows of the table of goals, and what stands for the marks `{…}` in a part's text.
+/// Rows of the table of goals, and the replacements of the marks `{…}` in a part's text.
 #[derive(Default)]
 pub struct Report {
     /// The rows.
@@ -33,7 +33,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Lets something stand for a mark.
+    /// Sets the text that replaces a mark.
     pub fn set(&mut self, mark: &'static str, thing: impl Display) {
         self.marks.insert(mark, thing.to_string());
     }

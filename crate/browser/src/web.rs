@@ -188,7 +188,7 @@ impl Store for Keeper {
 pub fn fetch_work(id: &str, done: impl FnOnce() + 'static) {
     let id = id.to_owned();
     wasm_bindgen_futures::spawn_local(async move {
-        // What cannot be fetched was told to the listener.
+        // The listener has been told if it cannot be fetched.
         let _ = fetch_kept(&id).await;
         done();
     });

@@ -10,9 +10,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use tracer::Picker;
 
-/// Lines that are tried for each point: a thin scene is met by few.
+/// Lines that are tried for each point, as few of them meet a thin scene.
 const TRIES: usize = 400;
-/// Largest noise: coordinates of point clouds are read up to a million times that.
+/// Largest noise, a millionth of the largest coordinate that is read in point clouds.
 const MOST_NOISE: f64 = 1e6;
 /// Most points and views.
 const MOST_POINTS: usize = 200_000;
@@ -138,7 +138,7 @@ impl Scan {
         Ok(())
     }
 
-    /// The cameras: the dataset's, turned about the direction that is up by equal parts of half a
+    /// The cameras: the dataset's, turned about the upward direction by equal parts of half a
     /// turn, as a shape has the same outline from the other side.
     fn views(&self, scene: &Scene, middle: DVec3) -> Result<Vec<Outline>, String> {
         let camera = scene.camera;
@@ -176,7 +176,7 @@ fn ends_with(path: &Path, ending: &str) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case(ending))
 }
 
-/// The centre and radius of a ball around all that has an end.
+/// The centre and radius of a ball around all bounded elements.
 fn place(scene: &Scene) -> Option<(DVec3, f64)> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let shapes = scene::extent(scene.elements.iter().map(|e| &e.shape));

@@ -62,7 +62,7 @@ impl Wishes {
     /// 1.
     ///
     /// # Errors
-    /// As [`Self::apply`], or if the number of threads is 0.
+    /// Fails as [`Self::apply`] does, or if the number of threads is 0.
     pub fn trace(
         &self,
         scene: &mut Scene,
@@ -98,7 +98,7 @@ pub fn check_name(path: &Path) -> Result<(), String> {
     Format::of(path).map_or_else(|problem| Err(problem.to_string()), |_| Ok(()))
 }
 
-/// Returns the name of the n-th of several pictures, of which the last has the name itself:
+/// Returns the name of the n-th of several pictures; the last one has the name itself:
 /// `out.png`, 2 → `out-2.png`.
 pub fn number_name(path: &Path, number: usize) -> PathBuf {
     let [stem, ending] = [path.file_stem(), path.extension()]

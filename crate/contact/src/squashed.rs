@@ -155,11 +155,10 @@ fn press<'a, R: Real>(
     for partner in partners {
         let other = deformed(partner);
         let more = largest.0.lt(other.0);
-        let pick = |a: R, b: R| R::select(more, a, b);
         largest = (
-            pick(other.0, largest.0),
-            pick(other.1, largest.1),
-            core::array::from_fn(|i| pick(other.2[i], largest.2[i])),
+            R::select(more, other.0, largest.0),
+            R::select(more, other.1, largest.1),
+            core::array::from_fn(|i| R::select(more, other.2[i], largest.2[i])),
         );
     }
     own.plus(Jet {

@@ -62,17 +62,19 @@ pub(crate) fn first(spans: u32, sight: &mut Sight<'_>, quest: Quest) -> Option<f
     let mut cuts = sight.range.to_vec();
     for term in 0..sight.terms.len() {
         let [from, to] = sight.terms[term].interval;
-        let place = |i: u32| from + (to - from) * (f64::from(i) / f64::from(spans));
+        let places: Vec<f64> = (0..=spans)
+            .map(|i| from + (to - from) * (f64::from(i) / f64::from(spans)))
+            .collect();
         let mut left = (0.0, 0.0);
-        for i in 1..=spans {
+        for (i, ends) in places.windows(2).enumerate() {
             let mut right = (0.0, 0.0);
-            if i < spans {
-                right = sight.one(term, place(i));
+            if i + 2 < places.len() {
+                right = sight.one(term, ends[1]);
             }
-            pieces.push(CubicPart::new(place(i - 1), place(i), [left, right]));
+            pieces.push(CubicPart::new(ends[0], ends[1], [left, right]));
             left = right;
         }
-        cuts.extend((0..=spans).map(place));
+        cuts.extend(places);
     }
     cuts.retain(|t| *t >= sight.range[0] && *t <= sight.range[1]);
     field::heap_sort(&mut cuts, |a, b| a.total_cmp(b).is_lt());

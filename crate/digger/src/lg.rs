@@ -2,9 +2,10 @@
 //! of each interval.
 //!
 //! Let d be half an interval's length and m its middle. If |F(m)−T| > L·d, where L bounds the rate
-//! of change of F, there is no root. If |F′(m)| > G·d, where G bounds that of F′, F is monotone, so
-//! there is one root or none, as the signs at the ends show; the regula falsi refines it. Otherwise
-//! both halves are searched. L and G are computed for each interval, from bounds per primitive.
+//! of change of F, there is no root. If |F′(m)| > G·d, where G bounds F′'s rate of change, F is
+//! monotone, so the signs at the ends show whether there is a root; the regula falsi refines it.
+//! Otherwise both halves are searched. L and G are computed for each interval, from bounds per
+//! primitive.
 use crate::march::Bracket;
 use crate::{Side, Sight, regula_falsi};
 use core::ops::Range;

@@ -184,13 +184,13 @@ fn obj(bytes: &[u8]) -> Option<Counts> {
 
 fn ply(bytes: &[u8]) -> Option<Counts> {
     let elements = mesh::formats::ply::elements(bytes).ok()?;
-    let count = |names: &[&str]| {
+    let [corners, faces] = [&["vertex"][..], &["face", "tristrips"]].map(|names| {
         let mut named = elements.iter().filter(|e| names.contains(&e.name));
         named.next().map(|element| element.count)
-    };
+    });
     Some(Counts {
-        corners: Some(count(&["vertex"])?),
-        faces: count(&["face", "tristrips"])?,
+        corners: Some(corners?),
+        faces: faces?,
     })
 }
 

@@ -367,7 +367,7 @@ pub fn file_stem(name: &str) -> String {
     }
 }
 
-/// Returns a name for a project: that of its first file, without the extension.
+/// Returns a name for a project: its first file's, without the extension.
 fn title(project: &Project) -> String {
     let name = project.files.first().map_or("", |file| file.name.as_str());
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);

@@ -1,7 +1,8 @@
 //! Convex polyhedra, cut by planes.
 //!
-//! A face is a list of directed edges in no particular order: cutting needs no more, as a convex
-//! face has one edge in and one out of what is cut off, and volumes are sums over edges. So no case
+//! A face is a list of directed edges in no particular order: cutting needs no more, as one edge of
+//! a convex face enters the part that is cut off and one leaves it, and volumes are sums over
+//! edges. So no case
 //! of several vertices or planes in one place is special: degenerate edges and faces stay in the
 //! lists and add nothing.
 

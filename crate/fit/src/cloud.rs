@@ -17,7 +17,7 @@ use glam::DVec3;
 /// ```
 pub fn cloud(name: &str, bytes: &[u8]) -> Result<Vec<DVec3>, Error> {
     let points = if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
-        mesh::read_points(bytes).map_err(|error| Error(error.to_string()))?
+        mesh::read_points(bytes)?
     } else if name.to_ascii_lowercase().ends_with(".ply") {
         return fail("this is no PLY file: it does not begin with `ply`");
     } else {
@@ -46,8 +46,8 @@ fn xyz(bytes: &[u8]) -> Result<Vec<DVec3>, Error> {
             .split(|c: char| c.is_ascii_whitespace() || c == ',' || c == ';')
             .filter(|word| !word.is_empty());
         let mut values = words.take(3).map(|word| word.parse::<f64>().ok());
-        let mut next = || values.next().flatten().filter(|v| v.is_finite());
-        let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
+        let numbers = [0; 3].map(|_| values.next().flatten().filter(|v| v.is_finite()));
+        let [Some(x), Some(y), Some(z)] = numbers else {
             return fail(format!("line {number}: three numbers are expected"));
         };
         points.push(DVec3::new(x, y, z));

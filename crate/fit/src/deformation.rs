@@ -21,7 +21,7 @@ impl Deformation {
     /// Computes the coordinates of vertices with respect to control points.
     ///
     /// # Errors
-    /// As [`Sibson::new`]; and if a vertex is no finite point.
+    /// Fails as [`Sibson::new`] does, and if a vertex is no finite point.
     pub fn new(vertices: &[DVec3], controls: &[DVec3]) -> Result<Self, Error> {
         let bounds = Aabb::of_points(vertices.iter().copied());
         let sibson = Sibson::new(controls, &bounds)?;

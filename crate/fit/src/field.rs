@@ -41,7 +41,7 @@ enum Form {
     Balls(Box<Metaballs>),
 }
 
-/// Facet is passed over where it adds less than e^−this of what the nearest one adds.
+/// Facets are left out where they add less than e^−this times as much as the nearest one.
 const FAINT: f64 = 14.0;
 
 /// The derivative of a distance: vertices and how it grows when they move.

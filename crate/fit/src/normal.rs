@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Symmetric matrix, of which the rows of the lower triangle are kept, and a right side:
+/// Symmetric matrix, kept as the rows of its lower triangle, and a right side:
 /// `A·x = −g`.
 #[derive(Clone, Debug)]
 pub(crate) struct Normal {

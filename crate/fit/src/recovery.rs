@@ -151,7 +151,7 @@ impl Trial {
     /// Makes the problem of a fit.
     ///
     /// # Errors
-    /// As [`Problem::new`].
+    /// Fails as [`Problem::new`] does.
     pub fn problem(&self, model: &TriangleMesh, way: Way) -> Result<Problem, Error> {
         let edge = mean_edge(&model.positions, &model.triangles);
         let options = Options {
@@ -179,7 +179,7 @@ impl Trial {
     /// Fits a mesh and measures the result.
     ///
     /// # Errors
-    /// As [`Problem::new`] and [`fit()`].
+    /// Fails as [`Problem::new`] and [`fit()`] do.
     pub fn run(&self, model: &TriangleMesh, way: Way) -> Result<Outcome, Error> {
         let fitted = fit(&self.problem(model, way)?, &mut |_| true)?;
         let slope = way.sharpness / mean_edge(&model.positions, &model.triangles);
@@ -190,7 +190,7 @@ impl Trial {
     /// and measures the result.
     ///
     /// # Errors
-    /// As [`Problem::new`] and [`fit()`].
+    /// Fails as [`Problem::new`] and [`fit()`] do.
     pub fn run_with(
         &self,
         model: &TriangleMesh,

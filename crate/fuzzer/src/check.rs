@@ -199,10 +199,6 @@ pub fn help(project: &Project, first: &Compiled, byte: usize) -> Result<(), Stri
             return Err(format!("a reference outside its text: {place:?}"));
         }
     }
-    let has_errors = |compiled: &Compiled| {
-        let mut messages = compiled.diagnostics.iter();
-        messages.any(|message| message.severity == Severity::Error)
-    };
     // With mistakes nobody knows what a name means.
     if has_errors(first) {
         return Ok(());
@@ -244,7 +240,7 @@ pub fn link(fragment: &str) -> Result<(), String> {
 /// Opens the content of a link: JSON that was not packed by us.
 ///
 /// # Errors
-/// As [`link`].
+/// Fails as [`link`] does.
 pub fn link_content(json: &[u8]) -> Result<(), String> {
     use base64::Engine;
     let mut bytes = vec![1];
@@ -269,4 +265,9 @@ pub fn sharing(project: &Project) -> Result<(), String> {
     } else {
         Err(String::from("a link that brings something else"))
     }
+}
+
+fn has_errors(compiled: &Compiled) -> bool {
+    let mut messages = compiled.diagnostics.iter();
+    messages.any(|message| message.severity == Severity::Error)
 }

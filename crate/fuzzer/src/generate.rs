@@ -6,8 +6,7 @@ use rats::commands::{self, Arity, CommandSpec, Kind, Names, Parameter};
 use rats::library;
 use trials::arbitrary::{Result, Unstructured};
 
-/// Deepest blocks and expressions. Deeper ones are a matter of counting, which the tests of limits
-/// do.
+/// Deepest blocks and expressions. The tests of limits go deeper.
 const DEPTH: usize = 5;
 /// Longest text, bytes.
 const LENGTH: usize = 20_000;

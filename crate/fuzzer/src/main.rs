@@ -322,10 +322,6 @@ fn failure(outcome: Caught) -> Option<String> {
 
 /// Leaves out lines, then words, as long as the same is found.
 fn smaller(text: &str, key: &str) -> String {
-    let same = |text: &str| {
-        let what = try_text(text, true).0.err();
-        what.is_some_and(|what| kind_of(&what) == key)
-    };
     let begun = Instant::now();
     let mut text = text.to_owned();
     for by in [|c: char| c == '\n', |c: char| c == ' ' || c == '\n'] {
@@ -339,7 +335,8 @@ fn smaller(text: &str, key: &str) -> String {
                 }
                 let end = (at + size).min(parts.len());
                 let without = [&parts[..at], &parts[end..]].concat().concat();
-                if same(&without) {
+                let what = try_text(&without, true).0.err();
+                if what.is_some_and(|what| kind_of(&what) == key) {
                     text = without;
                 } else {
                     at += size;

@@ -39,6 +39,7 @@ mod lesson;
 mod lessons;
 mod page;
 pub mod pictures;
+mod plane;
 pub mod plot;
 pub mod sample;
 mod state;

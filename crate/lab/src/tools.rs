@@ -47,6 +47,14 @@ impl Stage {
     }
 }
 
+/// Computes a value anew if it is not the one of the key.
+pub fn renew<K: PartialEq, V>(kept: &mut Option<(K, V)>, key: K, compute: impl FnOnce(&K) -> V) {
+    if kept.as_ref().is_none_or(|(known, _)| *known != key) {
+        let value = compute(&key);
+        *kept = Some((key, value));
+    }
+}
+
 /// Draws a slider under its name and value.
 pub fn slider(
     ui: &mut Ui,

@@ -102,17 +102,15 @@ pub fn heights(bytes: &[u8]) -> Result<Heights, Error> {
 
 /// Returns the luminance of a pixel, 0 … 1, whose channels have `size` bytes.
 fn luminance(pixel: &[u8], size: usize, is_colored: bool) -> f32 {
-    let channel = |i: usize| {
-        if size == 2 {
-            f32::from(u16::from_be_bytes([pixel[2 * i], pixel[2 * i + 1]])) / 65535.0
-        } else {
-            f32::from(pixel[i]) / 255.0
-        }
-    };
+    let mut channels = pixel.chunks_exact(size).map(|channel| match *channel {
+        [high, low] => f32::from(u16::from_be_bytes([high, low])) / 65535.0,
+        _ => f32::from(channel[0]) / 255.0,
+    });
+    let [r, g, b] = core::array::from_fn(|_| channels.next().unwrap_or(0.0));
     if is_colored {
-        (0.2126 * channel(0) + 0.7152 * channel(1) + 0.0722 * channel(2)).min(1.0)
+        (0.2126 * r + 0.7152 * g + 0.0722 * b).min(1.0)
     } else {
-        channel(0)
+        r
     }
 }
 

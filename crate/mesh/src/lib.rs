@@ -16,8 +16,8 @@
 //!
 //! Files are untrusted: every count is checked against the bytes that are there and against
 //! [`limits`] before memory is allocated for it, and errors are sentences with a position. The
-//! readers know the parts of each format that say where triangles and normals are, and of colours
-//! and materials what the formats have in common; textures and animations are passed over.
+//! readers know the parts of each format that say where triangles and normals are, and as much of
+//! colours and materials as the formats have in common; textures and animations are ignored.
 
 mod aabb;
 mod bvh;

@@ -45,7 +45,7 @@ impl Topology {
     /// Examines a mesh.
     ///
     /// # Errors
-    /// As [`HalfEdgeMesh::repair`].
+    /// Fails as [`HalfEdgeMesh::repair`] does.
     pub fn of(mesh: &TriangleMesh) -> Result<Self, Error> {
         let built = HalfEdgeMesh::repair(&PolygonSoup::from(mesh))?;
         let mesh = &built.mesh;

@@ -40,11 +40,11 @@ pub fn terra(heights: &Heights, size: DVec3) -> Result<TriangleMesh, Error> {
         }
     }
     mesh.normals = Some(normals);
-    let corner = |i: usize, j: usize| (j * (across + 1) + i) as u32;
     for j in 0..down {
         for i in 0..across {
-            let [a, b] = [corner(i, j), corner(i + 1, j)];
-            let [c, d] = [corner(i + 1, j + 1), corner(i, j + 1)];
+            let a = (j * (across + 1) + i) as u32;
+            let d = a + across as u32 + 1;
+            let [b, c] = [a + 1, d + 1];
             mesh.add_triangle([a, d, b])?;
             mesh.add_triangle([b, d, c])?;
         }

@@ -23,8 +23,8 @@
 //!   surface by less than `1.2·10⁻⁷·n/k`.
 //! - Below s = −40 it goes on as its tangent, so that nothing overflows deep inside.
 //!
-//! Facets are found by a hierarchy of boxes: the cost of a value grows with the facets that are
-//! near, that of an enclosure, too.
+//! Facets are found by a hierarchy of boxes: the costs of a value and of an enclosure grow with the
+//! number of facets that are near.
 //!
 //! F is continuous, and so is its gradient but on the facets themselves (of balls: at their
 //! centres), where it is largest. Second derivatives jump where the nearest feature of a facet

@@ -23,7 +23,7 @@ impl Document {
     /// Carries out the strokes of a text.
     ///
     /// # Errors
-    /// What is wrong with the text, with its line.
+    /// If the text is wrong; the message names the line.
     pub fn open(text: &str, load: Loader<'_>) -> Result<Self, String> {
         let script: Script = text
             .parse()
@@ -133,7 +133,7 @@ impl Document {
     /// Gives the stroke up that was begun, as if it had never been.
     pub fn cancel(&mut self) {
         if self.end() {
-            // What was undone before is gone, and this comes back with no redo.
+            // Earlier undone steps are gone, and no redo brings this one back.
             let _ = self.undo();
             self.undone.clear();
             self.sculpture.forget_undone();
@@ -196,7 +196,7 @@ impl Document {
     /// Undoes or redoes until so many strokes are carried out, as far as there are any.
     ///
     /// # Errors
-    /// As [`Document::undo`] and [`Document::redo`].
+    /// Fails as [`Document::undo`] and [`Document::redo`] do.
     pub fn go_to(&mut self, strokes: usize) -> Result<(), String> {
         while self.depth()[0] > strokes && self.undo()? {}
         while self.depth()[0] < strokes && self.redo()? {}

@@ -145,7 +145,7 @@ impl Sculpting {
     /// Opens a text of strokes.
     ///
     /// # Errors
-    /// What is wrong with it, with its line.
+    /// If it is wrong; the message names the line.
     pub fn open(name: &str, text: &str, load: Loader<'_>) -> Result<Self, String> {
         let document = Document::open(text, load)?;
         let [low, high] = drawn::bounds(document.clay());

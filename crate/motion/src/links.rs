@@ -96,8 +96,7 @@ fn correction(apart: DVec3, rest: f64, weight: f64, give: f64, step: f64) -> Opt
 /// The springs of a body whose nodes begin at `first`.
 pub fn links(body: &Body, first: usize, settings: &Settings, into: &mut Vec<Link>) {
     let nodes = &body.skeleton.nodes;
-    let place = |i: usize| nodes[i].position;
-    let distance = |a: usize, b: usize| place(a).distance(place(b));
+    let distance = |a: usize, b: usize| nodes[a].position.distance(nodes[b].position);
     let mut around: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
     let mut edges = Vec::new();
     for pair in body.skeleton.curves.iter().flat_map(|c| c.windows(2)) {
@@ -128,7 +127,9 @@ pub fn links(body: &Body, first: usize, settings: &Settings, into: &mut Vec<Link
                 into.push(Link::Bend {
                     nodes: [first + a, first + b, first + c],
                     share,
-                    rest: place(b).distance(place(a) * (1.0 - share) + place(c) * share),
+                    rest: nodes[b]
+                        .position
+                        .distance(nodes[a].position * (1.0 - share) + nodes[c].position * share),
                     give: 0.5 * whole / stiffness,
                 });
             }

@@ -233,7 +233,7 @@ impl Simulation {
                 self.velocities[i] = (self.places[i] - self.previous[i]) / h;
             }
         }
-        // What gravity gives in two steps is no blow.
+        // A speed that gravity gives in two steps is no blow.
         let least = 2.0 * settings.gravity.length() * h;
         self.flesh
             .rebound(&mut self.velocities, &self.inverse, settings.bounce, least);

@@ -540,8 +540,8 @@ impl Flesh {
                     normal,
                     speed: at(&sample.mean, velocities).dot(normal),
                 });
-                // What was too deep before is put out bit by bit, and without a speed, as if it had
-                // been out.
+                // A sample that was too deep before is put out bit by bit, and without a speed, as
+                // if it had been out.
                 let before = at(&sample.mean, previous);
                 let sunk = (sample.radius - obstacle.distance(before).0).clamp(0.0, depth);
                 let out = sunk.min(RISE * sample.radius);
@@ -557,8 +557,8 @@ impl Flesh {
         }
     }
 
-    /// Gives samples that met an obstacle the speed away from it that they are left with: that of
-    /// having been pushed out is none.
+    /// Gives samples that met an obstacle the speed away from it that they are left with, which
+    /// does not include that of being pushed out.
     pub fn rebound(&self, velocities: &mut [DVec3], inverse: &[f64], bounce: f64, least: f64) {
         for hit in &self.hits {
             let mean = &self.samples[hit.sample].mean;
@@ -566,7 +566,7 @@ impl Flesh {
             let left = if hit.speed < -least {
                 -hit.speed * bounce
             } else {
-                // What left by itself goes on.
+                // A sample that leaves by itself goes on.
                 hit.speed.max(0.0)
             };
             if speed > left || (speed < left && bounce > 0.0 && hit.speed < -least) {

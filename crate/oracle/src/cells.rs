@@ -3,7 +3,9 @@
 //!
 //! Each panics where a cell, as it is evaluated, does not hold.
 
-use crate::evaluation::{Evaluation, extent, jet, peak, primitive, sensitivity, single};
+use crate::evaluation::{
+    Evaluation, assert_near, evaluate_alike, extent, jet, peak, primitive, sensitivity, single,
+};
 use crate::quadrature;
 use core::f64::consts::TAU;
 use field::kernel::Tail;
@@ -67,12 +69,7 @@ pub fn matches_quadrature(kernel: Kernel, kind: Kind, evaluate: Evaluation<'_>) 
         let tolerance = relative * want.abs()
             + floor * peak(&primitive)
             + 64.0 * f64::EPSILON * sensitivity(&primitive, point);
-        assert!(
-            (value - want).abs() <= tolerance,
-            "{value:e} instead of {want:e} \
-             (off by {:e}, at most {tolerance:e}): {primitive:?} at {point:?}",
-            (value - want).abs()
-        );
+        assert_near(value, want, tolerance, &primitive, point);
         assert!(gradient.is_finite(), "{primitive:?} at {point:?}");
     }
 }
@@ -87,13 +84,7 @@ pub fn single_matches_double(kernel: Kernel, kind: Kind, forms: [Evaluation<'_>;
         let primitive = primitive(skeleton.clone(), &shaping, None);
         let point = single(random.near(&skeleton, -3.0, 1.0));
         let (want, want_gradient) = jet::<f64>(&primitive, point);
-        let (value, gradient) = forms[0](&primitive, point);
-        let (value8, gradient8) = forms[1](&primitive, point);
-        assert_eq!(
-            (value.to_bits(), gradient),
-            (value8.to_bits(), gradient8),
-            "{primitive:?} at {point:?}"
-        );
+        let (value, gradient) = evaluate_alike(forms, &primitive, point);
         let Accuracy {
             mut relative,
             floor,
@@ -105,12 +96,7 @@ pub fn single_matches_double(kernel: Kernel, kind: Kind, forms: [Evaluation<'_>;
         }
         let slack = 64.0 * EPSILON32 * sensitivity(&primitive, point);
         let tolerance = relative * want.abs() + floor * peak(&primitive) + slack;
-        assert!(
-            (value - want).abs() <= tolerance,
-            "{value:e} instead of {want:e} \
-             (off by {:e}, at most {tolerance:e}): {primitive:?} at {point:?}",
-            (value - want).abs()
-        );
+        assert_near(value, want, tolerance, &primitive, point);
         // Near poles slopes are steep, and as exact as their size allows.
         let near = (primitive.width * skeleton.distance(point)).max(1e-3);
         let slopes = primitive.width * (1.0 + 1.0 / near);
@@ -151,12 +137,12 @@ pub fn gradient_is_the_derivative(kernel: Kernel, kind: Kind, evaluate: Evaluati
         let (_, gradient) = evaluate(&primitive, point);
         let h = 1e-5 / primitive.width;
         for axis in 0..3 {
-            let at = |step: f64| {
+            let [ahead, back] = [h, -h].map(|by| {
                 let mut p = point;
-                p[axis] += step * h;
+                p[axis] += by;
                 evaluate(&primitive, p).0
-            };
-            let difference = (at(1.0) - at(-1.0)) / (2.0 * h);
+            });
+            let difference = (ahead - back) / (2.0 * h);
             let tolerance =
                 2e-4 * primitive.width * peak(&primitive).max(gradient.length() / primitive.width);
             assert!(

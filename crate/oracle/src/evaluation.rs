@@ -88,10 +88,40 @@ pub fn extent(skeleton: &Skeleton) -> f64 {
     }
 }
 
+/// Evaluates a primitive in two forms, which must have the same bits.
+pub(crate) fn evaluate_alike(
+    forms: [Evaluation<'_>; 2],
+    primitive: &Primitive,
+    point: DVec3,
+) -> (f64, DVec3) {
+    let [one, other] = forms.map(|form| form(primitive, point));
+    assert_eq!(
+        (one.0.to_bits(), one.1),
+        (other.0.to_bits(), other.1),
+        "{primitive:?} at {point:?}"
+    );
+    one
+}
+
+/// Checks that a value is within a tolerance of the wanted one.
+pub(crate) fn assert_near(
+    value: f64,
+    want: f64,
+    tolerance: f64,
+    primitive: &Primitive,
+    point: DVec3,
+) {
+    let off = (value - want).abs();
+    assert!(
+        off <= tolerance,
+        "{value:e} instead of {want:e} (off by {off:e}, at most {tolerance:e}): \
+         {primitive:?} at {point:?}"
+    );
+}
+
 /// Returns the largest distance between a primitive and its interpolant on a span.
 pub fn span_error(primitive: &Primitive, start: DVec3, direction: DVec3, h: f64) -> f64 {
-    let at = |t: f64| primitive.along_ray(start, direction, t);
-    let ((a, da), (b, db)) = (at(0.0), at(h));
+    let [(a, da), (b, db)] = [0.0, h].map(|t| primitive.along_ray(start, direction, t));
     let mut worst = 0.0_f64;
     for i in 1..16 {
         let t = f64::from(i) / 16.0;
@@ -99,7 +129,8 @@ pub fn span_error(primitive: &Primitive, start: DVec3, direction: DVec3, h: f64)
         let cubic = a * u * u * (1.0 + 2.0 * t)
             + b * v * v * (3.0 - 2.0 * t)
             + h * (da * u * u * t - db * v * v * u);
-        worst = worst.max((cubic - at(h * t).0).abs());
+        let (value, _) = primitive.along_ray(start, direction, h * t);
+        worst = worst.max((cubic - value).abs());
     }
     worst
 }

@@ -220,9 +220,8 @@ impl Row {
             let t = t.filter(|t| *t < limit);
             self.rays += 1;
             self.hits += u64::from(t.is_some());
-            let tolerance = |t: f64| picture.tolerance(t);
-            let verdict = reference.judge(origin, direction, t, limit, tolerance);
-            let at = tolerance(t.unwrap_or(limit));
+            let verdict = reference.judge(origin, direction, t, limit, |t| picture.tolerance(t));
+            let at = picture.tolerance(t.unwrap_or(limit));
             if t.is_some() {
                 self.worst = self.worst.max(verdict.distance / at);
             }

@@ -3,7 +3,9 @@
 //!
 //! Each panics where a kernel, as it is evaluated, does not hold.
 
-use crate::evaluation::{Evaluation, jet, peak, primitive, sensitivity, single};
+use crate::evaluation::{
+    Evaluation, assert_near, evaluate_alike, jet, peak, primitive, sensitivity, single,
+};
 use crate::quadrature;
 use field::bound::Bound;
 use field::shaping::SLIMMEST;
@@ -59,14 +61,7 @@ pub fn matches_quadrature(kernel: Kernel, evaluate: Evaluation<'_>) {
                 // The circle made of cubics is that much larger.
                 tolerance += 2.5e-13 * radius * gradient.length();
             }
-            assert!(
-                (value - want).abs() <= tolerance,
-                "{value:e} instead of {want:e} \
-                 (off by {:e}, at most {tolerance:e}): {:?} {:?} at {point:?}",
-                (value - want).abs(),
-                primitive.skeleton,
-                primitive.tapered
-            );
+            assert_near(value, want, tolerance, &primitive, point);
             assert!(gradient.is_finite());
         }
     }
@@ -82,13 +77,7 @@ pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
             for _ in 0..3 {
                 let point = single(random.near(&primitive.skeleton, -3.0, 1.0));
                 let (want, want_gradient) = jet::<f64>(&primitive, point);
-                let (value, gradient) = forms[0](&primitive, point);
-                let (value8, gradient8) = forms[1](&primitive, point);
-                assert_eq!(
-                    (value.to_bits(), gradient),
-                    (value8.to_bits(), gradient8),
-                    "{primitive:?} at {point:?}"
-                );
+                let (value, gradient) = evaluate_alike(forms, &primitive, point);
                 // 32 units in the last place of the input, like on the chart.
                 let slack = 32.0 * f64::from(f32::EPSILON) * sensitivity(&primitive, point);
                 let distance = primitive.skeleton.distance(point);
@@ -101,14 +90,7 @@ pub fn single_matches_double(kernel: Kernel, forms: [Evaluation<'_>; 2]) {
                     _ => 1e-5,
                 };
                 let tolerance = relative * want.abs() + 2e-6 * peak(&primitive) + slack;
-                assert!(
-                    (value - want).abs() <= tolerance,
-                    "{value:e} instead of {want:e} \
-                     (off by {:e}, at most {tolerance:e}): {:?} {:?} at {point:?}",
-                    (value - want).abs(),
-                    primitive.skeleton,
-                    primitive.tapered
-                );
+                assert_near(value, want, tolerance, &primitive, point);
                 if kernel.has_pole() && distance < 1e-3 {
                     // A rounding of the coordinates turns the gradient here.
                     continue;
@@ -143,12 +125,12 @@ pub fn gradient_is_the_derivative(kernel: Kernel, evaluate: Evaluation<'_>) {
             let (_, gradient) = evaluate(&primitive, point);
             let h = 1e-5 / primitive.width;
             for axis in 0..3 {
-                let at = |step: f64| {
+                let [a, b, c, d] = [1.0, -1.0, 2.0, -2.0].map(|step| {
                     let mut p = point;
                     p[axis] += step * h;
                     evaluate(&primitive, p).0
-                };
-                let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+                });
+                let slope = (8.0 * (a - b) - (c - d)) / (12.0 * h);
                 let scale = primitive.most_beyond(primitive.skeleton.distance(point));
                 // Rounding over h; where a clip passes a kink of the kernel, h² times a jump.
                 let tolerance = 1e-6 * gradient.length()

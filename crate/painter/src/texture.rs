@@ -310,12 +310,17 @@ mod tests {
     #[test]
     fn channels_are_blended_each_by_itself() {
         let mut random = Random::new(1);
-        let mut byte = || random.below(256) as u8;
         for round in 0..20 + count(2000) {
             let texels: [[u8; 4]; 4] = std::array::from_fn(|_| {
-                std::array::from_fn(|_| if round < 20 { 255 } else { byte() })
+                std::array::from_fn(|_| {
+                    if round < 20 {
+                        255
+                    } else {
+                        random.below(256) as u8
+                    }
+                })
             });
-            let [across, down] = [byte(), byte()].map(u32::from);
+            let [across, down] = [0; 2].map(|_| random.below(256) as u32);
             let colors = texels.map(|[r, g, b, a]| Color32::from_rgba_premultiplied(r, g, b, a));
             let image = ColorImage::new([2, 2], colors.to_vec());
             let texture = Texture::new(ImageDelta::full(image, TextureOptions::LINEAR), 1);

@@ -126,7 +126,7 @@ pub fn frames<'a>(bytes: impl AsRef<[u8]> + 'a, format: Format) -> Result<Frames
 /// [`frames`] for whoever has less memory: frames of more than `max_pixels` are refused.
 ///
 /// # Errors
-/// As [`frames`].
+/// Fails as [`frames`] does.
 #[cfg(feature = "formats")]
 pub fn frames_at_most<'a>(
     bytes: impl AsRef<[u8]> + 'a,

@@ -21,7 +21,7 @@ pub fn collage(pictures: &[Picture], columns: Option<usize>) -> Result<Picture, 
 /// [`collage`] for whoever has less memory: a sheet of more than `max_pixels` is refused.
 ///
 /// # Errors
-/// As [`collage`].
+/// Fails as [`collage`] does.
 pub fn collage_at_most(
     pictures: &[Picture],
     columns: Option<usize>,

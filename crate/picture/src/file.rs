@@ -78,7 +78,7 @@ pub fn decode(bytes: &[u8], format: Format) -> Result<Picture, Problem> {
 /// any memory is set aside for it.
 ///
 /// # Errors
-/// As [`decode`].
+/// Fails as [`decode`] does.
 pub fn decode_at_most(bytes: &[u8], format: Format, max_pixels: u64) -> Result<Picture, Problem> {
     match format {
         Format::Png => png_file::decode(bytes, max_pixels),

@@ -42,7 +42,7 @@ impl Picture {
     /// A picture of one colour.
     ///
     /// # Errors
-    /// As [`Self::new`], if the size is not possible.
+    /// Fails as [`Self::new`] does if the size is not possible.
     pub fn filled(width: u32, height: u32, colour: [u8; 4]) -> Result<Self, Problem> {
         let count = usize::try_from(check_size(width, height)?)
             .map_err(|_| Problem::Size(width.into(), height.into()))?;

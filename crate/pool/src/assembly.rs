@@ -206,30 +206,17 @@ mod tests {
     fn late_coarser_foreign_and_malformed_tiles_are_ignored() {
         let mut assembly = Assembly::default();
         assembly.begin(5, [2, 2]);
-        assert_eq!(
-            assembly.put(4, tile(0), Pass::Full, &colour(1)),
-            Change::Nothing
-        );
-        assert_eq!(
-            assembly.put(5, tile(1), Pass::Full, &colour(1)),
-            Change::Nothing
-        );
-        assert_eq!(
-            assembly.put(5, tile(0), Pass::Full, &[0; 3]),
-            Change::Nothing
-        );
-        assert_eq!(
-            assembly.put(5, tile(0), Pass::Full, &colour(2)),
-            Change::Whole
-        );
-        assert_eq!(
-            assembly.put(5, tile(0), Pass::Coarse, &colour(1)),
-            Change::Nothing
-        );
-        assert_eq!(
-            assembly.put(5, tile(0), Pass::Full, &colour(1)),
-            Change::Nothing
-        );
+        for (generation, column, pass, pixels, change) in [
+            (4, 0, Pass::Full, &colour(1)[..], Change::Nothing),
+            (5, 1, Pass::Full, &colour(1), Change::Nothing),
+            (5, 0, Pass::Full, &[0; 3], Change::Nothing),
+            (5, 0, Pass::Full, &colour(2), Change::Whole),
+            (5, 0, Pass::Coarse, &colour(1), Change::Nothing),
+            (5, 0, Pass::Full, &colour(1), Change::Nothing),
+        ] {
+            let put = assembly.put(generation, tile(column), pass, pixels);
+            assert_eq!(put, change);
+        }
         assert_eq!(assembly.shown().unwrap().1.rgba[0], 2);
     }
 }

@@ -39,11 +39,13 @@ fn halve(
         high = [high[0].max(x), high[1].max(y)];
     }
     let is_wide = high[0].saturating_sub(low[0]) >= high[1].saturating_sub(low[1]);
-    let place = |tile: &usize| {
-        let Tile { x, y, .. } = tiles[*tile];
-        if is_wide { (x, y) } else { (y, x) }
-    };
-    field::heap_sort(some, |a, b| place(a) < place(b));
+    field::heap_sort(some, |a, b| {
+        let [a, b] = [a, b].map(|tile| {
+            let Tile { x, y, .. } = tiles[*tile];
+            if is_wide { (x, y) } else { (y, x) }
+        });
+        a < b
+    });
     let before = workers / 2;
     let whole: f64 = some.iter().map(|tile| costs[*tile]).sum();
     let wanted = whole * before as f64 / workers as f64;

@@ -287,7 +287,7 @@ mod tests {
             wait(&mut queue, 10.0 + SILENCE_LIMIT, 12.0 + SILENCE_LIMIT),
             [End, Restart]
         );
-        // Nor may starting take forever: the third failure to start fails the job.
+        // Starting may not take forever, either: the third failure to start fails the job.
         let commands = wait(&mut queue, 80.0, 200.0);
         assert_eq!(commands[..5], [End, Restart, End, Restart, End]);
         assert!(matches!(&commands[5], Fail(1, reason) if reason.contains("too long to start")));

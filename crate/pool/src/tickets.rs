@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 use tools::message::{DIFFERENT_VERSIONS, unpack_answer};
-use tools::{Answer, Job, Pace, Request};
+use tools::{Answer, Job, Pace, Request, Work};
 
 /// Carries out jobs apart from the app, in one worker for each [`Pace`]. Clones share the workers.
 ///
@@ -48,7 +48,7 @@ impl Tools {
 
     /// Submits a job. It is carried out after those of its [`Pace`] that were submitted before.
     #[must_use = "a job whose ticket is dropped is cancelled"]
-    pub fn submit<J: Job>(&self, job: J) -> Ticket<J::Output> {
+    pub fn submit<J: Job + Into<Work>>(&self, job: J) -> Ticket<J::Output> {
         let (id, news) = self.crew.order(|jobs, now| jobs.submit(job, now));
         Ticket {
             crew: self.crew.clone(),
@@ -139,7 +139,11 @@ impl<W: Workers> Jobs<W> {
     }
 
     /// Queues a job. Returns its number, and the place where its news arrive.
-    fn submit<J: Job>(&mut self, job: J, now: f64) -> (u64, Rc<RefCell<News<J::Output>>>) {
+    fn submit<J: Job + Into<Work>>(
+        &mut self,
+        job: J,
+        now: f64,
+    ) -> (u64, Rc<RefCell<News<J::Output>>>) {
         self.last += 1;
         let id = self.last;
         let news = Rc::new(RefCell::new(News {

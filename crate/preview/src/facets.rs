@@ -94,13 +94,13 @@ pub(crate) fn quadric(quadric: &Quadric, cells: usize) -> Vec<Shape> {
             let (inside, outside): (Vec<IVec3>, Vec<IVec3>) = corners
                 .into_iter()
                 .partition(|at| values[((at.z * side + at.y) * side + at.x) as usize] < 0.0);
-            let cut = |a: IVec3, b: IVec3| crossing(quadric, place(a), place(b));
             match (&inside[..], &outside[..]) {
                 (&[a], &[b, c, d]) | (&[b, c, d], &[a]) => {
-                    add([cut(a, b), cut(a, c), cut(a, d)]);
+                    add([b, c, d].map(|other| crossing(quadric, place(a), place(other))));
                 }
                 (&[a, b], &[c, d]) => {
-                    let [ac, ad, bc, bd] = [cut(a, c), cut(a, d), cut(b, c), cut(b, d)];
+                    let [ac, ad, bc, bd] = [[a, c], [a, d], [b, c], [b, d]]
+                        .map(|[a, b]| crossing(quadric, place(a), place(b)));
                     add([ac, ad, bd]);
                     add([ac, bd, bc]);
                 }

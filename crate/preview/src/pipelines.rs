@@ -101,20 +101,11 @@ impl Pipelines {
         device: &wgpu::Device,
         materials: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("element"),
-            layout: &self.element_layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: self.view.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(materials),
-                },
-            ],
-        })
+        let resources = [
+            self.view.as_entire_binding(),
+            wgpu::BindingResource::TextureView(materials),
+        ];
+        bind(device, "element", &self.element_layout, resources)
     }
 
     /// Binds the samples to be averaged for the resolve pipeline.
@@ -123,20 +114,11 @@ impl Pipelines {
         device: &wgpu::Device,
         samples: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("resolve"),
-            layout: &self.resolve_layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(samples),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: self.tone.as_entire_binding(),
-                },
-            ],
-        })
+        let resources = [
+            wgpu::BindingResource::TextureView(samples),
+            self.tone.as_entire_binding(),
+        ];
+        bind(device, "resolve", &self.resolve_layout, resources)
     }
 }
 
@@ -333,5 +315,19 @@ fn pipeline(
         }),
         multiview_mask: None,
         cache: None,
+    })
+}
+
+fn bind(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    [first, second]: [wgpu::BindingResource<'_>; 2],
+) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(label),
+        layout,
+        entries: &[(0, first), (1, second)]
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }),
     })
 }

@@ -176,7 +176,7 @@ impl Air {
     /// The air of a scene. `lowest` is the least height of its elements along its direction up.
     pub(crate) fn new(scene: &Scene, units: Units, lowest: f64) -> Self {
         let up = scene.up.normalize_or(DVec3::Y);
-        let level = |height: f64| finite(((height - units.center.dot(up)) / units.radius) as f32);
+        let center = units.center.dot(up);
         let inverse = |length: f64| {
             let share = (units.radius / length) as f32;
             if share.is_finite() {
@@ -212,8 +212,10 @@ impl Air {
             sky: scene.sky.map_or([0.0; 4], |sky| with(sky.colour, 1.0)),
             horizon: scene.sky.map_or([0.0; 4], |sky| with(sky.horizon, 0.0)),
             levels: [
-                ground.map_or(0.0, level),
-                level(0.0),
+                ground.map_or(0.0, |height| {
+                    finite(((height - center) / units.radius) as f32)
+                }),
+                finite(((0.0 - center) / units.radius) as f32),
                 thins.map_or(0.0, inverse),
                 f32::from(u8::from(is_filmic)),
             ],

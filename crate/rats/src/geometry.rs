@@ -218,9 +218,10 @@ impl Transform {
     #[must_use]
     pub fn rotation(axis: DVec3, degrees: f64) -> Self {
         let (sin, cos) = sin_cos_degrees(degrees);
-        let turn = |x: DVec3| x * cos + axis.cross(x) * sin + axis * (axis.dot(x) * (1.0 - cos));
+        let [x, y, z] =
+            DVec3::AXES.map(|x| x * cos + axis.cross(x) * sin + axis * (axis.dot(x) * (1.0 - cos)));
         Self {
-            linear: DMat3::from_cols(turn(DVec3::X), turn(DVec3::Y), turn(DVec3::Z)),
+            linear: DMat3::from_cols(x, y, z),
             shift: DVec3::ZERO,
             growth: 1.0,
             uniform: true,

@@ -68,6 +68,22 @@ impl<'a> Chosen<'a> {
     }
 }
 
+impl<K: Values> Choice<K> {
+    /// Returns the operands of an option that was given, if it is this one.
+    pub fn of<'a>(&self, chosen: &Chosen<'a>) -> Option<K::Of<'a>> {
+        if self.is(chosen) {
+            chosen.values().next::<K>()
+        } else {
+            None
+        }
+    }
+
+    /// Returns whether this is the option that was given.
+    pub fn is(&self, chosen: &Chosen<'_>) -> bool {
+        chosen.option.name == self.plain.name
+    }
+}
+
 /// The options of a command in the order of the text.
 #[derive(Clone, Debug, Default)]
 pub struct Options<'a>(pub Vec<Chosen<'a>>);

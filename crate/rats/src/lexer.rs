@@ -62,20 +62,24 @@ pub fn lex(text: &str) -> Vec<Token> {
     tokens
 }
 
+/// Returns the length of the characters at the start that are to be kept.
+fn length(rest: &str, keep: fn(char) -> bool) -> usize {
+    rest.find(|c| !keep(c)).unwrap_or(rest.len())
+}
+
 /// Returns the kind and length of the token that `rest` begins with.
 fn one_token(rest: &str, first: char) -> (TokenKind, usize) {
-    let run = |keep: fn(char) -> bool| rest.find(|c| !keep(c)).unwrap_or(rest.len());
     match first {
         '\n' => (TokenKind::Newline, 1),
-        '#' => (TokenKind::Comment, run(|c| c != '\n')),
+        '#' => (TokenKind::Comment, length(rest, |c| c != '\n')),
         // U+2212 is the minus of typeset papers, where numbers are copied from.
         ',' | '<' | '>' | '=' | '+' | '-' | '−' | '*' | '/' | '^' | '(' | ')' | '{' | '}' | '@'
         | '%' | '!' => (TokenKind::Sign, first.len_utf8()),
-        _ if is_space(first) => (TokenKind::Space, run(is_space)),
+        _ if is_space(first) => (TokenKind::Space, length(rest, is_space)),
         '0'..='9' => number_or_word(rest),
         '.' if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => number_or_word(rest),
-        _ if is_word(first) => (TokenKind::Word, run(is_word)),
-        _ => (TokenKind::Unknown, run(is_unknown)),
+        _ if is_word(first) => (TokenKind::Word, length(rest, is_word)),
+        _ => (TokenKind::Unknown, length(rest, is_unknown)),
     }
 }
 

@@ -56,7 +56,7 @@ impl Reader<'_, '_> {
     /// Reads a number within bounds, measured in `unit`.
     ///
     /// # Errors
-    /// As [`Self::number`], and if it is out of bounds.
+    /// Fails as [`Self::number`] does, and if it is out of bounds.
     pub fn number_in(&mut self, what: &str, low: f64, high: f64, unit: &str) -> Outcome<f64> {
         let start = self.start();
         let number = self.number(what)?;
@@ -92,7 +92,7 @@ impl Reader<'_, '_> {
     /// Reads a whole number within bounds.
     ///
     /// # Errors
-    /// As [`Self::number`], and if it is not whole or out of bounds.
+    /// Fails as [`Self::number`] does, and if it is not whole or out of bounds.
     pub fn whole(&mut self, what: &str, low: u32, high: u32) -> Outcome<u32> {
         let start = self.start();
         let number = self.number_in(what, f64::from(low), f64::from(high), "")?;
@@ -146,7 +146,7 @@ impl Reader<'_, '_> {
     /// Reads a triple as it is, vector or colour; three numbers give a vector.
     ///
     /// # Errors
-    /// As [`Self::vector`].
+    /// Fails as [`Self::vector`] does.
     pub fn triple(&mut self, what: &str) -> Outcome<Value> {
         let start = self.start();
         let first = self.at;
@@ -219,7 +219,7 @@ impl Reader<'_, '_> {
     /// Reads a direction, a vector that is not 0, and returns the unit vector.
     ///
     /// # Errors
-    /// As [`Self::vector`], and if it is 0.
+    /// Fails as [`Self::vector`] does, and if it is 0.
     pub fn direction(&mut self, what: &str) -> Outcome<DVec3> {
         let start = self.start();
         let vector = self.vector(what)?;

@@ -56,7 +56,6 @@ impl Operator {
         let next = items.get(at + 1);
         let with_equal =
             next.is_some_and(|next| next.datum == Datum::Sign(b'=') && next.start == item.end);
-        let one_or_two = |one, two| if with_equal { (two, 2) } else { (one, 1) };
         Some(match item.datum {
             Datum::Sign(sign @ (b'+' | b'-')) => {
                 let begins_operand = listed && item.spaced && next.is_some_and(|next| !next.spaced);
@@ -76,8 +75,10 @@ impl Operator {
             Datum::Sign(b'*') if !with_equal => (Self::Times, 1),
             Datum::Sign(b'/') => (Self::Over, 1),
             Datum::Sign(b'^') => (Self::Power, 1),
-            Datum::Sign(b'<') if comparing => one_or_two(Self::Less, Self::LessEqual),
-            Datum::Sign(b'>') if comparing => one_or_two(Self::Greater, Self::GreaterEqual),
+            Datum::Sign(b'<') if comparing && with_equal => (Self::LessEqual, 2),
+            Datum::Sign(b'<') if comparing => (Self::Less, 1),
+            Datum::Sign(b'>') if comparing && with_equal => (Self::GreaterEqual, 2),
+            Datum::Sign(b'>') if comparing => (Self::Greater, 1),
             Datum::Sign(b'=') if comparing && with_equal => (Self::Equal, 2),
             Datum::Sign(b'!') if comparing && with_equal => (Self::Unequal, 2),
             Datum::Word(_) if comparing => {

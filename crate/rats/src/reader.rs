@@ -166,8 +166,9 @@ impl<'e, 'a> Reader<'e, 'a> {
     /// Returns the name of a parameter if `name =` comes next (and not `==`); takes nothing.
     pub fn peek_parameter(&mut self) -> Option<(Symbol, &'a str)> {
         let found = self.peek_word()?;
-        let sign = |at: usize| self.items.get(at).map(|item| item.datum) == Some(Datum::Sign(b'='));
-        (sign(self.at + 1) && !sign(self.at + 2)).then_some(found)
+        let [first, second] = [self.at + 1, self.at + 2]
+            .map(|at| self.items.get(at).map(|item| item.datum) == Some(Datum::Sign(b'=')));
+        (first && !second).then_some(found)
     }
 
     /// Takes the next word if it is `keyword`, in any case.

@@ -1,5 +1,4 @@
-//! Lists the files that a text asks for, so that whoever keeps files can fetch them before
-//! compiling.
+//! Lists the files that a text asks for, so that they can be fetched before it is compiled.
 
 use crate::parser::parse;
 use crate::symbol::Symbols;
@@ -76,8 +75,8 @@ pub fn is_skeleton(name: &str) -> bool {
 }
 
 /// Returns the images, meshes and skeletons that a text asks for (`mesh`, `terra`, `texture`,
-/// `background`, `skeleton`), in order, wherever it does. A text of strokes asks for the mesh that
-/// it starts from.
+/// `background`, `skeleton`), in order, wherever they stand. A text of strokes asks for the
+/// mesh that it starts from.
 #[must_use]
 pub fn asset_names(text: &str) -> Vec<String> {
     let mut lines = text.lines().map(str::trim_start);
@@ -109,7 +108,7 @@ fn collect(block: &Block, commands: &[&str], syntax: &Syntax, text: &str, names:
     }
 }
 
-/// Adds the file names behind a command, if it is one of some.
+/// Adds the file names behind a command, if it is one of the given ones.
 fn add_names(
     command: &Command,
     commands: &[&str],

@@ -31,11 +31,10 @@ impl Value {
     /// Applies a function to every number in it.
     #[must_use]
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        let each = |v: DVec3| DVec3::new(f(v.x), f(v.y), f(v.z));
         match self {
             Self::Scalar(x) => Self::Scalar(f(x)),
-            Self::Vector(v) => Self::Vector(each(v)),
-            Self::Colour(c) => Self::Colour(each(c)),
+            Self::Vector(v) => Self::Vector(v.map(f)),
+            Self::Colour(c) => Self::Colour(c.map(f)),
             Self::Name(name) => Self::Name(name),
         }
     }

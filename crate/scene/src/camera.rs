@@ -20,7 +20,7 @@ pub struct Camera {
     /// the target in the middle (`window`, Foley's camera).
     #[serde(default)]
     pub shift: [f64; 2],
-    /// Height of what a pixel shows, in its widths, in [`Camera::PIXELS`]; 1: pixels are square.
+    /// Height of a pixel over its width, in [`Camera::PIXELS`]; 1 for square pixels.
     #[serde(default = "square")]
     pub pixel: f64,
 }

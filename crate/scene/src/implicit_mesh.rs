@@ -43,7 +43,7 @@ impl ImplicitMesh {
     /// Returns the function.
     ///
     /// # Errors
-    /// As [`Metaballs::new`].
+    /// Fails as [`Metaballs::new`] does.
     pub fn function(&self) -> Result<Arc<dyn Implicit>, Error> {
         let function = self.function.get_or_init(|| {
             Metaballs::new(&self.positions, &self.triangles, self.kind, self.sharpness)

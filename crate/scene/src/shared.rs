@@ -1,4 +1,4 @@
-//! The message form of a list of shared values: that of the values.
+//! The message form of a list of shared values, which is the form of the values.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::Arc;

@@ -76,8 +76,8 @@ pub struct Ground {
     pub height: Option<f64>,
 }
 
-/// Air that swallows light and glows in its own colour: of what is seen at the distance d, the
-/// share `e^(−d/distance)` is left (see [`texture::fog`]).
+/// Air that swallows light and glows in its own colour: from the distance d, the share
+/// `e^(−d/distance)` of the light arrives (see [`texture::fog`]).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fog {
     /// The fog's own colour.
@@ -111,6 +111,6 @@ pub struct Cloud {
 pub struct Lens {
     /// Radius of the lens, ≥ 0; 0 is a pinhole.
     pub aperture: f64,
-    /// Distance of the plane that is sharp, > 0; `None`: that of the camera's target.
+    /// Distance of the plane that is sharp, > 0; `None` for the distance of the camera's target.
     pub focus: Option<f64>,
 }

@@ -36,7 +36,7 @@ pub struct Clay {
     pub(crate) work: u64,
 }
 
-/// The colour of what is not painted.
+/// The colour of unpainted vertices.
 const WHITE: [f32; 3] = [1.0; 3];
 
 /// The faces that refinements, deletions and the like work on.
@@ -94,7 +94,7 @@ impl Clay {
     /// need it.
     ///
     /// # Errors
-    /// As [`Clay::of_polygons`].
+    /// Fails as [`Clay::of_polygons`] does.
     pub fn of_triangles(mesh: &TriangleMesh) -> Result<(Self, Repairs), Error> {
         let (joined, first) = join_vertices(mesh);
         check(&joined)?;

@@ -239,7 +239,7 @@ impl<'a> Drag<'a> {
         if self.range <= 0.0 {
             return;
         }
-        // What a neighbour's motion has not brought out.
+        // Vertices that no neighbour's motion has brought out.
         let mut motions: Vec<Motion> = Vec::new();
         for (signs, touched) in self.copies.iter().zip(&inside) {
             motions.extend(self.drive_out(clay, touched, *signs, point));

@@ -22,5 +22,5 @@ pub const SMALLEST: f64 = 1e-6;
 pub const FARTHEST: f64 = 1e9;
 /// Vertices that all strokes of a replay may visit together, unless the caller says otherwise.
 pub const MAX_WORK: u64 = 2_000_000_000;
-/// Bytes of what undo keeps; what is older is replayed.
+/// Bytes that undo keeps; older steps are replayed.
 pub const MAX_UNDO: usize = 256 * 1024 * 1024;

@@ -10,6 +10,7 @@ use crate::script::{Diagnostic, Place, Script};
 use crate::start::{Shape, Start};
 use crate::stroke::{Action, Beginning, Constraint, MaskChange, PathPoint, Stroke, Sweep};
 use crate::tool::{Form, Tool};
+use core::fmt::Display;
 use core::str::FromStr;
 use glam::DVec3;
 
@@ -241,30 +242,25 @@ impl<'a> Line<'a> {
     }
 
     fn number(&mut self, what: &str, low: f64, high: f64) -> Parsed<f64> {
-        match self.peek().parse::<f64>() {
-            Err(_) => Err(self.problem_here(&format!("a number is expected: {what}"))),
-            Ok(number) => {
-                self.next();
-                if (low..=high).contains(&number) {
-                    Ok(number)
-                } else {
-                    Err(self.wrong(format!("{what} must be from {low} to {high}")))
-                }
-            }
-        }
+        self.any_number("a number", what, low, high)
     }
 
     fn whole_number(&mut self, what: &str, low: u32, high: u32) -> Parsed<u32> {
-        match self.peek().parse::<u32>() {
-            Err(_) => Err(self.problem_here(&format!("a whole number is expected: {what}"))),
-            Ok(number) => {
-                self.next();
-                if (low..=high).contains(&number) {
-                    Ok(number)
-                } else {
-                    Err(self.wrong(format!("{what} must be from {low} to {high}")))
-                }
-            }
+        self.any_number("a whole number", what, low, high)
+    }
+
+    fn any_number<N>(&mut self, kind: &str, what: &str, low: N, high: N) -> Parsed<N>
+    where
+        N: FromStr + PartialOrd + Display,
+    {
+        let Ok(number) = self.peek().parse::<N>() else {
+            return Err(self.problem_here(&format!("{kind} is expected: {what}")));
+        };
+        self.next();
+        if (&low..=&high).contains(&&number) {
+            Ok(number)
+        } else {
+            Err(self.wrong(format!("{what} must be from {low} to {high}")))
         }
     }
 

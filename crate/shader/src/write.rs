@@ -198,7 +198,7 @@ impl Writer<'_> {
         })
     }
 
-    /// Declares the variables of what an expression yields.
+    /// Declares variables for the values of an expression.
     fn declare(&mut self, place: Place, count: usize, indent: usize) -> Vec<String> {
         let name = self.new_name();
         let names: Vec<String> = (0..count).map(|i| format!("{name}_{i}")).collect();

@@ -112,7 +112,7 @@ impl Skeleton {
     /// ```
     ///
     /// # Errors
-    /// As [`Self::polyline`].
+    /// Fails as [`Self::polyline`] does.
     pub fn weights(&self, scheme: Scheme, levels: u32) -> Result<Vec<Vec<(usize, f64)>>, Error> {
         let count = self.nodes.len();
         let mut weights: Vec<Vec<(usize, f64)>> = Vec::new();

@@ -62,19 +62,22 @@ impl Block {
             curves: Vec::new(),
             close: tokens[close].start,
         };
-        let is = |token: &Token, name| word(token).eq_ignore_ascii_case(name);
         // No node may have such a word as its name.
         let starts = (0..inside.len()).filter(|i| {
-            let token = &inside[*i];
-            token.kind == TokenKind::Word && (is(token, "node") || is(token, "curve"))
+            let (token, word) = (&inside[*i], word(&inside[*i]));
+            let begins_item = ["node", "curve"]
+                .iter()
+                .any(|name| word.eq_ignore_ascii_case(name));
+            token.kind == TokenKind::Word && begins_item
         });
         let starts: Vec<usize> = starts.collect();
         for (i, &start) in starts.iter().enumerate() {
             let end = starts.get(i + 1).copied().unwrap_or(inside.len());
             let item = &inside[start..end];
             let span = item[0].start..item[item.len() - 1].end;
-            if is(&item[0], "node") {
-                let at = item.iter().skip(2).position(|token| is(token, "radius"));
+            if word(&item[0]).eq_ignore_ascii_case("node") {
+                let mut rest = item.iter().skip(2);
+                let at = rest.position(|token| word(token).eq_ignore_ascii_case("radius"));
                 let radius = at.and_then(|at| Some(item.get(at + 3)?.start..span.end));
                 block.nodes.push(NodeText {
                     name: word(item.get(1)?).to_owned(),

@@ -262,7 +262,7 @@ impl Drawn {
             .map(|(_, i)| i)
     }
 
-    /// Returns the place of the curves nearest to one in the world, within `reach`.
+    /// Returns the place on the curves that is nearest to one in the world, within `reach`.
     #[must_use]
     pub fn spot_near(&self, index: usize, place: DVec3, reach: f64) -> Option<Spot> {
         let mut best: Option<(f64, Spot)> = None;
@@ -294,7 +294,7 @@ impl Drawn {
         best.map(|(_, spot)| spot)
     }
 
-    /// Returns the node at a spot, if the spot is as good as at one.
+    /// Returns the node that a spot is so near to that it counts as the node.
     #[must_use]
     pub fn node_at_spot(&self, spot: &Spot) -> Option<usize> {
         let along = self.skeleton.curves.get(spot.curve)?;
@@ -320,7 +320,7 @@ impl Drawn {
     }
 }
 
-/// Whether a block can be the one that made a skeleton: its nodes and curves are as many.
+/// Whether a block may have made a skeleton: they have as many nodes and curves.
 fn is_of(block: &Block, skeleton: &Skeleton) -> bool {
     block.nodes.len() == skeleton.nodes.len() && block.curves.len() == skeleton.curves.len()
 }

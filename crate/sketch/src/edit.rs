@@ -275,8 +275,8 @@ pub fn cut(
     let names = &block.curves[curve].names;
     let joined = sides[0][behind];
     let lengths = sides.each_ref().map(|side| length(skeleton, side));
-    let near = |node: usize| skeleton.nodes[node].position.distance(end.position);
-    let first_stays = lengths[0] + near(before) >= lengths[1] + near(behind);
+    let near = [before, behind].map(|node| skeleton.nodes[node].position.distance(end.position));
+    let first_stays = lengths[0] + near[0] >= lengths[1] + near[1];
     let mut added = String::new();
     let mut edits: Vec<(f64, TextEdit)> = Vec::new();
     let mut gone: Vec<usize> = Vec::new();
@@ -307,14 +307,13 @@ pub fn cut(
         } else {
             &names[between + 1..]
         };
-        let last = if first_stays { before } else { behind };
         for (other, along) in skeleton.curves.iter().enumerate() {
             if other != curve && along.iter().all(|node| sides[falls][*node]) {
                 gone.push(other);
             }
         }
         debug_assert!(!sides[stays][if first_stays { behind } else { before }]);
-        let ends_there = near(last) <= end.radius.max(grain);
+        let ends_there = near[stays] <= end.radius.max(grain);
         if ends_there && kept.len() < 2 {
             gone.push(curve);
         } else {
@@ -385,13 +384,13 @@ fn without_curves(
     gone: &[usize],
     others: &[&String],
 ) -> String {
-    let stays = |index: &usize| !gone.contains(index);
-    if !(0..block.curves.len()).any(|index| stays(&index)) {
+    if (0..block.curves.len()).all(|index| gone.contains(&index)) {
         return without(text, &[span]);
     }
     let names = |curve: &usize| block.curves[*curve].names.iter().map(|(name, _)| name);
     let all: Vec<usize> = (0..block.curves.len()).collect();
-    let used: Vec<&String> = all.iter().filter(|i| stays(i)).flat_map(names).collect();
+    let kept = all.iter().filter(|index| !gone.contains(index));
+    let used: Vec<&String> = kept.flat_map(names).collect();
     let mut dropped: Vec<&String> = gone.iter().flat_map(names).collect();
     dropped.extend(others);
     let nodes = block
@@ -424,10 +423,10 @@ pub fn free_name<'a>(texts: impl IntoIterator<Item = &'a str>, stem: &str) -> St
         });
         taken.extend(like.map(str::to_ascii_lowercase));
     }
-    let is_free = |name: &String| !taken.contains(&name.to_ascii_lowercase());
-    let first = Some(stem.to_owned()).filter(is_free);
-    first
-        .or_else(|| (2..).map(|i| format!("{stem}{i}")).find(is_free))
+    let numbered = (2..).map(|i| format!("{stem}{i}"));
+    std::iter::once(stem.to_owned())
+        .chain(numbered)
+        .find(|name| !taken.contains(&name.to_ascii_lowercase()))
         .unwrap_or_default()
 }
 

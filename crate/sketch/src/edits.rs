@@ -39,7 +39,7 @@ pub struct Brush {
     pub radius: f32,
     /// Whether strokes are mirrored at x = 0 of the model.
     pub mirror: bool,
-    /// The colour; `None`: that of the root.
+    /// The colour; `None` for the root's.
     pub colour: Option<Rgb>,
     /// Whether fingers are likely.
     pub touch: bool,

@@ -67,13 +67,10 @@ impl Sight {
         const NEAR: f64 = 1e-3;
         let (a, b) = (self.depth(from), self.depth(to));
         let near = NEAR * a.max(b);
-        let cut = |inside: DVec3, outside: DVec3, d: f64, e: f64| {
-            inside.lerp(outside, ((d - near) / (d - e)).clamp(0.0, 1.0))
-        };
         let (from, to) = match (a > near, b > near) {
             (true, true) => (from, to),
-            (true, false) => (from, cut(from, to, a, b)),
-            (false, true) => (cut(to, from, b, a), to),
+            (true, false) => (from, from.lerp(to, ((a - near) / (a - b)).clamp(0.0, 1.0))),
+            (false, true) => (to.lerp(from, ((b - near) / (b - a)).clamp(0.0, 1.0)), to),
             (false, false) => return None,
         };
         Some([self.screen(from)?, self.screen(to)?])

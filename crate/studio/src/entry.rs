@@ -60,7 +60,7 @@ fn listen(parts: &Parts) -> Result<(), JsValue> {
             "mine" => Told::Mine(about),
             "refused" => Told::Refused(about),
             lost => {
-                // What another tab takes over is written before it reads it.
+                // A work is written before another tab takes it over and reads it.
                 if lost == "lost"
                     && let Ok(mut shelf) = shelf.try_borrow_mut()
                 {

@@ -424,6 +424,12 @@ fn grow_flesh(page: &mut Page, name: &str, flesh: Flesh, edge: f64, now: f64) {
     }
 }
 
+fn heading(ui: &mut Ui, text: &str) {
+    let palette = theme::palette(ui.visuals());
+    ui.add_space(10.0);
+    ui.label(RichText::new(text).size(13.0).color(palette.weak));
+}
+
 /// Shows the dialog that asks how to begin.
 pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
@@ -432,10 +438,6 @@ pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         "Push, pull, refine and smooth a mesh with virtual tools. What you do is written as a \
             text of strokes, which belongs to the work like any other.",
     );
-    let heading = |ui: &mut Ui, text: &str| {
-        ui.add_space(10.0);
-        ui.label(RichText::new(text).size(13.0).color(palette.weak));
-    };
     let id = egui::Id::unique("sculpt in this work");
     let mut here = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false);
     heading(ui, "Begin with");

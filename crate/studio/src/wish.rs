@@ -153,6 +153,17 @@ impl Wishes {
         self.0.insert(0, wish.into());
     }
 
+    /// Makes one step of undo of a drag: it begins before the drag's first change, and ends after
+    /// the last. `dragged` is whether the drag went on before.
+    pub fn hold_while(&mut self, drags: bool, dragged: &mut bool) {
+        if drags && !*dragged {
+            self.push_first(TextWish::Hold);
+        } else if !drags && *dragged {
+            self.push(TextWish::Release);
+        }
+        *dragged = drags;
+    }
+
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -77,33 +77,36 @@ impl Job for FitMesh {
             .and_then(|problem| problem.starting_at(start))
             .map_err(|error| error.to_string())?;
         let most = options.iterations.max(1) as f32;
-        let mut rigid = Rigid::IDENTITY;
-        let step = |rigid: &Rigid, now: &fit::Progress| FitStep {
-            iteration: now.iteration as u32,
-            residual: now.residual,
-            outliers: now.outliers,
-            left_out: Vec::new(),
-            failure: None,
-            text: deform_lines(None, rigid, &frame.positions, &now.moves),
-        };
-        let mut tell = |now: &fit::Progress| {
-            rigid = now.rigid;
-            let fraction = now.iteration as f32 / most;
-            progress.report(fraction).is_continue()
-                && progress.pass(step(&rigid, now)).is_continue()
-        };
         let Fitted {
             rigid,
             last,
             left_out,
             failure,
             ..
-        } = fit(&problem, &mut tell).map_err(|error| error.to_string())?;
+        } = fit(&problem, &mut |now| {
+            let fraction = now.iteration as f32 / most;
+            let step = FitStep::new(&frame, &now.rigid, now);
+            progress.report(fraction).is_continue() && progress.pass(step).is_continue()
+        })
+        .map_err(|error| error.to_string())?;
         Ok(FitStep {
             left_out,
             failure,
-            ..step(&rigid, &last)
+            ..FitStep::new(&frame, &rigid, &last)
         })
+    }
+}
+
+impl FitStep {
+    fn new(frame: &TriangleMesh, rigid: &Rigid, now: &fit::Progress) -> Self {
+        Self {
+            iteration: now.iteration as u32,
+            residual: now.residual,
+            outliers: now.outliers,
+            left_out: Vec::new(),
+            failure: None,
+            text: deform_lines(None, rigid, &frame.positions, &now.moves),
+        }
     }
 }
 
@@ -134,13 +137,13 @@ mod tests {
             },
         };
         let mut passed = Vec::new();
-        let mut tell = |news| {
+        let last = job.run(&mut Progress::new(&mut |news| {
             if let News::Part(step) = news {
                 passed.push(step);
             }
             ControlFlow::Continue(())
-        };
-        let last = job.run(&mut Progress::new(&mut tell)).unwrap();
+        }));
+        let last = last.unwrap();
         assert!(passed.len() > 3);
         assert!(last.residual < 0.5 * passed[0].residual);
         assert_eq!(last.text.matches("  control <").count(), 20);

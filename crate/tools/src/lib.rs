@@ -29,11 +29,13 @@ pub mod message;
 mod reading;
 mod track;
 mod view;
+mod work;
 
 pub use coating::{CoatScene, Coated};
 pub use fitting::{Controls, FitMesh, FitStep};
-pub use job::{Job, News, Pace, Progress, Work, serve};
+pub use job::{Job, News, Pace, Progress};
 pub use meshing::{MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
-pub use message::{Answer, Request};
+pub use message::Answer;
 pub use reading::{ReadMeasured, ReadMesh, ReadSkeleton};
 pub use view::{Detail, ViewMesh, ViewScene};
+pub use work::{Request, Work, serve};

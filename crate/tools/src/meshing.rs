@@ -288,13 +288,13 @@ mod tests {
     #[test]
     fn scene_becomes_a_file_in_millimetres() {
         let mut fractions = Vec::new();
-        let mut tell = |news| {
+        let meshed = mesh_ball().run(&mut Progress::new(&mut |news| {
             if let News::Fraction(fraction) = news {
                 fractions.push(fraction);
             }
             ControlFlow::Continue(())
-        };
-        let meshed = mesh_ball().run(&mut Progress::new(&mut tell)).unwrap();
+        }));
+        let meshed = meshed.unwrap();
         assert!(fractions.is_sorted() && fractions.len() > 20);
         let MeshFacts { volume, sides, .. } = meshed.facts;
         let whole = core::f64::consts::PI / 6.0 * 50.0 * 50.0 * 50.0;
@@ -313,15 +313,14 @@ mod tests {
     fn meshing_ends_on_request() {
         fn run(end: usize) -> (Result<Meshed, String>, usize) {
             let mut count = 0;
-            let mut tell = |_| {
+            let result = mesh_ball().run(&mut Progress::new(&mut |_| {
                 count += 1;
                 if count > end {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(())
                 }
-            };
-            let result = mesh_ball().run(&mut Progress::new(&mut tell));
+            }));
             (result, count)
         }
         let (whole, all) = run(usize::MAX);

@@ -1,19 +1,9 @@
-//! Messages between the page and a tools worker: plain data, packed as bytes.
+//! Messages from a tools worker to the page: plain data, packed as bytes.
 
-use crate::job::Work;
 use serde::{Deserialize, Serialize};
 
 /// The trouble of a page and a worker that do not understand each other.
 pub const DIFFERENT_VERSIONS: &str = "page and worker are of different versions; reload the page";
-
-/// A message to a worker. Jobs run one after the other, in the order of their messages.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct Request {
-    /// Number of the job, given back with its answers.
-    pub id: u64,
-    /// The job.
-    pub work: Work,
-}
 
 /// A message from a worker. Behind a [`Answer::Part`] or [`Answer::Done`] follows an output of the
 /// job's type.
@@ -78,7 +68,7 @@ pub fn unpack_answer(bytes: &[u8]) -> Result<(Answer, &[u8]), postcard::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ReadMesh;
+    use crate::{ReadMesh, Request, Work};
     use glam::DVec3;
     use mesh::TriangleMesh;
 

@@ -223,6 +223,18 @@ fn add(
     }
 }
 
+/// Returns the mean of looks by their weights.
+fn mix(looks: &[[f32; 10]], weights: &[f32]) -> [f32; 10] {
+    let total: f32 = weights.iter().sum();
+    let mut sum = [0.0; 10];
+    for (weight, look) in weights.iter().zip(looks) {
+        for (sum, own) in sum.iter_mut().zip(look) {
+            *sum += weight / total * own;
+        }
+    }
+    sum
+}
+
 /// Returns the looks at points of a surface: those of its elements, mixed by their shares.
 fn mix_looks(
     scene: &Scene,
@@ -245,16 +257,6 @@ fn mix_looks(
     if let [only] = own[..] {
         return vec![only; points.len()];
     }
-    let mix = |weights: &[f32]| {
-        let total: f32 = weights.iter().sum();
-        let mut sum = [0.0; 10];
-        for (weight, own) in weights.iter().zip(&own) {
-            for (sum, own) in sum.iter_mut().zip(own) {
-                *sum += weight / total * own;
-            }
-        }
-        sum
-    };
     let mut all = Vec::with_capacity(points.len());
     match surface {
         Surface::Sum(SoftSurface { sum, .. }) => {
@@ -268,7 +270,7 @@ fn mix_looks(
                 let lanes: Vec<[f32; 8]> = weights.into_iter().map(f32x8::to_array).collect();
                 all.extend((0..chunk.len()).map(|i| {
                     let weights: Vec<f32> = lanes.iter().map(|lane| lane[i]).collect();
-                    mix(&weights)
+                    mix(&own, &weights)
                 }));
             }
         }
@@ -283,7 +285,7 @@ fn mix_looks(
                         weights[*finish] += *share as f32;
                     }
                 }
-                all.push(mix(&weights));
+                all.push(mix(&own, &weights));
             }
         }
     }

@@ -93,8 +93,9 @@ impl Air {
                 let last = colours.len().saturating_sub(1);
                 let place = share * last as f64;
                 let first = (place as usize).min(last);
-                let at = |i: usize| colours.get(i.min(last)).map_or(Vec3::ZERO, |&c| c.into());
-                at(first).lerp(at(first + 1), (place - first as f64) as f32)
+                let [below, above] = [first, first + 1]
+                    .map(|i| colours.get(i.min(last)).map_or(Vec3::ZERO, |&c| c.into()));
+                below.lerp(above, (place - first as f64) as f32)
             }
             Background::Image(_) => {
                 let Some(image) = &self.image else {

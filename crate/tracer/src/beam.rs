@@ -46,12 +46,18 @@ impl Beam {
             .sum::<DVec3>()
             .try_normalize()
             .or(rays.first().map(|r| r.direction))?;
-        let furthest = |f: &dyn Fn(&Ray) -> f64| rays.iter().map(f).fold(0.0, f64::max);
+        let [radius, spread, ahead] = rays.iter().fold([0.0; 3], |most: [f64; 3], ray| {
+            [
+                most[0].max(ray.origin.distance(origin)),
+                most[1].max(ray.direction.distance(direction)),
+                most[2].max((ray.origin - origin).dot(direction).abs()),
+            ]
+        });
         Some(Self {
             axis: Ray { origin, direction },
-            radius: furthest(&|r| r.origin.distance(origin)) * (1.0 + BOUND_SLACK),
-            spread: furthest(&|r| r.direction.distance(direction)) * (1.0 + BOUND_SLACK),
-            ahead: furthest(&|r| (r.origin - origin).dot(direction).abs()) * (1.0 + BOUND_SLACK),
+            radius: radius * (1.0 + BOUND_SLACK),
+            spread: spread * (1.0 + BOUND_SLACK),
+            ahead: ahead * (1.0 + BOUND_SLACK),
         })
     }
 
@@ -67,6 +73,13 @@ impl Beam {
     #[must_use]
     pub fn lag(&self, t: f64) -> f64 {
         self.ahead + 0.5 * self.spread * self.spread * t
+    }
+
+    /// Returns the largest distance of rays at a parameter from the axis' point there: a bound on
+    /// both together.
+    #[must_use]
+    pub fn extent(&self, t: f64) -> f64 {
+        self.width(t) + self.lag(t)
     }
 
     /// Returns the beam with parameters counted from `base` on.

@@ -128,15 +128,14 @@ impl Backdrop {
     #[inline(always)]
     pub fn limits(&self) -> (f32x8, f32x8) {
         let [a, b, c, d, e, f] = self.coefficients;
-        let times = |k: f32, x: f32x8| f32x8::splat(k) * x;
         let zero = f32x8::splat(0.0);
         let most = a + b.abs() + c.fast_max(zero) + d.abs() + e.fast_max(zero) + f.abs();
-        let turns = times(6.0, d.abs()) + times(12.0, (-e).fast_max(zero)) + times(20.0, f.abs());
-        let bend = (turns - times(2.0, c)).fast_max(zero);
+        let turns = d.abs() * 6.0 + (-e).fast_max(zero) * 12.0 + f.abs() * 20.0;
+        let bend = (turns - c * 2.0).fast_max(zero);
         let scale = 1.0 / self.half;
         // Rounded upwards.
-        let most = most + times(1e-6, most.abs());
-        (most, times(scale * scale * (1.0 + 1e-5), bend))
+        let most = most + most.abs() * 1e-6;
+        (most, bend * (scale * scale * (1.0 + 1e-5)))
     }
 }
 

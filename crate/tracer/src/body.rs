@@ -18,8 +18,8 @@ pub(crate) trait Body: Send + Sync {
     /// Returns the gradient where a ray is at t. It points inwards.
     fn gradient(&self, ray: &Ray, t: f64) -> DVec3;
 
-    /// Appends what the elements add to the field at a point: the scene's element (`u32::MAX` if it
-    /// is none of the scene's), its finish, and its share.
+    /// Appends what the elements add to the field at a point: the element's number (`u32::MAX` if
+    /// it is not in the scene), its finish, and its share.
     fn shares(&self, point: DVec3, shares: &mut Vec<(u32, u32, f64)>);
 
     /// Returns how far above the surface rays to the lights start from a hit at t.

@@ -5,7 +5,7 @@
 //! its own, with the same result within the same tolerance.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::layout::PACKET;
+use crate::layout::{PACKET, lanes_in};
 use crate::ray::Ray;
 use crate::scratch::Scratch;
 use crate::soft::Soft;
@@ -113,8 +113,8 @@ impl World {
         // Where two bodies touch a ray leaves the one before it enters the other.
         for i in 1..found.len() {
             let [a, b] = [found[i - 1], found[i]];
-            let enters = |cast: &Cast| cast.normal.dot(ray.direction) < 0.0;
-            if b.t - a.t <= SAME * (1.0 + b.t) && enters(&a) && !enters(&b) {
+            let [a_enters, b_enters] = [a, b].map(|cast| cast.normal.dot(ray.direction) < 0.0);
+            if b.t - a.t <= SAME * (1.0 + b.t) && a_enters && !b_enters {
                 found.swap(i - 1, i);
             }
         }
@@ -194,8 +194,7 @@ impl Soft {
             let t = scratch.far.samples.t;
             return core::array::from_fn(|i| (met >> i & 1 != 0).then_some(t[i]));
         }
-        let lives = |lane: usize| alive >> lane & 1 != 0;
-        let lanes = (0..PACKET).filter(|&i| lives(i));
+        let lanes = lanes_in(alive);
         let furthest = lanes.clone().map(|i| limits[i]).fold(0.0, f64::max);
         let present: Vec<Ray> = lanes.map(|i| rays[i]).collect();
         let slabs = Beam::around(&present).and_then(|beam| {
@@ -213,7 +212,8 @@ impl Soft {
         };
         // Lanes not in use repeat the first ray.
         let based: [Ray; PACKET] = core::array::from_fn(|i| {
-            let ray = if lives(i) { &rays[i] } else { &present[0] };
+            let is_alive = alive >> i & 1 != 0;
+            let ray = if is_alive { &rays[i] } else { &present[0] };
             Ray {
                 origin: ray.at(base),
                 direction: ray.direction,

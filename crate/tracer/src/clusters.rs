@@ -210,19 +210,22 @@ impl Facts {
     }
 
     fn plus(&self, other: &Self) -> Self {
-        // Sums are rounded; bounds stay bounds.
-        let sum = |a: f32, b: f32| (a + b) * (1.0 + 1e-6);
         Self {
             table: core::array::from_fn(|i| {
-                core::array::from_fn(|k| sum(self.table[i][k], other.table[i][k]))
+                core::array::from_fn(|k| add_upwards(self.table[i][k], other.table[i][k]))
             }),
             steep: self.steep.max(other.steep),
             power: self.power.max(other.power),
-            cancels: sum(self.cancels, other.cancels),
+            cancels: add_upwards(self.cancels, other.cancels),
             adds: self.adds || other.adds,
             carves: self.carves || other.carves,
         }
     }
+}
+
+/// Returns a sum, or a little more: sums are rounded, and those of bounds stay bounds.
+fn add_upwards(a: f32, b: f32) -> f32 {
+    (a + b) * (1.0 + 1e-6)
 }
 
 #[cfg(test)]

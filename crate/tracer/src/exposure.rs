@@ -10,7 +10,6 @@ use crate::lamps::Draw;
 use crate::layout::PACKET;
 use crate::meet::Seen;
 use crate::ray::Ray;
-use crate::sampler::Sampler;
 use crate::stats::Stats;
 use crate::unit::Unit;
 use crate::view::View;
@@ -43,7 +42,7 @@ struct Moment {
 struct ThinLens {
     /// The disc's radius; 0 is a pinhole.
     aperture: f64,
-    /// Distance of what is sharp.
+    /// Distance at which things are sharp.
     focus: f64,
 }
 
@@ -104,71 +103,66 @@ impl ThinLens {
     }
 }
 
-impl Sampler {
-    /// Traces all rays of those pixels of a packet that lie in the picture, and adds them up.
-    pub fn expose(
+impl Exposure {
+    /// Traces all rays of those pixels of a packet that lie in the picture, `samples` across and
+    /// down a pixel, and adds them up. `still` is the scene if nothing moves.
+    pub fn trace(
         &self,
-        exposure: &Exposure,
+        still: (&View, &World),
         packet: Area,
+        samples: u32,
         work: &mut Workspace,
         stats: &mut Stats,
     ) -> Vec<Sum> {
-        let [width, height] = self.view.size;
+        let [width, height] = still.0.size;
         let pixels = packet.pixels().filter(|&(x, y)| x < width && y < height);
         let mut sums: Vec<Sum> = pixels.map(|(x, y)| (x, y, Vec3::ZERO, 0.0)).collect();
-        let count = exposure.moments.len().max(1);
-        let turns: Vec<Vec<usize>> = sums.iter().map(|s| self.turns([s.0, s.1], count)).collect();
+        let count = self.moments.len().max(1);
+        let turns: Vec<Vec<usize>> = sums
+            .iter()
+            .map(|&(x, y, ..)| turns([x, y], samples * samples, count))
+            .collect();
         for turn in 0..count {
-            let (view, lens, world) = match exposure.moments.get(turn) {
+            let (view, lens, world) = match self.moments.get(turn) {
                 Some(moment) => (&moment.view, &moment.lens, &moment.world),
-                None => (&self.view, &exposure.lens, &self.world),
+                None => (still.0, &self.lens, still.1),
             };
             let mut shots = Vec::new();
             for (owner, (&(x, y, ..), turns)) in sums.iter().zip(&turns).enumerate() {
                 for number in (0..turns.len()).filter(|&i| turns[i] == turn) {
-                    shots.push(self.shot(view, lens, (owner, [x, y]), number as u32));
+                    let (pixel, number) = ([x, y], number as u32);
+                    let cell = [number % samples, number / samples];
+                    let [across, down] = cell.map(|k| (f64::from(k) + 0.5) / f64::from(samples));
+                    let place = [f64::from(x) + across, f64::from(y) + down];
+                    shots.push(Shot {
+                        ray: lens.ray(view, place, sample(pixel, number, Purpose::Lens)),
+                        owner,
+                        draw: Draw::Sample { pixel, number },
+                    });
                 }
             }
             follow(world, &shots, &mut sums, work, stats);
         }
         sums
     }
+}
 
-    /// Deals moments out to a pixel's rays: returns the moment, below `count`, of each. All occur
-    /// equally often, give or take one, in an order of the pixel's own.
-    fn turns(&self, pixel: [u32; 2], count: usize) -> Vec<usize> {
-        let all = (self.samples * self.samples) as usize;
-        let times: Vec<f64> = (0..all)
-            .map(|i| sample(pixel, i as u32, Purpose::Time)[0])
-            .collect();
-        let mut order: Vec<usize> = (0..all).collect();
-        field::heap_sort(&mut order, |&a, &b| {
-            times[a].total_cmp(&times[b]).then(a.cmp(&b)).is_lt()
-        });
-        let mut turns = vec![0; all];
-        for (rank, number) in order.into_iter().enumerate() {
-            turns[number] = (2 * rank + 1) * count / (2 * all);
-        }
-        turns
+/// Deals moments out to all rays of a pixel: returns the moment, below `count`, of each. Moments
+/// occur equally often, give or take one, in an order of the pixel's own.
+fn turns(pixel: [u32; 2], all: u32, count: usize) -> Vec<usize> {
+    let times: Vec<f64> = (0..all)
+        .map(|i| sample(pixel, i, Purpose::Time)[0])
+        .collect();
+    let all = all as usize;
+    let mut order: Vec<usize> = (0..all).collect();
+    field::heap_sort(&mut order, |&a, &b| {
+        times[a].total_cmp(&times[b]).then(a.cmp(&b)).is_lt()
+    });
+    let mut turns = vec![0; all];
+    for (rank, number) in order.into_iter().enumerate() {
+        turns[number] = (2 * rank + 1) * count / (2 * all);
     }
-
-    /// Makes a ray of a pixel, given its number among the pixel's rays.
-    fn shot(
-        &self,
-        view: &View,
-        lens: &ThinLens,
-        (owner, pixel): (usize, [u32; 2]),
-        number: u32,
-    ) -> Shot {
-        let n = self.samples;
-        let [across, down] = [number % n, number / n].map(|k| (f64::from(k) + 0.5) / f64::from(n));
-        let place = [f64::from(pixel[0]) + across, f64::from(pixel[1]) + down];
-        Shot {
-            ray: lens.ray(view, place, sample(pixel, number, Purpose::Lens)),
-            owner,
-            draw: Draw::Sample { pixel, number },
-        }
-    }
+    turns
 }
 
 /// Adds the light that some rays see at a moment to their pixels' sums.

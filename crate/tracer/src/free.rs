@@ -2,7 +2,7 @@
 //! followed as a packet.
 use crate::beam::Beam;
 use crate::beams::Beams;
-use crate::layout::PACKET;
+use crate::layout::{PACKET, lanes_in};
 use crate::meet::{ALL, Seen};
 use crate::quick::Rays;
 use crate::ray::Ray;
@@ -66,7 +66,7 @@ impl World {
 
     /// Replaces what the rays of some lanes meet by points on convolution surfaces that are nearer.
     fn meet_soft_free(&self, alive: u32, seen: &mut Seen, work: &mut Workspace) {
-        let lanes = (0..PACKET).filter(|lane| alive >> lane & 1 != 0);
+        let lanes = lanes_in(alive);
         let rays: Vec<Ray> = lanes.clone().map(|i| seen.rays[i]).collect();
         let beam = match rays[..] {
             [ray] => Beam::of_ray(ray),

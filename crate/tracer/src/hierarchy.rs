@@ -154,24 +154,19 @@ impl Hierarchy {
 fn around(items: &[(u32, DVec3, f64)]) -> (DVec3, f64, DVec3) {
     // By lanes: a scalar minimum compiles to an unpredictable branch in wasm.
     let far = f64x4::splat(f64::INFINITY);
-    let less = |a: f64x4, b: f64x4| a.simd_lt(b).select(a, b);
-    let more = |a: f64x4, b: f64x4| b.simd_lt(a).select(a, b);
     let mut middles = [far, -far];
     let mut hull = [far, -far];
     for (_, center, radius) in items {
         let center = f64x4::new([center.x, center.y, center.z, 0.0]);
         let radius = f64x4::splat(*radius);
-        middles = [less(center, middles[0]), more(center, middles[1])];
+        middles = [lesser(center, middles[0]), greater(center, middles[1])];
         hull = [
-            less(center - radius, hull[0]),
-            more(center + radius, hull[1]),
+            lesser(center - radius, hull[0]),
+            greater(center + radius, hull[1]),
         ];
     }
-    let vector = |corner: f64x4| {
-        let [x, y, z, _] = corner.to_array();
-        DVec3::new(x, y, z)
-    };
-    let center = 0.5 * (vector(hull[0]) + vector(hull[1]));
+    let [low, high] = hull.map(vector);
+    let center = 0.5 * (low + high);
     let radius = items.iter().fold(0.0f64, |most, (_, other, radius)| {
         let square = other.distance_squared(center);
         let room = most - radius;
@@ -185,8 +180,23 @@ fn around(items: &[(u32, DVec3, f64)]) -> (DVec3, f64, DVec3) {
     (center, radius, vector(middles[1] - middles[0]))
 }
 
-/// Appends the nodes of a tree over items, of which the first has the number `first` in the whole
-/// tree, and puts the items in the tree's order.
+#[inline(always)]
+fn lesser(a: f64x4, b: f64x4) -> f64x4 {
+    a.simd_lt(b).select(a, b)
+}
+
+#[inline(always)]
+fn greater(a: f64x4, b: f64x4) -> f64x4 {
+    b.simd_lt(a).select(a, b)
+}
+
+fn vector(lanes: f64x4) -> DVec3 {
+    let [x, y, z, _] = lanes.to_array();
+    DVec3::new(x, y, z)
+}
+
+/// Appends the nodes of a tree over items, which are numbered from `first` on in the whole tree,
+/// and puts the items in the tree's order.
 fn build(items: &mut [(u32, DVec3, f64)], first: u32, leaf: usize, nodes: &mut Vec<Node>) {
     let (center, radius, extent) = around(items);
     let index = nodes.len();
@@ -279,7 +289,7 @@ mod tests {
             assert_eq!((i, center, radius), items[i as usize]);
             larger[i as usize].2
         });
-        // How much larger than it need be the loosest ball of a node is.
+        // Radius of the loosest ball of a node over the least radius that would do.
         let [loosest, loosest_of_larger] =
             [(&tree, &items), (&other, &larger)].map(|(tree, items)| {
                 let mut loosest = 0.0f64;

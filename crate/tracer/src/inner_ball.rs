@@ -28,21 +28,17 @@ impl InnerBall {
     /// or if some term carves: near its pole nothing is inside.
     #[must_use]
     pub fn new(bounds: &[Bound], (center, skeletons): (DVec3, f64)) -> Option<Self> {
-        let is_inside = |radius: f64| {
-            let least = bounds.iter().map(|bound| bound.least(center, radius));
-            least.sum::<f64>() > THRESHOLD * (1.0 + MARGIN)
-        };
         let carves = bounds.iter().any(Bound::carves);
-        if carves || !(skeletons > 0.0 && is_inside(skeletons)) {
+        if carves || !(skeletons > 0.0 && is_inside(bounds, center, skeletons)) {
             return None;
         }
         let mut radius = skeletons;
-        while radius < LARGEST && is_inside(2.0 * radius) {
+        while radius < LARGEST && is_inside(bounds, center, 2.0 * radius) {
             radius *= 2.0;
         }
         let mut step = 0.5 * radius;
         for _ in 0..STEPS {
-            if is_inside(radius + step) {
+            if is_inside(bounds, center, radius + step) {
                 radius += step;
             }
             step *= 0.5;
@@ -60,16 +56,25 @@ impl InnerBall {
             let square = radius * radius - (away.length_squared() - along * along);
             square.at_least(0.0).sqrt() - along
         };
-        let width = |t: f64| beam.width(t) + beam.lag(t);
-        let is_inside = |t: f64| beam.axis.at(t).distance(self.center) + width(t) <= self.radius;
         // A beam never narrows, and a ball is convex.
-        let t = end(self.radius - width(end(self.radius))) * (1.0 - 1e-9);
-        if is_inside(0.0) && is_inside(t) {
+        let t = end(self.radius - beam.extent(end(self.radius))) * (1.0 - 1e-9);
+        if self.holds(beam, 0.0) && self.holds(beam, t) {
             t.at_least(0.0)
         } else {
             0.0
         }
     }
+
+    /// Whether the rays of a beam are in the ball at a parameter.
+    fn holds(&self, beam: &Beam, t: f64) -> bool {
+        beam.axis.at(t).distance(self.center) + beam.extent(t) <= self.radius
+    }
+}
+
+/// Whether the field is known to be above T in a ball.
+fn is_inside(bounds: &[Bound], center: DVec3, radius: f64) -> bool {
+    let least = bounds.iter().map(|bound| bound.least(center, radius));
+    least.sum::<f64>() > THRESHOLD * (1.0 + MARGIN)
 }
 
 #[cfg(test)]
@@ -159,7 +164,7 @@ mod tests {
                 }
             }
             let after = beam.axis.at(t + 1e-6).distance(ball.center);
-            let wide = beam.width(2.0 * ball.radius) + beam.lag(2.0 * ball.radius);
+            let wide = beam.extent(2.0 * ball.radius);
             assert!(
                 after + wide + 1e-3 > ball.radius || wide > 0.4,
                 "{after} {wide}"

@@ -2,6 +2,7 @@
 //!
 //! The walk is written once, for any number of rays side by side: eight in single precision for
 //! pictures, one in double precision for exact answers.
+use crate::ray::Ray;
 use field::Evaluate;
 use wide::bytemuck::cast;
 use wide::{f32x4, f32x8};
@@ -38,18 +39,33 @@ impl Lanes for f64 {
     }
 }
 
+/// Returns origins and directions of rays by lanes; those not in use repeat the last ray.
+#[inline(always)]
+#[must_use]
+pub fn spread<L: Lanes>(rays: &[Ray]) -> [[L; 3]; 2] {
+    let last = rays.len() - 1;
+    [
+        core::array::from_fn(|k| L::from_lanes(|i| rays[i.min(last)].origin[k])),
+        core::array::from_fn(|k| L::from_lanes(|i| rays[i.min(last)].direction[k])),
+    ]
+}
+
 /// Returns the least of eight numbers. By lanes: a scalar minimum compiles to an unpredictable
 /// branch in wasm.
 #[inline(always)]
 #[must_use]
 pub fn least(x: f32x8) -> f32 {
-    let less = |a: f32x4, b: f32x4| a.simd_lt(b).select(a, b);
     let [a, b]: [f32x4; 2] = cast(x);
-    let four = less(a, b);
+    let four = lesser(a, b);
     let [a, b, c, d] = four.to_array();
-    let two = less(four, f32x4::new([c, d, a, b]));
+    let two = lesser(four, f32x4::new([c, d, a, b]));
     let [a, b, c, d] = two.to_array();
-    less(two, f32x4::new([b, a, d, c])).to_array()[0]
+    lesser(two, f32x4::new([b, a, d, c])).to_array()[0]
+}
+
+#[inline(always)]
+fn lesser(a: f32x4, b: f32x4) -> f32x4 {
+    a.simd_lt(b).select(a, b)
 }
 
 #[cfg(test)]

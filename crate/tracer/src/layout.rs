@@ -12,6 +12,12 @@ pub(crate) const SQUARE: u32 = 64;
 /// Side of the blocks of pixels that have one ray at first.
 pub(crate) const BLOCK: u32 = 8;
 
+/// Returns the lanes of a packet whose bits are set.
+#[inline(always)]
+pub(crate) fn lanes_in(bits: u32) -> impl Iterator<Item = usize> + Clone {
+    (0..PACKET).filter(move |lane| bits >> lane & 1 != 0)
+}
+
 /// Whether a rectangle of packets is next halved across: as long as it is not taller than wide.
 pub(crate) fn halves_across([columns, rows]: [u32; 2]) -> bool {
     columns * PACKET_SIZE[0] >= rows * PACKET_SIZE[1] && columns > 1

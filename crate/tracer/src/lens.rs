@@ -162,9 +162,9 @@ mod tests {
                 let lens = Lens::new(&view, area, &beam).expect("a narrow square");
                 let mut near = Nearby::default();
                 near.begin(beam.axis.at(distance), distance);
-                let x = |i: usize| -31.75 + 17.0 * (i % 4) as f64;
-                let y = |i: usize| 3.5 + 20.0 * (i / 4) as f64;
-                let places = [f32x8::from_lanes(x), f32x8::from_lanes(y)];
+                let x: [f64; 8] = core::array::from_fn(|i| -31.75 + 17.0 * (i % 4) as f64);
+                let y: [f64; 8] = core::array::from_fn(|i| 3.5 + 20.0 * (i / 4) as f64);
+                let places = [x, y].map(|place| f32x8::from_lanes(|i| place[i]));
                 let fan = lens.fan(places, [-6.0, 13.0]);
                 let rays = lens.rays(&fan, &near);
                 let wide = lens.wide(&fan);
@@ -172,14 +172,15 @@ mod tests {
                 let digits = 3e-7 * beam.spread;
                 for (i, ray) in wide.iter().enumerate() {
                     let want =
-                        view.ray(f64::from(left) + 32.0 + x(i), f64::from(top) + 32.0 + y(i));
+                        view.ray(f64::from(left) + 32.0 + x[i], f64::from(top) + 32.0 + y[i]);
                     let off = ray.direction.distance(want.direction);
                     assert!(off < digits, "{fov} {left} {i}: {off} of {digits}");
-                    let lane = |v: [f32x8; 3]| DVec3::from_array(v.map(|v| v.lane(i)));
+                    let [origin, direction] = [rays.origin, rays.direction]
+                        .map(|v| DVec3::from_array(v.map(|v| v.lane(i))));
                     let start = want.at(distance) - near.middle;
-                    let off = start.distance(lane(rays.origin));
+                    let off = start.distance(origin);
                     assert!(off < 2.0 * digits * distance, "{fov} {left} {i}: {off}");
-                    assert!(want.direction.distance(lane(rays.direction)) < 2e-7);
+                    assert!(want.direction.distance(direction) < 2e-7);
                     let beam = &rays.beam;
                     assert!(beam.axis.direction.distance(want.direction) <= beam.spread);
                     let start = near.middle + start;

@@ -11,7 +11,7 @@ use texture::{Image, Rgb8, Site, Surface, Target, Texture, Uv, apply, blend};
 /// Shares of elements below this part of all are left out.
 const NEGLIGIBLE: f64 = 1e-4;
 /// Straight pieces along which the coordinates of curves run.
-const CURVE_PIECES: u32 = 24;
+const CURVE_PIECES: usize = 24;
 
 /// The materials of a scene.
 pub(crate) struct Materials {
@@ -399,15 +399,16 @@ impl Chart {
 /// Returns coordinates along and around a Bézier curve: those of the nearest of straight pieces
 /// between evenly spaced parameters.
 fn along_curve([a, b, c, d]: &[DVec3; 4], point: DVec3) -> Uv {
-    let parameter = |i: u32| f64::from(i) / f64::from(CURVE_PIECES);
-    let at = |i: u32| {
-        let t = parameter(i);
+    let pieces: [(f64, DVec3); CURVE_PIECES + 1] = core::array::from_fn(|i| {
+        let t = i as f64 / CURVE_PIECES as f64;
         let s = 1.0 - t;
-        *a * (s * s * s) + *b * (3.0 * s * s * t) + *c * (3.0 * s * t * t) + *d * (t * t * t)
-    };
+        let place =
+            *a * (s * s * s) + *b * (3.0 * s * s * t) + *c * (3.0 * s * t * t) + *d * (t * t * t);
+        (t, place)
+    });
     let mut nearest = (f64::INFINITY, 0);
     for i in 0..CURVE_PIECES {
-        let (base, apex) = (at(i), at(i + 1));
+        let (base, apex) = (pieces[i].1, pieces[i + 1].1);
         let axis = apex - base;
         let along = ((point - base).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
         let apart = point.distance_squared(base + along * axis);
@@ -415,6 +416,6 @@ fn along_curve([a, b, c, d]: &[DVec3; 4], point: DVec3) -> Uv {
             nearest = (apart, i);
         }
     }
-    let piece = nearest.1;
-    uv::segment(at(piece), at(piece + 1), point).of_piece(parameter(piece), parameter(piece + 1))
+    let [(from, base), (to, apex)] = [pieces[nearest.1], pieces[nearest.1 + 1]];
+    uv::segment(base, apex, point).of_piece(from, to)
 }

@@ -49,17 +49,16 @@ impl Media {
     /// this index and dispersion.
     pub fn cross(&self, key: u32, way: Way, index: f32, dispersion: f32) -> Sides {
         let place = self.inner[..self.count].iter().position(|m| m.key == key);
-        let own = || dispersed(f64::from(index), f64::from(dispersion));
+        let own = dispersed(f64::from(index), f64::from(dispersion));
         let mut beyond = *self;
         let [before, behind] = match (way, place) {
             (Way::In | Way::Turn, None) => {
                 if self.count == MOST {
                     [self.index(); 2]
                 } else {
-                    let index = own();
-                    beyond.inner[beyond.count] = Medium { key, index };
+                    beyond.inner[beyond.count] = Medium { key, index: own };
                     beyond.count += 1;
-                    [self.index(), index]
+                    [self.index(), own]
                 }
             }
             // Inside already: two parts of one body.
@@ -70,7 +69,7 @@ impl Media {
                 [self.index(), beyond.index()]
             }
             // The eye was inside.
-            (Way::Out, None) => [own(), self.index()],
+            (Way::Out, None) => [own, self.index()],
         };
         Sides {
             beyond,

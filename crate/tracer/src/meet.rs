@@ -6,7 +6,7 @@
 use crate::beam::Beam;
 use crate::beams::Beams;
 use crate::hard::Crossing;
-use crate::layout::PACKET;
+use crate::layout::{PACKET, lanes_in};
 use crate::lens::{Fan, Lens};
 use crate::nearby::Nearby;
 use crate::quick::{Asked, Looked, Rays};
@@ -348,7 +348,7 @@ impl World {
     ) {
         let surface = self.surface_of_body(self.soft.bodies[body as usize].number);
         let gradients = samples.gradients();
-        for lane in (0..PACKET).filter(|lane| met >> lane & 1 != 0) {
+        for lane in lanes_in(met) {
             let ray = &rays[lane];
             let gradient = gradients[lane];
             let steepness = gradient.length();

@@ -326,7 +326,6 @@ impl World {
         if path.depth >= rich.max_depth || mirror == Vec3::ZERO && pass == Vec3::ZERO {
             return;
         }
-        let counts = |weight: Vec3| weight.max_element() >= rich.vanish && weight != Vec3::ZERO;
         let further = |kind, weight, direction, above: f64, branch, media| Path {
             ray: Ray {
                 origin: hit.position + receiver.flat * (above * hit.lift),
@@ -340,7 +339,7 @@ impl World {
             media,
             ..*path
         };
-        if counts(pass) {
+        if rich.shows(pass) {
             let (key, way) = self.medium(rich, hit, direction);
             let sides = path.media.cross(key, way, surface.index, look.dispersion);
             // Colours that are bent alike go together.
@@ -357,7 +356,7 @@ impl World {
                     }
                 });
                 let own = Vec3::from_array(own);
-                if !counts(own) {
+                if !rich.shows(own) {
                     continue;
                 }
                 let bent = match refract(direction, receiver.normal, ratio) {
@@ -381,7 +380,7 @@ impl World {
                 }
             }
         }
-        if counts(mirror) {
+        if rich.shows(mirror) {
             let mut bent = reflect(direction, receiver.normal);
             if bent.dot(receiver.flat) <= 0.0 {
                 bent = reflect(direction, receiver.flat);

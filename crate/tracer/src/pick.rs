@@ -12,7 +12,7 @@ use scene::{Scene, Surface, surface};
 
 /// A scene prepared for single rays.
 ///
-/// It takes much less time and room to prepare than a [`Picture`](crate::Picture), and more for
+/// It takes much less time and memory to prepare than a [`Picture`](crate::Picture), and more for
 /// each ray.
 ///
 /// ```
@@ -29,7 +29,7 @@ use scene::{Scene, Surface, surface};
 pub struct Picker {
     unit: Unit,
     solids: Solids,
-    /// The soft surfaces, each with a ball outside of which it is not.
+    /// The soft surfaces, each with a ball that holds it.
     soft: Vec<(Surface, Option<Ball>)>,
 }
 

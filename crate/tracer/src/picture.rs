@@ -323,7 +323,7 @@ impl<'a> Pixels<'a> {
     fn show(&mut self, block: u32, part: Area, samples: &Samples) {
         let level = block.ilog2();
         let width = (self.area.right - self.area.left) as usize;
-        // Neighbours often have the same colour, that of the background.
+        // Neighbours often have the same colour: the background's.
         let mut last = (Vec3::NAN, [0; 3]);
         for y in part.top..part.bottom {
             let row = (y - self.area.top) as usize * width;

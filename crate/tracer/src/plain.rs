@@ -6,16 +6,16 @@
 use crate::lamps::Received;
 use crate::layout::PACKET;
 use crate::meet::Seen;
+use crate::paths::GROUND;
 use crate::rich::Rich;
 use crate::sample::Sample;
-use crate::shade::{Finish, clamp, towards};
+use crate::shade::{Finish, clamp};
+use crate::shadows::{shadow, towards_distant};
 use crate::soft::MakeUp;
 use crate::stats::Stats;
-use crate::workspace::{Shadow, State, Workspace};
+use crate::workspace::{State, Workspace};
 use crate::world::{Owner, SurfacePoint, World};
-use crate::{paths::GROUND, ray::Ray};
 use glam::{DVec3, Vec3};
-use scene::LightKind;
 
 /// A surface point, or one of the ground, that light falls on.
 struct LitPoint {
@@ -60,30 +60,11 @@ impl World {
         }
         let mut shadows = core::mem::take(&mut work.shadows);
         for (which, light) in self.lights.iter().enumerate() {
-            // The direction to a distant light is the same everywhere.
-            let same = towards(light, DVec3::ZERO);
-            let distant = matches!(light.kind, LightKind::Distant { .. });
+            let distant = towards_distant(light);
             shadows.clear();
             for (number, point) in points.iter().enumerate() {
-                let (direction, limit) = if distant {
-                    same
-                } else {
-                    towards(light, point.position)
-                };
-                if point.normal.dot(direction) > 0.0 && light.share(point.position) > 0.0 {
-                    let ray = Ray {
-                        origin: point.position + point.normal * point.lift,
-                        direction,
-                    };
-                    shadows.push(Shadow {
-                        hit: (number, 0),
-                        ray,
-                        limit,
-                        depth: point.depth,
-                        state: State::Unknown,
-                        cost: 0.0,
-                    });
-                }
+                let place = (point.position, point.normal, point.lift);
+                shadows.extend(shadow(light, distant, (number, 0), place, point.depth));
             }
             if light.shadow && !shadows.is_empty() {
                 stats.shadow_rays += shadows.len() as u64;

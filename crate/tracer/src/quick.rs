@@ -7,7 +7,7 @@
 use crate::beam::Beam;
 use crate::blob_march::{MarchRays, Marched, RayBlob, RayBlobs, RayInterval, extremes, march};
 use crate::lanes::least;
-use crate::layout::PACKET;
+use crate::layout::{PACKET, lanes_in};
 use crate::nearby::{Marks, Nearby, indices_of};
 use crate::ray::Ray;
 use crate::soft::Soft;
@@ -282,7 +282,7 @@ impl Soft {
         quest: Quest,
         work: &mut Quick,
     ) -> Option<(Looked, f64)> {
-        let lanes = (0..PACKET).filter(|i| alive >> i & 1 != 0);
+        let lanes = lanes_in(alive);
         let followed: Vec<Ray> = lanes.clone().map(|i| rays[i]).collect();
         let furthest = lanes.map(|i| limits[i]).fold(0.0, f64::max);
         let beam = Beam::around(&followed)?;
@@ -325,13 +325,7 @@ impl Soft {
         asked: Asked<'_>,
         work: &mut Quick,
     ) -> Option<Looked> {
-        if near.len() == 0 || !near.mark(&rays.beam, LEFT_OUT_OF_PACKETS, &mut work.marks) {
-            return Some(Looked::default());
-        }
-        let marks = core::mem::take(&mut work.marks);
-        let looked = self.follow(near, 0, indices_of(&marks), rays, exact, asked, work);
-        work.marks = marks;
-        looked
+        self.quick_of(near, 0, rays, exact, asked, work)
     }
 
     /// [`Soft::quick`] for one body of several.
@@ -348,7 +342,8 @@ impl Soft {
             return Some(Looked::default());
         }
         let marks = core::mem::take(&mut work.marks);
-        let own = indices_of(&marks).filter(|&index| near.get(index).body == body);
+        let is_only = self.bodies.len() == 1;
+        let own = indices_of(&marks).filter(|&index| is_only || near.get(index).body == body);
         let looked = self.follow(near, body, own, rays, exact, asked, work);
         work.marks = marks;
         looked

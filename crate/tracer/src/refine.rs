@@ -56,7 +56,8 @@ impl Sampler {
                     if stop() {
                         return None;
                     }
-                    means.extend(self.expose(exposure, packet, work, stats));
+                    let still = (&self.view, &self.world);
+                    means.extend(exposure.trace(still, packet, self.samples, work, stats));
                     continue;
                 }
                 let wanted = packet

@@ -6,8 +6,8 @@
 //! evaluated. Where the rounding of single precision may move it by more, the last steps are in
 //! double precision.
 use crate::blob_march::mask;
-use crate::lanes::Lanes;
-use crate::layout::PACKET;
+use crate::lanes::{Lanes, spread};
+use crate::layout::{PACKET, lanes_in};
 use crate::ray::Ray;
 use crate::scratch::Scratch;
 use crate::slabs::{Slabs, Spent};
@@ -38,6 +38,18 @@ struct Hits<'a> {
     met: u32,
     /// Lanes whose crossing is exact already, a bit each.
     isolated: u32,
+}
+
+impl Hits<'_> {
+    /// Returns a part of the error of the slab in which each hit is.
+    fn error(&self, part: fn(&Spent) -> f64) -> [f64; PACKET] {
+        let mut off = [0.0; PACKET];
+        for &(slab, lanes) in self.places {
+            let own = part(&self.slabs.slab(slab).spent);
+            lanes_in(lanes).for_each(|i| off[i] = own);
+        }
+        off
+    }
 }
 
 impl Soft {
@@ -90,11 +102,11 @@ impl Soft {
                 }
             }
         }
-        let ray = |i: usize| &rays[i.min(rays.len() - 1)];
+        let [origin, direction] = spread(rays);
         let hits = Hits {
             slabs,
-            origin: core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).origin[k])),
-            direction: core::array::from_fn(|k| f32x8::from_lanes(|i| ray(i).direction[k])),
+            origin,
+            direction,
             start: f32x8::from_lanes(|i| t[i]),
             exact: t,
             furthest: f32x8::from_lanes(|i| reach[i]),
@@ -103,30 +115,13 @@ impl Soft {
             isolated,
         };
         self.refine_hits(&hits, true, scratch);
-        let of_slabs = |part: fn(&Spent) -> f64| {
-            let mut off = [0.0; PACKET];
-            for &(slab, lanes) in hits.places {
-                let own = part(&hits.slabs.slab(slab).spent);
-                let lanes = (0..PACKET).filter(|i| lanes >> i & 1 != 0);
-                lanes.for_each(|i| off[i] = own);
-            }
-            off
-        };
-        let shared = self.off(
-            &hits,
-            &scratch.samples,
-            base,
-            &of_slabs(|spent| spent.shared),
-        ) == 0;
+        let error = hits.error(|spent| spent.shared);
+        let shared = self.off(&hits, &scratch.samples, base, &error) == 0;
         if !shared {
             self.refine_hits(&hits, false, scratch);
         }
-        let mut blurred = self.off(
-            &hits,
-            &scratch.samples,
-            base,
-            &of_slabs(|spent| spent.noise),
-        );
+        let error = hits.error(|spent| spent.noise);
+        let mut blurred = self.off(&hits, &scratch.samples, base, &error);
         if blurred != 0 {
             // The slab's bound is larger than the noise at one point of it.
             let noise = self.noise(&hits, shared, scratch);
@@ -142,9 +137,9 @@ impl Soft {
             if list.len() > MOST_EXACT {
                 continue;
             }
-            for lane in (0..PACKET).filter(|i| lanes >> i & 1 != 0) {
+            for lane in lanes_in(lanes) {
                 let t = &mut scratch.samples.t[lane];
-                *t = self.refine_exactly(&hits, ray(lane), lane, *t, &list);
+                *t = self.refine_exactly(&hits, &rays[lane.min(rays.len() - 1)], lane, *t, &list);
                 scratch.evaluations += (list.len() * MOST_POLISHING) as u64;
             }
         }

@@ -61,6 +61,11 @@ impl Rich {
         !is_simple(scene)
     }
 
+    /// Whether light of a weight is followed.
+    pub fn shows(&self, weight: Vec3) -> bool {
+        weight.max_element() >= self.vanish && weight != Vec3::ZERO
+    }
+
     /// Prepares a scene, given as it is and in units of its size.
     pub fn new(world: &Scene, unit: Unit, scene: &Scene, solids: &Solids) -> Self {
         let settings = &world.settings;

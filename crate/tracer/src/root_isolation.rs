@@ -175,13 +175,10 @@ impl RootIsolator {
         let count = parts.len() as u32;
         for (i, end) in (0..count).zip(parts) {
             // Next to a kink, not on it.
-            let gap = |t: f64| (1e-3 * along.resolution).max(1e-13 * (1.0 + t));
-            let first = if start > from {
-                start + gap(start)
-            } else {
-                from
-            };
-            let last = if end < to { end - gap(end) } else { to };
+            let [before, behind] =
+                [start, end].map(|t| (1e-3 * along.resolution).max(1e-13 * (1.0 + t)));
+            let first = if start > from { start + before } else { from };
+            let last = if end < to { end - behind } else { to };
             start = end;
             if first >= last {
                 continue;

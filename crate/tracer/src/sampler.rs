@@ -102,16 +102,11 @@ impl Sampler {
                 };
                 self.world
                     .meet(square, [i, j], &rays, &mut seen, work, stats);
-                let across = |seen: &Seen| {
-                    let [first, .., last] = &seen.rays;
-                    let across = first.direction.distance(last.direction);
-                    if scale > 1 { SPARSE * across } else { across }
-                };
                 if let Some(rich) = self.needs_more_light(&seen) {
                     if !seen.has_hit() {
                         seen.rays = exact();
                     }
-                    let across = across(&seen);
+                    let across = across(&seen, scale);
                     let seen = core::slice::from_ref(&seen);
                     if rich.is_direct {
                         self.world.shine_in_air(rich, seen, across, work, stats);
@@ -123,7 +118,7 @@ impl Sampler {
                         samples.set(x, y, *sample);
                     }
                 } else if seen.has_hit() {
-                    let across = across(&seen);
+                    let across = across(&seen, scale);
                     let seen = core::slice::from_ref(&seen);
                     self.world.shine(seen, across, work, stats);
                     for ((x, y), sample) in pixels.into_iter().zip(&work.samples[0]) {
@@ -170,4 +165,11 @@ impl Sampler {
     pub fn square(&self, area: Area, packets: [u32; 2]) -> Square<'_> {
         Square::new(&self.world, &self.view, area, packets)
     }
+}
+
+/// Returns the width of a packet's rays within which hits share a beam to a light.
+fn across(seen: &Seen, scale: u32) -> f64 {
+    let [first, .., last] = &seen.rays;
+    let across = first.direction.distance(last.direction);
+    if scale > 1 { SPARSE * across } else { across }
 }

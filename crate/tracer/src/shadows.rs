@@ -18,11 +18,42 @@ use crate::walk::{Bundle, Quest};
 use crate::workspace::{Shadow, State, Workspace};
 use crate::world::World;
 use glam::{DVec3, Vec3};
-use scene::LightKind;
+use scene::{Light, LightKind};
 
 /// Largest distance of a hit from a patch's first one, over the width of the rays that are seen
 /// together.
 const PATCH: f64 = 3.0;
+
+/// Returns direction and distance of a light that are the same everywhere.
+pub(crate) fn towards_distant(light: &Light) -> Option<(DVec3, f64)> {
+    matches!(light.kind, LightKind::Distant { .. }).then(|| towards(light, DVec3::ZERO))
+}
+
+/// Returns the ray from a place to a light, if it leaves the surface there and the light shines
+/// that way. `distant` is from [`towards_distant`]; the place has a normal, and a height above the
+/// surface at which rays start.
+#[inline]
+pub(crate) fn shadow(
+    light: &Light,
+    distant: Option<(DVec3, f64)>,
+    hit: (usize, usize),
+    (position, normal, lift): (DVec3, DVec3, f64),
+    depth: f64,
+) -> Option<Shadow> {
+    let (direction, limit) = distant.unwrap_or_else(|| towards(light, position));
+    let is_lit = normal.dot(direction) > 0.0 && light.share(position) > 0.0;
+    is_lit.then(|| Shadow {
+        hit,
+        ray: Ray {
+            origin: position + normal * lift,
+            direction,
+        },
+        limit,
+        depth,
+        state: State::Unknown,
+        cost: 0.0,
+    })
+}
 
 impl World {
     /// Takes samples with the rays of some packets, and leaves them in the working space. Their
@@ -45,32 +76,14 @@ impl World {
         }));
         let mut shadows = core::mem::take(&mut work.shadows);
         for (which, light) in self.lights.iter().enumerate() {
-            // The direction to a distant light is the same everywhere.
-            let same = towards(light, DVec3::ZERO);
-            let distant = matches!(light.kind, LightKind::Distant { .. });
+            let distant = towards_distant(light);
             shadows.clear();
             for (k, seen) in seen.iter().enumerate() {
                 for (i, hit) in seen.hits.iter().enumerate() {
                     let Some(hit) = hit else { continue };
-                    let (direction, limit) = if distant {
-                        same
-                    } else {
-                        towards(light, hit.position)
-                    };
                     let normal = hit.facing(seen.rays[i].direction);
-                    if normal.dot(direction) > 0.0 && light.share(hit.position) > 0.0 {
-                        shadows.push(Shadow {
-                            hit: (k, i),
-                            ray: Ray {
-                                origin: hit.position + normal * hit.lift,
-                                direction,
-                            },
-                            limit,
-                            depth: hit.t,
-                            state: State::Unknown,
-                            cost: 0.0,
-                        });
-                    }
+                    let place = (hit.position, normal, hit.lift);
+                    shadows.extend(shadow(light, distant, (k, i), place, hit.t));
                 }
             }
             if light.shadow && !shadows.is_empty() {

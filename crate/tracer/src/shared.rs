@@ -139,6 +139,22 @@ struct Row {
     z: [f32; 2],
 }
 
+impl Row {
+    /// Returns the value at x, its slope, and the coefficients by y and by z.
+    #[inline(always)]
+    fn jet<L: Lanes>(&self, x: L) -> (L, L, L, L) {
+        let [a, b, c, d] = self.value.map(L::single);
+        let dx = d * x;
+        let second = c + dx;
+        let first = b + second * x;
+        let value = a + first * x;
+        let slope = first + (second + dx) * x;
+        let [by_y, by_z] =
+            [self.y, self.z].map(|[start, change]| L::single(start) + L::single(change) * x);
+        (value, slope, by_y, by_z)
+    }
+}
+
 /// Value and gradient at the corners.
 #[derive(Clone, Copy)]
 struct Corners([f32x8; 4]);
@@ -233,25 +249,19 @@ impl Shared {
                 (slope - straight) as f32
             })
         });
-        // NaN counts as 0.
-        let greatest = |all: f32x8, nothing: f32x8| {
-            let numbers = nothing.simd_lt(all).select(all, nothing);
-            -least(-numbers)
-        };
-        let value = greatest(sum.0[0], f32x8::splat(f32::NEG_INFINITY));
-        let bends = excess.map(|all| greatest(f32x8::new(all).abs(), f32x8::ZERO));
+        let value = greatest_number(sum.0[0], f32x8::splat(f32::NEG_INFINITY));
+        let bends = excess.map(|all| greatest_number(f32x8::new(all).abs(), f32x8::ZERO));
         // |x(1−x)²| + |x²(1−x)| ≤ ¼.
         let bends = 0.25 * bends.iter().sum::<f32>();
         let top = value + bends + 1e-6 * (value.abs() + bends);
         let rows: [Row; 4] = core::array::from_fn(|i| {
-            let ends = |of: &[f32; 8]| (of[2 * i], of[2 * i + 1]);
-            let ((f, g), (a, b)) = (ends(&values), ends(&excess[0]));
-            let and_change = |(start, end): (f32, f32)| [start, end - start];
+            let [[f, g], [a, b], y, z] = [&values, &excess[0], &excess[1], &excess[2]]
+                .map(|corners| [corners[2 * i], corners[2 * i + 1]]);
             Row {
                 // f + (g−f)x + a·x(1−x)² − b·x²(1−x).
                 value: [f, g - f + a, -(a + a + b), a + b],
-                y: and_change(ends(&excess[1])),
-                z: and_change(ends(&excess[2])),
+                y: [y[0], y[1] - y[0]],
+                z: [z[0], z[1] - z[0]],
             }
         });
         Self {
@@ -273,24 +283,12 @@ impl Shared {
     #[must_use]
     pub fn jet<L: Lanes>(&self, [x, y, z]: [L; 3]) -> (L, [L; 3]) {
         let single = L::single;
-        // Along x: the value and its slope, and the coefficients by y and by z.
-        let row = |row: &Row| {
-            let [a, b, c, d] = row.value.map(single);
-            let dx = d * x;
-            let second = c + dx;
-            let first = b + second * x;
-            let value = a + first * x;
-            let slope = first + (second + dx) * x;
-            let [by_y, by_z] =
-                [row.y, row.z].map(|[start, change]| single(start) + single(change) * x);
-            (value, slope, by_y, by_z)
-        };
         let (across, along) = (Bend::at(y), Bend::at(z));
         // Along y: value, slopes by x and y; the coefficient by z, and its slopes.
         let face = |i: usize| {
             let [near, far] = [&self.rows[2 * i], &self.rows[2 * i + 1]];
-            let (p, px, q, r) = row(near);
-            let (p1, p1x, q1, r1) = row(far);
+            let (p, px, q, r) = near.jet(x);
+            let (p1, p1x, q1, r1) = far.jet(x);
             let (value, by_y) = across.jet(p, p1, q, q + q1);
             let by_x = across.value(px, p1x, single(near.y[1]), single(self.bends[i]));
             let twist = r1 - r;
@@ -349,6 +347,13 @@ impl<L: Lanes> Bend<L> {
             rise + lean * self.tilt - both * self.bulge,
         )
     }
+}
+
+/// Returns the greatest of eight numbers and `nothing`, for which NaN counts.
+#[inline(always)]
+fn greatest_number(all: f32x8, nothing: f32x8) -> f32 {
+    let numbers = nothing.simd_lt(all).select(all, nothing);
+    -least(-numbers)
 }
 
 #[cfg(test)]

@@ -833,11 +833,26 @@ impl<'a> Slabs<'a> {
     /// Calls `f` with each primitive that counts in a slab; with `all` also with the shared and
     /// dropped ones.
     pub fn each(&self, index: u32, all: bool, mut f: impl FnMut(u32)) {
-        let mut each = |range: &Range<u32>| {
-            for &id in self.locals(range) {
-                self.each_of(id, &mut f);
-            }
-        };
+        self.each_local(index, all, |id| self.each_of(id, &mut f));
+    }
+
+    /// Returns the number of primitives that count in a slab, with the shared and dropped ones.
+    #[must_use]
+    pub fn count(&self, index: u32) -> usize {
+        let mut count = 0;
+        self.each_local(index, true, |id| {
+            count += match self.terms.clusters {
+                Some(clusters) if id & GROUP != 0 => clusters.all(id & !GROUP).len(),
+                _ => 1,
+            };
+        });
+        count
+    }
+
+    /// Calls `f` with each primitive or group that counts in a slab; with `all` also with the
+    /// shared and dropped ones.
+    fn each_local(&self, index: u32, all: bool, mut f: impl FnMut(u32)) {
+        let mut each = |range: &Range<u32>| self.locals(range).iter().for_each(|&id| f(id));
         each(&self.slab(index).pending);
         self.climb(index, |s, whole| {
             if whole {
@@ -849,30 +864,6 @@ impl<'a> Slabs<'a> {
                 each(&s.dropped);
             }
         });
-    }
-
-    /// Returns the number of primitives that count in a slab, with the shared and dropped ones.
-    #[must_use]
-    pub fn count(&self, index: u32) -> usize {
-        let mut count = 0;
-        let mut all = |range: &Range<u32>| {
-            for &id in self.locals(range) {
-                count += match self.terms.clusters {
-                    Some(clusters) if id & GROUP != 0 => clusters.all(id & !GROUP).len(),
-                    _ => 1,
-                };
-            }
-        };
-        all(&self.slab(index).pending);
-        self.climb(index, |s, whole| {
-            if whole {
-                all(&s.joined);
-                all(&s.resolved);
-            }
-            all(&s.shared);
-            all(&s.dropped);
-        });
-        count
     }
 
     /// Lists the primitives that count in a slab, without the dropped ones and those in accurate

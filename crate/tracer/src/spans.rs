@@ -71,12 +71,10 @@ impl<L: Lanes> Span<L> {
     #[inline]
     #[must_use]
     pub fn halves(self) -> [Self; 2] {
-        let half = L::splat(0.5);
-        let mid = |a: L, b: L| (a + b) * half;
         let [a, b, c, d] = self.0;
-        let (ab, bc, cd) = (mid(a, b), mid(b, c), mid(c, d));
-        let (abc, bcd) = (mid(ab, bc), mid(bc, cd));
-        let m = mid(abc, bcd);
+        let (ab, bc, cd) = (middle(a, b), middle(b, c), middle(c, d));
+        let (abc, bcd) = (middle(ab, bc), middle(bc, cd));
+        let m = middle(abc, bcd);
         [Self([a, ab, abc, m]), Self([m, bcd, cd, d])]
     }
 
@@ -161,6 +159,11 @@ pub struct KnownPart<'a> {
     pub off: f64,
 }
 
+#[inline(always)]
+fn middle<L: Lanes>(a: L, b: L) -> L {
+    (a + b) * L::splat(0.5)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,9 +205,9 @@ mod tests {
             }));
             let found = span.crossings(0.0);
             let mut sampled = 0;
-            let value = |i: u32| span.value_and_slope(f64::from(i) / 512.0).0;
             for i in 0..512 {
-                sampled += usize::from(value(i) * value(i + 1) < 0.0);
+                let [a, b] = [i, i + 1].map(|i| span.value_and_slope(f64::from(i) / 512.0).0);
+                sampled += usize::from(a * b < 0.0);
             }
             // Samples may miss two crossings that are near to one another.
             let found = found.as_slice();

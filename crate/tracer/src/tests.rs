@@ -93,18 +93,16 @@ fn doubts_in_a_cloud_are_resolved_with_near_primitives() {
     // Bodies of points alone take the way of `far_march`.
     let line = Shape::cylinder(DVec3::Z * -3.0, DVec3::Z * -3.1, 0.003);
     scene.elements.push(scenes::element(line, 0));
-    let mut ball = |center: DVec3, radius: f64, finish: u32| {
-        let shape = Shape::sphere(center, radius);
-        scene.elements.push(scenes::element(shape, finish));
-    };
     for _ in 0..1000 {
         let place = numbers.vector(1.0);
-        ball(place * DVec3::new(0.3, 0.3, 1.0), 0.003, 0);
+        let ball = Shape::sphere(place * DVec3::new(0.3, 0.3, 1.0), 0.003);
+        scene.elements.push(scenes::element(ball, 0));
     }
     // Far from all rays, but a third of T together.
     for i in 0..60 {
         let (y, x) = libm::sincos(f64::from(i));
-        ball(DVec3::new(2.0 * x, 2.0 * y, 0.0), 0.5, 1);
+        let ball = Shape::sphere(DVec3::new(2.0 * x, 2.0 * y, 0.0), 0.5);
+        scene.elements.push(scenes::element(ball, 1));
     }
     let mut picture = Picture::new(&scene, [SIZE; 2]);
     let (shown, plain) = trace(&picture, Pass::Full);

@@ -43,12 +43,14 @@ pub fn tiles(width: u32, height: u32, side: u32) -> Vec<Tile> {
     }
     // Twice the offset of the tile's centre from the picture's, so that all numbers are whole;
     // equal distances keep their order (left to right, top to bottom).
-    let key = |t: &Tile| {
-        let dx = i64::from(2 * t.x + t.width) - i64::from(width);
-        let dy = i64::from(2 * t.y + t.height) - i64::from(height);
-        (dx * dx + dy * dy, t.y, t.x)
-    };
-    field::heap_sort(&mut tiles, |a, b| key(a) < key(b));
+    field::heap_sort(&mut tiles, |a, b| {
+        let [a, b] = [a, b].map(|t| {
+            let dx = i64::from(2 * t.x + t.width) - i64::from(width);
+            let dy = i64::from(2 * t.y + t.height) - i64::from(height);
+            (dx * dx + dy * dy, t.y, t.x)
+        });
+        a < b
+    });
     tiles
 }
 
@@ -71,11 +73,13 @@ mod tests {
             }
             assert!(seen.iter().all(|&n| n == 1));
             let first = tiles[0];
-            let off = |a: u32, n: u32, whole: u32| {
-                (f64::from(a) + f64::from(n) / 2.0 - f64::from(whole) / 2.0).abs()
-            };
-            assert!(off(first.x, first.width, width) <= f64::from(side));
-            assert!(off(first.y, first.height, height) <= f64::from(side));
+            for (a, n, whole) in [
+                (first.x, first.width, width),
+                (first.y, first.height, height),
+            ] {
+                let off = f64::from(a) + f64::from(n) / 2.0 - f64::from(whole) / 2.0;
+                assert!(off.abs() <= f64::from(side));
+            }
         }
         assert!(tiles(0, 10, 8).is_empty());
         assert_eq!(tiles(3, 1, 0).len(), 3);

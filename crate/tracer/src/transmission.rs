@@ -48,7 +48,7 @@ impl World {
                 if !look.skip.shadow {
                     light[i] *= look.surface.transparent;
                 }
-                if light[i].max_element() >= rich.vanish && light[i] != Vec3::ZERO {
+                if rich.shows(light[i]) {
                     let origin = hit.position - hit.facing(ray.direction) * hit.lift;
                     let direction = ray.direction;
                     next.push((i, Ray { origin, direction }, limit - hit.t));

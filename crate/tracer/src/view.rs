@@ -12,7 +12,7 @@ pub(crate) struct View {
     /// Width and height in pixels.
     pub size: [u32; 2],
     pub projection: Projection,
-    /// Shorter side of what a pixel shows, in its widths; 1 where pixels are square.
+    /// Shorter side of a pixel over its width; 1 for square pixels.
     pub shortest: f64,
 }
 

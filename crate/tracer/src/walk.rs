@@ -7,7 +7,7 @@
 //! slab is left at once; where nothing is pending, the cubics' roots are the crossings. The
 //! traversal ends when every ray has its crossing, so that nothing behind the first hit is
 //! interpolated.
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, spread};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator, STEEP};
 use crate::slabs::{Parts, Slabs, Which};
@@ -160,7 +160,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         memory: &'w mut Memories<L>,
     ) -> Self {
         let Bundle { rays, limits, .. } = bundle;
-        let ray = |i: usize| &rays[i.min(rays.len() - 1)];
+        let [origin, direction] = spread(rays);
         memory.begin();
         Self {
             sight,
@@ -168,8 +168,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             packet: bundle.number,
             quest,
             rays,
-            origin: core::array::from_fn(|k| L::from_lanes(|i| ray(i).origin[k])),
-            direction: core::array::from_fn(|k| L::from_lanes(|i| ray(i).direction[k])),
+            origin,
+            direction,
             limit: L::from_lanes(|i| limits[i.min(limits.len() - 1)]),
             alive: bundle.alive,
             outside: 0,

@@ -12,7 +12,7 @@ pub struct Look<'a> {
     pub light: Vec3,
     /// Whether the edges are drawn.
     pub wireframe: bool,
-    /// The colour of what is empty, and of edges, chosen triangles and the tool, 0 … 1.
+    /// The colour of the background, 0 … 1.
     pub background: [f32; 3],
     /// Colour of the edges.
     pub edge: [f32; 3],
@@ -231,7 +231,7 @@ impl Frame {
             return;
         };
         let inverse = 1.0 / area;
-        // Shares of a and b grow linearly; that of c is the rest.
+        // The shares of a and b grow linearly; c has the rest.
         let (ux, uy) = ((b.y - c.y) * inverse, (c.x - b.x) * inverse);
         let (vx, vy) = ((c.y - a.y) * inverse, (a.x - c.x) * inverse);
         for y in ys {
@@ -567,12 +567,6 @@ mod tests {
 
     #[test]
     fn the_nearer_triangle_hides_the_other_whatever_their_order() {
-        let square = |z: f32, color: [f32; 3], first: u32| {
-            let positions = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-            let positions = positions.map(|[x, y]| Vec3::new(x, y, z));
-            let triangles = [[first, first + 1, first + 2], [first, first + 2, first + 3]];
-            (positions, [color; 4], triangles)
-        };
         let mut pictures = Vec::new();
         for order in [[0.0, 0.5], [0.5, 0.0]] {
             let mut surface = Surface::default();
@@ -582,10 +576,15 @@ mod tests {
                 } else {
                     [0.0, 1.0, 0.0]
                 };
-                let (p, c, t) = square(z, color, 4 * k as u32);
-                surface.positions.extend(p);
-                surface.colors.extend(c);
-                surface.triangles.extend(t);
+                let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+                surface
+                    .positions
+                    .extend(corners.map(|[x, y]| Vec3::new(x, y, z)));
+                surface.colors.extend([color; 4]);
+                let triangles = [[0, 1, 2], [0, 2, 3]];
+                surface
+                    .triangles
+                    .extend(triangles.map(|triangle| triangle.map(|i: u32| 4 * k as u32 + i)));
             }
             surface.smooth();
             let mut view = View::around([DVec3::splat(-1.0), DVec3::ONE]);

@@ -49,12 +49,12 @@ impl Shadow {
         if area.abs() < 1e-6 {
             return;
         }
-        let range = |k: usize| {
+        let [columns, rows] = [0, 1].map(|k| {
             let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
             (low.ceil().max(0.0) as usize)..=(high.floor().clamp(0.0, SIDE as f32 - 1.0) as usize)
-        };
-        for y in range(1) {
-            for x in range(0) {
+        });
+        for y in rows {
+            for x in columns.clone() {
                 let (px, py) = (x as f32, y as f32);
                 let u = ((c[0] - b[0]) * (py - b[1]) - (c[1] - b[1]) * (px - b[0])) / area;
                 let v = ((a[0] - c[0]) * (py - c[1]) - (a[1] - c[1]) * (px - c[0])) / area;
@@ -76,9 +76,10 @@ impl Shadow {
         }
         let (i, j) = (x as usize, y as usize);
         let (fx, fy) = (x - i as f32, y - j as f32);
-        let is_dark = |i: usize, j: usize| f32::from(u8::from(self.far[j * SIDE + i] > z));
-        let top = is_dark(i, j) * (1.0 - fx) + is_dark(i + 1, j) * fx;
-        let bottom = is_dark(i, j + 1) * (1.0 - fx) + is_dark(i + 1, j + 1) * fx;
+        let [top, bottom] = [j, j + 1].map(|j| {
+            let [left, right] = [i, i + 1].map(|i| f32::from(u8::from(self.far[j * SIDE + i] > z)));
+            left * (1.0 - fx) + right * fx
+        });
         top * (1.0 - fy) + bottom * fy
     }
 }

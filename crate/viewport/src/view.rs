@@ -178,7 +178,7 @@ mod tests {
             let pixel = view.project(p, size).unwrap();
             assert!(view.point(pixel, view.depth(p), size).distance(p) < 1e-12);
         }
-        // What is behind the eye is nowhere.
+        // A point behind the eye is not projected.
         let behind = view.eye() + (view.eye() - view.center);
         assert_eq!(view.project(behind, size), None);
     }

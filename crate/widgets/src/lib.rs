@@ -1,6 +1,7 @@
 //! The look of the page, shared by its editor and its lab: two palettes ([`theme`]), two fonts
-//! ([`fonts`]), drawn icons ([`icon`]), sliders ([`slider`]), the width below which a page is
-//! narrow ([`screen`]), and the places of widgets for tests that click them ([`places`]).
+//! ([`fonts`]), drawn icons ([`icon`]), sliders ([`slider`]), keys ([`keys`]), the width below
+//! which a page is narrow ([`screen`]), and the places of widgets for tests that click them
+//! ([`places`]).
 //!
 //! ```
 //! use widgets::{icon, places, theme};
@@ -18,6 +19,7 @@
 
 pub mod fonts;
 pub mod icon;
+pub mod keys;
 pub mod places;
 pub mod screen;
 pub mod slider;

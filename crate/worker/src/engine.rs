@@ -181,8 +181,10 @@ impl Engine {
                 }
             }
             Request::Trace(orders) => {
-                let present = |order: &Order| order.generation == self.generation;
-                self.queue.extend(orders.into_iter().filter(present));
+                let generation = self.generation;
+                let orders = orders.into_iter();
+                self.queue
+                    .extend(orders.filter(|order| order.generation == generation));
             }
             Request::Stop { generation } => self.forget(generation),
         }
@@ -298,6 +300,17 @@ mod tests {
         }
     }
 
+    fn orders(generation: u64, tiles: &[Tile], pass: Pass) -> Vec<Order> {
+        let tiles = tiles.iter();
+        tiles
+            .map(|&tile| Order {
+                generation,
+                tile,
+                pass,
+            })
+            .collect()
+    }
+
     fn order(generation: u64) -> Order {
         Order {
             generation,
@@ -409,14 +422,6 @@ mod tests {
             let mut scene = compiled.scene;
             Arc::make_mut(&mut scene).settings.samples = 3;
             let tiles = tracer::tile::tiles(size[0], size[1], 64);
-            let orders = |pass| {
-                let order = move |&tile| Order {
-                    generation,
-                    tile,
-                    pass,
-                };
-                tiles.iter().map(order)
-            };
             engine.accept(Request::Begin {
                 generation,
                 scene: scene.clone(),
@@ -425,8 +430,8 @@ mod tests {
                 kind: Kind::Colours,
                 shared: false,
             });
-            let both = orders(Pass::Full).chain(orders(Pass::Smooth));
-            engine.accept(Request::Trace(both.collect()));
+            let both = [Pass::Full, Pass::Smooth].map(|pass| orders(generation, &tiles, pass));
+            engine.accept(Request::Trace(both.concat()));
             let (mut rays, mut alone) = (0, Stats::default());
             while !engine.is_idle() {
                 let Step::Answer(Answer::Traced {
@@ -444,6 +449,33 @@ mod tests {
                 rays += stats.primary_rays;
             }
             assert!(rays > 15_000 && rays + 15_000 < alone.primary_rays);
+        }
+    }
+
+    /// Carries orders out; returns the samples told to other workers, the pixels and the rays.
+    fn work(engine: &mut Engine, orders: Vec<Order>) -> (Vec<Known>, Vec<Vec<u8>>, u64) {
+        engine.accept(Request::Trace(orders));
+        let (mut told, mut seen, mut rays) = (Vec::new(), Vec::new(), 0);
+        while !engine.is_idle() {
+            if let Step::Answer(Answer::Traced {
+                pixels,
+                stats,
+                known,
+                ..
+            }) = step(engine)
+            {
+                seen.push(pixels);
+                told.extend(known);
+                rays += stats.primary_rays;
+            }
+        }
+        (told, seen, rays)
+    }
+
+    fn learn(generation: u64, known: &[Known]) -> Request {
+        Request::Learn {
+            generation,
+            known: known.to_vec(),
         }
     }
 
@@ -475,55 +507,28 @@ mod tests {
             });
             engine
         };
-        let work = |engine: &mut Engine, pass| {
-            let order = |&tile| Order {
-                generation: 1,
-                tile,
-                pass,
-            };
-            engine.accept(Request::Trace(tiles.iter().map(order).collect()));
-            let (mut told, mut seen, mut rays) = (Vec::new(), Vec::new(), 0);
-            while !engine.is_idle() {
-                if let Step::Answer(Answer::Traced {
-                    pixels,
-                    stats,
-                    known,
-                    ..
-                }) = step(engine)
-                {
-                    seen.push(pixels);
-                    told.extend(known);
-                    rays += stats.primary_rays;
-                }
-            }
-            (told, seen, rays)
-        };
         let mut first = worker(true);
-        let (told, _, all) = work(&mut first, Pass::Full);
+        let (told, _, all) = work(&mut first, orders(1, &tiles, Pass::Full));
         assert_eq!((told.len(), all), (tiles.len(), 15_000));
-        let (none, smooth, rays) = work(&mut first, Pass::Smooth);
+        let (none, smooth, rays) = work(&mut first, orders(1, &tiles, Pass::Smooth));
         assert_eq!(none, []);
-        let learn = |generation, known: &[Known]| Request::Learn {
-            generation,
-            known: known.to_vec(),
-        };
         // Before the scene is prepared, as a worker that starts late is told.
         let mut second = worker(true);
         second.accept(learn(1, &told));
         assert_eq!(
-            work(&mut second, Pass::Smooth),
+            work(&mut second, orders(1, &tiles, Pass::Smooth)),
             (Vec::new(), smooth.clone(), rays)
         );
         // Samples of another picture are ignored.
         let mut third = worker(true);
         third.accept(learn(2, &told));
-        let (_, same, alone) = work(&mut third, Pass::Smooth);
+        let (_, same, alone) = work(&mut third, orders(1, &tiles, Pass::Smooth));
         assert!(same == smooth);
         assert!(alone >= rays + all, "{alone} {rays}");
         // Without sharing, samples are neither reported nor taken.
         let mut fourth = worker(false);
         fourth.accept(learn(1, &told));
-        let (none, _, rays) = work(&mut fourth, Pass::Full);
+        let (none, _, rays) = work(&mut fourth, orders(1, &tiles, Pass::Full));
         assert!(none.is_empty() && rays == all);
         // Nonsense does no harm.
         let mut fifth = worker(true);
@@ -558,7 +563,7 @@ mod tests {
         assert!(bad.iter().all(|known| !known.is_of(size)));
         fifth.accept(learn(1, &bad));
         assert!(fifth.learnt.is_empty());
-        let (_, same, again) = work(&mut fifth, Pass::Smooth);
+        let (_, same, again) = work(&mut fifth, orders(1, &tiles, Pass::Smooth));
         assert!(same == smooth && again == alone);
     }
 
@@ -566,22 +571,6 @@ mod tests {
     fn samples_of_an_older_picture_are_forgotten_and_no_more_kept_than_a_picture_has() {
         let size = [150, 100];
         let tiles = tracer::tile::tiles(size[0], size[1], 64);
-        let work = |engine: &mut Engine, generation, pass| {
-            let order = |&tile| Order {
-                generation,
-                tile,
-                pass,
-            };
-            engine.accept(Request::Trace(tiles.iter().map(order).collect()));
-            let (mut seen, mut told) = (Vec::new(), Vec::new());
-            while !engine.is_idle() {
-                if let Step::Answer(Answer::Traced { pixels, known, .. }) = step(engine) {
-                    seen.push(pixels);
-                    told.extend(known);
-                }
-            }
-            (seen, told)
-        };
         let begin = |generation, scene: &Arc<Scene>, size| Request::Begin {
             generation,
             scene: scene.clone(),
@@ -594,27 +583,23 @@ mod tests {
         Arc::make_mut(&mut other).elements.clear();
         let mut engine = Engine::default();
         engine.accept(begin(1, &ball(), size));
-        let (_, told) = work(&mut engine, 1, Pass::Full);
+        let (told, ..) = work(&mut engine, orders(1, &tiles, Pass::Full));
         let mut alone = Engine::default();
         alone.accept(begin(2, &other, size));
-        let (truth, _) = work(&mut alone, 2, Pass::Smooth);
-        let learn = |generation, times| Request::Learn {
-            generation,
-            known: vec![told[0].clone(); times],
-        };
+        let (_, truth, _) = work(&mut alone, orders(2, &tiles, Pass::Smooth));
         // Learnt before the scene was prepared, which then another one took the place of.
         let mut engine = Engine::default();
         engine.accept(begin(1, &ball(), size));
-        engine.accept(learn(1, KEPT + 9));
+        engine.accept(learn(1, &vec![told[0].clone(); KEPT + 9]));
         assert_eq!(engine.learnt.len(), KEPT);
         engine.accept(begin(2, &other, size));
-        assert!(work(&mut engine, 2, Pass::Smooth).0 == truth);
+        assert!(work(&mut engine, orders(2, &tiles, Pass::Smooth)).1 == truth);
         // Without a picture, or with one of more squares, nothing is kept.
         engine.accept(Request::Stop { generation: 3 });
-        engine.accept(learn(3, 1));
+        engine.accept(learn(3, &told[..1]));
         assert!(engine.learnt.is_empty());
         engine.accept(begin(4, &other, [150, 64 * KEPT as u32]));
-        engine.accept(learn(4, 1));
+        engine.accept(learn(4, &told[..1]));
         assert!(engine.learnt.is_empty());
     }
 

@@ -20,8 +20,8 @@ impl<'p, 's> Resolver<'p, 's> {
         if self.is_here(file, command) {
             self.look(file, command, &grammar);
         }
-        let types = |name: &str| self.type_of(name);
-        let Slots { slots, words, .. } = Slots::read(items, text, &grammar, &types);
+        let Slots { slots, words, .. } =
+            Slots::read(items, text, &grammar, &|name| self.type_of(name));
         let mut reads = Vec::new();
         for slot in &slots {
             if let Some(span) = span_of(slot, items) {

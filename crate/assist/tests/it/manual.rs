@@ -18,7 +18,7 @@ fn every_command_is_explained() {
     assert!(page("nosuch").is_none());
 }
 
-/// Every element that is opened is closed, inside of what it was opened in.
+/// Every element that is opened is closed, inside the element in which it was opened.
 #[test]
 fn the_page_is_well_formed() {
     let reference = reference();

@@ -254,7 +254,7 @@ fn links_do_not_lead_out() {
     folder.refuses(convert("a.png", "in.png"), "leads out");
     folder.refuses(convert("a.png", "sub/b.png"), "leads out");
     assert!(!other.0.join("b.png").exists());
-    // Nor where a file is written before it has its name.
+    // The same holds where a file is written before it has its name.
     link("c.png.part", &other.0.join("secret.png"));
     let before = std::fs::read(other.0.join("secret.png")).expect("bytes");
     folder.does(convert("a.png", "c.png"));

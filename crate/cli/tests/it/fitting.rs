@@ -215,7 +215,7 @@ fn fit_that_fails_is_told_and_its_best_is_written() {
     let output = sinew(&arguments, "");
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("the fit failed: "), "{said}");
+    assert_says(&said, "the fit failed: ");
     let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     assert!(told["failure"].is_string() && told["left_out"].is_array());
     let bytes = std::fs::read(&out).expect("written");
@@ -254,6 +254,10 @@ fn scans_are_seeded() {
 }
 
 /// Message of the program for an input that it refuses.
+fn assert_says(said: &str, words: &str) {
+    assert!(said.contains(words), "{said}");
+}
+
 fn refusal(arguments: &[&str]) -> String {
     let output = sinew(arguments, "");
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -274,35 +278,30 @@ fn bad_input_is_told_in_words() {
         refusal(&arguments)
     };
     let one = folder.write("one.xyz", "0 0 1\n");
-    let said = fit(&head, &["--points", &one]);
-    assert!(
-        said.contains("a cloud of 1 point says too little; four are the least"),
-        "{said}"
+    assert_says(
+        &fit(&head, &["--points", &one]),
+        "a cloud of 1 point says too little; four are the least",
     );
     let same = folder.write("same.xyz", "0 0 1\n0 0 1\n0 0 1\n0 0 1\n");
-    let said = fit(&head, &["--points", &same]);
-    assert!(
-        said.contains("all points of the cloud are in one place"),
-        "{said}"
+    assert_says(
+        &fit(&head, &["--points", &same]),
+        "all points of the cloud are in one place",
     );
     let words = folder.write("words.xyz", "0 0 1\n1 2 three\n");
-    let said = fit(&head, &["--points", &words]);
-    assert!(
-        said.contains("words.xyz: line 2: three numbers are expected"),
-        "{said}"
+    assert_says(
+        &fit(&head, &["--points", &words]),
+        "words.xyz: line 2: three numbers are expected",
     );
     let nothing = folder.write("nothing.obj", "v 0 0 0\nv 1 0 0\n");
-    let said = fit(&nothing, &["--points", &four]);
-    assert!(said.contains("no triangles"), "{said}");
+    assert_says(&fit(&nothing, &["--points", &four]), "no triangles");
     let aside = folder.write(
         "aside.json",
         r#"[{"eye":[0,-5,0],"target":[0,0,0],"up":[0,0,1],"fov":40,"size":[100,100],
             "lines":[[[20,50],[50,120]]]}]"#,
     );
-    let said = fit(&head, &["--silhouettes", &aside]);
-    assert!(
-        said.contains("the place 50 120 is outside its picture of 100 × 100 pixels"),
-        "{said}"
+    assert_says(
+        &fit(&head, &["--silhouettes", &aside]),
+        "the place 50 120 is outside its picture of 100 × 100 pixels",
     );
     let said = fit(&head, &["--points", &four, "--thickness=-1"]);
     assert!(
@@ -319,10 +318,7 @@ fn bad_input_is_told_in_words() {
         "-o",
         "out.txt",
     ]);
-    assert!(
-        said.contains("out.txt: the result is a dataset (.rat) or a mesh"),
-        "{said}"
-    );
+    assert_says(&said, "out.txt: the result is a dataset (.rat) or a mesh");
     // An open mesh that cuts itself is fitted, and told of.
     let open = folder.write(
         "open.obj",
@@ -343,22 +339,19 @@ fn bad_input_is_told_in_words() {
     );
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(
-        said.contains("the mesh is open: 6 edges in 2 loops"),
-        "{said}"
-    );
-    assert!(
-        said.contains("the mesh cuts itself: 1 pairs of facets, the first 1 and 2"),
-        "{said}"
+    assert_says(&said, "the mesh is open: 6 edges in 2 loops");
+    assert_says(
+        &said,
+        "the mesh cuts itself: 1 pairs of facets, the first 1 and 2",
     );
     // Scans that see nothing.
     let empty = folder.write("empty.rat", "surface s diffuse White\n");
     let said = refusal(&["scan", &empty, "-o", &folder.path("e.ply")]);
-    assert!(said.contains("nothing to measure"), "{said}");
+    assert_says(&said, "nothing to measure");
     let away = folder.write(
         "away.rat",
         &format!("{CAMERA}vrp 0 -20 0\nsphere s 1, 0 0 0\n"),
     );
     let said = refusal(&["scan", &away, "--outlines", &folder.path("o.json")]);
-    assert!(said.contains("view 1 has no outline"), "{said}");
+    assert_says(&said, "view 1 has no outline");
 }

@@ -429,8 +429,8 @@ fn bounds_hold_in_balls() {
                     let point = center + random.direction() * (radius * random.unit());
                     let (own, other) = local.two(point.to_array());
                     assert!(own.value <= most * (1.0 + 1e-9), "{own:?} {most}");
-                    // As by both halves: along the gradient at the centre, and with the main half's
-                    // second derivative.
+                    // Both halves' bounds hold here, too: along the gradient at the centre, and
+                    // with the main half's second derivative.
                     let (offset, far) = (point - center, point.distance(center));
                     let change =
                         DVec3::from_array(own.gradient) - DVec3::from_array(at_center.gradient);

@@ -4,10 +4,11 @@
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::figure::{Figure, Words};
+use crate::plane::Plane;
 use crate::plot::{self, number};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, heading, reading, remark, slider};
-use egui::{Color32, CursorIcon, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Color32, CursorIcon, Rect, Stroke, Ui, pos2};
 use field::{Kernel, Primitive, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use picture::contour::Grid;
@@ -83,17 +84,11 @@ struct Surfaces {
 impl Figure for Centreline {
     fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
+        tools::renew(&mut self.computed, key, Key::compute);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 0.8);
         let palette = theme::palette(ui.visuals());
         plot::panel(ui, stage.figure);
-        let map = Map::new(stage.figure);
+        let map = Plane::new(stage.figure.shrink(8.0), HALF, SAMPLES);
         if let Some((_, surfaces)) = &self.computed {
             draw(ui, stage.figure, &map, surfaces, &key);
         }
@@ -101,6 +96,9 @@ impl Figure for Centreline {
             let grip = plot::grip(ui, name, map.at(*node), palette.accent, CursorIcon::Grab);
             if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
                 *node = map.world(pointer);
+                for (x, half) in node.iter_mut().zip(HALF) {
+                    *x = x.clamp(0.05 - half, half - 0.05);
+                }
             }
         }
         let controls = &mut stage.controls;
@@ -265,63 +263,12 @@ impl Centreline {
     }
 }
 
-/// Map between the plane and the screen.
-struct Map {
-    center: Pos2,
-    scale: f32,
-}
-
-impl Map {
-    fn new(place: Rect) -> Self {
-        let inner = place.shrink(8.0);
-        let scale =
-            (inner.width() / (2.0 * HALF[0] as f32)).min(inner.height() / (2.0 * HALF[1] as f32));
-        Self {
-            center: inner.center(),
-            scale,
-        }
-    }
-
-    fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
-        self.center + self.scale * vec2(x as f32, -(y as f32))
-    }
-
-    /// Returns the place in the plane, within what is shown.
-    fn world(&self, at: Pos2) -> [f64; 2] {
-        let by = (at - self.center) / self.scale.max(1e-6);
-        let [x, y] = [f64::from(by.x), f64::from(-by.y)];
-        [
-            x.clamp(0.05 - HALF[0], HALF[0] - 0.05),
-            y.clamp(0.05 - HALF[1], HALF[1] - 0.05),
-        ]
-    }
-
-    /// Converts a place in units of samples.
-    fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
-        let [x, y] = [(x, 0), (y, 1)].map(|(sample, axis)| {
-            let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;
-            HALF[axis] * (2.0 * share - 1.0)
-        });
-        self.at([x, y])
-    }
-}
-
 /// Draws the flesh, its outline, the capsules in dashes, and the limbs.
-fn draw(ui: &Ui, place: Rect, map: &Map, surfaces: &Surfaces, key: &Key) {
+fn draw(ui: &Ui, place: Rect, map: &Plane, surfaces: &Surfaces, key: &Key) {
     let palette = theme::palette(ui.visuals());
     let painter = ui.painter_at(place.shrink(1.0));
-    let mut mesh = Mesh::default();
     let tint: Color32 = palette.note.gamma_multiply(0.2);
-    for polygon in &surfaces.inside {
-        let base = mesh.vertices.len() as u32;
-        for corner in polygon {
-            mesh.colored_vertex(map.sample(*corner), tint);
-        }
-        for corner in 2..polygon.len() as u32 {
-            mesh.add_triangle(base, base + corner - 1, base + corner);
-        }
-    }
-    painter.add(Shape::mesh(mesh));
+    map.fill(&painter, &surfaces.inside, tint);
     for piece in &surfaces.smooth {
         let stroke = Stroke::new(2.5, palette.note);
         painter.line_segment(piece.map(|p| map.sample(p)), stroke);

@@ -5,12 +5,13 @@
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::figure::{Figure, Words};
+use crate::plane::Plane;
 use crate::plot::{self, Axis, Plot};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
 use contact::Bulge;
 use core::f64::consts::PI;
-use egui::{Align2, Color32, CursorIcon, FontId, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Rect, Stroke, Ui, pos2, vec2};
 use field::{Kernel, Primitive, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use picture::contour::Grid;
@@ -88,13 +89,7 @@ impl Default for Contact {
 impl Figure for Contact {
     fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
+        tools::renew(&mut self.computed, key, Key::compute);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
         let palette = theme::palette(ui.visuals());
         let all = stage.figure;
@@ -105,12 +100,12 @@ impl Figure for Contact {
         if let Some((_, drops)) = &self.computed {
             draw(ui, upper, drops);
         }
-        let map = Map::new(upper);
+        let map = Plane::below_title(upper, HALF, SAMPLES);
         for (name, sign) in [("left drop", -1.0), ("right drop", 1.0)] {
-            let at = map.at(sign * key.apart, 0.0);
+            let at = map.at([sign * key.apart, 0.0]);
             let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
             if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
-                self.key.apart = (sign * map.x(pointer)).clamp(APART[0], APART[1]);
+                self.key.apart = (sign * map.world(pointer)[0]).clamp(APART[0], APART[1]);
             }
         }
         self.chart(ui, lower);
@@ -256,10 +251,9 @@ impl Contact {
         let y = Axis::new([-0.4, top], "added to a drop's own field");
         let plot = Plot::new(ui, place, x, y);
         let bulge = self.key.bulge();
-        let added = |f: f64| bulge.jet(f).0;
         let tint = palette.note.gamma_multiply(0.25);
-        plot.fill(tint, [bulge.start(), 1.0], added);
-        plot.curve(Stroke::new(2.5, palette.note), added);
+        plot.fill(tint, [bulge.start(), 1.0], |f| bulge.jet(f).0);
+        plot.curve(Stroke::new(2.5, palette.note), |f| bulge.jet(f).0);
         plot.upright(THRESHOLD, Stroke::new(1.0, palette.text), "its surface");
         let grip = |name: &str, x: f64, y: f64| {
             let at = plot.at(x, y);
@@ -350,59 +344,15 @@ impl Contact {
     }
 }
 
-/// Converts the plane to the screen.
-struct Map {
-    center: Pos2,
-    scale: f32,
-}
-
-impl Map {
-    fn new(place: Rect) -> Self {
-        let inner = place.shrink2(vec2(8.0, 6.0)).with_min_y(place.top() + 26.0);
-        let scale =
-            (inner.width() / (2.0 * HALF[0] as f32)).min(inner.height() / (2.0 * HALF[1] as f32));
-        Self {
-            center: inner.center(),
-            scale,
-        }
-    }
-
-    fn at(&self, x: f64, y: f64) -> Pos2 {
-        self.center + self.scale * vec2(x as f32, -(y as f32))
-    }
-
-    fn x(&self, at: Pos2) -> f64 {
-        f64::from((at.x - self.center.x) / self.scale.max(1e-6))
-    }
-
-    fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
-        let [x, y] = [(x, 0), (y, 1)].map(|(sample, axis)| {
-            let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;
-            HALF[axis] * (2.0 * share - 1.0)
-        });
-        self.at(x, y)
-    }
-}
-
 /// Draws the drops, pressed and alone.
 fn draw(ui: &Ui, place: Rect, drops: &Drops) {
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, place);
     let painter = ui.painter_at(place.shrink(1.0));
-    let map = Map::new(place);
+    let map = Plane::below_title(place, HALF, SAMPLES);
     let colours: [Color32; 2] = [palette.note, palette.accent];
     for (inside, colour) in drops.insides.iter().zip(colours) {
-        let mut mesh = Mesh::default();
-        for polygon in inside {
-            let base = mesh.vertices.len() as u32;
-            for corner in polygon {
-                mesh.colored_vertex(map.sample(*corner), colour.gamma_multiply(0.22));
-            }
-            for corner in 2..polygon.len() as u32 {
-                mesh.add_triangle(base, base + corner - 1, base + corner);
-            }
-        }
-        painter.add(Shape::mesh(mesh));
+        map.fill(&painter, inside, colour.gamma_multiply(0.22));
     }
     let thin = Stroke::new(1.0, palette.weak);
     // Every other piece: dashes.

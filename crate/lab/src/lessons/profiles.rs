@@ -248,11 +248,12 @@ impl Profiles {
             Axis::new([0.0, most], ""),
         );
         let colour = plot::hue(ui, 1);
-        let along = |u: f64| self.strength(wave, u);
-        plot.fill(colour.gamma_multiply(0.25), [0.0, 1.0], along);
+        plot.fill(colour.gamma_multiply(0.25), [0.0, 1.0], |u| {
+            self.strength(wave, u)
+        });
         let points: Vec<_> = (0..=300)
             .map(|i| f64::from(i) / 300.0)
-            .map(|u| plot.at(u, along(u)))
+            .map(|u| plot.at(u, self.strength(wave, u)))
             .collect();
         plot.painter.line(points, Stroke::new(2.5, colour));
     }

@@ -400,6 +400,7 @@ fn cell(all: Rect, index: usize, columns: usize, rows: usize) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
 
     #[test]
     fn figures_are_made_by_strokes() {
@@ -408,18 +409,17 @@ mod tests {
         for decay in Decay::ALL {
             let clay = clay_of(&bump(decay, 0.15, 0.7)).expect("a bump");
             let mesh = clay.mesh();
-            let height = |at: DVec3| {
+            let [middle, beside] = [DVec2::ZERO, DVec2::new(0.97, 0.0)].map(|at| {
                 let nearest = mesh.vertices().min_by(|a, b| {
-                    let far =
-                        |v: &mesh::VertexId| mesh.position(*v).truncate().distance(at.truncate());
-                    far(a).total_cmp(&far(b))
+                    let [a, b] = [a, b].map(|v| mesh.position(*v).truncate().distance(at));
+                    a.total_cmp(&b)
                 });
                 nearest.map_or(0.0, |v| mesh.position(v).z)
-            };
-            assert!((height(DVec3::ZERO) - 0.9).abs() < 1e-12);
-            assert_eq!(height(DVec3::new(0.97, 0.0, 0.0)), 0.0, "{}", decay.name());
+            });
+            assert!((middle - 0.9).abs() < 1e-12);
+            assert_eq!(beside, 0.0, "{}", decay.name());
         }
-        // Beside the region, propagation makes triangles of what without it are polygons.
+        // Beside the region, propagation makes triangles where there would be polygons without it.
         let [with, without] = ["propagate", "local"].map(|how| {
             let clay = clay_of(&subdivide(how, 1)).expect("a plane");
             let mesh = clay.mesh();

@@ -187,13 +187,8 @@ impl Figure for Spans {
                 "This kernel reaches further, so its spans are longer.",
             );
         }
-        slider(
-            controls,
-            "Blobbiness |B|",
-            &mut self.key.blobbiness,
-            0.3..=6.0,
-            "",
-        );
+        let blobbiness = &mut self.key.blobbiness;
+        slider(controls, "Blobbiness |B|", blobbiness, 0.3..=6.0, "");
         heading(controls, "Distance from the surface: mean, worst");
         let strong = theme::palette(controls.visuals()).strong;
         for ((title, _, name), map) in COLUMNS.iter().zip(&self.maps) {

@@ -4,11 +4,12 @@
 use crate::bench::Bench;
 use crate::command::Command;
 use crate::figure::{Figure, Words};
+use crate::plane::Plane;
 use crate::plot::{self, number};
 use crate::sample::{self, Window};
 use crate::tools::{self, Stage, choice, heading, reading, remark, slider};
 use core::f64::consts::PI;
-use egui::{Align2, Color32, CursorIcon, FontId, Mesh, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
 use field::{Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use picture::contour::Grid;
@@ -80,13 +81,7 @@ impl Default for Superposition {
 impl Figure for Superposition {
     fn show(&mut self, ui: &mut Ui, bench: &mut Bench<'_>) {
         let key = self.key;
-        if self
-            .computed
-            .as_ref()
-            .is_none_or(|(known, _)| *known != key)
-        {
-            self.computed = Some((key, key.compute()));
-        }
+        tools::renew(&mut self.computed, key, Key::compute);
         let mut stage = Stage::new(ui, bench.narrow, bench.height, 1.22);
         let palette = theme::palette(ui.visuals());
         let all = stage.figure;
@@ -116,8 +111,8 @@ impl Figure for Superposition {
         }
         // The cut is one, so it can be taken hold of in both.
         for (name, place) in [("cut", upper), ("cut below", lower)] {
-            let map = Map::new(place);
-            let at = map.at(key.place(key.cut));
+            let map = Plane::below_title(place, HALF, SAMPLES);
+            let at = map.at(key.place(key.cut).truncate().into());
             let grip = plot::grip(ui, name, at, palette.accent, CursorIcon::Grab);
             if let (true, Some(pointer)) = (grip.dragged(), grip.interact_pointer_pos()) {
                 self.key.cut = key.share(map.world(pointer)).clamp(0.02, 0.98);
@@ -131,13 +126,8 @@ impl Figure for Superposition {
         );
         slider(controls, "Cut at", &mut self.key.cut, 0.02..=0.98, "");
         slider(controls, "Radius R", &mut self.key.radius, 0.15..=0.9, "");
-        slider(
-            controls,
-            "Blobbiness |B|",
-            &mut self.key.blobbiness,
-            0.3..=6.0,
-            "",
-        );
+        let blobbiness = &mut self.key.blobbiness;
+        slider(controls, "Blobbiness |B|", blobbiness, 0.3..=6.0, "");
         heading(controls, "Kernel");
         if let Some(kernel) = tools::kernels(controls, |kernel| kernel == key.kernel) {
             self.key.kernel = kernel;
@@ -208,11 +198,11 @@ impl Key {
     }
 
     /// Returns the share of the bone's length nearest to a place.
-    fn share(&self, at: DVec3) -> f64 {
+    fn share(&self, [x, y]: [f64; 2]) -> f64 {
         match self.bone {
-            Bone::Segment => (at.x / LENGTH + 1.0) / 2.0,
+            Bone::Segment => (x / LENGTH + 1.0) / 2.0,
             Bone::Arc => {
-                let angle = libm::atan2(at.y - CENTER.y, at.x);
+                let angle = libm::atan2(y - CENTER.y, x);
                 (1.0 - (angle - PI / 2.0) / ARC.1) / 2.0
             }
         }
@@ -387,42 +377,6 @@ impl Superposition {
     }
 }
 
-/// Converts a point of the plane to the screen.
-struct Map {
-    center: Pos2,
-    scale: f32,
-}
-
-impl Map {
-    fn new(place: Rect) -> Self {
-        let inner = place.shrink2(vec2(8.0, 6.0)).with_min_y(place.top() + 26.0);
-        let scale =
-            (inner.width() / (2.0 * HALF[0] as f32)).min(inner.height() / (2.0 * HALF[1] as f32));
-        Self {
-            center: inner.center(),
-            scale,
-        }
-    }
-
-    fn at(&self, p: DVec3) -> Pos2 {
-        self.center + self.scale * vec2(p.x as f32, -(p.y as f32))
-    }
-
-    fn world(&self, at: Pos2) -> DVec3 {
-        let by = (at - self.center) / self.scale.max(1e-6);
-        DVec3::new(f64::from(by.x), f64::from(-by.y), 0.0)
-    }
-
-    /// Converts a place in units of samples.
-    fn sample(&self, [x, y]: [f32; 2]) -> Pos2 {
-        let [x, y] = [(x, 0), (y, 1)].map(|(sample, axis)| {
-            let share = f64::from(sample) / (SAMPLES[axis] - 1) as f64;
-            HALF[axis] * (2.0 * share - 1.0)
-        });
-        self.at(DVec3::new(x, y, 0.0))
-    }
-}
-
 /// Draws one of the two figures: the flesh, its outline, the outline without the cut, and the bone.
 fn outline(
     ui: &Ui,
@@ -436,19 +390,9 @@ fn outline(
     let palette = theme::palette(ui.visuals());
     plot::panel(ui, place);
     let painter = ui.painter_at(place.shrink(1.0));
-    let map = Map::new(place);
-    let mut mesh = Mesh::default();
+    let map = Plane::below_title(place, HALF, SAMPLES);
     let tint = colour.gamma_multiply(0.2);
-    for polygon in inside {
-        let base = mesh.vertices.len() as u32;
-        for corner in polygon {
-            mesh.colored_vertex(map.sample(*corner), tint);
-        }
-        for corner in 2..polygon.len() as u32 {
-            mesh.add_triangle(base, base + corner - 1, base + corner);
-        }
-    }
-    painter.add(Shape::mesh(mesh));
+    map.fill(&painter, inside, tint);
     let stroke = Stroke::new(2.5, colour);
     for piece in parts {
         painter.line_segment(piece.map(|p| map.sample(p)), stroke);
@@ -460,7 +404,8 @@ fn outline(
     }
     for (from, to, shade) in [(0.0, key.cut, palette.text), (key.cut, 1.0, palette.weak)] {
         let points: Vec<Pos2> = (0..=32)
-            .map(|i| map.at(key.place(from + (to - from) * f64::from(i) / 32.0)))
+            .map(|i| key.place(from + (to - from) * f64::from(i) / 32.0))
+            .map(|place| map.at(place.truncate().into()))
             .collect();
         painter.line(points, Stroke::new(3.0, shade));
     }
@@ -529,7 +474,7 @@ mod tests {
             };
             for share in [0.05, 0.3, 0.9] {
                 let place = key.place(share);
-                assert!((key.share(place) - share).abs() < 1e-12);
+                assert!((key.share(place.truncate().into()) - share).abs() < 1e-12);
                 let ends = key.part(0.0, share);
                 // The part ends there.
                 assert!(ends.distance(place) < 1e-12);

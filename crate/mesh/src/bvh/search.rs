@@ -75,9 +75,15 @@ impl Ray {
     }
 }
 
+/// Bounds the square of the distance from a box: lower by more than what rounding may have added.
+#[inline]
+fn least_distance_squared(bounds: &Aabb, point: DVec3) -> f64 {
+    bounds.distance_squared(point) * (1.0 - 16.0 * f64::EPSILON)
+}
+
 impl Bvh {
-    /// The primitives whose box has a point in common with a query box, in no particular but always
-    /// the same order.
+    /// The primitives whose box has a point in common with a query box, in an order that is always
+    /// the same.
     pub fn overlapping<'a>(&'a self, query: &Aabb) -> impl Iterator<Item = u32> + use<'a> {
         let query = *query;
         let mut stack = Stack::new(self);
@@ -105,8 +111,8 @@ impl Bvh {
     }
 
     /// Calls `visit` with the primitives whose box a ray enters at a parameter from 0 to `far`,
-    /// boxes of nodes nearest first. `visit` gets the present `far` and returns the next: where it
-    /// met the primitive, or what it got. A negative one ends the search.
+    /// boxes of nodes nearest first. `visit` gets `far` and returns the next one: where the ray
+    /// meets the primitive, or `far` again. A negative one ends the search.
     pub fn along_ray(&self, ray: &Ray, far: f64, mut visit: impl FnMut(u32, f64) -> f64) {
         let mut far = far;
         let mut stack = Stack::new(self);
@@ -153,18 +159,16 @@ impl Bvh {
         limit: f64,
         mut distance_squared: impl FnMut(u32) -> f64,
     ) -> Option<(u32, f64)> {
-        // Lower by more than what rounding may have added.
-        let bound = |bounds: &Aabb| bounds.distance_squared(point) * (1.0 - 16.0 * f64::EPSILON);
         let mut best: Option<(u32, f64)> = None;
         let mut reach = limit;
         let mut stack = Stack::new(self);
         while let Some(node) = stack.pop() {
             let node = &self.nodes[node as usize];
-            if bound(&node.bounds) > reach {
+            if least_distance_squared(&node.bounds, point) > reach {
                 continue;
             }
             for i in self.primitives(node) {
-                if bound(&self.boxes[*i as usize]) > reach {
+                if least_distance_squared(&self.boxes[*i as usize], point) > reach {
                     continue;
                 }
                 let found = distance_squared(*i);
@@ -179,7 +183,8 @@ impl Bvh {
             }
             if node.count == 0 {
                 let [a, b] = [node.first, node.first + 1];
-                let [to_a, to_b] = [a, b].map(|i| bound(&self.nodes[i as usize].bounds));
+                let [to_a, to_b] =
+                    [a, b].map(|i| least_distance_squared(&self.nodes[i as usize].bounds, point));
                 let [farther, nearer] = if to_b < to_a { [a, b] } else { [b, a] };
                 stack.push(farther);
                 stack.push(nearer);
@@ -203,7 +208,7 @@ impl Bvh {
     }
 
     /// Calls `visit` once with each pair of primitives (lower number first) whose boxes have a
-    /// point in common, until it breaks. Pairs come in no particular but always the same order.
+    /// point in common, until it breaks. The order of pairs is always the same.
     pub fn pairs(&self, mut visit: impl FnMut(u32, u32) -> ControlFlow<()>) {
         let mut open: Vec<(u32, u32)> = Vec::new();
         if !self.is_empty() {

@@ -1,5 +1,4 @@
-//! Parts of file formats that more than meshes are read from: texts, XML, PLY's tables, 3MF's
-//! packages.
+//! Parts of file formats that hold more than meshes: texts, XML, PLY's tables, 3MF's packages.
 
 pub mod package;
 pub mod ply;

@@ -30,7 +30,7 @@ pub type Property = (u32, u32);
 pub struct Object {
     /// Name; may be empty.
     pub name: String,
-    /// Property of what has none of its own.
+    /// Property of triangles that have none of their own.
     pub property: Option<Property>,
     /// Positions of the vertices, in the unit of the object's part.
     pub positions: Vec<DVec3>,
@@ -161,7 +161,7 @@ impl Package {
     /// Visits an object of a part at a place, and the objects that it is made of at theirs.
     ///
     /// # Errors
-    /// As [`Self::visit`].
+    /// Fails as [`Self::visit`] does.
     pub fn visit_object(
         &self,
         part: &Part,
@@ -350,7 +350,7 @@ fn transform(tag: &Tag<'_>) -> Result<DAffine3, Error> {
     ))
 }
 
-/// `#RRGGBB` or `#RRGGBBAA`, of which the opacity is passed over.
+/// Reads `#RRGGBB` or `#RRGGBBAA`; the opacity is ignored.
 fn color(tag: &Tag<'_>, name: &str) -> Result<[f32; 3], Error> {
     let text = tag.get(name)?.unwrap_or_default();
     let channels = [0, 2, 4].map(|i| {

@@ -80,7 +80,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If the text is no XML, or has a document type.
-    // It cannot be an iterator's, as it may fail and then goes on.
+    // No iterator's, as it may fail and go on after that.
     #[allow(clippy::should_implement_trait)]
     pub fn next(&mut self) -> Result<Option<Event<'a>>, Error> {
         use quick_xml::events::Event as Any;

@@ -69,7 +69,7 @@ pub struct Built {
 
 impl HalfEdgeMesh {
     /// Builds the mesh of polygons that are a manifold, with or without boundary. Vertices keep
-    /// their order; those of no face are left out.
+    /// their order; vertices without a face are left out.
     ///
     /// # Errors
     /// If the polygons are no manifold: says in words why. If a vertex is missing or not finite, or

@@ -3,7 +3,7 @@
 use super::connectivity::HalfEdgeMesh;
 use super::id::{EditError, FaceId, NONE, VertexId};
 
-/// Vertex that became two: where faces around it were removed so that those left meet in it only.
+/// Vertex that became two, as the faces that were left around it met nowhere but there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexCopy {
     /// The vertex there was.
@@ -13,7 +13,7 @@ pub struct VertexCopy {
 }
 
 impl HalfEdgeMesh {
-    /// Removes faces, and with them edges and vertices that no face is left at. A vertex at which
+    /// Removes faces, and with them edges and vertices without a face. A vertex at which
     /// several fans of faces are left becomes one vertex for each; these copies are returned.
     ///
     /// # Errors
@@ -35,7 +35,7 @@ impl HalfEdgeMesh {
         touched.sort_unstable();
         touched.dedup();
         for h in sides {
-            // An edge between two removed faces comes twice.
+            // An edge between two removed faces appears twice.
             let is_there = self.origin[h as usize] != NONE;
             if is_there && self.face[h as usize ^ 1] == NONE {
                 self.remove_bare_edge(h);

@@ -5,8 +5,8 @@ use super::id::{EditError, FaceId, HalfEdgeId, NONE, VertexId};
 use glam::DVec3;
 
 impl HalfEdgeMesh {
-    /// Puts a vertex on an edge. The faces on both sides get a vertex more. `h` then leads to the
-    /// new vertex, and `next(h)` from there to the old target.
+    /// Puts a vertex on an edge, and so into the faces on both sides. `h` then leads to the new
+    /// vertex, and `next(h)` from there to the old target.
     ///
     /// # Errors
     /// If there is no such half-edge, the position is not finite, or the mesh is full.
@@ -33,11 +33,12 @@ impl HalfEdgeMesh {
         Ok(VertexId(m))
     }
 
-    /// Puts a vertex on an edge, and joins it with the opposite vertices of the triangles beside,
-    /// so that they become two each. Faces with more vertices get a vertex more.
+    /// Puts a vertex on an edge, and joins it with the opposite vertices of the triangles on both
+    /// sides, which become two each. Faces with more vertices only get one more.
     ///
     /// # Errors
-    /// Those of [`HalfEdgeMesh::split_edge`]; also if both triangles have the same opposite vertex.
+    /// Fails as [`HalfEdgeMesh::split_edge`] does, and if both triangles have the same opposite
+    /// vertex.
     pub fn bisect_edge(&mut self, h: HalfEdgeId, position: DVec3) -> Result<VertexId, EditError> {
         self.need(self.has_half_edge(h))?;
         self.need_room(3)?;

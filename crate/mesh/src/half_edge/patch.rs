@@ -194,7 +194,7 @@ mod tests {
                 }
             }
         }
-        // What is far apart is stored apart.
+        // Changes that are far apart are stored apart.
         let patch = ListPatch::between(lists[5], lists[6], |a, b| a == b);
         assert_eq!(patch.runs, [(0, vec![1]), (21, vec![22, 23])]);
     }

@@ -96,25 +96,27 @@ impl HalfEdgeMesh {
         for face in self.faces() {
             shells[shell_of[face.index()] as usize].faces.push(face);
         }
-        // A half-edge without a face has a twin with one.
-        let shell_of_edge = |h: u32| {
-            let face = self.face[h as usize];
-            let face = if face == NONE {
-                self.face[h as usize ^ 1]
-            } else {
-                face
-            };
-            shell_of[face as usize] as usize
-        };
         for v in self.vertices() {
-            shells[shell_of_edge(self.outgoing[v.index()])].vertices += 1;
+            let face = self.face_beside(self.outgoing[v.index()]);
+            shells[shell_of[face] as usize].vertices += 1;
         }
         for h in self.edges() {
-            shells[shell_of_edge(h.0)].edges += 1;
+            shells[shell_of[self.face_beside(h.0)] as usize].edges += 1;
         }
         for h in self.boundary_loops() {
-            shells[shell_of_edge(h.0)].boundary_loops += 1;
+            shells[shell_of[self.face_beside(h.0)] as usize].boundary_loops += 1;
         }
         shells
+    }
+
+    /// Returns the face of a half-edge, or of its twin: one of them has a face.
+    fn face_beside(&self, h: u32) -> usize {
+        let face = self.face[h as usize];
+        let face = if face == NONE {
+            self.face[h as usize ^ 1]
+        } else {
+            face
+        };
+        face as usize
     }
 }

@@ -70,14 +70,16 @@ impl HalfEdgeMesh {
         let normal = self.face_normal(f);
         let sides: Vec<HalfEdgeId> = self.face_half_edges(f).collect();
         let n = sides.len();
-        let place = |i: usize| self.position(self.origin(sides[i % n]));
+        let places: Vec<DVec3> = (0..=2 * n)
+            .map(|i| self.position(self.origin(sides[i % n])))
+            .collect();
         let mut best: Option<(f64, usize)> = None;
         for i in 0..n {
-            let ear = [place(i), place(i + 1), place(i + 2)];
+            let ear = [places[i], places[i + 1], places[i + 2]];
             let quality = ear_quality(&ear, normal);
             let is_better = quality > 0.0 && best.is_none_or(|(most, _)| quality > most);
             if is_better
-                && !(i + 3..i + n).any(|k| contains(&ear, place(k), normal))
+                && !(i + 3..i + n).any(|k| contains(&ear, places[k], normal))
                 && !self.are_joined(self.origin(sides[i]).0, self.origin(sides[(i + 2) % n]).0)
             {
                 best = Some((quality, i));

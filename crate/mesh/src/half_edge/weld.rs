@@ -19,13 +19,12 @@ impl HalfEdgeMesh {
         let (u, v) = (self.origin[a as usize], self.origin[a as usize ^ 1]);
         let (x, y) = (self.origin[b as usize], self.origin[b as usize ^ 1]);
         // Boundary paths from v to x and from y to u of exactly two half-edges: notches.
-        let notch = |from: u32, to: u32| {
+        let notches = [(a, b), (b, a)].map(|(from, to)| {
             let first = self.next[from as usize];
             (first != to && self.next[first as usize] == self.prev[to as usize])
                 .then(|| [first, self.prev[to as usize]])
                 .filter(|[first, second]| first != second)
-        };
-        let notches = [notch(a, b), notch(b, a)];
+        });
         let tips = notches.map(|notch| notch.map(|[first, _]| self.origin[first as usize ^ 1]));
         self.can_merge([v, x], [u, y], tips[0])?;
         self.can_merge([u, y], [v, x], tips[1])?;

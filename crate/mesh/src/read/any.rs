@@ -34,7 +34,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Error> {
 /// ```
 ///
 /// # Errors
-/// As [`read`].
+/// Fails as [`read`] does.
 pub fn read_with_remarks(name: &str, bytes: &[u8]) -> Result<(TriangleMesh, Vec<String>), Error> {
     if bytes.len() > limits::MAX_BYTES {
         return fail(format!(

@@ -455,13 +455,16 @@ impl Reader<'_> {
 
     /// Returns the maps of a node's instances, to the node.
     fn instances(&self, attributes: &InstanceAttributes) -> Result<Vec<DAffine3>, Error> {
-        let list = |accessor: Option<usize>, shape: &str| match accessor {
+        let [translations, rotations, scales] = [
+            (attributes.translation, "VEC3"),
+            (attributes.rotation, "VEC4"),
+            (attributes.scale, "VEC3"),
+        ]
+        .map(|(accessor, shape)| match accessor {
             Some(accessor) => self.floats(accessor, &[shape]),
             None => Ok(Vec::new()),
-        };
-        let translations = list(attributes.translation, "VEC3")?;
-        let rotations = list(attributes.rotation, "VEC4")?;
-        let scales = list(attributes.scale, "VEC3")?;
+        });
+        let (translations, rotations, scales) = (translations?, rotations?, scales?);
         let lists = [(&translations, 3), (&rotations, 4), (&scales, 3)];
         let counts = lists.map(|(list, width)| list.len() / width);
         let count = counts.into_iter().max().unwrap_or(0);
@@ -548,23 +551,18 @@ impl Reader<'_> {
         }
         // A mirrored part is turned inside out.
         let is_mirrored = place.matrix3.determinant() < 0.0;
-        let mut add = |[a, b, c]: [u32; 3]| {
-            let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
-            mesh.add_triangle([a, b, c].map(|i| start + i))
-        };
-        if mode == 4 {
-            for triangle in corners.chunks_exact(3) {
-                add([triangle[0], triangle[1], triangle[2]])?;
-            }
-        }
         for (i, w) in corners.windows(3).enumerate() {
-            match mode {
+            let [a, b, c] = match mode {
+                4 if i % 3 == 0 => [w[0], w[1], w[2]],
+                4 => continue,
                 // In a strip every second triangle runs the other way.
-                5 if i % 2 == 0 => add([w[0], w[1], w[2]])?,
-                5 => add([w[1], w[0], w[2]])?,
-                6 => add([corners[0], w[1], w[2]])?,
+                5 if i % 2 == 0 => [w[0], w[1], w[2]],
+                5 => [w[1], w[0], w[2]],
+                6 => [corners[0], w[1], w[2]],
                 _ => break,
-            }
+            };
+            let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
+            mesh.add_triangle([a, b, c].map(|i| start + i))?;
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! MTL: materials beside an OBJ file, of which names, colours and gloss are read.
+//! MTL: materials beside an OBJ file. Their names, colours and gloss are read.
 
 use crate::color::{decode, roughness_from_phong};
 use crate::error::{Error, fail};

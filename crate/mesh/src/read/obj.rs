@@ -73,11 +73,10 @@ impl Reader {
                     ));
                 }
                 // Three more numbers are a colour, one more is a weight.
-                let mut next = || {
+                let colour: [_; 6] = core::array::from_fn(|_| {
                     let number = numbers.next().and_then(|word| word.parse::<f64>().ok());
                     number.map(|x| decode(x.clamp(0.0, 1.0)))
-                };
-                let colour = [next(), next(), next(), next(), next(), next()];
+                });
                 if let [.., Some(r), Some(g), Some(b)] = colour {
                     self.colors.resize(self.positions.len() - 1, [1.0; 3]);
                     self.colors.push([r, g, b]);
@@ -202,8 +201,8 @@ fn triple<'a>(
     list: &mut Vec<DVec3>,
     mut words: impl Iterator<Item = &'a str>,
 ) -> Result<(), Error> {
-    let mut next = || words.next().and_then(|word| word.parse::<f64>().ok());
-    let (Some(x), Some(y), Some(z)) = (next(), next(), next()) else {
+    let numbers = [0; 3].map(|_| words.next().and_then(|word| word.parse::<f64>().ok()));
+    let [Some(x), Some(y), Some(z)] = numbers else {
         return fail("three numbers are needed here");
     };
     if list.len() == MAX_VERTICES {

@@ -14,7 +14,7 @@ use glam::DVec3;
 /// Reads the vertices of a PLY file, which needs no faces.
 ///
 /// # Errors
-/// As [`crate::read`], but a file without triangles is none.
+/// Fails as [`crate::read`] does, but not for want of triangles.
 pub fn read_points(bytes: &[u8]) -> Result<Vec<DVec3>, Error> {
     if bytes.len() > MAX_BYTES {
         return fail("this file is too large");
@@ -45,7 +45,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     Ok(mesh)
 }
 
-/// Adds a vertex, with its normal and colour if its element has such.
+/// Adds a vertex, with its normal and colour if it has any.
 fn add_vertex(element: &Element<'_>, row: &Row, mesh: &mut TriangleMesh) -> Result<(), Error> {
     let triple = |names: [&str; 3]| {
         let [Some(x), Some(y), Some(z)] = names.map(|name| element.column(&[name])) else {

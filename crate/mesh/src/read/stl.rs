@@ -53,9 +53,9 @@ fn numbers(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     for triangle in bytes.chunks_exact(TRIANGLE) {
         // After the normal.
         let mut at = Cursor::new(&triangle[12..], false);
-        let mut next = || at.f32().unwrap_or(f64::NAN);
-        let mut corner = || DVec3::new(next(), next(), next());
-        add(&mut mesh, [corner(), corner(), corner()])?;
+        let [a, b, c]: [[f64; 3]; 3] =
+            core::array::from_fn(|_| core::array::from_fn(|_| at.f32().unwrap_or(f64::NAN)));
+        add(&mut mesh, [a, b, c].map(DVec3::from))?;
     }
     Ok(mesh)
 }

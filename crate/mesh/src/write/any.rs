@@ -40,7 +40,7 @@ impl Export {
     /// an animation.
     ///
     /// # Errors
-    /// As [`Export::write`], and if the rig does not fit the meshes.
+    /// Fails as [`Export::write`] does, and if the rig does not fit the meshes.
     pub fn write_rigged(&self, rig: &Rig) -> Result<ExportedFile, Error> {
         let parts = prepare(self)?;
         if self.shift() != DVec3::ZERO {

@@ -81,9 +81,9 @@ impl Builder {
             attributes["COLOR_0"] = json!(self.vectors(&cut, false));
         }
         if let Some(shares) = shares {
-            let own = || shading.origins.iter().map(|i| shares[*i as usize]);
+            let own = shading.origins.iter().flat_map(|i| shares[*i as usize]);
             let start = self.numbers.len();
-            for (joint, _) in own().flatten() {
+            for (joint, _) in own.clone() {
                 self.numbers.extend(joint.to_le_bytes());
             }
             let count = shading.origins.len();
@@ -92,7 +92,7 @@ impl Builder {
                 "bufferView": view, "componentType": U16, "count": count, "type": "VEC4"
             })));
             let start = self.numbers.len();
-            for (_, weight) in own().flatten() {
+            for (_, weight) in own {
                 self.numbers.extend(weight.to_le_bytes());
             }
             let view = self.view(start, VERTICES);

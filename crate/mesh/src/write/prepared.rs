@@ -64,11 +64,10 @@ impl Prepared<'_> {
 
 impl Export {
     /// The meshes as every format has them: in millimetres from [`Export::shift`], rounded to 32
-    /// bits. What shall be proved of a file (that nothing intersects, say) is to be proved of
-    /// these.
+    /// bits. Proofs about a file (that nothing intersects, say) are to be made for these.
     ///
     /// # Errors
-    /// As [`Export::write`].
+    /// Fails as [`Export::write`] does.
     pub fn round(&self) -> Result<Vec<TriangleMesh>, Error> {
         let parts = prepare(self)?;
         Ok(parts
@@ -223,8 +222,8 @@ pub(super) fn mean_normals(mesh: &TriangleMesh) -> Vec<[f32; 3]> {
     unit_normals(mesh, &vec![DVec3::ZERO; mesh.positions.len()])
 }
 
-/// Returns a name on one line, without what would end it in a text format; `other` if nothing is
-/// left.
+/// Returns a name on one line, without characters that would end it in a text format; `other` if
+/// none is left.
 pub(super) fn line_name(name: &str, other: &str) -> String {
     let kept: String = name
         .chars()

@@ -24,23 +24,24 @@ impl Shading {
     /// Computes the shading of a mesh whose indices are in range.
     pub(super) fn new(mesh: &TriangleMesh) -> Self {
         let count = mesh.positions.len();
-        let given = |v: usize| {
-            let normal = mesh.normals.as_ref().map_or(DVec3::ZERO, |all| all[v]);
-            normal.try_normalize()
-        };
+        let normals = mesh.normals.as_ref();
+        let given: Vec<Option<DVec3>> = (0..count)
+            .map(|v| normals.and_then(|all| all[v].try_normalize()))
+            .collect();
         // Triangles at vertices without a normal, each with the number of its corner there.
         let mut around: Vec<Vec<(usize, usize)>> = vec![Vec::new(); count];
         for (t, triangle) in mesh.triangles.iter().enumerate() {
             for (k, v) in triangle.iter().enumerate() {
-                if given(*v as usize).is_none() {
+                if given[*v as usize].is_none() {
                     around[*v as usize].push((t, k));
                 }
             }
         }
         let mut all = Self {
             origins: (0..count as u32).collect(),
-            normals: (0..count)
-                .map(|v| round(given(v).unwrap_or(DVec3::Z)))
+            normals: given
+                .iter()
+                .map(|normal| round(normal.unwrap_or(DVec3::Z)))
                 .collect(),
             triangles: mesh.triangles.clone(),
         };

@@ -357,7 +357,7 @@ impl Body {
             Piece::Part(part) => {
                 let parts = part.part(0.0, 0.5).zip(part.part(0.5, 1.0));
                 let Some((left, right)) = parts else {
-                    // What cannot be cut is as small as can be.
+                    // A part that cannot be cut is as small as can be.
                     let depth = DEEPEST_PIECE;
                     return vec![Node {
                         depth,

@@ -62,7 +62,6 @@ fn step(t: f64) -> f64 {
 
 /// Returns the mean of the window over a piece of a length, its distance at a place x given.
 fn mean(distance: impl Fn(f64) -> f64, reach: f64, length: f64) -> f64 {
-    let at = |x: f64| step(3.0 * (1.0 - distance(x) / reach));
     // Kinks: where two ways to the piece meet, and where the distance is 2/3 D or D; a piece around
     // the window's middle has another one there.
     let (start, end) = (distance(0.0), distance(length));
@@ -79,7 +78,9 @@ fn mean(distance: impl Fn(f64) -> f64, reach: f64, length: f64) -> f64 {
     kinks.sort_unstable_by(f64::total_cmp);
     let parts = kinks.windows(2).map(|pair| {
         let [a, b] = [pair[0], pair[1]];
-        (b - a) / 6.0 * (at(a) + 4.0 * at(0.5 * (a + b)) + at(b))
+        let [start, middle, end] =
+            [a, 0.5 * (a + b), b].map(|x| step(3.0 * (1.0 - distance(x) / reach)));
+        (b - a) / 6.0 * (start + 4.0 * middle + end)
     });
     parts.sum::<f64>() / length
 }
@@ -375,24 +376,26 @@ fn average(all: impl Iterator<Item = (Field, Field)>) -> Field {
 /// Returns the range of the mean of values by weights, both in ranges: it is largest where the
 /// weights of all values above some level are as large as can be, and those of the others as small.
 fn spread(mut all: Vec<(Range, Range)>) -> Range {
-    let mut largest = |of: fn(&Range) -> f64| {
-        all.sort_unstable_by(|a, b| of(&b.1).total_cmp(&of(&a.1)));
-        let mut sum: f64 = all.iter().map(|(w, v)| w.low * of(v)).sum();
-        let mut total: f64 = all.iter().map(|(w, _)| w.low).sum();
-        let mut most = f64::NEG_INFINITY;
-        for (weight, value) in &all {
-            sum += (weight.high - weight.low) * of(value);
-            total += weight.high - weight.low;
-            if total > 0.0 {
-                most = most.max(sum / total);
-            }
-        }
-        if most.is_finite() { most } else { 0.0 }
-    };
-    let high = largest(|range| range.high);
-    let low = -largest(|range| -range.low);
+    let high = largest_mean(&mut all, |range| range.high);
+    let low = -largest_mean(&mut all, |range| -range.low);
     Range {
         low: low.min(high),
         high,
     }
+}
+
+/// Returns the largest mean of ends of ranges by weights.
+fn largest_mean(all: &mut [(Range, Range)], end: fn(&Range) -> f64) -> f64 {
+    all.sort_unstable_by(|a, b| end(&b.1).total_cmp(&end(&a.1)));
+    let mut sum: f64 = all.iter().map(|(w, v)| w.low * end(v)).sum();
+    let mut total: f64 = all.iter().map(|(w, _)| w.low).sum();
+    let mut most = f64::NEG_INFINITY;
+    for (weight, value) in all {
+        sum += (weight.high - weight.low) * end(value);
+        total += weight.high - weight.low;
+        if total > 0.0 {
+            most = most.max(sum / total);
+        }
+    }
+    if most.is_finite() { most } else { 0.0 }
 }

@@ -179,16 +179,16 @@ fn a_ball_is_found_to_the_last_digits() {
             assert!((root.t - 4.0 - side).abs() < 1e-7, "{off}: {root:?}");
         }
     }
-    let out = |x: f64| DVec3::new(1.0, 0.25 + x, 0.0);
     for off in [-0.01, -1e-4, 1e-5, 0.02] {
-        match reference.surface_near(out(off), 1.01 * off.abs()) {
+        let point = DVec3::new(1.0, 0.25 + off, 0.0);
+        match reference.surface_near(point, 1.01 * off.abs()) {
             Near::Within(d) => {
                 assert!(d >= 0.99 * off.abs() && d <= 1.01 * off.abs(), "{off}: {d}")
             }
             other => panic!("{off}: {other:?}"),
         }
         assert_eq!(
-            reference.surface_near(out(off), 0.98 * off.abs()),
+            reference.surface_near(point, 0.98 * off.abs()),
             Near::Beyond,
             "{off}"
         );

@@ -1,6 +1,6 @@
 //! Bounds on profiles and their derivatives between their kinks ([`field::kinks`]), at which the
 //! reference divides a ray.
-use field::{Kink, Primitive, Skeleton, Wave, kinks};
+use field::{Kink, Primitive, Profile, Skeleton, Wave, kinks};
 
 /// Bounds on a primitive's profile.
 #[derive(Clone, Debug)]
@@ -29,22 +29,10 @@ impl Factor {
         // First and second derivative of the waves' product.
         let (mut first, mut second) = (0.0, 0.0);
         let mut restricted = [0.0; 2];
-        // Derivatives of a wave whose parameter changes by `rate` per unit of length.
-        let steep = |i: usize, rate: f64| {
-            let (a, b) = match profile.waves[i] {
-                Wave::One | Wave::Step => (0.0, 0.0),
-                Wave::X | Wave::Saw => (1.0, 0.0),
-                Wave::Sin | Wave::Cos => (0.5, 0.5),
-                Wave::Sin2 | Wave::Cos2 => (1.0, 2.0),
-                Wave::Hat => (2.0, 0.0),
-            };
-            let p = (profile.scale[i] * rate).abs();
-            (a * p, b * p * p)
-        };
         match &primitive.skeleton {
             Skeleton::Segment { base, apex } => {
                 let axis = *apex - *base;
-                (first, second) = steep(0, 1.0 / axis.length());
+                (first, second) = limit_slopes(profile, 0, 1.0 / axis.length());
             }
             Skeleton::Triangle { corners: [a, b, c] } => {
                 let (e1, e2) = (*b - *a, *c - *a);
@@ -54,8 +42,8 @@ impl Factor {
                 let by_u = e2.cross(normal) / (area2 * area2);
                 let by_v = normal.cross(e1) / (area2 * area2);
                 let rate = by_u.length().max(by_v.length()).max((by_u + by_v).length());
-                let (u1, u2) = steep(0, rate);
-                let (v1, v2) = steep(1, rate);
+                let (u1, u2) = limit_slopes(profile, 0, rate);
+                let (v1, v2) = limit_slopes(profile, 1, rate);
                 first = u1 + v1;
                 second = u2 + v2 + 2.0 * u1 * v1;
                 if profile.restriction != 0.0 {
@@ -66,7 +54,7 @@ impl Factor {
             Skeleton::Arc { radius, angle, .. } => {
                 // Waves count as g = (2t/(1+t²))² with t = ρ/radius, and the angle changes by
                 // 1/ρ: g/t ≤ 1.3, g/t² ≤ 4, |g′| ≤ 1.8, |g′|/t ≤ 8, |g″| ≤ 8.
-                let (w1, w2) = steep(0, 1.0 / angle.max(f64::MIN_POSITIVE));
+                let (w1, w2) = limit_slopes(profile, 0, 1.0 / angle.max(f64::MIN_POSITIVE));
                 let i = 1.0 / radius;
                 first = (1.3 * w1 + 1.8) * i;
                 second = (4.0 * (w2 + w1) + 16.0 * w1 + 8.0) * i * i;
@@ -85,4 +73,18 @@ impl Factor {
             kinks: kinks::of(primitive),
         }
     }
+}
+
+/// Bounds the first and second derivative of a wave of a profile whose parameter changes by `rate`
+/// per unit of length.
+fn limit_slopes(profile: &Profile, wave: usize, rate: f64) -> (f64, f64) {
+    let (a, b) = match profile.waves[wave] {
+        Wave::One | Wave::Step => (0.0, 0.0),
+        Wave::X | Wave::Saw => (1.0, 0.0),
+        Wave::Sin | Wave::Cos => (0.5, 0.5),
+        Wave::Sin2 | Wave::Cos2 => (1.0, 2.0),
+        Wave::Hat => (2.0, 0.0),
+    };
+    let p = (profile.scale[wave] * rate).abs();
+    (a * p, b * p * p)
 }

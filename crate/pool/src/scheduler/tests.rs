@@ -95,6 +95,16 @@ impl Crowd {
         }
     }
 
+    /// Returns workers that have done some jobs each for the first picture.
+    fn at_work(workers: usize, jobs: usize) -> Self {
+        let mut crowd = Self::new(workers);
+        crowd.start(1);
+        for _ in 0..jobs {
+            crowd.work();
+        }
+        crowd
+    }
+
     fn start(&mut self, generation: u64) {
         self.scheduler.start(plan(generation), self.now);
         self.obey();
@@ -333,7 +343,7 @@ fn tiles_of_a_lost_worker_go_to_the_others() {
 
 #[test]
 fn expensive_tiles_are_smoothed_first() {
-    // Neither the first nor the last of the first worker's, in the order of the tiles.
+    // In the order of the tiles they are neither the first nor the last of the first worker's.
     fn is_dear(tile: &Tile) -> bool {
         [(64, 0), (0, 64)].contains(&(tile.x, tile.y))
     }
@@ -478,11 +488,7 @@ fn remaining_time_is_known_once_measured() {
 
 #[test]
 fn new_picture_replaces_the_old_one() {
-    let mut crowd = Crowd::new(2);
-    crowd.start(1);
-    for _ in 0..6 {
-        crowd.work();
-    }
+    let mut crowd = Crowd::at_work(2, 6);
     let before = crowd.done.len();
     assert!(before > 0);
     crowd.start(1); // the same number again: tiles of the first run must not be mixed in
@@ -494,11 +500,7 @@ fn new_picture_replaces_the_old_one() {
 
 #[test]
 fn worker_at_an_old_picture_is_replaced_without_blame() {
-    let mut crowd = Crowd::new(2);
-    crowd.start(1);
-    for _ in 0..6 {
-        crowd.work();
-    }
+    let mut crowd = Crowd::at_work(2, 6);
     crowd.hanging.insert(0);
     crowd.start(2);
     let restarts = crowd.restarts;
@@ -530,11 +532,7 @@ fn late_answer_saves_a_suspected_worker() {
 
 #[test]
 fn cancel_ends_everything() {
-    let mut crowd = Crowd::new(2);
-    crowd.start(1);
-    for _ in 0..6 {
-        crowd.work();
-    }
+    let mut crowd = Crowd::at_work(2, 6);
     crowd.scheduler.cancel(crowd.now);
     crowd.obey();
     let before = crowd.done.len();
@@ -550,11 +548,7 @@ fn cancel_ends_everything() {
 
 #[test]
 fn dead_worker_is_replaced_and_its_tiles_repeated() {
-    let mut crowd = Crowd::new(3);
-    crowd.start(1);
-    for _ in 0..8 {
-        crowd.work();
-    }
+    let mut crowd = Crowd::at_work(3, 8);
     crowd.desks[1].clear();
     crowd.scheduler.note_death(1, "killed", crowd.now);
     crowd.obey();
@@ -570,11 +564,7 @@ fn dead_worker_is_replaced_and_its_tiles_repeated() {
 
 #[test]
 fn hanging_worker_is_replaced() {
-    let mut crowd = Crowd::new(2);
-    crowd.start(1);
-    for _ in 0..6 {
-        crowd.work();
-    }
+    let mut crowd = Crowd::at_work(2, 6);
     crowd.hanging.insert(1);
     crowd.work_off();
     assert!(!crowd.progress().finished);
@@ -590,11 +580,7 @@ fn hanging_worker_is_replaced() {
 #[test]
 fn slow_tiles_get_more_time() {
     fn limit(seconds: f64, failures: u32) -> f64 {
-        let mut crowd = Crowd::new(1);
-        crowd.start(1);
-        for _ in 0..3 {
-            crowd.work();
-        }
+        let mut crowd = Crowd::at_work(1, 3);
         let Some(Job::Tile(order)) = crowd.desks[0].pop_front() else {
             panic!("no tile");
         };

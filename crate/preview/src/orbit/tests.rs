@@ -43,15 +43,14 @@ fn points_in_front_follow_the_pointer() {
     // A point of the scene on the near side of the target must go right and down with the pointer.
     let camera = camera_from_above();
     let point = camera.target + (camera.eye - camera.target) * 0.1;
-    let on_screen = |c: Camera| {
-        let p = c.projection(1, 1);
-        let v = p.world_from_view.transpose() * (point - c.eye);
-        (v.x / -v.z, v.y / -v.z)
-    };
-    let (x, y) = on_screen(orbit(camera, 0.02, 0.0));
+    let [(x, y), (u, v)] = [[0.02, 0.0], [0.0, 0.02]].map(|[across, down]| {
+        let camera = orbit(camera, across, down);
+        let projection = camera.projection(1, 1);
+        let place = projection.world_from_view.transpose() * (point - camera.eye);
+        (place.x / -place.z, place.y / -place.z)
+    });
     assert!(x > 1e-4 && y.abs() < 1e-2, "{x} {y}");
-    let (x, y) = on_screen(orbit(camera, 0.0, 0.02));
-    assert!(y < -1e-4 && x.abs() < 1e-9, "{x} {y}");
+    assert!(v < -1e-4 && u.abs() < 1e-9, "{u} {v}");
 }
 
 #[test]

@@ -232,7 +232,7 @@ impl OptionSpec {
     }
 }
 
-/// Joins a name and the synopses of what it takes.
+/// Joins a name and the synopses of its operands.
 pub(super) fn join(name: &str, parameters: &[Parameter]) -> String {
     let mut text = name.to_owned();
     for parameter in parameters {

@@ -4,7 +4,6 @@
 //! parameter alone; the type is for the function that runs the command (see `takes!`).
 
 use super::parameter::{Arity, Kind, Names, OptionSpec, Parameter, Role, Unit};
-use crate::given::{Chosen, Values};
 use crate::limits::MAX_MAGNITUDE;
 use crate::operands::Share;
 use glam::DVec3;
@@ -27,7 +26,7 @@ pub struct Word;
 /// Type of colours and names of images.
 #[derive(Debug)]
 pub struct Backdrop;
-/// Type of text to the end of the line, of which the place is kept.
+/// Type of text to the end of the line; only its place is kept.
 #[derive(Debug)]
 pub struct Text;
 /// Type of operands that their command reads by itself.
@@ -260,21 +259,5 @@ impl<A, B, C> Choice<(A, B, C)> {
         _: fn() -> Slot<C>,
     ) -> Self {
         Self::of_kind(plain)
-    }
-}
-
-impl<K: Values> Choice<K> {
-    /// Returns the operands of an option that was given, if it is this one.
-    pub fn of<'a>(&self, chosen: &Chosen<'a>) -> Option<K::Of<'a>> {
-        if self.is(chosen) {
-            chosen.values().next::<K>()
-        } else {
-            None
-        }
-    }
-
-    /// Returns whether this is the option that was given.
-    pub fn is(&self, chosen: &Chosen<'_>) -> bool {
-        chosen.option.name == self.plain.name
     }
 }

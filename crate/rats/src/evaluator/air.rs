@@ -137,10 +137,10 @@ fn sky<'a>(
     run.note_replaced(command, run.air.sky.is_some());
     let horizon = options.last(&SKY_TO).unwrap_or(above);
     let intensity = options.last(&INTENSITY).unwrap_or(1.0) as f32;
-    let lit = |colour: Rgb| colour.map(|c| c * intensity);
+    let [colour, lit_horizon] = [above, horizon].map(|rgb| rgb.map(|c| c * intensity));
     let sky = Sky {
-        colour: lit(above),
-        horizon: lit(horizon),
+        colour,
+        horizon: lit_horizon,
         samples: options.last(&SAMPLES).unwrap_or(SKY_SAMPLES),
     };
     run.air.sky = Some((sky, [above, horizon]));

@@ -252,8 +252,8 @@ impl Vertices {
                 }
                 Shape::Function(function) => {
                     if let Form::Mesh(mesh) = &function.form {
-                        let own = |i: u32| self.numbers[first + i as usize];
-                        triangles.extend(mesh.triangles.iter().map(|t| t.map(own)));
+                        let own = &self.numbers[first..];
+                        triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| own[i as usize])));
                         first += mesh.positions.len();
                     }
                 }
@@ -265,15 +265,14 @@ impl Vertices {
 
     /// Gives the shapes their vertices back, moved.
     fn put(&self, parts: &mut [Part], moved: &[DVec3]) {
-        let mut numbers = self.numbers.iter().copied();
+        let mut places = self.numbers.iter().map(|&n| moved[n as usize]);
         let mut normals = Normals::default();
         for part in &mut *parts {
-            let mut next = || numbers.next().map_or(DVec3::ZERO, |n| moved[n as usize]);
             match &mut part.element.shape {
                 Shape::Bone(bone) => {
                     if let Skeleton::Triangle { corners } = &mut bone.skeleton {
                         let before = *corners;
-                        *corners = [next(), next(), next()];
+                        *corners = corners.map(|_| places.next().unwrap_or(DVec3::ZERO));
                         if let Some(own) = &mut bone.normals {
                             normals.turn(&before, corners, own);
                         }
@@ -283,7 +282,8 @@ impl Vertices {
                     if let Form::Mesh(mesh) = &mut function.form {
                         let to_own = function.to_world.inverse();
                         let count = mesh.positions.len();
-                        let positions = (0..count).map(|_| to_own.transform_point3(next()));
+                        let positions = (0..count)
+                            .map(|_| to_own.transform_point3(places.next().unwrap_or(DVec3::ZERO)));
                         *mesh = Arc::new(ImplicitMesh::new(
                             positions.collect(),
                             mesh.triangles.clone(),

@@ -39,7 +39,7 @@ impl<'a> Evaluator<'a> {
             let flow = self.node(node).or_else(|mut problem| {
                 let fatal = problem.fatal;
                 let span = problem.span.clone();
-                // What follows from an error that was reported is found and dropped soon.
+                // Errors that follow from a reported one are found and dropped quickly.
                 let cost = if problem.quiet {
                     20
                 } else {
@@ -180,17 +180,15 @@ impl<'a> Evaluator<'a> {
     /// Runs a command of the library, which is read when it is used for the first time.
     fn call_library(&mut self, command: &'a Command, name: &'static str) -> Outcome<Flow> {
         let symbol = self.scope.symbols.find(name);
-        let is_known = |run: &Self| symbol.is_some_and(|s| run.definitions.contains_key(&s));
-        if !is_known(self)
-            && let Some(file) = self.sources.find_built_in(&format!("{name}.rat"))
-        {
+        let is_new = symbol.is_none_or(|symbol| !self.definitions.contains_key(&symbol));
+        if is_new && let Some(file) = self.sources.find_built_in(&format!("{name}.rat")) {
             self.enter(&command.word_span)?;
             self.uses.push((self.file, command.span.clone()));
             self.run_file(file);
             self.uses.pop();
             self.depth -= 1;
         }
-        match symbol.filter(|_| is_known(self)) {
+        match symbol.filter(|symbol| self.definitions.contains_key(symbol)) {
             Some(symbol) => self.call(command, symbol),
             None => Err(self.unknown(command)),
         }

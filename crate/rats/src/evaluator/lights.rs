@@ -75,7 +75,7 @@ fn light<'a>(
             position: position(options, command)?,
         },
     };
-    // What says nothing about this kind of light is not passed over in silence.
+    // Options that mean nothing for this kind of light are reported.
     for chosen in options.iter() {
         let is_idle = match kind {
             LightKind::Point { .. } => DIRECTION.is(chosen) || ANGLE.is(chosen) || EDGE.is(chosen),

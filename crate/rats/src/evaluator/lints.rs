@@ -41,14 +41,15 @@ impl Evaluator<'_> {
             return;
         }
         let surfaces = scene.surfaces_apart();
-        let of = |body: u32| surfaces.iter().find(|surface| surface.body() == body);
         let contacts = scene.contacts.iter().zip(self.model.contact_places.clone());
         for (contact, (file, span)) in contacts {
             let [a, b] = contact.bodies;
             if a == b {
                 continue;
             }
-            let [Some(own), Some(other)] = [of(a), of(b)] else {
+            let [Some(own), Some(other)] =
+                [a, b].map(|body| surfaces.iter().find(|surface| surface.body() == body))
+            else {
                 let message = "one of these bodies has no soft shapes";
                 let hint = "only soft shapes touch: give a material a `blobbiness`";
                 self.say_at(file, Severity::Warning, &span, message, hint);
@@ -259,14 +260,16 @@ fn ball(scene: &Scene, element: &Element) -> Option<(DVec3, f64)> {
 /// Returns whether a ball is wholly outside the pyramid that the picture shows.
 fn is_outside(projection: &scene::Projection, centre: DVec3, radius: f64) -> bool {
     let view = projection.world_from_view.transpose() * (centre - projection.eye);
-    let beyond = |across: f64, tangent: f64| {
-        (across + tangent * view.z) / libm::sqrt(1.0 + tangent * tangent) > radius
-    };
     let [x, y] = projection.shift;
     let (w, h) = (projection.half_width, projection.half_height);
+    let sides = [
+        (view.x, w + x),
+        (-view.x, w - x),
+        (view.y, h + y),
+        (-view.y, h - y),
+    ];
     view.z > radius
-        || beyond(view.x, w + x)
-        || beyond(-view.x, w - x)
-        || beyond(view.y, h + y)
-        || beyond(-view.y, h - y)
+        || sides.iter().any(|(across, tangent)| {
+            (across + tangent * view.z) / libm::sqrt(1.0 + tangent * tangent) > radius
+        })
 }

@@ -181,7 +181,7 @@ fn insert_broken<'a>(run: &mut Evaluator<'a>, command: &'a Command) {
     }
 }
 
-/// Replaces a field by the value that was given, if it was.
+/// Replaces a field by a value, if one was given.
 fn set<T>(field: &mut T, given: Option<T>) {
     if let Some(value) = given {
         *field = value;
@@ -277,7 +277,7 @@ fn of_light(share: Share) -> Rgb {
 }
 
 impl Evaluator<'_> {
-    /// Notes the materials that nothing is made of, unless the reason may be an error.
+    /// Notes unused materials, unless an error may be the reason.
     pub(super) fn note_unused_materials(&mut self) {
         if self.report.has_errors() {
             return;

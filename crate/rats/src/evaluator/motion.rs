@@ -425,9 +425,9 @@ fn obstacle(part: &Part, into: &mut Vec<Obstacle>) -> bool {
             let Some(curves) = function.curves() else {
                 return false;
             };
-            let at = |p: DVec3| function.to_world.transform_point3(p);
             into.extend(curves.pieces().map(|[(a, from), (b, to)]| {
-                rod(at(a), at(b), from * part.growth, to * part.growth)
+                let [a, b] = [a, b].map(|p| function.to_world.transform_point3(p));
+                rod(a, b, from * part.growth, to * part.growth)
             }));
         }
         Shape::Quadric(_) => return false,

@@ -258,7 +258,7 @@ impl<'a> Palette<'a> {
     /// theirs.
     ///
     /// # Errors
-    /// As [`Self::layers`].
+    /// Fails as [`Self::layers`] does.
     pub fn stack(&self, together: &mut Texture, names: &[Name<'_>]) -> Outcome<()> {
         for name in names {
             let texture = self.texture(name)?;

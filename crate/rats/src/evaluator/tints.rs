@@ -84,14 +84,13 @@ pub fn materials(
 /// Returns the colours at a triangle's corners, which multiply those of a material.
 pub fn paint(material: usize, mesh: &TriangleMesh, triangle: usize) -> Option<Box<Paint>> {
     let colors = mesh.colors.as_ref()?;
-    let color = |corner: u32| {
-        let color = colors.get(corner as usize).copied().unwrap_or([1.0; 3]);
-        // A number that is none counts as 0.
-        color.map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 })
-    };
     Some(Box::new(Paint {
         finish: material as u32,
-        corners: mesh.triangles[triangle].map(color),
+        corners: mesh.triangles[triangle].map(|corner| {
+            let color = colors.get(corner as usize).copied().unwrap_or([1.0; 3]);
+            // A number that is none counts as 0.
+            color.map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 })
+        }),
     }))
 }
 
@@ -107,10 +106,8 @@ mod tests {
             vec![DVec3::ZERO; count as usize],
             (0..count).map(|i| [i; 3]).collect(),
         );
-        let sides = [34, 35, 36];
-        let step = |i: u32, k: usize| i / [1, 34, 34 * 35][k] % sides[k];
         let colors: Vec<Rgb> = (0..count)
-            .map(|i| [0, 1, 2].map(|k| step(i, k) as f32 / 36.0))
+            .map(|i| [i % 34, i / 34 % 35, i / (34 * 35) % 36].map(|step| step as f32 / 36.0))
             .collect();
         assert!(round(&mesh, &colors, STEPS[0]).is_none());
         assert!(round(&mesh, &colors, STEPS[2]).is_some());

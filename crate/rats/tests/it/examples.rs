@@ -37,7 +37,7 @@ fn no_complaints() {
             .iter()
             .find(|d| d.severity > Severity::Note);
         if *name == "coating" {
-            // What it shows is what this warning is about.
+            // It shows what this warning is about.
             let warning = complaint.map(|d| d.message.as_str());
             assert!(warning.is_some_and(|m| m.contains("coats")), "{warning:?}");
         } else {

@@ -289,7 +289,7 @@ fn magnitudes() {
     assert!(compiled.scene.elements.is_empty());
     assert_eq!(compiled.diagnostics.len(), 1);
     assert_eq!(compiled.diagnostics[0].severity, Severity::Warning);
-    // Nor may a material grow beyond bounds with its shape.
+    // A material may not grow beyond bounds with its shape, either.
     for factor in ["1e9", "1e-9"] {
         let compiled = run(format!(
             "fragile all\nblobscale absolute\nsurface s diff Red, blob -1, rad 1\nobject A\n\

@@ -91,7 +91,7 @@ fn pixels_that_are_not_square_stretch_the_picture() {
         assert!((b.half_height / a.half_height - pixel).abs() < 1e-12);
         assert_eq!((a.half_width, a.shift), (b.half_width, b.shift));
     }
-    // What makes no sense is repaired.
+    // Senseless values are repaired.
     for pixel in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
         let view = Camera { pixel, ..square }.projection(3, 2).view(0.0, 0.0);
         assert!(view.is_finite(), "{pixel}");

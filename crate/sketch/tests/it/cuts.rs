@@ -262,7 +262,7 @@ fn curves_and_nodes_are_taken_away_and_come() {
 
 #[test]
 fn texts_with_mistakes_are_left_or_changed_but_never_lost() {
-    // What is no block of a skeleton is not changed; nothing panics.
+    // Texts without the block of a skeleton are not changed, and nothing panics.
     for text in [
         "skeleton",
         "skeleton a, s {",

@@ -251,11 +251,11 @@ impl MeshPanel {
         {
             if response.dragged_by(egui::PointerButton::Primary) {
                 let half = 0.5 * response.rect.width().min(response.rect.height());
-                let place = |at: egui::Pos2| {
+                let [from, to] = [at - moved, at].map(|at| {
                     let from_middle = (at - response.rect.center()) / half;
                     [f64::from(from_middle.x), -f64::from(from_middle.y)]
-                };
-                view.turn(place(at - moved), place(at));
+                });
+                view.turn(from, to);
             } else {
                 view.shift([moved.x, moved.y].map(|way| f64::from(way) * scale), pixels);
             }

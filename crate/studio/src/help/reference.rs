@@ -197,8 +197,10 @@ fn add_default(meaning: &str, default: &str) -> String {
 fn matches(spec: &CommandSpec, search: &str) -> bool {
     search.split_whitespace().all(|word| {
         let word = word.to_lowercase();
-        let has = |text: &str| text.to_lowercase().contains(&word);
-        has(spec.name) || has(spec.meaning) || spec.options.iter().any(|option| has(option.name))
+        [spec.name, spec.meaning]
+            .into_iter()
+            .chain(spec.options.iter().map(|option| option.name))
+            .any(|text| text.to_lowercase().contains(&word))
     })
 }
 

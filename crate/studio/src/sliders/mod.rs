@@ -75,15 +75,7 @@ impl Sliders {
                 });
             });
         }
-        if dragging != self.dragging {
-            self.dragging = dragging;
-            // The step must begin before the first change of the drag and end after its last.
-            if dragging {
-                wishes.push_first(TextWish::Hold);
-            } else {
-                wishes.push(TextWish::Release);
-            }
-        }
+        wishes.hold_while(dragging, &mut self.dragging);
     }
 
     /// Shows a slider. Returns whether a drag continues, and the number if it changed.

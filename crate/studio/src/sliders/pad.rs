@@ -127,10 +127,10 @@ fn numbers(at: Pos2, rect: Rect, (low, high): (f64, f64)) -> [f64; 2] {
 
 /// Returns the position of x and y in the square.
 fn place(x: f64, y: f64, rect: Rect, (low, high): (f64, f64)) -> Pos2 {
-    let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
+    let [x, y] = [x, y].map(|value| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32);
     pos2(
-        rect.left() + share(x) * rect.width(),
-        rect.bottom() - share(y) * rect.height(),
+        rect.left() + x * rect.width(),
+        rect.bottom() - y * rect.height(),
     )
 }
 

@@ -204,13 +204,12 @@ fn gesture(
     grasp: Grasp,
 ) -> Option<Camera> {
     let size = rect.size().max(Vec2::splat(1.0));
-    let share = |moved: Vec2| (f64::from(moved.x / size.x), f64::from(moved.y / size.y));
     let pixels = [size.x as u32, size.y as u32];
     let mut new = camera;
     let touch = ui.input(egui::InputState::multi_touch);
     if let Some(touch) = touch {
         if rect.contains(touch.center_pos) {
-            let (across, down) = share(touch.translation_delta);
+            let [across, down] = <[f32; 2]>::from(touch.translation_delta / size).map(f64::from);
             new = if grasp.draws && touch.num_touches == 2 {
                 orbit::orbit(new, across, down)
             } else {
@@ -221,7 +220,7 @@ fn gesture(
             }
         }
     } else if response.dragged() && response.drag_delta() != Vec2::ZERO {
-        let (across, down) = share(response.drag_delta());
+        let [across, down] = <[f32; 2]>::from(response.drag_delta() / size).map(f64::from);
         let (shift, space) =
             ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::Space)));
         let first = response.dragged_by(PointerButton::Primary);

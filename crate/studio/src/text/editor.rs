@@ -279,11 +279,6 @@ impl Editor {
         }
         let (colouring, folding, file) =
             (&mut self.look.colouring, &mut self.look.folding, self.file);
-        let mut layouter = |ui: &Ui, text: &dyn TextBuffer, width: f32| {
-            let job = colouring.job(text.as_str(), palette, dark, width);
-            let job = folding::hide(job, &folding.update(file, text.as_str()));
-            ui.fonts_mut(|fonts| fonts.layout_job(job))
-        };
         let margin = Margin {
             left: gutter.min(120.0) as i8,
             right: 12,
@@ -306,7 +301,11 @@ impl Editor {
             .desired_width(f32::INFINITY)
             .min_size(egui::vec2(0.0, height))
             .hint_text("Write a dataset here, or pick an example.")
-            .layouter(&mut layouter)
+            .layouter(&mut |ui: &Ui, text: &dyn TextBuffer, width: f32| {
+                let job = colouring.job(text.as_str(), palette, dark, width);
+                let job = folding::hide(job, &folding.update(file, text.as_str()));
+                ui.fonts_mut(|fonts| fonts.layout_job(job))
+            })
             .show(ui);
         let (galley, origin) = (output.galley.clone(), output.galley_pos);
         if output.response.response.changed() {

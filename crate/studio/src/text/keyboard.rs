@@ -9,7 +9,7 @@
 //! - keys wait while the focus is new: a widget says only then which arrow keys it keeps. Those
 //!   that come before go from widget to widget, and take the focus along.
 //!
-//! Whatever comes after a key that waits waits with it.
+//! Everything that comes after a waiting key waits with it.
 
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 

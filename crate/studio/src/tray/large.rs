@@ -121,8 +121,8 @@ impl Large {
             return;
         };
         let palette = theme::palette(ui.visuals());
-        let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-        let (back, forth) = (pressed(Key::ArrowLeft), pressed(Key::ArrowRight));
+        let [back, forth] = [Key::ArrowLeft, Key::ArrowRight]
+            .map(|key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key)));
         let mut turn = |forward: bool| {
             let count = items.len();
             let step = if forward { 1 } else { count - 1 };

@@ -50,14 +50,13 @@ impl Order {
         let mut read: Vec<&str> = compiled.tools.iter().flat_map(Tool::reads).collect();
         field::heap_sort(&mut read, |a, b| a < b);
         read.dedup();
-        let is_read = |name: &str| read.binary_search(&name).is_ok();
         let assets = session.assets().iter();
         Self {
             assets: assets
-                .filter(|asset| is_read(&asset.name))
+                .filter(|asset| read.binary_search(&&*asset.name).is_ok())
                 .cloned()
                 .collect(),
-            reads_picture: picture.1 && is_read(&picture.0),
+            reads_picture: picture.1 && read.binary_search(&&*picture.0).is_ok(),
             picture,
             tools: compiled.tools.clone(),
         }

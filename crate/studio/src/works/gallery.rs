@@ -72,9 +72,8 @@ impl Gallery {
             let heading = ui.label(RichText::new("Examples").heading().color(palette.strong));
             places::note(ui.ctx(), "examples heading", heading.rect);
         }
-        let group_of = |index: &usize| examples::ALL[*index].group;
-        for group in found.chunk_by(|a, b| group_of(a) == group_of(b)) {
-            ui.label(RichText::new(group_of(&group[0])).color(palette.weak));
+        for group in found.chunk_by(|a, b| examples::ALL[*a].group == examples::ALL[*b].group) {
+            ui.label(RichText::new(examples::ALL[group[0]].group).color(palette.weak));
             for row in group.chunks(columns as usize) {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = gap;
@@ -327,15 +326,15 @@ fn strips(inner: Rect, place: Rect, size: egui::Vec2) -> [(Rect, Rect); 2] {
             place.with_max_x(inner.left()),
             place.with_min_x(inner.right()),
         ];
-        let at = |x| Rect::from_min_max(pos2(x, 0.0), pos2(x, 1.0));
-        [(left, at(column)), (right, at(1.0 - column))]
+        [(left, column), (right, 1.0 - column)]
+            .map(|(strip, x)| (strip, Rect::from_min_max(pos2(x, 0.0), pos2(x, 1.0))))
     } else {
         let [above, below] = [
             place.with_max_y(inner.top()),
             place.with_min_y(inner.bottom()),
         ];
-        let at = |y| Rect::from_min_max(pos2(0.0, y), pos2(1.0, y));
-        [(above, at(row)), (below, at(1.0 - row))]
+        [(above, row), (below, 1.0 - row)]
+            .map(|(strip, y)| (strip, Rect::from_min_max(pos2(0.0, y), pos2(1.0, y))))
     }
 }
 

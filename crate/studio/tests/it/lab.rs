@@ -1,14 +1,11 @@
 //! The lab, driven as a user drives it: its links, its lessons, and the work that it leaves alone.
 
-use browser::Backend;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Theme, pos2, vec2};
-use egui_kittest::Harness;
+use crate::driver::Window;
+use egui::{Event, Key, Modifiers, Theme, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use lab::{Lesson, Report};
 use rats::{File, Project};
-use studio::app::App;
 use studio::page::Parts;
-use studio::places;
 use studio::scripts::request::Request;
 
 const TEXT: &str = "\
@@ -22,52 +19,13 @@ sphere flesh 0.5, 0 0 0
 const DESK: [f32; 2] = [1440.0, 900.0];
 const PHONE: [f32; 2] = [390.0, 844.0];
 
-struct Window {
-    harness: Harness<'static, Option<App>>,
-    parts: Parts,
-}
-
 impl Window {
-    fn open([width, height]: [f32; 2], parts: Parts) -> Self {
-        browser::set_stopped(false);
-        let inner = parts.clone();
-        let harness = Harness::builder()
-            .with_size(vec2(width, height))
-            .with_step_dt(0.05)
-            // Buttons fade while the pointer leaves them.
-            .with_max_steps(100)
-            .build_ui_state(
-                move |ui, app: &mut Option<App>| {
-                    let app = app.get_or_insert_with(|| {
-                        App::new(ui.ctx(), None, Backend::None, inner.clone())
-                    });
-                    app.tick(ui.ctx());
-                    app.show(ui);
-                },
-                None,
-            );
-        let mut window = Self { harness, parts };
-        window.steps(4);
-        window
-    }
-
     /// Opens a window with a small text of the user's own, whose picture is soon finished.
-    fn with_work(size: [f32; 2]) -> Self {
+    fn with_work([width, height]: [f32; 2]) -> Self {
         browser::set_hash("");
-        let mut window = Self::open(size, Parts::new());
-        let file = File {
-            name: String::from("main.rat"),
-            text: TEXT.to_owned(),
-        };
-        let project = Project { files: vec![file] };
-        let request = Request::Load(project, Box::new(|result| result.unwrap()));
-        window.parts.requests.ask(request);
-        window.steps(3);
+        let mut window = Self::open(width, height);
+        window.load(TEXT);
         window
-    }
-
-    fn steps(&mut self, steps: usize) {
-        self.harness.run_steps(steps);
     }
 
     fn lab(&self) -> Option<Report> {
@@ -81,48 +39,9 @@ impl Window {
             .unwrap_or_else(|| panic!("no {name} in {:?}", lab.readings))
     }
 
-    fn text(&self) -> String {
-        self.parts.outbox.borrow().project.files[0].text.clone()
-    }
-
-    fn place(&self, name: &str) -> Rect {
-        let places = places::all(&self.harness.ctx);
-        *places
-            .get(name)
-            .unwrap_or_else(|| panic!("no {name} among {:?}", places.keys()))
-    }
-
-    fn press(&self, at: Pos2, pressed: bool) {
-        self.harness.event(Event::PointerButton {
-            pos: at,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers: Modifiers::NONE,
-        });
-    }
-
-    fn click(&mut self, name: &str) {
-        let at = self.place(name).center();
-        self.harness.event(Event::PointerMoved(at));
+    fn click_on(&mut self, name: &str) {
+        self.click(self.place(name).center());
         self.steps(1);
-        self.press(at, true);
-        self.steps(1);
-        self.press(at, false);
-        self.steps(3);
-    }
-
-    fn drag(&mut self, from: Pos2, to: Pos2) {
-        self.harness.event(Event::PointerMoved(from));
-        self.steps(1);
-        self.press(from, true);
-        self.steps(1);
-        for step in 1..=8 {
-            let at = from + (to - from) * (step as f32 / 8.0);
-            self.harness.event(Event::PointerMoved(at));
-            self.steps(1);
-        }
-        self.press(to, false);
-        self.steps(2);
     }
 
     /// Follows a link in the open page, or goes back to it.
@@ -150,7 +69,7 @@ fn the_lab_is_one_click_away_and_leaves_the_work_alone() {
     for size in [DESK, PHONE] {
         let mut window = Window::with_work(size);
         assert!(window.lab().is_none());
-        window.click("lab");
+        window.click_on("lab");
         assert_eq!(window.lab().unwrap().lesson, "kernels");
         assert_eq!(browser::hash(), "#lab=kernels");
         assert_eq!(window.text(), TEXT);
@@ -160,14 +79,14 @@ fn the_lab_is_one_click_away_and_leaves_the_work_alone() {
             .key_press_modifiers(Modifiers::COMMAND, Key::Z);
         window.harness.event(Event::Text(String::from("x")));
         window.steps(3);
-        window.click("lab lesson convolution");
+        window.click_on("lab lesson convolution");
         assert_eq!(browser::hash(), "#lab=convolution");
-        window.click("lab back");
+        window.click_on("lab back");
         assert!(window.lab().is_none());
         assert_eq!(browser::hash(), "");
         assert_eq!(window.text(), TEXT);
         // The lab remembers the lesson.
-        window.click("lab");
+        window.click_on("lab");
         assert_eq!(window.lab().unwrap().lesson, "convolution");
         window.harness.key_press(Key::Escape);
         window.steps(3);
@@ -180,7 +99,7 @@ fn the_lab_is_one_click_away_and_leaves_the_work_alone() {
 fn links_open_lessons_and_the_way_back_leads_to_the_work() {
     let parts = Parts::new();
     browser::set_hash("#lab=superposition");
-    let mut window = Window::open(DESK, parts.clone());
+    let mut window = Window::open_with(DESK[0], DESK[1], parts.clone());
     assert_eq!(window.lab().unwrap().lesson, "superposition");
     assert!(window.parts.shelf.borrow().entries().is_empty());
     // As the browser's buttons do.
@@ -207,9 +126,9 @@ fn links_open_lessons_and_the_way_back_leads_to_the_work() {
     assert!(window.lab().is_none());
     assert_eq!(window.text(), "# theirs\n");
     // From there to the lab and back: the same work, the same address.
-    window.click("lab");
+    window.click_on("lab");
     assert_eq!(browser::hash(), "#lab=slice");
-    window.click("lab back");
+    window.click_on("lab back");
     assert_eq!(browser::hash(), fragment);
     assert_eq!(window.text(), "# theirs\n");
     browser::set_hash("");
@@ -282,7 +201,7 @@ fn grips_change_their_readings() {
     let grip = window.place("lab grip probe").center();
     window.drag(grip, grip + vec2(120.0, 0.0));
     assert!(window.reading("probe") > before + 0.5);
-    window.click("lab add");
+    window.click_on("lab add");
     assert_eq!(window.reading("bars"), 3.0);
     let end = window.place("lab right end of bar 1").center();
     let bar = window.place("lab bar 1");
@@ -304,7 +223,7 @@ fn grips_change_their_readings() {
     let at = |share: f32| pos2(slider.left() + slider.width() * share, slider.center().y);
     window.drag(at(0.4), at(0.8));
     assert!(window.reading("radius") > 1.5);
-    window.click("lab kernel gauss");
+    window.click_on("lab kernel gauss");
     assert_eq!(window.reading("chosen"), 2.0);
     browser::set_hash("");
 }
@@ -349,7 +268,7 @@ fn spans_are_held_against_the_exact_surface() {
         "{two} {four} {certified}"
     );
     // Another view is another comparison, begun at once and not finished in one frame.
-    window.click("lab choice from the front");
+    window.click_on("lab choice from the front");
     window.until("the other maps", |window| {
         window.reading("finished") == 1.0 && window.lab().unwrap().waiting == 0
     });
@@ -371,7 +290,7 @@ fn small_pictures_do_not_disturb_the_picture_of_the_editor() {
     });
     assert_eq!(window.lab().unwrap().refused, 0);
     // Back, the picture is there as it was: nothing is traced again.
-    window.click("lab back");
+    window.click_on("lab back");
     window.steps(20);
     let outbox = window.parts.outbox.borrow();
     assert_eq!(outbox.report.phase, "done");
@@ -398,7 +317,7 @@ fn every_lesson_opens_as_a_dataset_that_compiles() {
     for lesson in Lesson::all() {
         let parts = Parts::new();
         browser::set_hash("");
-        let mut window = Window::open(DESK, parts.clone());
+        let mut window = Window::open_with(DESK[0], DESK[1], parts.clone());
         // A work of the user's own.
         let editor = window.place("editor");
         let at = editor.center_top() + vec2(0.0, 20.0);
@@ -413,7 +332,7 @@ fn every_lesson_opens_as_a_dataset_that_compiles() {
         let own = window.text();
         assert!(own.contains("# mine"));
         window.follow(&lesson.hash());
-        window.click("lab dataset");
+        window.click_on("lab dataset");
         window.steps(4);
         assert!(window.lab().is_none(), "{lesson:?}");
         let text = window.text();
@@ -433,13 +352,13 @@ fn every_lesson_opens_as_a_dataset_that_compiles() {
 fn a_cell_opens_in_the_editor() {
     let mut window = Window::with_work(DESK);
     window.follow("#lab=grid");
-    window.click("lab cell 1 2");
+    window.click_on("lab cell 1 2");
     assert!(window.lab().is_none());
     assert!(window.text().contains("make a T"));
     window.follow("#lab=chart");
     let name = "lab cell cauchy arc";
-    window.click(name);
-    window.click("lab open cell");
+    window.click_on(name);
+    window.click_on("lab open cell");
     assert!(window.text().contains("The kernel cauchy on an arc"));
     window.harness.get_by_label("Lab");
     browser::set_hash("");

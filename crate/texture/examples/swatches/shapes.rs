@@ -29,7 +29,7 @@ pub fn ball(shift: DVec3, turn: DMat3) -> Shape {
     one(
         Box::new(|p| p.length() - 1.0),
         Box::new(|p| uv::sphere(DVec3::ZERO, p)),
-        // Tilted, so that both the ends and the sides of what grows along z are seen.
+        // Tilted, so that both ends and sides of patterns along z are seen.
         turn,
         shift,
     )

@@ -384,7 +384,7 @@ fn mixtures_are_weighted_means() {
     assert!((equal.diffuse - 0.5 * (a.diffuse + b.diffuse)).length() < 1e-6);
     let huge = blend(&[(1e308, a), (1e308, b)]).unwrap();
     assert!((huge.diffuse - equal.diffuse).length() < 1e-6);
-    // Opposite normals have no mean: that of the larger weight stays.
+    // Opposite normals have no mean: the one with the larger weight stays.
     let c = Surface {
         normal: -a.normal,
         ..a

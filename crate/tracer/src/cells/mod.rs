@@ -299,7 +299,7 @@ impl Cells {
         let mut turns = None;
         if flat.is_flat() {
             turns = function.turn_smoothly(flat.part.as_deref(), ball, step);
-            // Where the gradient jumps its differences would not tell a second derivative.
+            // Where the gradient jumps, its differences say nothing about second derivatives.
             if turns.is_none() && bend.jump == 0.0 {
                 turns = Some(DVec3::AXES.map(|axis| {
                     let beside = ball.center + axis * step;

@@ -1,10 +1,11 @@
 //! First crossings of rays with the surface in a piece of their way, and the surface there.
-use super::piece::Piece;
-use super::{FarBody, FarQuery, FarWork, ROUNDING};
+use super::body::FarBody;
+use super::piece::{Known, Piece};
+use super::query::{FarQuery, FarWork, ROUNDING};
 use crate::blob_march::{
-    Backdrop, Bounded, LEVEL, MarchRays, Marched, RayBlobs, extremes, march_before, mask, values,
+    Bounded, LEVEL, MarchRays, Marched, RayBlobs, extremes, march_before, mask, values,
 };
-use crate::layout::PACKET;
+use crate::layout::lanes_in;
 use crate::ray::Ray;
 use crate::root_isolation::{Along, RootIsolator};
 use crate::surface_samples::{COARSEST_OF_BLOBS, FINEST, NEAR_ENOUGH};
@@ -16,13 +17,6 @@ use wide::f32x8;
 const MOST_REFINING: u32 = 12;
 /// Largest error of a refined hit, excess over slope, as a part of the tolerance.
 const REFINED: f32 = 0.25;
-
-/// The backdrop of a piece, the sum of all that is not among its blobs, with its error.
-#[derive(Clone, Copy)]
-pub struct Known {
-    pub backdrop: Backdrop,
-    pub error: f64,
-}
 
 /// The places at which a march begins.
 #[derive(Clone, Copy)]
@@ -138,7 +132,7 @@ impl FarBody {
         let [first, last] = marched.doubt.map(f32x8::to_array);
         let mut t = marched.t.to_array();
         let mut between = marched.between.map(f32x8::to_array);
-        for lane in (0..PACKET).filter(|i| marched.doubtful >> i & 1 != 0) {
+        for lane in lanes_in(marched.doubtful) {
             let mut isolator = RootIsolator::default();
             isolator.list.extend(self.numbers());
             let mut found = None;
@@ -208,7 +202,7 @@ impl FarBody {
         }
         let lanes = mask(met);
         let t = at.to_array();
-        for lane in (0..PACKET).filter(|i| met >> i & 1 != 0) {
+        for lane in lanes_in(met) {
             work.samples.t[lane] = piece.t + f64::from(t[lane]);
         }
         for (own, new) in work.samples.gradient.iter_mut().zip(gradient) {

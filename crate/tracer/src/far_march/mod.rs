@@ -17,152 +17,39 @@
 //! So the surface found is that of a field that differs from the true one by a stated bound, which
 //! counts like rounding: what it may hide is searched again among all points in double precision.
 //!
-//! `piece.rs` is a packet's way through a cell, `points.rs` prepares the points near it, `hits.rs`
-//! follows the rays and samples the surface where they meet it.
+//! `body.rs` prepares a body, `piece.rs` is a packet's way through a cell, `points.rs` prepares the
+//! points near it, `hits.rs` follows the rays and samples the surface where they meet it.
+mod body;
 mod hits;
 mod piece;
 mod points;
+mod query;
 
 use crate::beam::Beam;
-use crate::blob_march::{RayBlob, RayInterval};
-use crate::layout::PACKET;
+use crate::layout::{PACKET, lanes_in};
 use crate::ray::Ray;
-use crate::root_isolation::BoundedTerms;
-use crate::surface_samples::SurfaceSamples;
 use crate::walk::Quest;
+use body::ROOM;
 use field::far_field::{Cell, FEW_NEAR, LOOSE, SMALLEST};
-use field::{Cut, FarField, Primitive, THRESHOLD};
+use field::{Cut, THRESHOLD};
 use glam::DVec3;
+use hits::Start;
 use piece::{Piece, leaves};
-use points::Points;
+use query::ROUNDING;
 use std::sync::Arc;
 use wide::f32x8;
 
-/// Fewest points for which this way pays.
-const FEWEST: usize = 64;
-/// Most finishes in a body.
-const MOST_FINISHES: usize = 64;
+pub(crate) use body::FarBody;
+pub use query::{FarQuery, FarWork};
+
 /// Largest error of a cell's polynomial; beyond it rounding is too large for this way.
 const MOST_OF_CELLS: f64 = 2e-4 * THRESHOLD;
-/// Bound on the rounding of sums in single precision near T.
-const ROUNDING: f64 = 4e-6 * THRESHOLD;
-/// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
-const ROOM: f64 = 1.25;
 /// Near points of a cell beyond which a packet that is too wide for the cell's parts is divided.
 const MANY: usize = 128;
 /// Most cells that a packet visits.
 const MOST_CELLS: u32 = 4096;
 
-/// The points of a body with their hierarchy.
-pub(crate) struct FarBody {
-    field: FarField,
-    points: Points,
-    /// Number of the body's first primitive.
-    first: usize,
-    /// Number of its primitives.
-    count: usize,
-    /// The finishes; if there are several, each with the field of those of its primitives that add
-    /// to the body's.
-    finishes: Vec<(u32, Option<FarField>)>,
-    /// Ball that holds the surface.
-    center: DVec3,
-    radius: f64,
-}
-
-/// Working space of one thread.
-#[derive(Default)]
-pub struct FarWork {
-    blobs: Vec<RayBlob>,
-    intervals: Vec<RayInterval>,
-    tops: Vec<f32x8>,
-    /// Positions relative to the middle of the present piece, point by point of the cell's list.
-    places: Vec<[f32; 3]>,
-    /// Indices into the cell's list: of points that are blobs, and of those that are spans.
-    strong: Vec<u32>,
-    weak: Vec<u32>,
-    /// Surface samples at the hits of the last packet.
-    pub samples: SurfaceSamples,
-    pub evaluations: u64,
-    /// Rays searched again in double precision.
-    pub doubts: u64,
-}
-
-/// A query for the rays of a packet.
-#[derive(Clone, Copy)]
-pub struct FarQuery<'r> {
-    pub rays: &'r [Ray; PACKET],
-    /// End of each ray.
-    pub limits: &'r [f64; PACKET],
-    /// The rays to follow, a bit each.
-    pub alive: u32,
-    pub quest: Quest,
-    /// Width of a pixel at distance 1.
-    pub pixel: f64,
-    /// The scene's primitives with their bounds.
-    pub sight: BoundedTerms<'r>,
-    /// Length of rays below which nothing is resolved.
-    pub resolution: f64,
-}
-
 impl FarBody {
-    /// Prepares a body of primitives numbered from `first` on, with the radius of a ball outside
-    /// which the field is below T. `None` if it is no body of many points of one endless kernel
-    /// that add to the field. Those cells of an earlier body that still hold are taken over.
-    pub fn new(
-        primitives: &[Primitive],
-        finishes: &[u32],
-        first: usize,
-        (center, radius): (DVec3, f64),
-        earlier: Option<&Self>,
-    ) -> Option<Self> {
-        // A field that falls as 1/r is so large where there are many elements that its rounding
-        // leaves nothing to save.
-        if !primitives.iter().all(|p| p.kernel.is_finite_over(1)) {
-            return None;
-        }
-        if primitives.len() < FEWEST || !(radius > 0.0 && radius < f64::INFINITY) {
-            return None;
-        }
-        let points = Points::of(primitives)?;
-        let (middle, half) = cube(center, radius);
-        let changed = earlier.and_then(|earlier| points.changes_from(&earlier.points));
-        let earlier = earlier.filter(|_| changed.is_some());
-        let changed: Arc<[u32]> = changed.unwrap_or_default().into();
-        let field = FarField::new(primitives, middle, half).surface_only();
-        let field = field.after(earlier.map(|earlier| &earlier.field), &changed);
-        let mut members = finishes.to_vec();
-        members.sort_unstable();
-        members.dedup();
-        if members.len() > MOST_FINISHES {
-            return None;
-        }
-        let mut fields = Vec::new();
-        for &finish in &members {
-            let own = (members.len() > 1).then(|| {
-                let field = field.of_positive(|i| finishes[i as usize] == finish);
-                let before = earlier.and_then(|earlier| {
-                    let mut finishes = earlier.finishes.iter();
-                    finishes.find(|(other, _)| *other == finish)?.1.as_ref()
-                });
-                field.after(before, &changed)
-            });
-            fields.push((finish, own));
-        }
-        Some(Self {
-            points,
-            field,
-            first,
-            count: primitives.len(),
-            finishes: fields,
-            center,
-            radius,
-        })
-    }
-
-    fn primitives<'a>(&self, query: &FarQuery<'a>) -> &'a [Primitive] {
-        &query.sight.primitives[self.first..self.first + self.count]
-    }
-
     /// Finds the first crossings of rays with the surface; for [`Quest::Entry`] only whether there
     /// is one from outside. Returns the rays that cross, a bit each, with the surface there in
     /// `work.samples`. `None` if this way does not serve these rays; the caller then takes the
@@ -186,7 +73,7 @@ impl FarBody {
         work: &mut FarWork,
     ) -> Option<u32> {
         let primitives = self.primitives(query);
-        let lanes = (0..PACKET).filter(|i| alive >> i & 1 != 0);
+        let lanes = lanes_in(alive);
         let followed: Vec<Ray> = lanes.clone().map(|i| query.rays[i]).collect();
         let beam = Beam::around(&followed)?;
         let [first, last] = self.range(&beam)?;
@@ -211,17 +98,13 @@ impl FarBody {
             }
             let place = beam.axis.at(t + 1e-9 * root.half);
             let room = (LOOSE - 1.0) * (1.0 - 1e-6);
-            // How wide the beam is where it leaves a cell of this size.
-            let width = |half: f64| {
-                let last = t + 4.0 * half;
-                beam.width(last) + beam.lag(last)
-            };
-            if width(root.half) > room * root.half {
+            // The beam where it leaves a cell is compared with the cell's size.
+            if beam.extent(t + 4.0 * root.half) > room * root.half {
                 return None;
             }
             // Back to the smallest cell that still holds the beam.
             while let [_, .., cell] = &path[..]
-                && (!cell.holds(place) || width(cell.half) > room * cell.half)
+                && (!cell.holds(place) || beam.extent(t + 4.0 * cell.half) > room * cell.half)
             {
                 path.pop();
             }
@@ -235,7 +118,7 @@ impl FarBody {
                 if cell.near.len() <= FEW_NEAR || half < SMALLEST * root.half {
                     break false;
                 }
-                is_wide = width(half) > room * half;
+                is_wide = beam.extent(t + 4.0 * half) > room * half;
                 if is_wide {
                     break false;
                 }
@@ -271,13 +154,35 @@ impl FarBody {
         Some(met)
     }
 
+    /// Follows rays through a piece of their way among points. Returns those that cross the surface
+    /// there, a bit each; `None` if they must be followed in another way.
+    fn follow_points(
+        &self,
+        query: &FarQuery<'_>,
+        piece: &Piece<'_>,
+        alive: u32,
+        is_start: bool,
+        work: &mut FarWork,
+    ) -> Option<u32> {
+        let Some(known) = self.points.prepare(piece, work) else {
+            return Some(0);
+        };
+        let [guess, first] = self.points.guess(piece, work);
+        let start = Start {
+            guess,
+            first,
+            is_start,
+        };
+        self.follow(query, piece, &known, alive, start, work)
+    }
+
     /// Returns the parameters between which a beam may meet the surface's ball; `None` if the beam
     /// is too wide for the hierarchy. The range is empty if the beam misses the ball.
     fn range(&self, beam: &Beam) -> Option<[f64; 2]> {
         let away = self.center - beam.axis.origin;
         let along = away.dot(beam.axis.direction);
         let last = (along + self.radius).at_least(0.0);
-        let width = beam.width(last) + beam.lag(last);
+        let width = beam.extent(last);
         if width.is_nan() || width > 0.1 * (ROOM - 1.0) * self.radius {
             return None;
         }
@@ -292,22 +197,10 @@ impl FarBody {
     }
 }
 
-/// Returns the middle and half the side of the hierarchy's cube, given the ball that holds the
-/// surface. Both are multiples of a step of 1/32 to 1/16 of the radius, so that small edits leave
-/// the cube where it is.
-fn cube(center: DVec3, radius: f64) -> (DVec3, f64) {
-    let step = libm::exp2(libm::floor(libm::log2(radius))) / 16.0;
-    let middle = center.to_array().map(|x| libm::round(x / step) * step);
-    (
-        middle.into(),
-        libm::ceil(ROOM * radius / step) * step + step,
-    )
-}
-
 /// Divides two or more rays by their places at a parameter.
 fn halves(rays: &[Ray; PACKET], alive: u32, t: f64) -> [u32; 2] {
     let places = rays.map(|ray| ray.at(t));
-    let lanes = (0..PACKET).filter(|i| alive >> i & 1 != 0);
+    let lanes = lanes_in(alive);
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for i in lanes.clone() {
         low = low.min(places[i]);
@@ -471,6 +364,18 @@ mod tests {
         assert_eq!(first(outside, 1.0), Some(0));
     }
 
+    fn trace_middle(picture: &crate::Picture) -> Vec<u8> {
+        let tile = crate::Tile {
+            x: 192,
+            y: 128,
+            width: 128,
+            height: 128,
+        };
+        let stats = &mut crate::Stats::default();
+        let pixels = picture.trace(tile, crate::Pass::Full, &|| false, stats);
+        pixels.expect("pixels")
+    }
+
     /// A scene in which one ball has moved takes over cells of the scene before, and gives the same
     /// picture as if it were made anew.
     #[test]
@@ -487,32 +392,19 @@ mod tests {
         scene.camera.eye = DVec3::new(0.5, -4.0, 1.0).to_array().into();
         // Packets are narrow among so many pixels, of which those in the middle are enough.
         let size = [512, 384];
-        let trace = |picture: &crate::Picture| {
-            let tile = crate::Tile {
-                x: 192,
-                y: 128,
-                width: 128,
-                height: 128,
-            };
-            let never = &|| false;
-            let stats = &mut crate::Stats::default();
-            picture
-                .trace(tile, crate::Pass::Full, never, stats)
-                .expect("pixels")
-        };
         let mut picture = crate::Picture::new(&scene, size);
-        let mut pixels = trace(&picture);
+        let mut pixels = trace_middle(&picture);
         for number in [7, 100, 101] {
             let shape = &mut scene.elements[number].shape;
             let center = 0.2 * scene.camera.eye + numbers.vector(0.15);
             *shape = Shape::sphere(center, shape.radius());
             let mut next = crate::Picture::new(&scene, size);
-            let fresh = trace(&next);
+            let fresh = trace_middle(&next);
             assert!(fresh != pixels, "the edit shows");
             next = crate::Picture::new(&scene, size);
             assert!(picture.can_be_followed());
             next.follow(&mut picture);
-            pixels = trace(&next);
+            pixels = trace_middle(&next);
             let body = next.sampler.world.soft.bodies[0].far_body();
             let body = body.expect("many points");
             assert!(body.field.is_helped(), "{number}");

@@ -27,6 +27,13 @@ pub struct Piece<'a> {
     pub direction: [f32x8; 3],
 }
 
+/// The backdrop of a piece, the sum of all that is not among its blobs, with its error.
+#[derive(Clone, Copy)]
+pub struct Known {
+    pub backdrop: Backdrop,
+    pub error: f64,
+}
+
 impl<'a> Piece<'a> {
     /// Returns the part of the rays' way between two parameters.
     pub fn new(cell: &'a Cell, beam: &'a Beam, rays: &[Ray; PACKET], [from, to]: [f64; 2]) -> Self {
@@ -39,7 +46,7 @@ impl<'a> Piece<'a> {
             middle,
             t,
             half: 0.5 * (to - from),
-            width: beam.width(to) + beam.lag(to),
+            width: beam.extent(to),
             axis: beam.axis.direction.as_vec3().to_array().map(f32x8::splat),
             origin: core::array::from_fn(|k| f32x8::from_lanes(|i| at[i][k])),
             direction: core::array::from_fn(|k| f32x8::from_lanes(|i| rays[i].direction[k])),

@@ -1,7 +1,6 @@
 //! Near points of one kernel that add to the field: blobs, or spans where those are exact enough.
-use super::hits::{Known, Start};
-use super::piece::Piece;
-use super::{FarBody, FarQuery, FarWork, ROUNDING};
+use super::piece::{Known, Piece};
+use super::query::{FarWork, ROUNDING};
 use crate::blob_march::{RayBlob, RayInterval, mask};
 use crate::spans::Node;
 use field::far_field::{decay, power};
@@ -40,30 +39,6 @@ pub struct Point {
     strong: f32,
     /// Distance from the point's own surface at which a ray is well outside.
     lead: f32,
-}
-
-impl FarBody {
-    /// Follows rays through a piece of their way among points. Returns those that cross the surface
-    /// there, a bit each; `None` if they must be followed in another way.
-    pub(super) fn follow_points(
-        &self,
-        query: &FarQuery<'_>,
-        piece: &Piece<'_>,
-        alive: u32,
-        is_start: bool,
-        work: &mut FarWork,
-    ) -> Option<u32> {
-        let Some(known) = self.points.prepare(piece, work) else {
-            return Some(0);
-        };
-        let [guess, first] = self.points.guess(piece, work);
-        let start = Start {
-            guess,
-            first,
-            is_start,
-        };
-        self.follow(query, piece, &known, alive, start, work)
-    }
 }
 
 impl Points {
@@ -116,9 +91,9 @@ impl Points {
         Some(changed)
     }
 
-    /// Collects the blobs of a piece, and the backdrop of all that is not among them, with its
-    /// error. `None` if the field is below T in the whole piece.
-    fn prepare(&self, piece: &Piece<'_>, work: &mut FarWork) -> Option<Known> {
+    /// Collects the blobs of a piece, and the backdrop of all other points, with its error. `None`
+    /// if the field is below T in the whole piece.
+    pub fn prepare(&self, piece: &Piece<'_>, work: &mut FarWork) -> Option<Known> {
         let cell = piece.cell;
         let count = cell.near.len();
         let axis = piece.axis;
@@ -242,7 +217,7 @@ impl Points {
 
     /// Estimates the parameters at which rays cross: where they enter a point's own surface, and a
     /// little before.
-    fn guess(&self, piece: &Piece<'_>, work: &FarWork) -> [f32x8; 2] {
+    pub fn guess(&self, piece: &Piece<'_>, work: &FarWork) -> [f32x8; 2] {
         let far = f32x8::splat(f32::INFINITY);
         let start = f32x8::splat(-piece.half as f32);
         let (mut guess, mut first) = (far, far);

@@ -142,7 +142,7 @@ impl Tube {
             count += 1;
         }
         if !self.closed {
-            // Outwards at the start is against the arc's direction there, at the end along it.
+            // The outward direction is against the arc's at its start, and along it at its end.
             for (end, out) in [(self.start, -1.0), (self.end, 1.0)] {
                 let normal = [-end[1] * out, end[0] * out];
                 let rate = d[0] * normal[0] + d[1] * normal[1];
@@ -154,7 +154,7 @@ impl Tube {
             }
         }
         let cuts = &mut cuts[..count];
-        // Few, and those at one place stay in order.
+        // They are few, and equal ones stay in order.
         for end in 1..cuts.len() {
             let mut place = end;
             while place > 0 && cuts[place].0 < cuts[place - 1].0 {

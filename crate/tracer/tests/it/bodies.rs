@@ -363,6 +363,29 @@ fn move_scene(scene: &Scene, scale: f64, shift: DVec3) -> Scene {
     scene
 }
 
+/// Checks that the hits of a ray are on the surfaces, and that none is missed; returns the number
+/// of crossings that are found by marching.
+fn check_hits(surfaces: &[scene::Surface], hits: &[tracer::Hit], ray: (DVec3, DVec3)) -> usize {
+    let mut crossings = 0;
+    for surface in surfaces {
+        let found = hits.iter().filter(|hit| hit.body == Some(surface.body()));
+        let found: Vec<f64> = found.map(|hit| hit.t).collect();
+        let want = march(surface.function(), ray);
+        for t in &want {
+            let near = found.iter().any(|f| (f - t).abs() < 1e-8);
+            assert!(near, "missed {t}: {found:?}");
+        }
+        crossings += want.len();
+    }
+    for hit in hits {
+        let body = hit.body.expect("nothing is hard");
+        let own = surfaces.iter().find(|surface| surface.body() == body);
+        let value = own.map(|own| own.function().jet(hit.position).value);
+        assert!((value.expect("it has a surface") - THRESHOLD).abs() < 1e-6);
+    }
+    crossings
+}
+
 #[test]
 fn bodies_with_functions_are_seen_where_they_are() {
     let (mut crossings, mut of_functions) = (0, 0);
@@ -374,25 +397,13 @@ fn bodies_with_functions_are_seen_where_they_are() {
         let rays = rays(&mut Random::new(seed * 2 + 9), 3);
         for (ray, hit) in rays.iter().zip(picture.cast(&rays)) {
             let hits = picture.hits(ray.0, ray.1);
-            for surface in &surfaces {
-                let found = hits.iter().filter(|hit| hit.body == Some(surface.body()));
-                let found: Vec<f64> = found.map(|hit| hit.t).collect();
-                let want = march(surface.function(), *ray);
-                for t in &want {
-                    let near = found.iter().any(|f| (f - t).abs() < 1e-8);
-                    assert!(near, "{seed}: missed {t}: {found:?}");
-                }
-                crossings += want.len();
-            }
+            crossings += check_hits(&surfaces, &hits, *ray);
             for hit in &hits {
                 let body = hit.body.expect("nothing is hard");
                 let element = hit.element.expect("they are all of the scene") as usize;
                 assert_eq!(scene.elements[element].body, body);
                 let is_function = matches!(scene.elements[element].shape, Shape::Function(_));
                 of_functions += usize::from(is_function);
-                let own = surfaces.iter().find(|surface| surface.body() == body);
-                let value = own.map(|own| own.function().jet(hit.position).value);
-                assert!((value.expect("it has a surface") - THRESHOLD).abs() < 1e-6);
             }
             let firsts = [hit, picker.pick(ray.0, ray.1)].map(|hit| hit.map(|hit| hit.t));
             for first in firsts {
@@ -487,22 +498,7 @@ fn bodies_in_contact_are_seen_where_they_are() {
         let picture = Picture::new(&scene, [256; 2]);
         for ray in rays(&mut Random::new(seed * 2 + 19), 3) {
             let hits = picture.hits(ray.0, ray.1);
-            for surface in &surfaces {
-                let found = hits.iter().filter(|hit| hit.body == Some(surface.body()));
-                let found: Vec<f64> = found.map(|hit| hit.t).collect();
-                let want = march(surface.function(), ray);
-                for t in &want {
-                    let near = found.iter().any(|f| (f - t).abs() < 1e-8);
-                    assert!(near, "{seed}: missed {t}: {found:?}");
-                }
-                crossings += want.len();
-            }
-            for hit in &hits {
-                let body = hit.body.expect("nothing is hard");
-                let own = surfaces.iter().find(|surface| surface.body() == body);
-                let value = own.map(|own| own.function().jet(hit.position).value);
-                assert!((value.expect("it has a surface") - THRESHOLD).abs() < 1e-6);
-            }
+            crossings += check_hits(&surfaces, &hits, ray);
             for pair in hits.windows(2) {
                 if pair[1].t - pair[0].t < 1e-9 && pair[0].body != pair[1].body {
                     // One body is left before the other is entered.

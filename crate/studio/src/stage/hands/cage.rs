@@ -104,9 +104,9 @@ impl Cage {
         }
         let mut order: Vec<usize> = (0..handles.len()).collect();
         // The nearest last, above the others.
-        let depth = |i: &usize| sight.depth(handles[*i].place);
         field::heap_sort(&mut order, |a, b| {
-            depth(b).total_cmp(&depth(a)).then(a.cmp(b)).is_lt()
+            let [near, far] = [a, b].map(|i| sight.depth(handles[*i].place));
+            far.total_cmp(&near).then(a.cmp(b)).is_lt()
         });
         let first = order.len().saturating_sub(MOST_KNOBS);
         for i in order.split_off(first) {

@@ -166,12 +166,14 @@ impl Hands {
             return;
         };
         let eye = sight.projection.eye;
-        let pick = |at| picker.pick(eye, sight.direction(at));
         // A finger, or a hand that is not quite still, may mean what is next to the point.
         let reach = if around.touch { 12.0 } else { 4.0 };
-        let nearby =
-            (0..8).map(|i| at + reach * egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4));
-        let found = pick(at).or_else(|| nearby.filter_map(pick).min_by(|a, b| a.t.total_cmp(&b.t)));
+        let found = picker.pick(eye, sight.direction(at)).or_else(|| {
+            (0..8)
+                .map(|i| at + reach * egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4))
+                .filter_map(|at| picker.pick(eye, sight.direction(at)))
+                .min_by(|a, b| a.t.total_cmp(&b.t))
+        });
         self.let_go();
         if let Some(element) = found.and_then(|hit| hit.element) {
             self.chosen = Some(element as usize);

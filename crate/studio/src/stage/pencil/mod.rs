@@ -23,6 +23,7 @@ use sketch::drawn::{Spot, crossing, node_at, spot_at};
 use sketch::edits::{self, Base, Beginning, Brush, Intent, Root};
 use sketch::{Drawn, Mark, Stroke, page};
 use tool::Tool;
+use widgets::keys::take_key;
 
 /// Least and most radius of strokes, points of a picture 640 points wide.
 pub const THICKNESS: [f32; 2] = [3.0, 60.0];
@@ -288,14 +289,13 @@ impl Pencil {
         if around.covered || ui.ctx().egui_wants_keyboard_input() {
             return;
         }
-        let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-        if pressed(Key::OpenBracket) {
+        if take_key(ui.ctx(), Modifiers::NONE, Key::OpenBracket) {
             self.thickness = (self.thickness / 1.15).max(THICKNESS[0]);
         }
-        if pressed(Key::CloseBracket) {
+        if take_key(ui.ctx(), Modifiers::NONE, Key::CloseBracket) {
             self.thickness = (self.thickness * 1.15).min(THICKNESS[1]);
         }
-        if pressed(Key::Escape) {
+        if take_key(ui.ctx(), Modifiers::NONE, Key::Escape) {
             if self.gesture.is_some() {
                 self.drop_gesture(wishes);
             } else if self.chosen.is_some() {
@@ -305,7 +305,9 @@ impl Pencil {
             }
         }
         if let Some((index, node)) = self.chosen
-            && (pressed(Key::Delete) || pressed(Key::Backspace))
+            && [Key::Delete, Key::Backspace]
+                .iter()
+                .any(|key| take_key(ui.ctx(), Modifiers::NONE, *key))
         {
             self.remove_node(around.session, index, node, wishes);
         }
@@ -760,22 +762,8 @@ impl Pencil {
             return;
         };
         let point = sight.point(spot.place);
-        let cut = |drawn: &Drawn, text: &str, spot: &Spot| {
-            let grain = 0.5 * point / drawn.growth.max(f64::MIN_POSITIVE);
-            let end = drawn.node_of(spot);
-            let span = drawn.span.clone();
-            sketch::cut(
-                text,
-                span,
-                &drawn.skeleton,
-                spot.curve,
-                spot.span,
-                &end,
-                grain,
-            )
-        };
         let drawn = &self.all[spot.drawn];
-        let Some(text) = cut(drawn, session.text(drawn.file), &spot) else {
+        let Some(text) = cut(drawn, session.text(drawn.file), &spot, point) else {
             return;
         };
         let change = TextEdit::whole(drawn.file, text);
@@ -785,7 +773,7 @@ impl Pencil {
             let drawn = &all[index];
             Some(TextEdit::whole(
                 drawn.file,
-                cut(drawn, &project.files[drawn.file].text, &spot)?,
+                cut(drawn, &project.files[drawn.file].text, &spot, point)?,
             ))
         });
         step(Some(result), wishes);
@@ -1001,6 +989,20 @@ fn step(result: Option<Result<TextEdit, String>>, wishes: &mut Wishes) {
         Some(Err(why)) => wishes.push(Wish::Tell(why)),
         None => {}
     }
+}
+
+/// Returns a text without the piece of a drawn skeleton around a spot; `point` is the size of a
+/// point of the screen there.
+fn cut(drawn: &Drawn, text: &str, spot: &Spot, point: f64) -> Option<String> {
+    sketch::cut(
+        text,
+        drawn.span.clone(),
+        &drawn.skeleton,
+        spot.curve,
+        spot.span,
+        &drawn.node_of(spot),
+        0.5 * point / drawn.growth.max(f64::MIN_POSITIVE),
+    )
 }
 
 fn mark(at: Pos2) -> Mark {

@@ -59,14 +59,16 @@ pub fn tube(painter: &Painter, sight: &Sight, samples: &[Sample], colour: Rgb, a
 /// Paints a band through discs, which are shrunk to a share of their radii and moved towards the
 /// light by `off` radii.
 fn ribbon(painter: &Painter, discs: &[(Pos2, f32)], share: f32, off: f32, colour: Color32) {
-    let place = |(at, radius): (Pos2, f32)| (at + vec2(-0.5, -0.85) * off * radius, radius * share);
-    for &point in discs.first().iter().chain(&discs.last()) {
-        let (at, radius) = place(*point);
+    let discs: Vec<(Pos2, f32)> = discs
+        .iter()
+        .map(|&(at, radius)| (at + vec2(-0.5, -0.85) * off * radius, radius * share))
+        .collect();
+    for &(at, radius) in discs.first().into_iter().chain(discs.last()) {
         painter.circle_filled(at, radius, colour);
     }
     let mut mesh = Mesh::default();
     for pair in discs.windows(2) {
-        let [(a, r), (b, s)] = [place(pair[0]), place(pair[1])];
+        let [(a, r), (b, s)] = [pair[0], pair[1]];
         let along = b - a;
         if along.length() < 0.2 {
             continue;

@@ -8,6 +8,7 @@ use crate::wish::{TextWish, Wish, Wishes};
 use document::session::Session;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Galley, Key, Modifiers, Pos2, Rect, TextEdit, Ui};
+use widgets::keys::take_key;
 
 impl Editor {
     /// Shows the field for a new name, if it is open.
@@ -81,13 +82,9 @@ impl Editor {
 
     /// Acts on keys that ask about the text: completions, manual, definition, renaming, layout.
     pub(super) fn ask(&mut self, ui: &Ui, session: &Session, wishes: &mut Wishes) {
-        let pressed = |modifiers, key| {
-            let shortcut = egui::KeyboardShortcut::new(modifiers, key);
-            ui.input_mut(|input| input.consume_shortcut(&shortcut))
-        };
         // The card under the pointer comes before the caret.
         if let Some(command) = self.cards.hover.take_command()
-            && pressed(Modifiers::NONE, Key::F1)
+            && take_key(ui.ctx(), Modifiers::NONE, Key::F1)
         {
             wishes.push(Wish::Manual(command.to_owned()));
             return;
@@ -98,21 +95,23 @@ impl Editor {
         if !ui.memory(|memory| memory.has_focus(id())) {
             return;
         }
-        if pressed(Modifiers::CTRL, Key::Space) || pressed(Modifiers::COMMAND, Key::Space) {
+        if take_key(ui.ctx(), Modifiers::CTRL, Key::Space)
+            || take_key(ui.ctx(), Modifiers::COMMAND, Key::Space)
+        {
             self.cards.completions.ask(place);
             ui.ctx().request_repaint();
-        } else if pressed(Modifiers::NONE, Key::F1) {
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::F1) {
             let card = assist::hover(session.project(), place.file, place.byte);
             let command = card.and_then(|card| card.command);
             wishes.push(Wish::Manual(command.unwrap_or_default().to_owned()));
-        } else if pressed(Modifiers::NONE, Key::F12) {
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::F12) {
             self.go_to_definition(session, place, wishes);
-        } else if pressed(Modifiers::NONE, Key::F2) {
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::F2) {
             match rename::Rename::open(session, place) {
                 Ok(field) => self.cards.rename = Some(field),
                 Err(trouble) => wishes.push(Wish::Tell(trouble)),
             }
-        } else if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::F) {
+        } else if take_key(ui.ctx(), Modifiers::COMMAND | Modifiers::SHIFT, Key::F) {
             self.format(session, wishes);
         } else if self.cards.signature.is_open(self.cursor.line)
             && ui.input(|input| input.key_pressed(Key::Escape))

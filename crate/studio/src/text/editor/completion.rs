@@ -13,6 +13,7 @@ use egui::{
     Align2, Area, Color32, FontId, Frame, Key, Modifiers, Order, Rect, Role, Sense, Ui, WidgetInfo,
     pos2, vec2,
 };
+use widgets::keys::take_key;
 
 /// Seconds of rest after which a list that takes long is made.
 const REST: f64 = 0.15;
@@ -158,26 +159,21 @@ impl Popup {
         };
         let count = completions.items.len();
         let (page, _) = rows(ui.style());
-        let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let selected = self.selected;
-        let mut select = |to: usize| {
-            self.selected = to;
-            self.chosen = true;
-        };
-        if pressed(Key::ArrowDown) {
-            select((selected + 1) % count);
-        } else if pressed(Key::ArrowUp) {
-            select((selected + count - 1) % count);
-        } else if pressed(Key::PageDown) {
-            select((selected + page).min(count - 1));
-        } else if pressed(Key::PageUp) {
-            select(selected.saturating_sub(page));
-        } else if pressed(Key::Escape) {
+        if take_key(ui.ctx(), Modifiers::NONE, Key::ArrowDown) {
+            self.select((selected + 1) % count);
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::ArrowUp) {
+            self.select((selected + count - 1) % count);
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::PageDown) {
+            self.select((selected + page).min(count - 1));
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::PageUp) {
+            self.select(selected.saturating_sub(page));
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::Escape) {
             self.close();
-        } else if pressed(Key::Tab) {
+        } else if take_key(ui.ctx(), Modifiers::NONE, Key::Tab) {
             return self.take(selected);
         } else if self.is_meant(selected) {
-            if pressed(Key::Enter) {
+            if take_key(ui.ctx(), Modifiers::NONE, Key::Enter) {
                 return self.take(selected);
             }
         } else if ui.input(|input| input.key_pressed(Key::Enter)) {
@@ -185,6 +181,11 @@ impl Popup {
             self.close();
         }
         Choice::Nothing
+    }
+
+    fn select(&mut self, to: usize) {
+        self.selected = to;
+        self.chosen = true;
     }
 
     /// Whether Enter takes this row: the user moved there, or it begins as the word does.

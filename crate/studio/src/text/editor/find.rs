@@ -1,4 +1,4 @@
-//! The strip above the text in which one finds, replaces, and goes to a line.
+//! The strip above the text for finding, replacing and going to a line.
 
 use super::place;
 use crate::icon::{self, Icon};
@@ -15,7 +15,7 @@ pub enum Seek {
     /// Find a text.
     #[default]
     Text,
-    /// Find a text and put another in its place.
+    /// Find a text and replace it.
     Replace,
     /// Go to a line.
     Line,
@@ -71,7 +71,7 @@ fn filter() -> egui::EventFilter {
 }
 
 impl Find {
-    /// Opens the strip; what is selected is sought, from a byte on.
+    /// Opens the strip, which looks for the selected text from a byte on.
     pub(super) fn open(&mut self, seek: Seek, selected: &str, from: usize) {
         self.seek = Some(seek);
         self.focus = true;

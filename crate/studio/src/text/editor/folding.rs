@@ -165,14 +165,15 @@ impl Folds {
     fn hide(&mut self) {
         let ends = self.text.match_indices('\n').map(|(at, _)| at + 1);
         let starts: Vec<usize> = std::iter::once(0).chain(ends).collect();
-        let byte = |line: usize| starts.get(line).copied().unwrap_or(self.text.len());
         self.hidden.clear();
         for fold in self
             .ranges
             .iter()
             .filter(|fold| self.shut.contains(&fold.start))
         {
-            let bytes = byte(fold.start + 1)..byte(fold.end);
+            let [start, end] = [fold.start + 1, fold.end]
+                .map(|line| starts.get(line).copied().unwrap_or(self.text.len()));
+            let bytes = start..end;
             // A block inside a folded one is hidden already.
             let is_inside = self.hidden.last().is_some_and(|last| last.end >= bytes.end);
             if !is_inside && !bytes.is_empty() {

@@ -81,14 +81,6 @@ impl Tints {
                 wishes.push(TextWish::edit(edit));
             }
         }
-        if dragging != self.dragging {
-            self.dragging = dragging;
-            // A drag in the picker is one step of undo.
-            if dragging {
-                wishes.push_first(TextWish::Hold);
-            } else {
-                wishes.push(TextWish::Release);
-            }
-        }
+        wishes.hold_while(dragging, &mut self.dragging);
     }
 }
