@@ -102,14 +102,13 @@ impl Bulge {
         }
     }
 
-    /// Returns the least share of the field's range, 0 … 1, in which the bulge rises or falls: on
-    /// a way on which the field changes by the threshold it has details as small as that.
+    /// Returns the width of the bulge's details as a share of the kernel's: one that rises and
+    /// falls once is as smooth as the field.
     #[must_use]
-    pub fn share(&self) -> f64 {
+    pub fn fineness(&self) -> f64 {
         match *self {
-            Self::Fast { c } => 0.5 * (THRESHOLD - c),
-            Self::Height { c, m, .. } => (m - c).min(THRESHOLD - m),
-            Self::Ripple { c, n, .. } => (THRESHOLD - c) / (4.0 * f64::from(n) + 3.0),
+            Self::Fast { .. } | Self::Height { .. } => 1.0,
+            Self::Ripple { n, .. } => 1.0 / (2.0 * f64::from(n) + 1.0),
         }
     }
 

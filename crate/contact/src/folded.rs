@@ -184,7 +184,7 @@ impl Implicit for Folded {
     }
 
     fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
-        Some(self.bulge.share() * self.local.least_width(part, ball)?)
+        Some(self.bulge.fineness() * self.local.least_width(part, ball)?)
     }
 
     fn most(&self, ball: Ball) -> f64 {

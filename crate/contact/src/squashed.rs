@@ -244,7 +244,7 @@ impl Implicit for Squashed {
         });
         near.into_iter().try_fold(own, |least, partner| {
             let width = partner.function.least_width(None, ball)?;
-            Some(least.min(partner.bulge.share() * width))
+            Some(least.min(partner.bulge.fineness() * width))
         })
     }
 
