@@ -40,6 +40,9 @@ pub(crate) struct Stump {
     ends: Vec<FlatEnd>,
 }
 
+/// Line with its shaping.
+type Limb = (Skeleton, Shaping);
+
 /// Piece of a bone that is cut at one or two flat ends.
 struct Slice {
     piece: Skeleton,
@@ -200,7 +203,7 @@ impl Scene {
 
     /// Cuts a soft bone with flat ends into what is convolved as other bones are, and the pieces
     /// that are cut; `None` if none of its ends is flat. A short or waving limb is cut as a whole.
-    fn cut_bone(&self, element: &Element) -> Option<(Option<(Skeleton, Shaping)>, Vec<Slice>)> {
+    fn cut_bone(&self, element: &Element) -> Option<(Option<Limb>, Vec<Slice>)> {
         let bone = element.shape.bone()?;
         if bone.soft_ends == [Ends::Round; 2] {
             return None;
