@@ -13,33 +13,44 @@ const ALONG: f64 = 0.9;
 
 /// Parts the only group of a mesh: triangles of flat ends come last, with a group and a material
 /// for each, `inlet` for the widest end and `outlet-1` … for the others. Their vertices are moved
-/// into the plane.
-pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) {
-    let [whole] = &mesh.groups[..] else { return };
+/// into the plane. Triangles of open ends are taken out; returns the number of holes.
+pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) -> usize {
+    let [whole] = &mesh.groups[..] else { return 0 };
     if ends.is_empty() {
-        return;
+        return 0;
     }
     let whole = whole.clone();
-    let of: Vec<Option<usize>> = (0..mesh.triangles.len())
+    let mut of: Vec<Option<usize>> = (0..mesh.triangles.len())
         .map(|i| {
             let corners = mesh.corners(i);
             ends.iter().position(|end| is_on(corners, end))
         })
         .collect();
+    let mut end_at = vec![None; mesh.positions.len()];
     for (triangle, end) in mesh.triangles.iter().zip(&of) {
-        let Some(end) = end.map(|end| &ends[end]) else {
-            continue;
-        };
-        for corner in triangle {
-            let position = &mut mesh.positions[*corner as usize];
+        for corner in triangle.iter().filter(|_| end.is_some()) {
+            end_at[*corner as usize] = *end;
+        }
+    }
+    for (position, end) in mesh.positions.iter_mut().zip(&end_at) {
+        if let Some(end) = end.map(|end| &ends[end]) {
             *position -= end.outward * end.outward.dot(*position - end.at);
         }
     }
-    let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
+    // What lies in the plane now is part of the end, too.
+    for (end, triangle) in of.iter_mut().zip(&mesh.triangles) {
+        let [a, b, c] = triangle.map(|i| end_at[i as usize]);
+        if a == b && b == c {
+            *end = a;
+        }
+    }
+    let is_kept = |i: &usize| of[*i].is_none_or(|end| !ends[end].is_open);
+    let mut order: Vec<usize> = (0..mesh.triangles.len()).filter(is_kept).collect();
     // Those of no end come first.
     order.sort_by_key(|i| of[*i].map_or(0, |end| end + 1));
     mesh.triangles = order.iter().map(|i| mesh.triangles[*i]).collect();
-    let widest = (0..ends.len()).reduce(|a, b| {
+    let flat = (0..ends.len()).filter(|end| !ends[*end].is_open);
+    let widest = flat.reduce(|a, b| {
         if ends[b].radius > ends[a].radius {
             b
         } else {
@@ -47,14 +58,19 @@ pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) {
         }
     });
     let mut outlets = 1..;
+    let mut holes = 0;
     let mut start = of.iter().filter(|end| end.is_none()).count() as u32;
     mesh.groups[0].triangles = 0..start;
     for end in 0..ends.len() {
+        let count = of.iter().filter(|own| **own == Some(end)).count() as u32;
+        if ends[end].is_open {
+            holes += usize::from(count > 0);
+            continue;
+        }
         let name = match widest == Some(end) {
             true => String::from("inlet"),
             false => format!("outlet-{}", outlets.next().unwrap_or(1)),
         };
-        let count = of.iter().filter(|own| **own == Some(end)).count() as u32;
         if count == 0 {
             continue;
         }
@@ -66,6 +82,31 @@ pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) {
             triangles: start..start + count,
         });
         start += count;
+    }
+    if holes > 0 {
+        drop_lonely_vertices(mesh);
+    }
+    holes
+}
+
+/// Takes out the vertices that no triangle has.
+fn drop_lonely_vertices(mesh: &mut TriangleMesh) {
+    let mut places = vec![u32::MAX; mesh.positions.len()];
+    let mut kept = Vec::new();
+    for corner in mesh.triangles.as_flattened_mut() {
+        let place = &mut places[*corner as usize];
+        if *place == u32::MAX {
+            *place = kept.len() as u32;
+            kept.push(*corner as usize);
+        }
+        *corner = *place;
+    }
+    mesh.positions = kept.iter().map(|i| mesh.positions[*i]).collect();
+    if let Some(normals) = &mut mesh.normals {
+        *normals = kept.iter().map(|i| normals[*i]).collect();
+    }
+    if let Some(colors) = &mut mesh.colors {
+        *colors = kept.iter().map(|i| colors[*i]).collect();
     }
 }
 
@@ -118,9 +159,10 @@ mod tests {
                 at: DVec3::X * x,
                 outward,
                 radius,
+                is_open: false,
             });
         let mut mesh = prism();
-        part(&mut mesh, &ends);
+        assert_eq!(part(&mut mesh, &ends), 0);
         let names: Vec<(&str, u32)> = mesh
             .groups
             .iter()
@@ -143,8 +185,24 @@ mod tests {
             outward: DVec3::NEG_X,
             ..ends[1]
         };
-        part(&mut same, &[other]);
+        assert_eq!(part(&mut same, &[other]), 0);
         assert_eq!(same.triangles, prism().triangles);
         assert_eq!(same.groups, prism().groups);
+        // One that is open is a hole, and the other one the widest that there is.
+        let mut mesh = prism();
+        let open = FlatEnd {
+            is_open: true,
+            ..ends[1]
+        };
+        assert_eq!(part(&mut mesh, &[ends[0], open]), 1);
+        let names: Vec<(&str, u32)> = mesh
+            .groups
+            .iter()
+            .map(|group| (&group.name[..], group.triangles.len() as u32))
+            .collect();
+        assert_eq!(names, [("", 12), ("inlet", 6)]);
+        assert_eq!(mesh.positions.len(), 13);
+        let rim = |x: f64| mesh.positions.iter().filter(|p| p.x == x).count();
+        assert_eq!([rim(0.0), rim(5.0)], [7, 6]);
     }
 }

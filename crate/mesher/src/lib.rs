@@ -49,7 +49,8 @@
 //! - `measure.rs` measures distances by samples;
 //! - `surface.rs` does all that for one function ([`polygonize`]),
 //!   `model.rs` for a scene ([`mesh_scene`]) with the help of `solids.rs` (hard shapes), `level.rs`
-//!   (quadrics), `paint.rs` (colours) and `unite.rs` (boolean unions).
+//!   (quadrics), `paint.rs` (colours), `clipping.rs` (meshes that clip limbs) and `unite.rs`
+//!   (boolean operations).
 //!
 //! Limits of the proofs: that a triangle is near the surface is not always proved at kinks
 //! (profiles, creases between bodies), where the gradient jumps, where a surface touches itself,
@@ -70,6 +71,7 @@ mod boxes;
 mod cages;
 mod caps;
 mod certify;
+mod clipping;
 mod coating;
 mod crease;
 mod decimate;

@@ -1,6 +1,7 @@
 //! The meshes of a scene.
 
 use crate::cages::Cage;
+use crate::clipping::{Clipping, place_of};
 use crate::coating::{Coat, Coating};
 use crate::file::approximate;
 use crate::level::QuadricFunction;
@@ -15,6 +16,7 @@ use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh};
 use scene::{Element, Scene, Shape, Surface};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// How far the mesh may be from the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -258,6 +260,8 @@ struct Plan<'a> {
     /// Where infinite elements end.
     limits: Aabb,
     tolerance: f64,
+    /// What the elements of a command are cut by, see [`place_of`].
+    clippings: BTreeMap<[u32; 3], Clipping>,
 }
 
 impl<'a> Plan<'a> {
@@ -366,6 +370,7 @@ impl<'a> Plan<'a> {
             hard,
             limits,
             tolerance,
+            clippings: Clipping::by_command(scene),
         })
     }
 }
@@ -482,7 +487,15 @@ fn soft_part(
              small for the numbers' precision",
         ));
     }
-    Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
+    if let Some(clipping) = Clipping::of_body(scene, surface, &name, &mut model.notes)
+        && clipping.apply(&mut mesh, &name, &mut model.notes, progress)?
+    {
+        mesh.colors = None;
+    }
+    let holes = Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
+    if holes > 0 {
+        model.notes.push(format!("{name}: {holes} ends are open"));
+    }
     model.evaluations += evaluations;
     if is_cut {
         model.notes.push(format!(
@@ -511,7 +524,7 @@ fn soft_part(
     model.parts.push(ModelPart {
         name,
         mesh,
-        is_closed: true,
+        is_closed: holes == 0,
         overlaps: false,
         is_measured,
         error,
@@ -561,10 +574,19 @@ fn hard_parts<'a>(
             .into_iter()
             .filter(|m| is_sound(m) && m.signed_volume() > 0.0);
         let shells: Vec<TriangleMesh> = shells.collect();
-        match shells.len() {
-            0 => {}
-            1 => closed.add(&shells[0], element),
-            _ => closed.add(&unite::union(&shells, progress)?, element),
+        let mut whole = match &shells[..] {
+            [] => TriangleMesh::default(),
+            [shell] => shell.clone(),
+            shells => unite::union(shells, progress)?,
+        };
+        if let Some(clipping) = plan.clippings.get(&place_of(element))
+            && !whole.triangles.is_empty()
+        {
+            let name = name_of(scene, body, "");
+            clipping.apply(&mut whole, &name, &mut model.notes, progress)?;
+        }
+        if !whole.triangles.is_empty() {
+            closed.add(&whole, element);
         }
         for sheet in solid.sheets.iter().filter(|m| is_sound(m)) {
             open.add(sheet, element);

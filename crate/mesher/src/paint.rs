@@ -51,7 +51,8 @@ impl<'a> Paint<'a> {
     }
 
     /// Gives a mesh one group with the material that most primitives have, further ones of flat
-    /// ends, and vertex colours if there are several materials.
+    /// ends, and vertex colours if there are several materials. Returns the number of ends that
+    /// are open.
     ///
     /// # Errors
     /// If the caller cancels.
@@ -60,7 +61,7 @@ impl<'a> Paint<'a> {
         mesh: &mut TriangleMesh,
         threads: usize,
         progress: &mut Progress<'_>,
-    ) -> Result<(), MeshError> {
+    ) -> Result<usize, MeshError> {
         let mut counts = vec![0; self.materials.len()];
         self.of.iter().for_each(|i| counts[*i as usize] += 1);
         // The first of the most frequent ones.
@@ -74,8 +75,7 @@ impl<'a> Paint<'a> {
             let colors = map_told(threads, &mesh.positions, progress, |p| self.color(*p))?;
             mesh.colors = Some(colors);
         }
-        caps::part(mesh, &self.ends);
-        Ok(())
+        Ok(caps::part(mesh, &self.ends))
     }
 
     fn color(&self, point: DVec3) -> [f32; 3] {

@@ -1,4 +1,4 @@
-//! Boolean unions and convex hulls, by `manifold-rust`.
+//! Boolean operations and convex hulls, by `manifold-rust`.
 
 use crate::options::{MeshError, Progress};
 use core::time::Duration;
@@ -48,16 +48,18 @@ fn manifold(mesh: &TriangleMesh) -> Result<Manifold, MeshError> {
     }
 }
 
-/// The union of two. The caller is asked before, and natively all the while: then another thread
-/// computes, and ends soon after the caller cancels. In wasm a page ends the worker instead.
+/// The union of two, or the result of another operation. The caller is asked before, and natively
+/// all the while: then another thread computes, and ends soon after the caller cancels. In wasm a
+/// page ends the worker instead.
 fn joined(
     one: &Manifold,
     other: &Manifold,
+    operation: OpType,
     progress: &mut Progress<'_>,
 ) -> Result<Manifold, MeshError> {
     progress.again()?;
     if one.num_tri() + other.num_tri() <= FEW || cfg!(target_arch = "wasm32") {
-        return Ok(one.boolean(other, OpType::Add));
+        return Ok(one.boolean(other, operation));
     }
     let token = CancelToken::new();
     let (sender, united) = channel();
@@ -65,7 +67,7 @@ fn joined(
         let token = token.clone();
         move || {
             // Nobody listens any more to what was cancelled.
-            let _ = sender.send(one.boolean_with_token(other, OpType::Add, Some(&token)));
+            let _ = sender.send(one.boolean_with_token(other, operation, Some(&token)));
         }
     };
     std::thread::scope(|scope| {
@@ -98,6 +100,30 @@ pub fn union(
     meshes: &[TriangleMesh],
     progress: &mut Progress<'_>,
 ) -> Result<TriangleMesh, MeshError> {
+    triangles(&joint(meshes, progress)?)
+}
+
+/// The part of a closed mesh that is inside of closed meshes, or outside of all of them, as
+/// [`union`] returns it.
+///
+/// # Errors
+/// As those of [`union`].
+pub fn clip(
+    mesh: &TriangleMesh,
+    by: &[TriangleMesh],
+    is_inside: bool,
+    progress: &mut Progress<'_>,
+) -> Result<TriangleMesh, MeshError> {
+    let by = joint(by, progress)?;
+    let operation = match is_inside {
+        true => OpType::Intersect,
+        false => OpType::Subtract,
+    };
+    triangles(&joined(&manifold(mesh)?, &by, operation, progress)?)
+}
+
+/// The union of closed meshes.
+fn joint(meshes: &[TriangleMesh], progress: &mut Progress<'_>) -> Result<Manifold, MeshError> {
     let mut manifolds = Vec::with_capacity(meshes.len());
     for mesh in meshes {
         progress.again()?;
@@ -108,13 +134,17 @@ pub fn union(
         let mut larger = Vec::with_capacity(manifolds.len().div_ceil(2));
         for pair in manifolds.chunks(2) {
             larger.push(match pair {
-                [one, other] => joined(one, other, progress)?,
+                [one, other] => joined(one, other, OpType::Add, progress)?,
                 _ => pair[0].clone(),
             });
         }
         manifolds = larger;
     }
-    let united = manifolds.pop().unwrap_or_default();
+    Ok(manifolds.pop().unwrap_or_default())
+}
+
+/// The triangles of a result, with colours and normals.
+fn triangles(united: &Manifold) -> Result<TriangleMesh, MeshError> {
     if !matches!(united.status(), Error::NoError) {
         return Err(MeshError::Failed(format!(
             "the meshes cannot be united: {:?}",

@@ -34,7 +34,7 @@ use field::Implicit;
 use glam::DVec3;
 use mesh::{Joint, Pose, Rig, TriangleMesh};
 use pose::Turns;
-use scene::{Curves, Element, Form, Scene, Shape, SoftSurface};
+use scene::{Curves, Element, Ends, Form, Scene, Shape, SoftSurface};
 use std::sync::Arc;
 
 /// The most nodes of all skeletons that are rigged.
@@ -228,6 +228,9 @@ impl Weights {
         // touches at rest too.
         let mut whole = scene.clone();
         for element in &mut whole.elements {
+            if let Shape::Bone(bone) = &mut element.shape {
+                bone.soft_ends = [Ends::Round; 2];
+            }
             if let Shape::Function(function) = &mut element.shape
                 && let Form::Skeleton(curves) = &mut function.form
                 && (curves.local.is_some() || !curves.flat.is_empty())

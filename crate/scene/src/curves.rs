@@ -4,13 +4,23 @@ use crate::Shape;
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 use skeleton::{Polyline, Scheme, Skeleton};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// The blobbiness of curves whose material has none.
 pub const BLOBBINESS: f64 = 2.0;
 
 /// Flat ends of a skeleton that count.
 pub const MOST_FLAT: usize = 256;
+
+/// Closed meshes by which limbs are cut when meshes are made of them; pictures show them uncut.
+/// Their places are in the coordinates of the curves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Clip {
+    /// Whether what is inside the meshes is kept; else what is outside.
+    pub is_inside: bool,
+    /// Vertices of each mesh, and its triangles, as numbers of vertices.
+    pub meshes: Vec<(Vec<DVec3>, Vec<[u32; 3]>)>,
+}
 
 /// Curves on a graph of nodes, refined to a level. Their polyline's segments are convolved, each
 /// with radii that vary evenly along it.
@@ -29,6 +39,10 @@ pub struct Curves {
     pub local: Option<f64>,
     /// Nodes at free ends where the surface ends in a plane, unless convolution is local.
     pub flat: Vec<u32>,
+    /// Whether meshes have holes in those planes.
+    pub is_open: bool,
+    /// Meshes by which the limbs are cut.
+    pub clip: Option<Arc<Clip>>,
     /// The refined curves, made at first use.
     #[serde(skip)]
     polyline: OnceLock<Option<Polyline>>,
@@ -38,7 +52,8 @@ impl PartialEq for Curves {
     fn eq(&self, other: &Self) -> bool {
         self.skeleton == other.skeleton
             && (self.scheme, self.levels, self.local) == (other.scheme, other.levels, other.local)
-            && self.flat == other.flat
+            && (&self.flat, self.is_open) == (&other.flat, other.is_open)
+            && self.clip == other.clip
     }
 }
 
@@ -55,6 +70,8 @@ impl Curves {
             levels,
             local: None,
             flat: Vec::new(),
+            is_open: false,
+            clip: None,
             polyline: OnceLock::from(Some(polyline)),
         })
     }
@@ -84,10 +101,26 @@ impl Curves {
         Self { local, ..self }
     }
 
-    /// Returns the curves with planes at free ends, given by their nodes.
+    /// Returns the curves with planes at free ends, given by their nodes, which meshes may leave
+    /// open.
     #[must_use]
-    pub fn with_flat(self, flat: Vec<u32>) -> Self {
-        Self { flat, ..self }
+    pub fn with_flat(self, flat: Vec<u32>, is_open: bool) -> Self {
+        Self {
+            flat,
+            is_open,
+            ..self
+        }
+    }
+
+    /// Returns the nodes at which exactly one curve ends and none goes on.
+    #[must_use]
+    pub fn free_nodes(&self) -> Vec<u32> {
+        let polyline = self.polyline().into_iter();
+        let vertices = polyline.flat_map(|p| (0..).zip(&p.vertices).map(move |(i, v)| (p, i, v)));
+        vertices
+            .filter(|(p, i, _)| p.around(*i).len() == 1)
+            .filter_map(|(.., vertex)| Some(vertex.node? as u32))
+            .collect()
     }
 
     /// The refined curves; `None` if data from elsewhere are not usable.

@@ -1,9 +1,11 @@
-//! Flat ends of skeletons: the limbs there go on beyond their ends, and are cut at a plane.
+//! Flat ends of limbs, in skeletons and by themselves: they go on beyond their ends, and are cut at
+//! a plane.
 
 use crate::curves::MOST_FLAT;
-use crate::{Curves, Element, Function, Scene, Shape, limbs};
+use crate::{Curves, Element, Ends, Function, Scene, Shape, limbs};
+use field::shaping::SLIMMEST;
 use field::sliced::{Plane, Sliced};
-use field::{Implicit, Primitive, Shaping, Skeleton, Sum};
+use field::{Implicit, Primitive, Shaping, Skeleton, Sum, Taper};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -16,7 +18,7 @@ const OWN: f64 = 3.0;
 /// Steepness with which the field ends beyond the plane, over the inverse radius.
 const STEEPNESS: f64 = 32.0;
 
-/// Plane in which the surface of a skeleton ends, in the world's coordinates.
+/// Plane in which the surface of a limb ends, in the world's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatEnd {
     /// Place of the free end, in the plane.
@@ -25,6 +27,8 @@ pub struct FlatEnd {
     pub outward: DVec3,
     /// Radius of the limb there.
     pub radius: f64,
+    /// Whether meshes have a hole there.
+    pub is_open: bool,
 }
 
 /// Piece of a skeleton that is cut at one or two flat ends.
@@ -32,8 +36,18 @@ pub struct FlatEnd {
 pub(crate) struct Stump {
     /// Indices of its segments among those that have a length.
     segments: Vec<usize>,
-    /// Flat ends: place, direction outwards and radius of each.
-    ends: Vec<(DVec3, DVec3, f64)>,
+    /// Flat ends, in the skeleton's own coordinates.
+    ends: Vec<FlatEnd>,
+}
+
+/// Line with its shaping.
+type Limb = (Skeleton, Shaping);
+
+/// Piece of a bone that is cut at one or two flat ends.
+struct Slice {
+    piece: Skeleton,
+    shaping: Shaping,
+    ends: Vec<FlatEnd>,
 }
 
 impl Curves {
@@ -84,7 +98,12 @@ impl Curves {
                     if stump.ends.is_empty() {
                         let [from, to] = [next, end].map(|v| polyline.vertices[v].position);
                         let outward = (to - from).normalize_or_zero();
-                        stump.ends.push((to, outward, radius));
+                        stump.ends.push(FlatEnd {
+                            at: to,
+                            outward,
+                            radius,
+                            is_open: self.is_open,
+                        });
                     }
                     stump.segments.push(places[segment]);
                 }
@@ -128,11 +147,15 @@ impl Curves {
 
 impl Function {
     /// Returns a flat end in the world's coordinates; `None` if it has no direction there.
-    fn place_end(&self, (at, outward, radius): (DVec3, DVec3, f64)) -> Option<FlatEnd> {
+    fn place_end(&self, end: &FlatEnd) -> Option<FlatEnd> {
         Some(FlatEnd {
-            at: self.to_world.transform_point3(at),
-            outward: self.to_world.transform_vector3(outward).try_normalize()?,
-            radius: radius * self.growth(),
+            at: self.to_world.transform_point3(end.at),
+            outward: self
+                .to_world
+                .transform_vector3(end.outward)
+                .try_normalize()?,
+            radius: end.radius * self.growth(),
+            ..*end
         })
     }
 }
@@ -145,17 +168,18 @@ impl Scene {
         let own = own.filter(|element| element.body == body && self.is_soft(element));
         let mut all = Vec::new();
         for element in own {
-            if let Shape::Function(function) = &element.shape
-                && let Some(curves) = function.curves()
-            {
-                let ends = curves.stumps().into_iter().flat_map(|stump| stump.ends);
-                all.extend(ends.filter_map(|end| function.place_end(end)));
+            if let Shape::Function(function) = &element.shape {
+                let stumps = function.curves().into_iter().flat_map(Curves::stumps);
+                let ends = stumps.flat_map(|stump| stump.ends);
+                all.extend(ends.filter_map(|end| function.place_end(&end)));
+            } else if let Some((_, slices)) = self.cut_bone(element) {
+                all.extend(slices.into_iter().flat_map(|slice| slice.ends));
             }
         }
         all
     }
 
-    /// The functions of the pieces of an element's curves that end flat, in the world's
+    /// Returns the functions of the pieces of an element's curves that end flat, in the world's
     /// coordinates.
     pub(crate) fn slice(&self, element: &Element, function: &Function) -> Vec<Arc<dyn Implicit>> {
         let (Some(curves), Some(flesh)) = (function.curves(), self.flesh_in_world(element)) else {
@@ -166,48 +190,146 @@ impl Scene {
             return Vec::new();
         }
         let limbs: Vec<(Skeleton, Shaping)> = self.segments_of(element, function, &flesh).collect();
-        let mut functions: Vec<Arc<dyn Implicit>> = Vec::new();
-        for stump in stumps {
-            let mut own: Vec<(Skeleton, Shaping)> = Vec::new();
-            for segment in &stump.segments {
-                let (skeleton, shaping) = limbs[*segment].clone();
-                own.extend(limbs::cut(skeleton, shaping));
-            }
-            let mut planes = Vec::new();
-            let mut thinnest = f64::INFINITY;
-            for end in stump.ends {
-                let Some(FlatEnd {
-                    at,
-                    outward,
-                    radius,
-                }) = function.place_end(end)
-                else {
-                    continue;
-                };
-                thinnest = thinnest.min(radius);
-                planes.push(Plane {
-                    at,
-                    inward: -outward,
-                });
-                let beyond = Skeleton::Segment {
-                    base: at,
-                    apex: at + outward * (BEYOND * radius),
-                };
-                let shaping = Shaping {
-                    radius,
-                    taper: None,
-                    ..limbs[stump.segments[0]].1
-                };
-                own.push((beyond, shaping));
-            }
-            let field: Sum = own
-                .into_iter()
-                .filter_map(|(skeleton, shaping)| Primitive::new(skeleton, &shaping, None))
-                .collect();
-            if let Some(sliced) = Sliced::new(field, planes, STEEPNESS / thinnest) {
-                functions.push(Arc::new(sliced));
-            }
+        let stumps = stumps.into_iter().map(|stump| {
+            let own = stump.segments.iter().map(|segment| limbs[*segment].clone());
+            let own = own.flat_map(|(skeleton, shaping)| limbs::cut(skeleton, shaping));
+            let own =
+                own.filter_map(|(skeleton, shaping)| Primitive::new(skeleton, &shaping, None));
+            let ends = stump.ends.iter().filter_map(|end| function.place_end(end));
+            cut_flat(own.collect(), &limbs[stump.segments[0]].1, ends.collect())
+        });
+        stumps.collect()
+    }
+
+    /// Cuts a soft bone with flat ends into what is convolved as other bones are, and the pieces
+    /// that are cut; `None` if none of its ends is flat. A short or waving limb is cut as a whole.
+    fn cut_bone(&self, element: &Element) -> Option<(Option<Limb>, Vec<Slice>)> {
+        let bone = element.shape.bone()?;
+        if bone.soft_ends == [Ends::Round; 2] {
+            return None;
         }
-        functions
+        let flesh = self.flesh_in_world(element)?;
+        let line = &bone.skeleton;
+        let shaping = self.shaping(element, &flesh, self.radius(element));
+        let length = line.measure();
+        let radii = [0.0, 1.0].map(|share| shaping.at(share).radius);
+        let thickest = radii[0].max(radii[1]);
+        let ends = [0, 1].map(|side| {
+            let is_tip = radii[side] <= 2.0 * SLIMMEST * thickest;
+            if bone.soft_ends[side] == Ends::Round || is_tip {
+                return None;
+            }
+            let share = side as f64;
+            Some(FlatEnd {
+                at: line.at(share),
+                outward: line.tangent(share)? * (2.0 * share - 1.0),
+                radius: radii[side],
+                is_open: bone.soft_ends[side] == Ends::Open,
+            })
+        });
+        if length <= 0.0 || line.dimension() != 1 || ends.iter().all(Option::is_none) {
+            return None;
+        }
+        let shares = [0, 1].map(|side| match ends[side] {
+            Some(end) => OWN * end.radius / length,
+            None => 0.0,
+        });
+        let is_short = shares[0] + shares[1] >= 1.0;
+        let is_whole = flesh.profile.is_some()
+            || is_short && matches!(line, Skeleton::Segment { .. })
+            || shares.iter().any(|share| share.is_nan());
+        if is_whole {
+            let ends = ends.into_iter().flatten().collect();
+            let piece = line.clone();
+            return Some((
+                None,
+                vec![Slice {
+                    piece,
+                    shaping,
+                    ends,
+                }],
+            ));
+        }
+        let shares = shares.map(|share| share.min(if is_short { 0.5 } else { 1.0 }));
+        let between = |from: f64, to: f64| {
+            let own = shaping.at(from);
+            let taper = shaping.taper.map(|_| {
+                let end = shaping.at(to);
+                Taper {
+                    radius: end.radius,
+                    blobbiness: end.blobbiness,
+                }
+            });
+            let piece = line.part(from, to).filter(|_| from < to)?;
+            Some((piece, Shaping { taper, ..own }))
+        };
+        let ranges = [[0.0, shares[0]], [1.0 - shares[1], 1.0]];
+        let slices = ends
+            .into_iter()
+            .zip(ranges)
+            .filter_map(|(end, [from, to])| {
+                let (piece, shaping) = between(from, to)?;
+                let ends = vec![end?];
+                Some(Slice {
+                    piece,
+                    shaping,
+                    ends,
+                })
+            });
+        Some((between(shares[0], 1.0 - shares[1]), slices.collect()))
+    }
+
+    /// Returns the functions of the pieces of a bone that end flat.
+    pub(crate) fn slice_bone(&self, element: &Element) -> Vec<Arc<dyn Implicit>> {
+        let slices = self.cut_bone(element).map(|(_, slices)| slices);
+        let slices = slices.into_iter().flatten().map(|slice| {
+            let own = self.primitives_along(element, slice.piece, slice.shaping);
+            cut_flat(own.collect(), &slice.shaping, slice.ends)
+        });
+        slices.collect()
+    }
+
+    /// Returns what of a bone is convolved as it is, with its shaping: all of it if no end is flat.
+    pub(crate) fn between_flat_ends(
+        &self,
+        element: &Element,
+        skeleton: Skeleton,
+        shaping: Shaping,
+    ) -> Option<(Skeleton, Shaping)> {
+        match self.cut_bone(element) {
+            Some((middle, _)) => middle,
+            None => Some((skeleton, shaping)),
+        }
+    }
+}
+
+/// Returns the field of limbs that goes on beyond flat ends and is cut there; `shaping` is that of
+/// one of them. It is not cut where a plane is not usable.
+fn cut_flat(mut field: Sum, shaping: &Shaping, ends: Vec<FlatEnd>) -> Arc<dyn Implicit> {
+    let whole = field.clone();
+    let mut planes = Vec::new();
+    let mut thinnest = f64::INFINITY;
+    for end in ends {
+        thinnest = thinnest.min(end.radius);
+        planes.push(Plane {
+            at: end.at,
+            inward: -end.outward,
+        });
+        let beyond = Skeleton::Segment {
+            base: end.at,
+            apex: end.at + end.outward * (BEYOND * end.radius),
+        };
+        let shaping = Shaping {
+            radius: end.radius,
+            taper: None,
+            ..*shaping
+        };
+        field
+            .primitives
+            .extend(Primitive::new(beyond, &shaping, None));
+    }
+    match Sliced::new(field, planes, STEEPNESS / thinnest) {
+        Some(sliced) => Arc::new(sliced),
+        None => Arc::new(whole),
     }
 }

@@ -48,7 +48,7 @@ pub mod surroundings;
 pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
 pub use contact::Contact;
-pub use curves::Curves;
+pub use curves::{Clip, Curves};
 pub use element::{Element, Origin, Paint};
 pub use finish::{Finish, Skip};
 pub use flesh::Flesh;

@@ -34,6 +34,9 @@ pub struct Bone {
     pub end_radius: Option<f64>,
     /// Ends of a line.
     pub ends: Ends,
+    /// First and last end of a line that is soft: where one is not round its surface ends in a
+    /// plane.
+    pub soft_ends: [Ends; 2],
     /// Normals that light sees at the corners of a triangle without thickness (Phong's
     /// interpolation); any length but 0.
     pub normals: Option<Box<[DVec3; 3]>>,
@@ -46,7 +49,7 @@ pub enum Ends {
     Round,
     /// Flat lids.
     Lids,
-    /// Nothing: the tube is a wall.
+    /// Nothing: the tube is a wall. Pictures of soft ones show the plane; meshes have a hole there.
     Open,
 }
 
@@ -120,6 +123,7 @@ impl Shape {
             radius,
             end_radius: None,
             ends,
+            soft_ends: [Ends::Round; 2],
             normals: None,
         })
     }
@@ -151,6 +155,7 @@ impl Shape {
             radius: base_radius,
             end_radius: Some(apex_radius),
             ends: Ends::Lids,
+            soft_ends: [Ends::Round; 2],
             normals: None,
         })
     }
@@ -189,6 +194,7 @@ impl Shape {
             radius: 0.0,
             end_radius: None,
             ends: Ends::Lids,
+            soft_ends: [Ends::Round; 2],
             normals: Some(Box::new(normals)),
         })
     }
@@ -369,6 +375,7 @@ impl Shape {
                 radius: map.length(bone.radius),
                 end_radius: bone.end_radius.map(|radius| map.length(radius)),
                 ends: bone.ends,
+                soft_ends: bone.soft_ends,
                 normals: (bone.normals.as_ref())
                     .map(|normals| Box::new(normals.map(|normal| map.normal(normal)))),
             }),

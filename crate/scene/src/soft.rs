@@ -153,7 +153,7 @@ impl Scene {
 
     /// The kernel's parameters for an element with this radius and this flesh, in lengths of the
     /// world.
-    fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
+    pub(crate) fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
         let bone = element.shape.bone();
         let (radius, end_radius) = match bone.and_then(|bone| Some((bone.radius, bone.end_radius?)))
         {
@@ -219,7 +219,7 @@ impl Scene {
     }
 
     /// Calls `f` with each primitive of a soft element: one, or several where a long limb is cut.
-    fn primitives_of(&self, element: &Element, mut f: impl FnMut(Primitive)) {
+    fn primitives_of(&self, element: &Element, f: impl FnMut(Primitive)) {
         let Some(flesh) = self.flesh_in_world(element) else {
             return;
         };
@@ -241,23 +241,35 @@ impl Scene {
             return;
         };
         let shaping = self.shaping(element, &flesh, self.radius(element));
-        let profile = match skeleton {
+        let rest = self.between_flat_ends(element, skeleton, shaping);
+        rest.into_iter()
+            .flat_map(|(skeleton, shaping)| self.primitives_along(element, skeleton, shaping))
+            .for_each(f);
+    }
+
+    /// Returns the primitives of a bone of an element, or of a piece of it.
+    pub(crate) fn primitives_along(
+        &self,
+        element: &Element,
+        skeleton: Skeleton,
+        shaping: field::Shaping,
+    ) -> impl Iterator<Item = Primitive> {
+        let flesh = self.flesh_of(element);
+        let profile = flesh.and_then(|flesh| match skeleton {
             Skeleton::Triangle { .. } => flesh.whole_profile(),
             // They have no parameters that a profile could follow.
             Skeleton::Polygon { .. } => None,
             ref line if line.is_numeric() => None,
             _ => flesh.profile,
-        };
+        });
         // A profile runs along the whole skeleton.
         let pieces = match profile {
             None => limbs::cut(skeleton, shaping),
             Some(_) => vec![(skeleton, shaping)],
         };
         // An element without a positive radius has no flesh; the language has said so.
-        for (skeleton, shaping) in pieces {
-            Primitive::new(skeleton, &shaping, profile)
-                .into_iter()
-                .for_each(&mut f);
-        }
+        pieces
+            .into_iter()
+            .filter_map(move |(skeleton, shaping)| Primitive::new(skeleton, &shaping, profile))
     }
 }

@@ -96,11 +96,11 @@ impl Scene {
     pub fn surfaces_apart(&self) -> Vec<Surface> {
         let mut functions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
         for (index, element) in (0..).zip(&self.elements) {
-            if let Shape::Function(function) = &element.shape
-                && self.is_soft(element)
-                && (element.body as usize) < self.bodies.len()
-            {
-                let own = self.functions_of(element, function);
+            if self.is_soft(element) && (element.body as usize) < self.bodies.len() {
+                let own = match &element.shape {
+                    Shape::Function(function) => self.functions_of(element, function),
+                    _ => self.slice_bone(element),
+                };
                 if !own.is_empty() {
                     let body = functions.entry(element.body).or_default();
                     body.extend(own.into_iter().map(|function| (index, function)));

@@ -7,7 +7,7 @@ use crate::graph::{Cap, Clip, Graph, Limb, Side, growth};
 use glam::{DAffine3, DVec3};
 use mesh::TriangleMesh;
 use mesh::formats::package::{Lattice, Object, Package, Part, Property};
-use mesh::limits::{MAX_TRIANGLES, MAX_VERTICES};
+use mesh::limits::MAX_TRIANGLES;
 use std::collections::HashMap;
 
 /// Share by which a map's scales may differ along its axes before radii are said to be rough.
@@ -44,7 +44,7 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>,
     draft.remark_count(counts.uneven, text);
     let text = "triangles beside the beams are left out: this file is read as a skeleton";
     draft.remark_count(counts.triangles, text);
-    let text = "lattices are clipped by a mesh, which pictures do not show";
+    let text = "lattices are clipped by a mesh: meshes that are made of them are, pictures are not";
     draft.remark_count(counts.clips, text);
     draft.weld();
     draft.finish(reading.radius).map(Some)
@@ -57,6 +57,8 @@ struct Counts {
     uneven: usize,
     triangles: usize,
     clips: usize,
+    /// Triangles or vertices of the meshes that clip.
+    clipping: usize,
 }
 
 /// Adds a lattice at a place, in millimetres.
@@ -77,7 +79,7 @@ fn add(
         .iter()
         .any(|scale| (scale - growth).abs() > UNEVEN * growth);
     counts.uneven += usize::from(is_uneven);
-    let clip = clip(package, part, lattice, place)?;
+    let clip = clip(package, part, lattice, place, &mut counts.clipping)?;
     counts.clips += usize::from(clip.is_some());
     let clip = clip.map(|clip| draft.clip(clip));
     // The node of each vertex that is used.
@@ -162,12 +164,13 @@ fn kind<'a>(
 }
 
 /// Returns the mesh that a lattice is clipped by, at its place: an object's, with those of its
-/// components.
+/// components. Adds its size to a total, which is bounded.
 fn clip(
     package: &Package,
     part: &Part,
     lattice: &Lattice,
     place: &DAffine3,
+    total: &mut usize,
 ) -> Result<Option<Clip>, Error> {
     let Some((is_inside, id)) = lattice.clip else {
         return Ok(None);
@@ -175,11 +178,10 @@ fn clip(
     let mut mesh = TriangleMesh::default();
     package.visit_object(part, id, place, |_, object, place| {
         let (first, count) = (mesh.positions.len(), object.positions.len());
-        if mesh.triangles.len() + object.triangles.len() > MAX_TRIANGLES
-            || first + count > MAX_VERTICES
-        {
+        *total += object.triangles.len().max(count);
+        if *total > MAX_TRIANGLES {
             return Err(mesh::Error(format!(
-                "the mesh that clips a lattice has more than {MAX_TRIANGLES} triangles"
+                "the meshes that clip lattices have more than {MAX_TRIANGLES} triangles or vertices"
             )));
         }
         let is_mirror = place.matrix3.determinant() < 0.0;

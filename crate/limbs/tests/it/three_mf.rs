@@ -215,6 +215,25 @@ fn clipping_meshes_come_along() {
 }
 
 #[test]
+fn clipping_meshes_are_bounded_together() {
+    let cutter = format!(
+        "<object id=\"2\"><mesh>{}<triangles>{}</triangles></mesh></object>",
+        vertices(),
+        "<triangle v1=\"0\" v2=\"2\" v3=\"1\"/>".repeat(2_000)
+    );
+    let attributes = format!("{PLAIN} clippingmode=\"inside\" clippingmesh=\"2\"");
+    let objects = cutter + &lattice(4, &attributes, "");
+    let items = |count| "<item objectid=\"4\"/>".repeat(count);
+    let few = graph(
+        "a.3mf",
+        single("centimeter", &with_item(&objects, &items(10))),
+    );
+    assert_eq!(few.clips.len(), 10);
+    let many = single("centimeter", &with_item(&objects, &items(1_100)));
+    assert!(message("a.3mf", many).contains("the meshes that clip lattices have more than"));
+}
+
+#[test]
 fn materials_and_balls_are_read() {
     let objects = "<basematerials id=\"1\"><base name=\"steel\" displaycolor=\"#8090A0\"/>\
                    <base name=\"a &lt; b\" displaycolor=\"#FF0000FF\"/></basematerials>"

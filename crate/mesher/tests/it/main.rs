@@ -1,8 +1,10 @@
 //! The tests of `mesher`, as one program: a module for each subject.
 
+mod clipping;
 mod coating;
 mod contact;
 mod degenerate;
+mod ends;
 mod file;
 mod judges;
 mod painted;

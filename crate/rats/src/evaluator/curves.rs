@@ -2,11 +2,15 @@
 
 use super::state::Evaluator;
 use crate::commands::OptionSpec;
-use crate::commands::build::word_of;
+use crate::commands::build::{options, word_of};
+use crate::commands::slot::{Slot, Word, word};
+use crate::given::Options;
 use crate::limits::CURVE_WEIGHT;
 use crate::problem::{Outcome, Problem};
+use crate::reader::Name;
 use field::{Shaping, Taper};
-use scene::{Curves, Element};
+use scene::curves::MOST_FLAT;
+use scene::{Curves, Element, Ends};
 use std::ops::Range;
 
 /// Schemes of subdivision.
@@ -18,6 +22,47 @@ pub(super) const SCHEMES: &[OptionSpec] = &[
     ),
     word_of("fourpoint", "through every node"),
 ];
+
+/// Shapes of free ends.
+const END_SHAPES: &[OptionSpec] = &[
+    word_of("round", "the surface goes on beyond a free end"),
+    word_of(
+        "flat",
+        "the surface ends in a plane through the free end, across its limb",
+    ),
+    word_of(
+        "open",
+        "as flat ones, but meshes have holes there; pictures show the planes",
+    ),
+];
+
+/// Shape of free ends.
+pub(super) const END_SHAPE: Slot<Word> = word("shape", END_SHAPES, "`round`, `flat` or `open`");
+
+options! {
+    /// Options of a limb by itself.
+    LIMB_OPTIONS:
+    ENDS: Word = ("ends", "round", "shape of its ends, where it is soft", END_SHAPE);
+}
+
+/// Returns the shape of free ends that a text asks for; round if it asks for none.
+pub(super) fn ends_of(options: &Options<'_>) -> Ends {
+    match options.last(&ENDS) {
+        Some("flat") => Ends::Lids,
+        Some("open") => Ends::Open,
+        _ => Ends::Round,
+    }
+}
+
+/// Notes that the flat ends of a skeleton are round.
+pub(super) fn note_round(run: &mut Evaluator<'_>, name: &Name<'_>, count: usize) {
+    let message = format!(
+        "{}: {count} flat ends are round: {MOST_FLAT} may be cut by a plane, and none where \
+         `local` counts",
+        name.text
+    );
+    run.note(&name.span, message, "");
+}
 
 /// Returns the number of shapes as which the limbs of an element count: those that taper count as
 /// [`CURVE_WEIGHT`], unless they are [cones](Shaping::is_cone).

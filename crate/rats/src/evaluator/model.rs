@@ -12,11 +12,15 @@ use crate::suggest;
 use field::Skeleton;
 use field::skeleton::Map;
 use glam::DAffine3;
-use scene::{Body, Contact, Element, Shape};
+use scene::curves::MOST_FLAT;
+use scene::{Body, Contact, Element, Ends, Shape};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 use std::rc::Rc;
+
+/// Number of shapes as which a limb counts that ends flat: each is a function of its own.
+const FLAT_WEIGHT: usize = MAX_ELEMENTS / MOST_FLAT;
 
 /// Shape and all that the language must remember of it.
 #[derive(Clone, Debug)]
@@ -49,6 +53,10 @@ impl Part {
             return self.limbs;
         }
         let skeleton = self.element.shape.skeleton();
+        let bone = self.element.shape.bone();
+        if bone.is_some_and(|bone| bone.soft_ends != [Ends::Round; 2]) {
+            return FLAT_WEIGHT;
+        }
         match (&self.element.shape, skeleton) {
             (_, Some(Skeleton::Polygon { rings })) => rings.iter().map(Vec::len).sum(),
             (_, Some(line)) if line.is_numeric() => CURVE_WEIGHT,
@@ -127,8 +135,8 @@ impl<'a> Model<'a> {
         if weight > MAX_ELEMENTS {
             let hint = if self.parts.len() < MAX_ELEMENTS / 2 {
                 format!(
-                    "a curve or a limb that tapers counts as {CURVE_WEIGHT} shapes, a polygon as \
-                     many as it has corners"
+                    "a curve or a limb that tapers counts as {CURVE_WEIGHT} shapes, one that ends \
+                     flat as {FLAT_WEIGHT}, a polygon as many as it has corners"
                 )
             } else {
                 String::from("make fewer shapes, or fewer turns of a loop")

@@ -1,5 +1,6 @@
 //! PRIMITIVES: shapes made of a material.
 
+use super::curves::{LIMB_OPTIONS, ends_of};
 use super::implicit_mesh::{self, MESH_OPTIONS};
 use super::model::Part;
 use super::state::{Evaluator, Flow};
@@ -22,25 +23,33 @@ use field::Kernel;
 use field::Skeleton;
 use glam::{DMat3, DVec3};
 use mesh::TriangleMesh;
-use scene::{Element, Quadric, Shape};
+use scene::{Element, Ends, Quadric, Shape};
 use std::ops::Range;
 use std::rc::Rc;
 
 /// Makes the form of a command that makes one shape: the function that adds the shape, the shape,
 /// and the operands behind the material:
-/// `makes!(add, |radius, center| Shape::sphere(center, radius), …)`.
+/// `makes!(add, |radius, center| Shape::sphere(center, radius), …)`. The list of options of limbs
+/// may stand before the shape, in brackets.
 macro_rules! makes {
     ($add:ident $(($kernel:expr))?, |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?) => {
+        makes!($add $(($kernel))?, [&[]], |$($value),+| $shape, $($slot),+)
+    };
+    (
+        $add:ident $(($kernel:expr))?, [$options:expr],
+        |$($value:ident),+| $shape:expr, $($slot:expr),+ $(,)?
+    ) => {
         by_itself(
             |run, command| {
                 let given = run.read_given(command)?;
                 let mut values = given.values();
                 let sn = values.take(|| SN)?;
                 let ($($value,)+) = ($(values.take(|| $slot)?,)+);
-                $add(run, command, &sn, $($kernel,)? $shape)
+                let shape = with_ends(run, &given.options, &sn, $shape)?;
+                $add(run, command, &sn, $($kernel,)? shape)
             },
             plain![SN, $($slot),+],
-            &[],
+            $options,
         )
     };
 }
@@ -54,6 +63,28 @@ fn add<'a>(
 ) -> Outcome<Flow> {
     let material = run.material(sn)?;
     run.add_of(command, material, shape, Kernel::Cauchy)
+}
+
+/// Returns a shape with the ends that the options ask for. They are for soft lines.
+fn with_ends(
+    run: &mut Evaluator<'_>,
+    options: &Options<'_>,
+    sn: &Name<'_>,
+    mut shape: Shape,
+) -> Outcome<Shape> {
+    let ends = ends_of(options);
+    if ends == Ends::Round {
+        return Ok(shape);
+    }
+    let material = run.material(sn)?;
+    if !run.palette.surfaces[material].flesh.is_soft() {
+        let message = format_args!("`ends` is for soft limbs, and `{}` is hard", sn.text);
+        let hint = "a hard cylinder has lids, a hard pipe none";
+        run.warn(&sn.span, message, hint);
+    } else if let Shape::Bone(bone) = &mut shape {
+        bone.soft_ends = [ends; 2];
+    }
+    Ok(shape)
 }
 
 fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Shape {
@@ -115,6 +146,7 @@ pub static SPHERE: CommandSpec = row("sphere", "sphere; a point when soft")
 pub static CYLINDER: CommandSpec = row("cylinder", "cylinder with lids; a line segment when soft")
     .with(makes!(
         add,
+        [LIMB_OPTIONS],
         |radius, base, apex| Shape::cylinder(base, apex, radius),
         length("r", "the radius").role(Role::Radius),
         vector("BASE", "the base"),
@@ -125,6 +157,7 @@ pub static CYLINDER: CommandSpec = row("cylinder", "cylinder with lids; a line s
 pub static PIPE: CommandSpec = row("pipe", "cylinder without lids")
     .with(makes!(
         add,
+        [LIMB_OPTIONS],
         |radius, base, apex| Shape::pipe(base, apex, radius),
         length("r", "the radius").role(Role::Radius),
         vector("BASE", "the base"),
@@ -135,6 +168,7 @@ pub static PIPE: CommandSpec = row("pipe", "cylinder without lids")
 pub static ARC: CommandSpec = row("arc", "arc of a circle")
     .with(takes!(
         arc,
+        [LIMB_OPTIONS],
         SN,
         length("a", "the sweep radius").role(Role::Sweep),
         length("b", "the tube radius").role(Role::Radius),
@@ -156,6 +190,7 @@ pub static ARC: CommandSpec = row("arc", "arc of a circle")
 fn arc<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
+    options: &Options<'a>,
     sn: Name<'a>,
     sweep: f64,
     tube: f64,
@@ -170,12 +205,14 @@ fn arc<'a>(
         run.warn(&span, message, hint);
     }
     let shape = geometry::arc(center, normal, sweep, tube, start, width);
+    let shape = with_ends(run, options, &sn, shape)?;
     add(run, command, &sn, shape)
 }
 
 pub static ARCH: CommandSpec = row("arch", "arc through three points")
     .with(takes!(
         arch,
+        [LIMB_OPTIONS],
         SN,
         length("b", "the tube radius").role(Role::Radius),
         vector("P1", "the first point"),
@@ -187,24 +224,27 @@ pub static ARCH: CommandSpec = row("arch", "arc through three points")
 fn arch<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
+    options: &Options<'a>,
     sn: Name<'a>,
     radius: f64,
     a: DVec3,
     b: DVec3,
     c: DVec3,
 ) -> Outcome<Flow> {
-    match geometry::through(a, b, c, radius) {
-        ThreePoints::Arc(shape) => add(run, command, &sn, shape),
+    let shape = match geometry::through(a, b, c, radius) {
+        ThreePoints::Arc(shape) => shape,
         ThreePoints::Line(base, apex) => {
             let message = "the three points lie on a line: a straight cylinder is drawn";
             run.warn(&command.span, message, "");
-            add(run, command, &sn, Shape::cylinder(base, apex, radius))
+            Shape::cylinder(base, apex, radius)
         }
-        ThreePoints::Same => Err(Problem::new(
-            &command.span,
-            "an arch needs three different points",
-        )),
-    }
+        ThreePoints::Same => {
+            let message = "an arch needs three different points";
+            return Err(Problem::new(&command.span, message));
+        }
+    };
+    let shape = with_ends(run, options, &sn, shape)?;
+    add(run, command, &sn, shape)
 }
 
 pub static TORUS: CommandSpec = row("torus", "ring of a round tube")
@@ -306,6 +346,7 @@ fn polygon<'a>(
 pub static CURVE: CommandSpec = row("curve", "cubic Bézier curve")
     .with(takes!(
         curve,
+        [LIMB_OPTIONS],
         SN,
         length("b", "the tube radius").role(Role::Radius),
         vector("P1", "the first control point"),
@@ -323,6 +364,7 @@ pub static CURVE: CommandSpec = row("curve", "cubic Bézier curve")
 fn curve<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,
+    options: &Options<'a>,
     sn: Name<'a>,
     radius: f64,
     a: DVec3,
@@ -341,9 +383,19 @@ fn curve<'a>(
         )
         .hint("each curve after the first takes two control points and an end point"));
     }
-    for i in (0..points.len() - 1).step_by(3) {
+    let last = points.len() - 4;
+    for i in (0..=last).step_by(3) {
         let control = [points[i], points[i + 1], points[i + 2], points[i + 3]];
-        add(run, command, &sn, Shape::curve(control, radius))?;
+        let mut shape = with_ends(run, options, &sn, Shape::curve(control, radius))?;
+        if let Shape::Bone(bone) = &mut shape {
+            // Where another one goes on there is no end.
+            for (end, is_free) in bone.soft_ends.iter_mut().zip([i == 0, i == last]) {
+                if !is_free {
+                    *end = Ends::Round;
+                }
+            }
+        }
+        add(run, command, &sn, shape)?;
     }
     Ok(Flow::Next)
 }
@@ -389,6 +441,7 @@ pub static GAUSS: CommandSpec = row("gauss", "point with a Gaussian kernel")
 pub static LINE: CommandSpec = row("line", "line segment with a Gaussian kernel")
     .with(makes!(
         of_kernel(Kernel::Gauss),
+        [LIMB_OPTIONS],
         |base, apex| Shape::cylinder(base, apex, 0.0),
         vector("BASE", "the base"),
         vector("APEX", "the apex")
@@ -417,6 +470,7 @@ pub static TRIAD: CommandSpec = row("triad", "triangle with the Newtonian kernel
 pub static CONE: CommandSpec = row("cone", "cone with lids")
     .with(makes!(
         add,
+        [LIMB_OPTIONS],
         |base_radius, base, apex_radius, apex| Shape::cone(base, base_radius, apex, apex_radius),
         length("b", "the radius at the base")
             .role(Role::Radius)

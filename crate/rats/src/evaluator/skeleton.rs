@@ -1,6 +1,6 @@
 //! `skeleton`: subdivision curves through named nodes, with flesh around them.
 
-use super::curves::{SCHEMES, keep_apart, weigh};
+use super::curves::{END_SHAPE, SCHEMES, ends_of, keep_apart, note_round, weigh};
 use super::model::{Group, Part};
 use super::skeleton_file::{self, FILE, FILE_OPTIONS, NAME};
 use super::state::{Evaluator, Flow};
@@ -16,7 +16,8 @@ use crate::syntax::Command;
 use crate::{is_mesh, is_skeleton};
 use field::Kernel;
 use glam::{DAffine3, DVec3};
-use scene::{Curves, Element, Form, Function, Shape};
+use scene::curves::MOST_FLAT;
+use scene::{Curves, Element, Ends, Form, Function, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -49,6 +50,7 @@ options! {
         "folds do not blend: at a point only what is within D along the curves counts",
         length("D", "the length along the curves within which flesh \
             blends").at_least(1e-6).with_place());
+    BLOCK_ENDS: Word = ("ends", "round", "shape of free ends", END_SHAPE);
 }
 
 /// Operands of the form with a block.
@@ -62,11 +64,11 @@ static ALL_OPTIONS: &[OptionSpec] = plain![
     SUBDIVIDE,
     SCHEME,
     LOCAL,
+    BLOCK_ENDS,
     skeleton_file::SCALE,
     skeleton_file::THICKEN,
     skeleton_file::MERGE,
     skeleton_file::SIMPLIFY,
-    skeleton_file::ENDS,
     skeleton_file::MATERIALS,
     skeleton_file::BONDS,
 ];
@@ -88,15 +90,17 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
          `cubed` unless the material names another. With `local D` only the stretch within D \
          along the curves counts at a point, so that a fold does not blend with what lies beside \
          it; about four radii suit, and less than one makes limbs thinner. A skeleton is an \
-         object: it is moved, turned and copied by its name.\n\
+         object: it is moved, turned and copied by its name. With `ends flat` the surface ends in a \
+         plane at each free end, which meshes have as a group: `inlet`, the widest, `outlet-1` and \
+         so on; with `ends open` meshes have a hole there.\n\
          `skeleton sn, name file.swc` has the limbs of a file of the project in place of a block: \
          neurons (.swc), lattices of beams (.3mf), centrelines (.vtp .vtk), trees (.csv), lines \
          with radii (.obj .ply) and molecules (.xyz .pdb). Its limbs are straight, `subdivide 0`, \
          unless the text says otherwise; `subdivide` rounds them through their nodes. Radii are \
          those of the file, times `scale`; `radius NAME` names the array or column that has \
-         them. With `ends flat` free ends are planes, which meshes have as groups: `inlet`, the \
-         widest, `outlet-1` and so on. The surface stands at the radii for the kernel `compact6` \
-         and the blobbiness 8, which a material has here that names neither.",
+         them. Round free ends reach their radius beyond their node. The surface stands at the \
+         radii for the kernel `compact6` and the blobbiness 8, which a material has here that \
+         names neither.",
     )
     .example(
         "light White, position 4 8 10\nsurface Flesh, kernel cauchy, diffuse SandyBrown, specular \
@@ -173,8 +177,18 @@ fn add_block<'a>(
     let names = read.nodes.iter().map(|(name, _)| name.text.to_owned());
     let names = names.collect();
     let mut curves = read.refine(command, options)?;
+    let ends = ends_of(options);
+    let free = curves.free_nodes();
     if let Some(reach) = options.last(&LOCAL) {
         curves = keep_apart(run, curves, reach)?;
+    }
+    if ends != Ends::Round {
+        let cuts = free.len() <= MOST_FLAT && curves.local.is_none();
+        if cuts {
+            curves = curves.with_flat(free, ends == Ends::Open);
+        } else {
+            note_round(run, &name, free.len());
+        }
     }
     let segments = curves.polyline().map_or(0, |p| p.segments.len());
     run.scope

@@ -1,15 +1,15 @@
 //! `skeleton sn, name file …`: skeletons that people have in files.
 
-use super::curves::{SCHEMES, keep_apart, weigh};
+use super::curves::{END_SHAPE, SCHEMES, ends_of, keep_apart, note_round, weigh};
 use super::model::{Group, Part};
 use super::skeleton_radii;
 use super::state::{Evaluator, Flow};
 use crate::assets;
-use crate::commands::build::{options, plain, word_of};
+use crate::commands::build::{options, plain};
 use crate::commands::slot::{
     Named, Placed, SN, Slot, Word, existing, file, length, new, number, whole, word,
 };
-use crate::commands::{Names, OptionSpec, Parameter};
+use crate::commands::{Names, Parameter};
 use crate::compiled::Unread;
 use crate::given::Options;
 use crate::limits::MAX_SKELETON_FILES;
@@ -19,9 +19,10 @@ use crate::suggest;
 use crate::syntax::Command;
 use field::{BlobScale, Kernel, Primitive, Shaping, THRESHOLD};
 use glam::{DAffine3, DVec3};
-use limbs::{Cap, Graph, Recipe};
+use limbs::{Cap, Graph, Recipe, Side};
+use scene::curves::Clip;
 use scene::curves::MOST_FLAT;
-use scene::{Curves, Element, Form, Function, Shape};
+use scene::{Curves, Element, Ends, Form, Function, Shape};
 use skeleton::{Node, Scheme, Skeleton};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -33,6 +34,8 @@ const KERNEL: Kernel = Kernel::Compact6;
 const BLOBBINESS: f64 = 8.0;
 /// Remarks of a file that are quoted.
 const MOST_REMARKS: usize = 8;
+/// Triangles of meshes that clip limbs.
+const MOST_CLIPPING: usize = 100_000;
 /// Limbs that cost as much as a step.
 const LIMBS_PER_STEP: usize = 4;
 
@@ -43,18 +46,6 @@ pub(super) const FILE: Slot<Named> = file("fn", "the name of a file with limbs")
 
 /// Operands of this form of the command.
 pub(super) const PARAMETERS: &[Parameter] = plain![SN, NAME, FILE];
-
-/// Shapes of free ends.
-const END_SHAPES: &[OptionSpec] = &[
-    word_of(
-        "round",
-        "the surface reaches a free end and its radius beyond",
-    ),
-    word_of(
-        "flat",
-        "the surface ends in a plane through the free end, across its limb",
-    ),
-];
 
 options! {
     /// Options of `skeleton` with a file.
@@ -68,8 +59,6 @@ options! {
     SIMPLIFY: f64 = ("simplify", "",
         "of a file: fewer limbs, whose centrelines and radii move by at most E",
         length("E", "the most that lines and radii move").at_least(0.0));
-    ENDS: Word = ("ends", "round", "of a file: shape of free ends",
-        word("shape", END_SHAPES, "`round` or `flat`"));
     MATERIALS: Vec<Named> = ("materials", "",
         "of a file: materials of its types or elements, `soma A axon B`; the first is for all \
          others",
@@ -84,6 +73,7 @@ options! {
     FILE_LOCAL: Placed<f64> = ("local", "", "as of a skeleton with a block",
         length("D", "the length along the limbs within which flesh \
             blends").at_least(1e-6).with_place());
+    FILE_ENDS: Word = ("ends", "round", "shape of free ends", END_SHAPE);
 }
 
 /// Adds the skeleton of a file as one object.
@@ -134,6 +124,7 @@ pub(super) fn add<'a>(
         nodes: read.nodes.clone(),
         limbs: read.limbs.clone(),
         groups: read.groups.clone(),
+        clips: read.clips.clone(),
         ..Graph::default()
     };
     graph.scale(scale);
@@ -153,22 +144,21 @@ pub(super) fn add<'a>(
     }
     let mut remarks: Vec<String> = read.remarks.iter().map(ToString::to_string).collect();
     remarks.extend(graph.remarks.iter().map(ToString::to_string));
+    let clip = find_clip(&graph).unwrap_or_else(|why| {
+        remarks.push(format!("meshes are not clipped either: {why}"));
+        None
+    });
     tell_remarks(run, file, &remarks);
     if graph.limbs.is_empty() && graph.nodes.is_empty() {
         return Err(Problem::new(&file.span, "nothing is left of this skeleton"));
     }
     let own = find_materials(run, &graph, material, &others)?;
-    let flat = graph.choose_caps(options.last(&ENDS) == Some("flat"));
+    let flat = graph.choose_caps(ends_of(options) != Ends::Round);
     if run.settings.soft {
         let cuts = flat <= MOST_FLAT && !options.has(&FILE_LOCAL);
         lengthen(run, &mut graph, material, cuts);
         if flat > 0 && !cuts {
-            let message = format!(
-                "{}: {flat} flat ends are round: {MOST_FLAT} may be cut by a plane, and none where \
-                 `local` counts",
-                file.text
-            );
-            run.note(&file.span, message, "");
+            note_round(run, file, flat);
             for limb in &mut graph.limbs {
                 limb.caps = [Cap::Round; 2];
             }
@@ -186,7 +176,7 @@ pub(super) fn add<'a>(
     used.dedup();
     let mut result = Ok(());
     for material in used {
-        result = add_material(run, command, options, sn, &graph, (material, &own));
+        result = add_material(run, command, options, sn, (&graph, &clip), (material, &own));
         if result.is_err() {
             break;
         }
@@ -257,6 +247,33 @@ fn shaping(run: &Evaluator<'_>, material: usize) -> Shaping {
     }
 }
 
+/// Returns the meshes that all limbs are clipped by, if any.
+///
+/// # Errors
+/// If only some limbs are clipped, or in unlike ways, or by too many triangles.
+fn find_clip(graph: &Graph) -> Result<Option<Arc<Clip>>, &'static str> {
+    let Some(first) = graph.clips.first() else {
+        return Ok(None);
+    };
+    if graph.limbs.iter().any(|limb| limb.clip.is_none()) {
+        return Err("only some of its limbs are");
+    }
+    if graph.clips.iter().any(|clip| clip.side != first.side) {
+        return Err("some limbs are kept inside of a mesh, others outside");
+    }
+    let meshes = graph.clips.iter().map(|clip| &clip.mesh);
+    let triangles: usize = meshes.clone().map(|mesh| mesh.triangles.len()).sum();
+    if triangles > MOST_CLIPPING {
+        return Err("the mesh that clips has too many triangles");
+    }
+    Ok(Some(Arc::new(Clip {
+        is_inside: first.side == Side::Inside,
+        meshes: meshes
+            .map(|mesh| (mesh.positions.clone(), mesh.triangles.clone()))
+            .collect(),
+    })))
+}
+
 /// Moves free ends such that the surface ends a radius beyond them, or where they are flat, at them
 /// unless a plane cuts it there.
 fn lengthen(run: &Evaluator<'_>, graph: &mut Graph, material: usize, cuts: bool) {
@@ -303,7 +320,7 @@ fn add_material<'a>(
     command: &'a Command,
     options: &Options<'a>,
     sn: &Name<'a>,
-    graph: &Graph,
+    (graph, clip): (&Graph, &Option<Arc<Clip>>),
     (material, own): (usize, &[usize]),
 ) -> Outcome<()> {
     let flesh = &run.palette.surfaces[material].flesh;
@@ -315,10 +332,11 @@ fn add_material<'a>(
     if !part.limbs.is_empty() {
         let curves = make_curves(&part, options)
             .map_err(|error| Problem::new(&command.word_span, error.to_string()))?;
-        let curves = match options.last(&FILE_LOCAL) {
+        let mut curves = match options.last(&FILE_LOCAL) {
             Some(reach) => keep_apart(run, curves, reach)?,
-            None => curves.with_flat(flat_nodes(&part)),
+            None => curves.with_flat(flat_nodes(&part), ends_of(options) == Ends::Open),
         };
+        curves.clip.clone_from(clip);
         let shape = Shape::Function(Box::new(Function {
             form: Form::Skeleton(Arc::new(curves)),
             to_world: DAffine3::IDENTITY,

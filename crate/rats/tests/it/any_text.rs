@@ -72,13 +72,11 @@ fn absent(scene: &scene::Scene) -> usize {
             bone.is_some_and(|bone| bone.normals.is_none()),
         ]
     });
-    let whole = scene
+    let curves = scene
         .elements
         .iter()
-        .filter_map(|element| match &element.shape {
-            scene::Shape::Function(function) => Some(function.curves()?.local.is_none()),
-            _ => None,
-        });
+        .filter_map(|element| element.shape.curves());
+    let whole = curves.flat_map(|own| [own.local.is_none(), own.clip.is_none()]);
     let around = [
         scene.settings.map.is_none(),
         scene.sky.is_none(),

@@ -10,6 +10,8 @@ mod deform;
 #[cfg(not(target_arch = "wasm32"))]
 mod diagnostics;
 #[cfg(not(target_arch = "wasm32"))]
+mod ends;
+#[cfg(not(target_arch = "wasm32"))]
 mod examples;
 #[cfg(not(target_arch = "wasm32"))]
 mod limits;

@@ -561,3 +561,74 @@ fn flat_ends_are_planes() {
         notes(&compiled)
     );
 }
+
+/// A 3MF package of lattices, given by their attributes, which all have one beam; object 1 is a
+/// tetrahedron of the side 9.
+fn lattices(attributes: &[&str]) -> Vec<u8> {
+    let mut objects = String::from(
+        "<object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"9\" y=\"0\" \
+         z=\"0\"/><vertex x=\"0\" y=\"9\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"9\"/></vertices>\
+         <triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/>\
+         <triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles></mesh>\
+         </object>",
+    );
+    let mut items = String::new();
+    for (own, id) in attributes.iter().zip(2..) {
+        objects += &format!(
+            "<object id=\"{id}\"><mesh><vertices><vertex x=\"{id}\" y=\"1\" z=\"-20\"/><vertex \
+             x=\"{id}\" y=\"1\" z=\"20\"/></vertices><b:beamlattice radius=\"0.5\" minlength=\"0.01\" \
+             {own}><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice></mesh></object>"
+        );
+        items += &format!("<item objectid=\"{id}\"/>");
+    }
+    let model = format!(
+        "<model unit=\"millimeter\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
+         xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"><resources>\
+         {objects}</resources><build>{items}</build></model>"
+    );
+    let relations = "<Relationships><Relationship Target=\"/3D/x.model\" Id=\"a\" \
+        Type=\"http://x/3dmodel\"/></Relationships>";
+    let members = [("_rels/.rels", relations), ("3D/x.model", &model)];
+    let members = members.map(|(name, text)| archive::Member::new(name, text.as_bytes()));
+    archive::write(&members).unwrap()
+}
+
+#[test]
+fn clips_of_lattices_are_kept_for_meshes() {
+    let read = |attributes: &[&str], text: &str| {
+        let asset = Asset::new("n.3mf", &lattices(attributes)[..]);
+        let text = format!("verbose off\neyep 0 0 90\nsurface s, diffuse Red\n{text}");
+        compile_at(&Project::single(text), &[asset], 0.0)
+    };
+    let inside = "clippingmode=\"inside\" clippingmesh=\"1\"";
+    let outside = "clipping=\"outside\" clippingmesh=\"1\"";
+    let clip = |compiled: &Compiled| {
+        let elements = compiled.scene.elements.iter();
+        let mut clips = elements.filter_map(|own| own.shape.curves()?.clip.clone());
+        clips.next()
+    };
+    for (own, is_inside) in [(inside, true), (outside, false)] {
+        let compiled = read(&[own, own], "skeleton s, N n.3mf scale 2");
+        let clip = clip(&compiled).expect("a clip");
+        assert_eq!((clip.is_inside, clip.meshes.len()), (is_inside, 2));
+        let (positions, triangles) = &clip.meshes[0];
+        assert_eq!((positions[1], triangles.len()), (DVec3::X * 18.0, 4));
+        assert_eq!(messages(&compiled).len(), 1);
+        assert!(
+            messages(&compiled)[0]
+                .1
+                .contains("2 lattices are clipped by a mesh")
+        );
+    }
+    for (own, why) in [
+        ([inside, ""], "only some of its limbs are"),
+        ([inside, outside], "some limbs are kept inside"),
+    ] {
+        let compiled = read(&own, "skeleton s, N n.3mf");
+        assert_eq!(clip(&compiled), None);
+        let told = messages(&compiled);
+        assert!(told.iter().any(|(_, text)| text.contains(why)), "{told:?}");
+    }
+    let compiled = read(&["", ""], "skeleton s, N n.3mf");
+    assert_eq!((clip(&compiled), messages(&compiled)), (None, Vec::new()));
+}

@@ -1,0 +1,160 @@
+//! Limbs that a closed mesh cuts, as beam lattices of files are.
+
+use crate::judges::assert_manifold;
+use glam::DVec3;
+use mesher::{Model, Progress, Tolerance, Wishes, mesh_scene};
+use rats::{Project, compile};
+use scene::curves::Clip;
+use scene::{Form, Scene, Shape};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Two limbs that cross, and a third beside them.
+const LIMBS: &str = "skeleton Flesh, S { node A <-9 0 0> node B <9 0 0> node C <0 -9 0> \
+    node D <0 9 0> node E <-9 0 4> node F <9 0 4> curve A B curve C D curve E F }";
+
+/// The scene of a text, in which all skeletons are cut by a mesh.
+fn scene(text: &str, clip: &Clip) -> Scene {
+    let compiled = compile(&Project::single(format!(
+        "verbose off\neyep 0 0 90\nsurface Flesh, diffuse Red, radius 1, kernel compact6, \
+         blobbiness -8\n{text}"
+    )));
+    assert_eq!(compiled.diagnostics, []);
+    let mut scene = Arc::unwrap_or_clone(compiled.scene);
+    for element in &mut scene.elements {
+        if let Shape::Function(function) = &mut element.shape
+            && let Form::Skeleton(curves) = &mut function.form
+        {
+            Arc::make_mut(curves).clip = Some(Arc::new(clip.clone()));
+        }
+    }
+    scene
+}
+
+/// A box from one corner to another, as a mesh.
+fn block(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let corner = |i: u32| {
+        let pick = |k: usize| if i >> k & 1 == 0 { low[k] } else { high[k] };
+        DVec3::new(pick(0), pick(1), pick(2))
+    };
+    let faces = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let halves = faces
+        .into_iter()
+        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    ((0..8).map(corner).collect(), halves.collect())
+}
+
+fn meshed(scene: &Scene, is_united: bool) -> Model {
+    let wishes = Wishes {
+        tolerance: Tolerance::Absolute(0.06),
+        prove: false,
+        union: is_united,
+        ..Wishes::default()
+    };
+    let mut go_on = |_| ControlFlow::Continue(());
+    mesh_scene(scene, &wishes, &mut Progress::new(&mut go_on)).unwrap()
+}
+
+/// The volume of the only part, which is closed.
+fn volume(model: &Model, name: &str) -> f64 {
+    let [part] = &model.parts[..] else {
+        panic!("{name}: {} parts", model.parts.len())
+    };
+    assert!(part.is_closed, "{name}");
+    assert_manifold(name, &part.mesh);
+    part.mesh.signed_volume()
+}
+
+#[test]
+fn both_sides_of_a_mesh_make_up_the_whole() {
+    for (text, is_united) in [
+        (LIMBS.to_owned(), false),
+        (format!("soft off\n{LIMBS}"), true),
+    ] {
+        let cut = |is_inside: bool, meshes: Vec<_>| {
+            meshed(&scene(&text, &Clip { is_inside, meshes }), is_united)
+        };
+        let far = block(DVec3::splat(90.0), DVec3::splat(99.0));
+        let whole = volume(&cut(false, vec![far.clone()]), "whole");
+        let half = block(DVec3::new(0.25, -20.0, -20.0), DVec3::splat(20.0));
+        let [inside, outside] = [true, false].map(|side| cut(side, vec![half.clone()]));
+        for (model, side) in [(&inside, 1.0), (&outside, -1.0)] {
+            let positions = &model.parts[0].mesh.positions;
+            assert!(positions.iter().all(|p| side * (p.x - 0.25) >= -1e-9));
+            let on_face = positions.iter().filter(|p| (p.x - 0.25).abs() < 1e-9);
+            assert!(on_face.count() > 10, "{text}");
+        }
+        let parts = [inside, outside].map(|model| volume(&model, "half"));
+        assert!(parts[0] > 0.3 * whole && parts[1] > 0.3 * whole);
+        assert!(
+            (parts[0] + parts[1] - whole).abs() < 1e-6 * whole,
+            "{parts:?} {whole}"
+        );
+        // Turned inside out it cuts the same; two cut as their union.
+        let mut turned = half.clone();
+        turned.1.iter_mut().for_each(|t| t.swap(1, 2));
+        let again = volume(&cut(true, vec![turned]), "turned");
+        assert!((again - parts[0]).abs() < 1e-9 * whole);
+        let more = block(DVec3::new(0.1, -20.0, -20.0), DVec3::splat(10.0));
+        let both = volume(&cut(true, vec![half.clone(), more]), "two");
+        assert!(both > parts[0] && both < whole);
+    }
+}
+
+#[test]
+fn clips_follow_their_skeleton() {
+    let half = block(DVec3::new(0.25, -20.0, -20.0), DVec3::splat(20.0));
+    let clip = Clip {
+        is_inside: true,
+        meshes: vec![half],
+    };
+    let model = meshed(&scene(&format!("{LIMBS}\ntranslate 5 0 0 S"), &clip), false);
+    let bounds = model.bounds();
+    assert!((bounds.min.x - 5.25).abs() < 1e-9, "{bounds:?}");
+}
+
+#[test]
+fn what_cannot_be_clipped_is_told() {
+    let (positions, mut triangles) = block(DVec3::new(0.25, -20.0, -20.0), DVec3::splat(20.0));
+    let mut clip = Clip {
+        is_inside: true,
+        meshes: vec![(positions.clone(), triangles.clone())],
+    };
+    // A ball of the same body blends with the limbs, and is not clipped.
+    let mixed = meshed(
+        &scene(&format!("{LIMBS}\nsphere Flesh 2, 0 0 -3"), &clip),
+        false,
+    );
+    assert!(
+        mixed
+            .notes
+            .iter()
+            .any(|note| note.contains("not clipped, as other limbs"))
+    );
+    assert!(mixed.bounds().min.x < -8.0);
+    triangles.pop();
+    clip.meshes = vec![(positions, triangles)];
+    let open = meshed(&scene(LIMBS, &clip), false);
+    assert!(open.notes.iter().any(|note| note.contains("is not closed")));
+    assert!(open.bounds().min.x < -8.0);
+    // Nothing is left.
+    clip.meshes = vec![block(DVec3::splat(30.0), DVec3::splat(40.0))];
+    let mut go_on = |_| ControlFlow::Continue(());
+    let wishes = Wishes {
+        prove: false,
+        ..Wishes::default()
+    };
+    let none = mesh_scene(
+        &scene(LIMBS, &clip),
+        &wishes,
+        &mut Progress::new(&mut go_on),
+    );
+    assert!(none.is_err());
+}
