@@ -493,8 +493,10 @@ fn soft_part(
         mesh.colors = None;
     }
     let holes = Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
-    if holes > 0 {
-        model.notes.push(format!("{name}: {holes} ends are open"));
+    match holes {
+        0 => {}
+        1 => model.notes.push(format!("{name}: one end is open")),
+        _ => model.notes.push(format!("{name}: {holes} ends are open")),
     }
     model.evaluations += evaluations;
     if is_cut {

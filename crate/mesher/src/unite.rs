@@ -103,11 +103,10 @@ pub fn union(
     triangles(&joint(meshes, progress)?)
 }
 
-/// The part of a closed mesh that is inside of closed meshes, or outside of all of them, as
-/// [`union`] returns it.
+/// Returns the part of a closed mesh that is inside other closed meshes, or outside all of them.
 ///
 /// # Errors
-/// As those of [`union`].
+/// If a mesh is not closed or has too many triangles, or if the caller cancels.
 pub fn clip(
     mesh: &TriangleMesh,
     by: &[TriangleMesh],
