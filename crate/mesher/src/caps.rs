@@ -61,9 +61,9 @@ pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) -> usize {
     let mut holes = 0;
     let mut start = of.iter().filter(|end| end.is_none()).count() as u32;
     mesh.groups[0].triangles = 0..start;
-    for end in 0..ends.len() {
-        let count = of.iter().filter(|own| **own == Some(end)).count() as u32;
-        if ends[end].is_open {
+    for (end, own) in ends.iter().enumerate() {
+        let count = of.iter().filter(|at| **at == Some(end)).count() as u32;
+        if own.is_open {
             holes += usize::from(count > 0);
             continue;
         }

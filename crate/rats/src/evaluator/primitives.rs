@@ -221,6 +221,7 @@ pub static ARCH: CommandSpec = row("arch", "arc through three points")
     ))
     .example(flesh!("arch Flesh 0.6, <-2 -1 0>, <0 1.5 0>, <2 -1 0>"));
 
+#[expect(clippy::too_many_arguments, reason = "the operands of the command")]
 fn arch<'a>(
     run: &mut Evaluator<'a>,
     command: &'a Command,

@@ -48,8 +48,11 @@ fn assert_flat(surface: &Surface, end: &FlatEnd, text: &str) {
     }
 }
 
-/// Limbs with two free ends, each with the place and radius of both, and a place on its way.
-const LIMBS: [(&str, [(DVec3, f64); 2], DVec3); 8] = [
+/// A command, the place and radius of each end, and a place on the way.
+type Limb = (&'static str, [(DVec3, f64); 2], DVec3);
+
+/// Limbs with two free ends.
+const LIMBS: [Limb; 8] = [
     (
         "cylinder Flesh 1, <-9 0 0>, <9 0 0>",
         [
