@@ -44,8 +44,8 @@ pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) -> usize {
             *end = a;
         }
     }
-    let is_kept = |i: &usize| of[*i].is_none_or(|end| !ends[end].is_open);
-    let mut order: Vec<usize> = (0..mesh.triangles.len()).filter(is_kept).collect();
+    let mut order: Vec<usize> = (0..mesh.triangles.len()).collect();
+    order.retain(|i| of[*i].is_none_or(|end| !ends[end].is_open));
     // Those of no end come first.
     order.sort_by_key(|i| of[*i].map_or(0, |end| end + 1));
     mesh.triangles = order.iter().map(|i| mesh.triangles[*i]).collect();
@@ -202,7 +202,7 @@ mod tests {
             .collect();
         assert_eq!(names, [("", 12), ("inlet", 6)]);
         assert_eq!(mesh.positions.len(), 13);
-        let rim = |x: f64| mesh.positions.iter().filter(|p| p.x == x).count();
-        assert_eq!([rim(0.0), rim(5.0)], [7, 6]);
+        let rims = [0.0, 5.0].map(|x| mesh.positions.iter().filter(|p| p.x == x).count());
+        assert_eq!(rims, [7, 6]);
     }
 }

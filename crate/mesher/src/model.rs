@@ -260,7 +260,7 @@ struct Plan<'a> {
     /// Where infinite elements end.
     limits: Aabb,
     tolerance: f64,
-    /// What the elements of a command are cut by, see [`place_of`].
+    /// Meshes by which the elements of a command are cut, see [`place_of`].
     clippings: BTreeMap<[u32; 3], Clipping>,
 }
 

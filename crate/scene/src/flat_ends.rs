@@ -251,32 +251,18 @@ impl Scene {
             ));
         }
         let shares = shares.map(|share| share.min(if is_short { 0.5 } else { 1.0 }));
-        let between = |from: f64, to: f64| {
-            let own = shaping.at(from);
-            let taper = shaping.taper.map(|_| {
-                let end = shaping.at(to);
-                Taper {
-                    radius: end.radius,
-                    blobbiness: end.blobbiness,
-                }
-            });
-            let piece = line.part(from, to).filter(|_| from < to)?;
-            Some((piece, Shaping { taper, ..own }))
-        };
         let ranges = [[0.0, shares[0]], [1.0 - shares[1], 1.0]];
-        let slices = ends
-            .into_iter()
-            .zip(ranges)
-            .filter_map(|(end, [from, to])| {
-                let (piece, shaping) = between(from, to)?;
-                let ends = vec![end?];
-                Some(Slice {
-                    piece,
-                    shaping,
-                    ends,
-                })
-            });
-        Some((between(shares[0], 1.0 - shares[1]), slices.collect()))
+        let slices = ends.into_iter().zip(ranges).filter_map(|(end, range)| {
+            let (piece, shaping) = part_of(line, &shaping, range)?;
+            let ends = vec![end?];
+            Some(Slice {
+                piece,
+                shaping,
+                ends,
+            })
+        });
+        let rest = part_of(line, &shaping, [shares[0], 1.0 - shares[1]]);
+        Some((rest, slices.collect()))
     }
 
     /// Returns the functions of the pieces of a bone that end flat.
@@ -332,4 +318,16 @@ fn cut_flat(mut field: Sum, shaping: &Shaping, ends: Vec<FlatEnd>) -> Arc<dyn Im
         Some(sliced) => Arc::new(sliced),
         None => Arc::new(whole),
     }
+}
+/// Returns a part of a line, between two shares of it, with its own taper; `None` if there is none.
+fn part_of(line: &Skeleton, shaping: &Shaping, [from, to]: [f64; 2]) -> Option<Limb> {
+    let taper = shaping.taper.map(|_| {
+        let Shaping {
+            radius, blobbiness, ..
+        } = shaping.at(to);
+        Taper { radius, blobbiness }
+    });
+    let own = shaping.at(from);
+    let piece = line.part(from, to).filter(|_| from < to)?;
+    Some((piece, Shaping { taper, ..own }))
 }

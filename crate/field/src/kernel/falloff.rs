@@ -96,8 +96,8 @@ pub(crate) trait Falloff: Sized {
         Self::derivatives(u * u)[0]
     }
 
-    /// Computes a bound on the second derivative of `ln h` along any line at distances of u or more;
-    /// infinite if there is none, or none is known.
+    /// Computes a bound on the second derivative of `ln h` along any line at distances of u or
+    /// more; infinite if there is none, or none is known.
     fn log_curvature(u: f64) -> f64 {
         // Along the radius it is `−e(ε²−u²)/(ε²+u²)²`, across it `−e/(ε²+u²)`.
         match Self::TAIL {

@@ -354,14 +354,15 @@ impl<'a> Nearby<'a> {
             let Close {
                 low, most, bend, ..
             } = self.close[*slot];
-            let weight = |field: f64| times(*part, power(field * thickness * scale));
-            let [low, most] = [weight(low) / common, times(weight(most), common)];
             let value = self.jets[*slot].value;
+            let [low, most, own] =
+                [low, most, value].map(|field| times(*part, power(field * thickness * scale)));
+            let [low, most] = [low / common, times(most, common)];
             let differs = self.rise(*slot).distance(mean) + 0.5 * POWER * bend * radius;
             if value == 0.0 || !differs.is_finite() {
                 return [low, most];
             }
-            let (own, change) = (weight(value), libm::exp(differs * radius) * (1.0 + 1e-9));
+            let change = libm::exp(differs * radius) * (1.0 + 1e-9);
             [low.max(own / change), most.min(times(own, change))]
         });
         weights.collect()
@@ -582,9 +583,9 @@ impl Change {
     }
 }
 
-/// Computes bounds on the first two derivatives of [`ramp`] over an interval: with t from 0 to 1 the
-/// first is `6t + 3t² − 8t³`, largest at 0.641, and the second `(6 + 6t − 24t²)·2/level`, largest at
-/// ⅛; from the level on they are 1 and 0.
+/// Computes bounds on the first two derivatives of [`ramp`] over an interval: with t from 0 to 1
+/// the first is `6t + 3t² − 8t³`, largest at 0.641, and the second `(6 + 6t − 24t²)·2/level`,
+/// largest at ⅛; from the level on they are 1 and 0.
 fn ramp_bounds([low, high]: [f64; 2], level: f64) -> [f64; 2] {
     if low >= level {
         return [1.0, 0.0];
@@ -593,19 +594,13 @@ fn ramp_bounds([low, high]: [f64; 2], level: f64) -> [f64; 2] {
         return [0.0; 2];
     }
     let ends = [low, high].map(|x| (2.0 * x / level - 1.0).clamp(0.0, 1.0));
-    let largest = |at: f64, of: &dyn Fn(f64) -> f64| {
-        let inside = at.clamp(ends[0], ends[1]);
-        of(inside)
-            .abs()
-            .max(of(ends[0]).abs())
-            .max(of(ends[1]).abs())
-            * (1.0 + 1e-9)
-    };
-    [
-        // Within a thousandth of the crest it is no lower by more than 10⁻⁵.
-        largest(0.641, &|t| t * (6.0 + t * (3.0 - 8.0 * t))) * (1.0 + 1e-5),
-        largest(0.125, &|t| 6.0 + t * (6.0 - 24.0 * t)) * 2.0 / level,
-    ]
+    let [once, twice] =
+        [0.641_f64, 0.125].map(|crest| [crest.clamp(ends[0], ends[1]), ends[0], ends[1]]);
+    let once = once.map(|t| (t * (6.0 + t * (3.0 - 8.0 * t))).abs());
+    let twice = twice.map(|t| (6.0 + t * (6.0 - 24.0 * t)).abs() * 2.0 / level);
+    // Within a thousandth of the crest it is no lower by more than 10⁻⁵.
+    let [once, twice] = [once, twice].map(|all| all.into_iter().fold(0.0, f64::max));
+    [once * (1.0 + 2e-5), twice * (1.0 + 1e-9)]
 }
 
 /// Returns a bound, infinity in place of what is no number.
@@ -844,14 +839,13 @@ impl Local {
                 return Change::default();
             }
             // The mean is `c·own` and the others by their shares: `(1−c)·own` is left of its own.
-            let differs = |own: f64, mean: f64| {
-                or_infinity(mean * (1.0 + 1e-12) + (1.0 - 2.0 * center) * own)
-            };
+            let [slope, curvature] = [[own.slope, mean.slope], [own.curvature, mean.curvature]]
+                .map(|[own, mean]| or_infinity(mean * (1.0 + 1e-12) + (1.0 - 2.0 * center) * own));
             Change {
                 value: own.value - mean.value,
                 gradient: own.gradient - mean.gradient,
-                slope: differs(own.slope, mean.slope),
-                curvature: differs(own.curvature, mean.curvature),
+                slope,
+                curvature,
                 halves: Halves::default(),
             }
         });
@@ -870,6 +864,12 @@ mod tests {
     use crate::local::{Limb, LimbPiece};
     use crate::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Taper};
     use trials::{Random, count};
+
+    /// Returns the gradient of the logarithm of a piece's field.
+    fn rise_of(piece: &Piece, at: DVec3) -> DVec3 {
+        let jet = piece.jet(at.to_array());
+        DVec3::from_array(jet.gradient) / jet.value
+    }
 
     /// Returns a crooked limb of pieces of two bones, which taper or not.
     fn limb(random: &mut Random, kernel: Kernel) -> Local {
@@ -932,14 +932,10 @@ mod tests {
             let pieces: Vec<&Piece> = pieces.collect();
             for _ in 0..10 {
                 let point = center + random.direction() * (radius * random.unit());
-                let rise = |piece: &Piece, at: DVec3| {
-                    let jet = piece.jet(at.to_array());
-                    DVec3::from_array(jet.gradient) / jet.value
-                };
                 let distance = point.distance(center);
                 for piece in &pieces {
                     let bend = piece.steep(&ball).bend;
-                    let change = rise(piece, point).distance(rise(piece, center));
+                    let change = rise_of(piece, point).distance(rise_of(piece, center));
                     assert!(
                         change <= bend * distance * (1.0 + 1e-6) + 1e-7,
                         "{kernel:?}"

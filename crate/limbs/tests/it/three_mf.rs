@@ -223,13 +223,10 @@ fn clipping_meshes_are_bounded_together() {
     );
     let attributes = format!("{PLAIN} clippingmode=\"inside\" clippingmesh=\"2\"");
     let objects = cutter + &lattice(4, &attributes, "");
-    let items = |count| "<item objectid=\"4\"/>".repeat(count);
-    let few = graph(
-        "a.3mf",
-        single("centimeter", &with_item(&objects, &items(10))),
-    );
+    let [few, many] = [10, 1_100].map(|count| "<item objectid=\"4\"/>".repeat(count));
+    let few = graph("a.3mf", single("centimeter", &with_item(&objects, &few)));
     assert_eq!(few.clips.len(), 10);
-    let many = single("centimeter", &with_item(&objects, &items(1_100)));
+    let many = single("centimeter", &with_item(&objects, &many));
     assert!(message("a.3mf", many).contains("the meshes that clip lattices have more than"));
 }
 

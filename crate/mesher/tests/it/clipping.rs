@@ -2,14 +2,14 @@
 
 use crate::judges::assert_manifold;
 use glam::DVec3;
-use mesher::{Model, Progress, Tolerance, Wishes, mesh_scene};
+use mesher::{Model, Progress, Step, Tolerance, Wishes, mesh_scene};
 use rats::{Project, compile};
 use scene::curves::Clip;
 use scene::{Form, Scene, Shape};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Two limbs that cross, and a third beside them.
+/// Limbs: two that cross, and a third beside them.
 const LIMBS: &str = "skeleton Flesh, S { node A <-9 0 0> node B <9 0 0> node C <0 -9 0> \
     node D <0 9 0> node E <-9 0 4> node F <9 0 4> curve A B curve C D curve E F }";
 
@@ -33,10 +33,6 @@ fn scene(text: &str, clip: &Clip) -> Scene {
 
 /// A box from one corner to another, as a mesh.
 fn block(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let corner = |i: u32| {
-        let pick = |k: usize| if i >> k & 1 == 0 { low[k] } else { high[k] };
-        DVec3::new(pick(0), pick(1), pick(2))
-    };
     let faces = [
         [0, 4, 6, 2],
         [1, 3, 7, 5],
@@ -48,18 +44,32 @@ fn block(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let halves = faces
         .into_iter()
         .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    ((0..8).map(corner).collect(), halves.collect())
+    let corners = (0..8_u32).map(|i| {
+        let is_high = glam::BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0);
+        DVec3::select(is_high, high, low)
+    });
+    (corners.collect(), halves.collect())
 }
 
-fn meshed(scene: &Scene, is_united: bool) -> Model {
+fn build(scene: &Scene, is_united: bool) -> Model {
     let wishes = Wishes {
         tolerance: Tolerance::Absolute(0.06),
         prove: false,
         union: is_united,
         ..Wishes::default()
     };
-    let mut go_on = |_| ControlFlow::Continue(());
     mesh_scene(scene, &wishes, &mut Progress::new(&mut go_on)).unwrap()
+}
+
+fn go_on(_: Step) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Meshes a text, hard shapes united, that is cut by some meshes.
+fn cut(text: &str, is_inside: bool, by: &[&(Vec<DVec3>, Vec<[u32; 3]>)]) -> Model {
+    let meshes = by.iter().copied().cloned().collect();
+    let is_hard = text.starts_with("soft off");
+    build(&scene(text, &Clip { is_inside, meshes }), is_hard)
 }
 
 /// The volume of the only part, which is closed.
@@ -74,17 +84,11 @@ fn volume(model: &Model, name: &str) -> f64 {
 
 #[test]
 fn both_sides_of_a_mesh_make_up_the_whole() {
-    for (text, is_united) in [
-        (LIMBS.to_owned(), false),
-        (format!("soft off\n{LIMBS}"), true),
-    ] {
-        let cut = |is_inside: bool, meshes: Vec<_>| {
-            meshed(&scene(&text, &Clip { is_inside, meshes }), is_united)
-        };
+    for text in [LIMBS.to_owned(), format!("soft off\n{LIMBS}")] {
         let far = block(DVec3::splat(90.0), DVec3::splat(99.0));
-        let whole = volume(&cut(false, vec![far.clone()]), "whole");
+        let whole = volume(&cut(&text, false, &[&far]), "whole");
         let half = block(DVec3::new(0.25, -20.0, -20.0), DVec3::splat(20.0));
-        let [inside, outside] = [true, false].map(|side| cut(side, vec![half.clone()]));
+        let [inside, outside] = [true, false].map(|side| cut(&text, side, &[&half]));
         for (model, side) in [(&inside, 1.0), (&outside, -1.0)] {
             let positions = &model.parts[0].mesh.positions;
             assert!(positions.iter().all(|p| side * (p.x - 0.25) >= -1e-9));
@@ -100,10 +104,10 @@ fn both_sides_of_a_mesh_make_up_the_whole() {
         // Turned inside out it cuts the same; two cut as their union.
         let mut turned = half.clone();
         turned.1.iter_mut().for_each(|t| t.swap(1, 2));
-        let again = volume(&cut(true, vec![turned]), "turned");
+        let again = volume(&cut(&text, true, &[&turned]), "turned");
         assert!((again - parts[0]).abs() < 1e-9 * whole);
         let more = block(DVec3::new(0.1, -20.0, -20.0), DVec3::splat(10.0));
-        let both = volume(&cut(true, vec![half.clone(), more]), "two");
+        let both = volume(&cut(&text, true, &[&half, &more]), "two");
         assert!(both > parts[0] && both < whole);
     }
 }
@@ -115,7 +119,7 @@ fn clips_follow_their_skeleton() {
         is_inside: true,
         meshes: vec![half],
     };
-    let model = meshed(&scene(&format!("{LIMBS}\ntranslate 5 0 0 S"), &clip), false);
+    let model = build(&scene(&format!("{LIMBS}\ntranslate 5 0 0 S"), &clip), false);
     let bounds = model.bounds();
     assert!((bounds.min.x - 5.25).abs() < 1e-9, "{bounds:?}");
 }
@@ -128,7 +132,7 @@ fn what_cannot_be_clipped_is_told() {
         meshes: vec![(positions.clone(), triangles.clone())],
     };
     // A ball of the same body blends with the limbs, and is not clipped.
-    let mixed = meshed(
+    let mixed = build(
         &scene(&format!("{LIMBS}\nsphere Flesh 2, 0 0 -3"), &clip),
         false,
     );
@@ -141,12 +145,11 @@ fn what_cannot_be_clipped_is_told() {
     assert!(mixed.bounds().min.x < -8.0);
     triangles.pop();
     clip.meshes = vec![(positions, triangles)];
-    let open = meshed(&scene(LIMBS, &clip), false);
+    let open = build(&scene(LIMBS, &clip), false);
     assert!(open.notes.iter().any(|note| note.contains("is not closed")));
     assert!(open.bounds().min.x < -8.0);
     // Nothing is left.
     clip.meshes = vec![block(DVec3::splat(30.0), DVec3::splat(40.0))];
-    let mut go_on = |_| ControlFlow::Continue(());
     let wishes = Wishes {
         prove: false,
         ..Wishes::default()

@@ -9,14 +9,15 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// Meshes a text behind a soft material.
-fn meshed(text: &str, wishes: &Wishes) -> Model {
+fn build(text: &str, wishes: &Wishes) -> Model {
     let text = format!(
-        "verbose off\neyep 0 0 90\nsurface Flesh, diffuse Red, kernel compact6, blobbiness -8\n{text}"
+        "verbose off\neyep 0 0 90\n\
+         surface Flesh, diffuse Red, kernel compact6, blobbiness -8\n{text}"
     );
     let compiled = compile(&Project::single(text));
     assert_eq!(compiled.diagnostics, []);
-    let mut go_on = |_| ControlFlow::Continue(());
-    mesh_scene(&compiled.scene, wishes, &mut Progress::new(&mut go_on)).unwrap()
+    let go_on = &mut |_| ControlFlow::Continue(());
+    mesh_scene(&compiled.scene, wishes, &mut Progress::new(go_on)).unwrap()
 }
 
 fn wishes() -> Wishes {
@@ -29,14 +30,14 @@ fn wishes() -> Wishes {
 
 /// The names of a mesh's groups, with their areas.
 fn areas(mesh: &TriangleMesh) -> Vec<(&str, f64)> {
-    let area = |i: u32| {
-        let [a, b, c] = mesh.corners(i as usize);
-        0.5 * (b - a).cross(c - a).length()
-    };
-    let groups = mesh.groups.iter();
-    groups
-        .map(|group| (&group.name[..], group.triangles.clone().map(area).sum()))
-        .collect()
+    let groups = mesh.groups.iter().map(|group| {
+        let areas = group.triangles.clone().map(|i| {
+            let [a, b, c] = mesh.corners(i as usize);
+            0.5 * (b - a).cross(c - a).length()
+        });
+        (&group.name[..], areas.sum())
+    });
+    groups.collect()
 }
 
 /// The loops of sides that one triangle has, as their vertices.
@@ -86,7 +87,7 @@ fn text(limb: &str, ends: &str) -> String {
 #[test]
 fn flat_ends_are_groups_of_a_closed_mesh() {
     for (limb, length, radii) in LIMBS {
-        let model = meshed(&text(limb, "flat"), &wishes());
+        let model = build(&text(limb, "flat"), &wishes());
         let [part] = &model.parts[..] else {
             panic!("one part")
         };
@@ -108,7 +109,7 @@ fn flat_ends_are_groups_of_a_closed_mesh() {
 #[test]
 fn open_ends_are_holes_in_their_planes() {
     for (limb, _, radii) in LIMBS {
-        let model = meshed(&text(limb, "open"), &wishes());
+        let model = build(&text(limb, "open"), &wishes());
         let [part] = &model.parts[..] else {
             panic!("one part")
         };

@@ -90,9 +90,9 @@ pub static SKELETON: CommandSpec = row("skeleton", "curves that branch, with fle
          `cubed` unless the material names another. With `local D` only the stretch within D \
          along the curves counts at a point, so that a fold does not blend with what lies beside \
          it; about four radii suit, and less than one makes limbs thinner. A skeleton is an \
-         object: it is moved, turned and copied by its name. With `ends flat` the surface ends in a \
-         plane at each free end, which meshes have as a group: `inlet`, the widest, `outlet-1` and \
-         so on; with `ends open` meshes have a hole there.\n\
+         object: it is moved, turned and copied by its name. With `ends flat` the surface ends in \
+         a plane at each free end, which meshes have as a group: `inlet`, the widest, `outlet-1` \
+         and so on; with `ends open` meshes have a hole there.\n\
          `skeleton sn, name file.swc` has the limbs of a file of the project in place of a block: \
          neurons (.swc), lattices of beams (.3mf), centrelines (.vtp .vtk), trees (.csv), lines \
          with radii (.obj .ply) and molecules (.xyz .pdb). Its limbs are straight, `subdivide 0`, \

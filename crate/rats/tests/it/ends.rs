@@ -10,13 +10,13 @@ const LOOKS: &str = "eyep 0 0 90\nsurface Flesh, diffuse Red, radius 1, blobbine
     surface Clay, diffuse Red\n";
 
 /// Compiles a text behind a soft material `Flesh` and a hard one `Clay`.
-fn compiled(text: &str) -> Compiled {
+fn read(text: &str) -> Compiled {
     compile(&Project::single(format!("verbose on\n{LOOKS}{text}")))
 }
 
 /// The scene of a text that has no mistakes.
 fn scene(text: &str) -> Scene {
-    let compiled = compiled(text);
+    let compiled = read(text);
     let mut told = compiled.diagnostics.iter();
     let complaint = told.find(|told| told.severity > Severity::Note);
     assert_eq!(complaint, None, "{text}");
@@ -188,14 +188,14 @@ fn free_ends_of_a_block_are_those_that_no_curve_goes_on_from() {
     );
     assert!(value(&surface(&scene), DVec3::Z * 4.0) > THRESHOLD);
     // They move with their object.
-    let moved = compiled(&format!("{text}\ntranslate 0 0 5 S\nscale 2 2 2 S"));
+    let moved = read(&format!("{text}\ntranslate 0 0 5 S\nscale 2 2 2 S"));
     let ends = moved.scene.flat_ends(0);
     let end = ends
         .iter()
         .find(|end| end.at.distance(DVec3::new(-18.0, 0.0, 10.0)) < 1e-9);
     assert_eq!(end.map(|end| end.radius), Some(2.0));
     assert_flat(&surface(&moved.scene), end.unwrap(), "moved");
-    let local = compiled(&text.replace("ends flat", "ends flat local 4"));
+    let local = read(&text.replace("ends flat", "ends flat local 4"));
     assert_eq!(local.scene.flat_ends(0), []);
     let mut told = local.diagnostics.iter();
     assert!(told.any(|told| told.message.contains("flat ends are round")));
@@ -217,7 +217,7 @@ fn odd_limbs_end_somehow() {
         "line Flesh, <0 0 0>, <9 0 0>",
     ] {
         for ends in ["flat", "open"] {
-            let compiled = compiled(&format!("{limb} ends {ends}"));
+            let compiled = read(&format!("{limb} ends {ends}"));
             for surface in compiled.scene.surfaces() {
                 for place in [DVec3::ZERO, DVec3::ONE, DVec3::X] {
                     assert!(!surface.function().jet(place).value.is_infinite(), "{limb}");
@@ -236,16 +236,12 @@ fn odd_limbs_end_somehow() {
 
 #[test]
 fn hard_or_too_many_limbs_are_told() {
-    let hard = compiled("cylinder Clay 1, <0 0 0>, <9 0 0> ends flat");
+    let hard = read("cylinder Clay 1, <0 0 0>, <9 0 0> ends flat");
     assert_eq!(hard.scene.flat_ends(0), []);
     let mut told = hard.diagnostics.iter();
     assert!(told.any(|told| told.message.contains("`ends` is for soft limbs")));
-    let many = |turns: u32| {
-        compiled(&format!(
-            "for i = 1 to {turns} {{ cylinder Flesh 0.2, <i 0 0>, <i 3 0>, ends flat }}"
-        ))
-    };
-    let told = many(300)
+    let many = read("for i = 1 to 300 { cylinder Flesh 0.2, <i 0 0>, <i 3 0>, ends flat }");
+    let told = many
         .diagnostics
         .iter()
         .any(|told| told.message.contains("too many") || told.message.contains("more than"));

@@ -3,7 +3,9 @@
 use field::THRESHOLD;
 use glam::DVec3;
 use rats::{Asset, Compiled, Project, Severity, compile_at};
+use scene::curves::Clip;
 use scene::{Curves, Element};
+use std::sync::Arc;
 
 /// A soma, two trunks, one of which branches; ids out of order, a blank line, tabs.
 const TINY: &str = "# tiny\n1 1 0 0 0 5 -1\n3 3 0 20 0 1.0 2\n2 3 0 8 0 1.5 1\n\n\
@@ -569,22 +571,24 @@ fn lattices(attributes: &[&str]) -> Vec<u8> {
         "<object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"9\" y=\"0\" \
          z=\"0\"/><vertex x=\"0\" y=\"9\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"9\"/></vertices>\
          <triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/>\
-         <triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles></mesh>\
-         </object>",
+         <triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles>\
+         </mesh></object>",
     );
     let mut items = String::new();
     for (own, id) in attributes.iter().zip(2..) {
         objects += &format!(
             "<object id=\"{id}\"><mesh><vertices><vertex x=\"{id}\" y=\"1\" z=\"-20\"/><vertex \
-             x=\"{id}\" y=\"1\" z=\"20\"/></vertices><b:beamlattice radius=\"0.5\" minlength=\"0.01\" \
-             {own}><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice></mesh></object>"
+             x=\"{id}\" y=\"1\" z=\"20\"/></vertices><b:beamlattice radius=\"0.5\" \
+             minlength=\"0.01\" {own}><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams>\
+             </b:beamlattice></mesh></object>"
         );
         items += &format!("<item objectid=\"{id}\"/>");
     }
     let model = format!(
-        "<model unit=\"millimeter\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
-         xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"><resources>\
-         {objects}</resources><build>{items}</build></model>"
+        "<model unit=\"millimeter\" \
+         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" \
+         xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\">\
+         <resources>{objects}</resources><build>{items}</build></model>"
     );
     let relations = "<Relationships><Relationship Target=\"/3D/x.model\" Id=\"a\" \
         Type=\"http://x/3dmodel\"/></Relationships>";
@@ -595,18 +599,18 @@ fn lattices(attributes: &[&str]) -> Vec<u8> {
 
 #[test]
 fn clips_of_lattices_are_kept_for_meshes() {
-    let read = |attributes: &[&str], text: &str| {
+    fn read(attributes: &[&str], text: &str) -> Compiled {
         let asset = Asset::new("n.3mf", &lattices(attributes)[..]);
         let text = format!("verbose off\neyep 0 0 90\nsurface s, diffuse Red\n{text}");
         compile_at(&Project::single(text), &[asset], 0.0)
-    };
-    let inside = "clippingmode=\"inside\" clippingmesh=\"1\"";
-    let outside = "clipping=\"outside\" clippingmesh=\"1\"";
-    let clip = |compiled: &Compiled| {
+    }
+    fn clip(compiled: &Compiled) -> Option<Arc<Clip>> {
         let elements = compiled.scene.elements.iter();
         let mut clips = elements.filter_map(|own| own.shape.curves()?.clip.clone());
         clips.next()
-    };
+    }
+    let inside = "clippingmode=\"inside\" clippingmesh=\"1\"";
+    let outside = "clipping=\"outside\" clippingmesh=\"1\"";
     for (own, is_inside) in [(inside, true), (outside, false)] {
         let compiled = read(&[own, own], "skeleton s, N n.3mf scale 2");
         let clip = clip(&compiled).expect("a clip");
