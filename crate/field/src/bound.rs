@@ -559,13 +559,6 @@ impl Bound {
         self.ripple.is_some()
     }
 
-    /// Returns the least and the largest width parameter along the bone, and a distance from a
-    /// point within which it is all.
-    pub(crate) fn spread(&self, point: DVec3) -> [f64; 3] {
-        let farthest = point.distance(self.middle) + self.extent;
-        [self.width, self.finest, farthest]
-    }
-
     /// Returns a factor m and a width parameter w such that `|f| ≤ m·h(w·d)` at a distance d from
     /// the skeleton, for the kernel h.
     #[must_use]

@@ -170,9 +170,6 @@ forward! {
     /// the inverse kernel, whose integral diverges, over |t| ≤ 10.
     pub fn line(distance: f64) -> f64;
     pub(crate) fn square_of(ratio: f64) -> f64;
-    /// Computes a bound on the second derivative of `ln h` along any line at distances of u or
-    /// more; infinite if there is none, or none is known.
-    pub fn log_curvature(u: f64) -> f64;
     pub(crate) fn width(blobbiness: f64) -> f64;
     pub(crate) fn arc_at_most(length: f64, radius: f64, d: f64) -> f64;
     #[inline]

@@ -96,19 +96,6 @@ pub(crate) trait Falloff: Sized {
         Self::derivatives(u * u)[0]
     }
 
-    /// Computes a bound on the second derivative of `ln h` along any line at distances of u or
-    /// more; infinite if there is none, or none is known.
-    fn log_curvature(u: f64) -> f64 {
-        // Along the radius it is `−e(ε²−u²)/(ε²+u²)²`, across it `−e/(ε²+u²)`.
-        match Self::TAIL {
-            Tail::Power {
-                exponent,
-                softening,
-            } => f64::from(exponent) / (softening + u * u),
-            _ => f64::INFINITY,
-        }
-    }
-
     /// Returns the q at which G is `1/ratio`, negative if G is nowhere so large. Newton's steps
     /// from 0 never leave the inside, as G falls and is convex.
     fn square_of(ratio: f64) -> f64 {

@@ -42,10 +42,6 @@ impl Falloff for Gauss {
         [g, -g, g, -g, g]
     }
 
-    fn log_curvature(_u: f64) -> f64 {
-        2.0
-    }
-
     #[inline(always)]
     fn falling<R: Real>(q: R) -> (R, R) {
         let g = q.decay();

@@ -168,51 +168,6 @@ struct Close {
     slope: f64,
     curvature: f64,
     third: f64,
-    /// The largest second derivative of the field's logarithm.
-    bend: f64,
-}
-
-/// Bounds on the first three derivatives of a piece's field in a ball, and on the second one of its
-/// logarithm.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Steep {
-    slope: f64,
-    curvature: f64,
-    third: f64,
-    bend: f64,
-}
-
-impl Piece {
-    /// Computes bounds on derivatives in a ball.
-    ///
-    /// The field is the mean E of a kernel h over a curve of the length L, so that
-    /// `∇² ln f = E[∇² ln h] + Cov(∇ ln h)`. Along the curve `∇ ln h` changes by no more than the
-    /// largest `∇² ln h` times L, and where the kernel's width changes, too: h is a function of
-    /// u = w·d, and `|∂ᵥ(w·(ln h)′)| ≤ 2u·|(ln h)″|`. A variance is at most a fourth of the square
-    /// of the range.
-    pub(super) fn steep(&self, ball: &Ball) -> Steep {
-        let mut sum = Steep::default();
-        let (mut distance, mut farthest) = (f64::INFINITY, 0.0f64);
-        let (mut width, mut finest) = (f64::INFINITY, 0.0f64);
-        for (_, bound) in &self.parts {
-            let near = bound.nearness(ball.center, ball.radius);
-            sum.slope += bound.slope(near);
-            sum.curvature += bound.curvature(near);
-            sum.third += bound.third(near);
-            let [own_width, own_finest, own_farthest] = bound.spread(ball.center);
-            distance = distance.min(near.distance);
-            width = width.min(own_width);
-            finest = finest.max(own_finest);
-            farthest = farthest.max(own_farthest + ball.radius);
-        }
-        let kernels = self.parts.iter().map(|(primitive, _)| primitive.kernel);
-        let bends = kernels.map(|kernel| kernel.log_curvature(distance * width));
-        let bend = bends.fold(0.0, f64::max);
-        let whole = bend * finest * finest;
-        let change = whole * self.length + times(2.0 * bend * finest * farthest, finest - width);
-        sum.bend = or_infinity(whole + 0.25 * change * change) * (1.0 + 1e-6);
-        sum
-    }
 }
 
 /// Bounds on pieces in a ball, each made once.
@@ -220,7 +175,7 @@ pub(super) struct Nearby<'a> {
     local: &'a Local,
     ball: Ball,
     slots: &'a Slots,
-    calm: &'a [Option<Steep>],
+    calm: &'a [Option<[f32; 3]>],
     known: Vec<u8>,
     /// Upper bounds on fields in the ball.
     most: Vec<f64>,
@@ -267,18 +222,21 @@ impl<'a> Nearby<'a> {
         let piece = self.piece(number);
         let jet = piece.jet(center.to_array());
         let (mut most, mut least) = (f64::INFINITY, 0.0);
-        let Steep {
-            slope,
-            curvature,
-            third,
-            bend,
-        } = match self.calm[slot] {
-            Some(steep) => steep,
+        let [slope, curvature, third] = match self.calm[slot] {
+            Some(bounds) => bounds.map(f64::from),
             None => {
-                most = piece.most(&self.ball);
-                let bounds = piece.parts.iter().map(|(_, bound)| bound);
-                least = bounds.map(|bound| bound.least(center, radius)).sum();
-                piece.steep(&self.ball)
+                let mut sums = [0.0; 5];
+                for (_, bound) in &piece.parts {
+                    let near = bound.nearness(center, radius);
+                    let magnitude = bound.magnitude(near);
+                    let least = bound.least(center, radius);
+                    let third = bound.third(near);
+                    let [slope, curvature] = [bound.slope(near), bound.curvature(near)];
+                    let own = [slope, curvature, third, magnitude, least];
+                    sums = core::array::from_fn(|i| sums[i] + own[i]);
+                }
+                [most, least] = [sums[3], sums[4]];
+                [sums[0], sums[1], sums[2]]
             }
         };
         let steep = DVec3::from_array(jet.gradient).length() * (1.0 + 1e-12);
@@ -291,81 +249,43 @@ impl<'a> Nearby<'a> {
             let parts = parts.map(|(_, bound)| bound.remains(center, radius));
             low = low.max(jet.value * parts.fold(1.0, f64::min));
         }
-        if low < 0.5 * jet.value {
-            let fall = (steep / jet.value + 0.5 * bend * radius) * radius;
-            low = low.max(jet.value * libm::exp(-fall) * (1.0 - 1e-12));
-        }
         let most = most.min(jet.value + change);
-        let low = low.max(0.0);
         self.close[slot] = Close {
-            low,
+            low: low.max(0.0),
             most,
             slope,
             curvature,
             third,
-            bend: bend.min(or_infinity(curvature / low + (slope / low).powi(2))),
         };
         self.jets[slot] = jet;
         self.most[slot] = most;
         self.known[slot] = 2;
     }
 
-    /// Returns the least and the largest weights of pieces in the ball, over a function that is the
-    /// same for all of them.
+    /// Returns the least and the largest weights of pieces, in units of the largest one's scale.
     pub fn weights(&mut self, pieces: &[u32]) -> Vec<[f64; 2]> {
-        for piece in pieces {
-            self.look(*piece, self.slots.of(*piece), true);
-        }
-        let weights = self.relative_weights(pieces.iter().map(|piece| (*piece, 1.0)));
-        // Rounding in single precision may make either a little more or less.
-        (weights
+        let mut densest = 0.0f64;
+        let ranges: Vec<_> = pieces
+            .iter()
+            .map(|&piece| {
+                let slot = self.slots.of(piece);
+                self.look(piece, slot, true);
+                let Close { low, most, .. } = self.close[slot];
+                let own = self.piece(piece);
+                let [low, most] = [low, most].map(|field| field * own.thickness);
+                densest = densest.max(most);
+                (own.length, [low, most])
+            })
+            .collect();
+        let scale = if densest > 0.0 { densest.recip() } else { 0.0 };
+        ranges
             .into_iter()
-            .map(|[low, most]| [low * 0.99, most * 1.01]))
-        .collect()
-    }
-
-    /// Returns the least and the largest in the ball of some pieces' weights, with parts, over
-    /// `C·exp(m·x)`, where x is the distance from the ball's centre and m the mean there of the
-    /// gradients of their logarithms: all weights change by about as much as that.
-    fn relative_weights(&self, items: impl Iterator<Item = (u32, f64)>) -> Vec<[f64; 2]> {
-        let items = items.map(|(piece, part)| {
-            let (slot, own) = (self.slots.of(piece), self.piece(piece));
-            (slot, own.thickness, own.length * part)
-        });
-        let items: Vec<(usize, f64, f64)> = items.collect();
-        let densest = items.iter().filter(|(_, _, part)| *part > 0.0);
-        let densest = densest.fold([0.0f64; 2], |most, (slot, thickness, _)| {
-            let fields = [self.jets[*slot].value, self.close[*slot].most];
-            [0, 1].map(|i| most[i].max(fields[i] * thickness))
-        });
-        // That at the centre, if there is one.
-        let densest = densest.into_iter().find(|most| *most > 0.0);
-        let scale = densest.map_or(0.0, f64::recip);
-        let (mut mean, mut sum) = (DVec3::ZERO, 0.0);
-        for (slot, thickness, part) in &items {
-            let weight = part * power(self.jets[*slot].value * thickness * scale);
-            mean += self.rise(*slot) * weight;
-            sum += weight;
-        }
-        let mean = if sum > 0.0 { mean / sum } else { DVec3::ZERO };
-        let radius = self.ball.radius;
-        let common = libm::exp(mean.length() * radius);
-        let weights = items.iter().map(|(slot, thickness, part)| {
-            let Close {
-                low, most, bend, ..
-            } = self.close[*slot];
-            let value = self.jets[*slot].value;
-            let [low, most, own] =
-                [low, most, value].map(|field| times(*part, power(field * thickness * scale)));
-            let [low, most] = [low / common, times(most, common)];
-            let differs = self.rise(*slot).distance(mean) + 0.5 * POWER * bend * radius;
-            if value == 0.0 || !differs.is_finite() {
-                return [low, most];
-            }
-            let change = libm::exp(differs * radius) * (1.0 + 1e-9);
-            [low.max(own / change), most.min(times(own, change))]
-        });
-        weights.collect()
+            .map(|(length, densities)| {
+                // Rounding in single precision may make either a little more or less.
+                let [low, most] = densities.map(|density| length * power(density * scale));
+                [low * 0.99, most * 1.01]
+            })
+            .collect()
     }
 
     /// Returns an upper bound on the field of a piece's stretch.
@@ -444,28 +364,23 @@ impl<'a> Nearby<'a> {
             [low, most].map(|field| times(own.length * part, power(field * scale)))
         });
         let weights: Vec<[f64; 2]> = weights.collect();
-        let relative = self.relative_weights(items.iter().copied());
-        let [least, relative_least] =
-            [&weights, &relative].map(|all| all.iter().map(|[low, _]| low).sum::<f64>());
+        let least: f64 = weights.iter().map(|[low, _]| low).sum();
         let radius = self.ball.radius;
-        let all = weights.iter().zip(relative).zip(&slots).zip(at_center);
-        all.map(|((([low, high], relative), slot), center)| {
+        let all = weights.iter().zip(&slots).zip(at_center);
+        all.map(|(([low, high], slot), center)| {
             let close = &self.close[*slot];
             let rest = ((least - low) * (1.0 - 1e-12)).max(0.0);
             let most = high / (high + rest);
             if most.is_nan() || *high == 0.0 {
                 return Share::default();
             }
-            let others = ((relative_least - relative[0]) * (1.0 - 1e-12)).max(0.0);
-            // No number is no bound.
-            let most = most.min(relative[1] / (relative[1] + others));
             // The share over the field, and over its square: `f⁷/(f⁸+rest)` is at most either.
             let [once, twice] = [close.most, close.most * close.most]
                 .map(|field| high / field / rest)
                 .map(|over| if over.is_nan() { f64::INFINITY } else { over });
             let once = once.min(most / close.low);
             let twice = twice.min(most / (close.low * close.low));
-            let bend = POWER * close.bend;
+            let bend = POWER * (close.curvature / close.low + (close.slope / close.low).powi(2));
             let differs = self.rise(*slot).distance(mean) + radius * bend;
             let steep = POWER * once * close.slope;
             let steeper = 2.0 * POWER * POWER * twice * close.slope * close.slope;
@@ -475,8 +390,7 @@ impl<'a> Nearby<'a> {
                 most,
                 first: (most * differs).min(steep + most * apart),
                 second: (most * differs * differs).min(steeper + 2.0 * most * apart * apart),
-                turn: (POWER * (once * close.curvature + twice * close.slope * close.slope))
-                    .min(or_infinity(most * bend)),
+                turn: POWER * (once * close.curvature + twice * close.slope * close.slope),
             }
         })
         .collect()
@@ -581,26 +495,6 @@ impl Change {
         self.halves.curvature += weight * close.curvature;
         self.halves.third += weight * close.third;
     }
-}
-
-/// Computes bounds on the first two derivatives of [`ramp`] over an interval: with t from 0 to 1
-/// the first is `6t + 3t² − 8t³`, largest at 0.641, and the second `(6 + 6t − 24t²)·2/level`,
-/// largest at ⅛; from the level on they are 1 and 0.
-fn ramp_bounds([low, high]: [f64; 2], level: f64) -> [f64; 2] {
-    if low >= level {
-        return [1.0, 0.0];
-    }
-    if high <= 0.5 * level {
-        return [0.0; 2];
-    }
-    let ends = [low, high].map(|x| (2.0 * x / level - 1.0).clamp(0.0, 1.0));
-    let [once, twice] =
-        [0.641_f64, 0.125].map(|crest| [crest.clamp(ends[0], ends[1]), ends[0], ends[1]]);
-    let once = once.map(|t| (t * (6.0 + t * (3.0 - 8.0 * t))).abs());
-    let twice = twice.map(|t| (6.0 + t * (6.0 - 24.0 * t)).abs() * 2.0 / level);
-    // Within a thousandth of the crest it is no lower by more than 10⁻⁵.
-    let [once, twice] = [once, twice].map(|all| all.into_iter().fold(0.0, f64::max));
-    [once * (1.0 + 2e-5), twice * (1.0 + 1e-9)]
 }
 
 /// Returns a bound, infinity in place of what is no number.
@@ -811,7 +705,12 @@ impl Local {
                 halves,
                 ..
             } = enclose_mean((&own, &changes), &shares, &jet, radius);
-            let [once, twice] = ramp_bounds([low, most], level);
+            // Bounds on the derivatives of the ramp.
+            let [once, twice] = match level {
+                level if low >= level => [1.0, 0.0],
+                level if most <= 0.5 * level => [0.0; 2],
+                level => [4.0, 30.0 / level],
+            };
             let (value, steep) = ramp(jet.value, level);
             let own = Change {
                 value,
@@ -834,18 +733,15 @@ impl Local {
         let means: Vec<Change> = means.collect();
         let is_one = totals.iter().filter(|(_, total)| *total > 0.0).count() < 2;
         let changes = classes.iter().map(|class| {
-            let (own, center) = (&means[*class], totals[*class].0);
+            let own = &means[*class];
             if is_one {
                 return Change::default();
             }
-            // The mean is `c·own` and the others by their shares: `(1−c)·own` is left of its own.
-            let [slope, curvature] = [[own.slope, mean.slope], [own.curvature, mean.curvature]]
-                .map(|[own, mean]| or_infinity(mean * (1.0 + 1e-12) + (1.0 - 2.0 * center) * own));
             Change {
                 value: own.value - mean.value,
                 gradient: own.gradient - mean.gradient,
-                slope,
-                curvature,
+                slope: own.slope + mean.slope,
+                curvature: own.curvature + mean.curvature,
                 halves: Halves::default(),
             }
         });
@@ -855,133 +751,5 @@ impl Local {
         let margin = LEFT_OUT * high;
         bounds.value = [bounds.value[0].max(0.0), bounds.value[1].min(high) + margin];
         Some((bounds, jet))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::local::{Limb, LimbPiece};
-    use crate::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Taper};
-    use trials::{Random, count};
-
-    /// Returns the gradient of the logarithm of a piece's field.
-    fn rise_of(piece: &Piece, at: DVec3) -> DVec3 {
-        let jet = piece.jet(at.to_array());
-        DVec3::from_array(jet.gradient) / jet.value
-    }
-
-    /// Returns a crooked limb of pieces of two bones, which taper or not.
-    fn limb(random: &mut Random, kernel: Kernel) -> Local {
-        let mut at = DVec3::ZERO;
-        let first = at;
-        let pieces = (0..8).map(|_| {
-            let radius = random.range(0.2, 0.4);
-            let primitives = (0..2).map(|_| {
-                let (base, apex) = (at, at + random.direction() * random.range(0.05, 0.3));
-                at = apex;
-                let taper = random.chance(0.5).then(|| Taper {
-                    radius: random.range(0.15, 0.4),
-                    blobbiness: 2.0,
-                });
-                let shaping = Shaping {
-                    kernel,
-                    radius,
-                    blobbiness: 2.0,
-                    blob_scale: BlobScale::Relative,
-                    strength: 1.0,
-                    influence: 0.001,
-                    taper,
-                };
-                Primitive::new(Skeleton::Segment { base, apex }, &shaping, None).unwrap()
-            });
-            let primitives: Vec<Primitive> = primitives.collect();
-            let length = primitives.iter().map(|p| p.skeleton.measure()).sum();
-            LimbPiece {
-                primitives,
-                length,
-                radius,
-            }
-        });
-        let ends = [0, 1];
-        let pieces = pieces.collect();
-        Local::new(&[first, at], &[Limb { ends, pieces }], 0.8).unwrap()
-    }
-
-    /// The logarithms of fields bend by no more than is told, and weights are within their bounds
-    /// up to a factor that is the same for all, which is that at the centre and near 1 about it.
-    #[test]
-    fn logarithms_and_weights_are_within_their_bounds() {
-        let mut random = Random::new(91);
-        let (mut bent, mut widest) = (0.0f64, 0.0f64);
-        for _ in 0..count(400) {
-            let kernel = random.pick(&[
-                Kernel::Cauchy,
-                Kernel::Gauss,
-                Kernel::Cubed,
-                Kernel::Squared,
-            ]);
-            let local = limb(&mut random, kernel);
-            let center = random.vector(0.8);
-            let radius = random.decades(-3.0, -0.8);
-            let ball = Ball { center, radius };
-            let terms = local.terms_in(&ball);
-            let mut near = Nearby::new(&local, ball, &terms);
-            let ranges = near.weights(&terms.lead);
-            let pieces = terms.lead.iter().map(|n| &local.pieces[*n as usize]);
-            let pieces: Vec<&Piece> = pieces.collect();
-            for _ in 0..10 {
-                let point = center + random.direction() * (radius * random.unit());
-                let distance = point.distance(center);
-                for piece in &pieces {
-                    let bend = piece.steep(&ball).bend;
-                    let change = rise_of(piece, point).distance(rise_of(piece, center));
-                    assert!(
-                        change <= bend * distance * (1.0 + 1e-6) + 1e-7,
-                        "{kernel:?}"
-                    );
-                    bent = bent.max(change / (bend * distance));
-                }
-                // Weight by weight: one is not more, in units of its most, than another in those
-                // of its least.
-                let weights = pieces.iter().zip(&ranges).map(|(piece, [low, most])| {
-                    let field = piece.jet(point.to_array()).value;
-                    let weight = piece.length * power(field * piece.thickness);
-                    [weight / most, weight / low]
-                });
-                let weights: Vec<[f64; 2]> = weights.collect();
-                let above = weights.iter().map(|[above, _]| *above).fold(0.0, f64::max);
-                let below = (weights.iter().map(|[_, below]| *below)).fold(f64::INFINITY, f64::min);
-                assert!(above <= below, "{kernel:?} {above} {below}");
-                widest = widest.max(above / below);
-            }
-        }
-        assert!(bent > 0.5 && widest > 0.5, "{bent} {widest}");
-    }
-
-    #[test]
-    fn ramps_are_within_their_bounds() {
-        let mut random = Random::new(92);
-        let mut sharpest = [0.0f64; 2];
-        for _ in 0..count(2000) {
-            let level = random.range(0.1, 0.9);
-            let low = random.range(0.0, 1.2) * level;
-            let high = low + random.unit() * level;
-            let most = ramp_bounds([low, high], level);
-            let x = low + (high - low) * random.unit();
-            let step = 1e-6;
-            let [before, slope, after] = [x - step, x, x + step].map(|x| ramp(x, level).1);
-            let bend = (after - before) / (2.0 * step);
-            let inside = low + step < x && x < high - step;
-            assert!(slope <= most[0] * (1.0 + 1e-9), "{slope} {most:?}");
-            assert!(!inside || bend.abs() <= most[1] + 1e-3, "{bend} {most:?}");
-            for (sharpest, part) in sharpest
-                .iter_mut()
-                .zip([slope / most[0], bend.abs() / most[1]])
-            {
-                *sharpest = sharpest.max(if inside { part } else { 0.0 });
-            }
-        }
-        assert!(sharpest.iter().all(|x| *x > 0.95), "{sharpest:?}");
     }
 }

@@ -1,5 +1,5 @@
 //! An octree of space: which pieces count in a cell. Cells are made at first use and kept.
-use super::bounds::{Nearby, Steep};
+use super::bounds::Nearby;
 use super::mean::CUT;
 use super::{Local, Run};
 use crate::Ball;
@@ -41,8 +41,9 @@ pub(super) struct Terms {
     pub lead: Vec<u32>,
     /// Pieces of all stretches around pieces that have a weight in F or F₂.
     pub slots: Slots,
-    /// Bounds on derivatives in all of the ball, of pieces that are far away from it.
-    pub calm: Vec<Option<Steep>>,
+    /// Bounds on the first three derivatives in all of the ball, of pieces that are far away from
+    /// it.
+    pub calm: Vec<Option<[f32; 3]>>,
     /// Pieces with a weight in F₂, if it may be above its level.
     pub far: Option<Far>,
 }
@@ -264,16 +265,20 @@ impl Local {
         }
     }
 
-    /// Returns bounds on derivatives in a ball of pieces that are far away from it.
-    fn find_calm(&self, slots: &Slots, ball: &Ball) -> Vec<Option<Steep>> {
+    /// Returns bounds on the first three derivatives in a ball of pieces that are far away from it.
+    fn find_calm(&self, slots: &Slots, ball: &Ball) -> Vec<Option<[f32; 3]>> {
         let calm = slots.pieces().map(|piece| {
-            let piece = &self.pieces[piece as usize];
-            let mut near = piece.parts.iter();
-            let is_far = near.all(|(_, bound)| {
+            let mut sum = [0.0; 3];
+            for (_, bound) in &self.pieces[piece as usize].parts {
                 let near = bound.nearness(ball.center, ball.radius);
-                near.distance >= FAR_AWAY * ball.radius
-            });
-            is_far.then(|| piece.steep(ball))
+                if near.distance < FAR_AWAY * ball.radius {
+                    return None;
+                }
+                sum[0] += bound.slope(near);
+                sum[1] += bound.curvature(near);
+                sum[2] += bound.third(near);
+            }
+            Some(sum.map(|x| (x * (1.0 + 1e-6)) as f32 + f32::MIN_POSITIVE))
         });
         calm.collect()
     }
