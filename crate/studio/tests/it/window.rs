@@ -158,7 +158,7 @@ fn a_click_counts_though_the_first_picture_comes_meanwhile() {
     let theirs = Project {
         files: vec![File {
             name: String::from("shell.rat"),
-            text: TEXT.replace("64 48", "1600 1200") + spheres,
+            text: TEXT.replace("64 48", "640 480") + spheres,
         }],
     };
     let link = share::link("https://sinew.example/", &theirs, None).unwrap();

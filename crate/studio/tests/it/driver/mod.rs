@@ -28,8 +28,6 @@ impl Window {
         let harness = Harness::builder()
             .with_size(vec2(width, height))
             .with_step_dt(0.05)
-            // Buttons fade while the pointer leaves them.
-            .with_max_steps(100)
             .build_ui_state(
                 move |ui, app: &mut Option<App>| {
                     let app = app.get_or_insert_with(|| {
