@@ -36,6 +36,13 @@ impl Example {
         words.iter().all(|word| text.contains(word))
     }
 
+    /// Whether its picture takes more than 15 s on two cores, as `cargo xtask examples` measures.
+    #[must_use]
+    pub fn is_slow(&self) -> bool {
+        let mut slow = include_str!("slow.txt").lines();
+        slow.any(|name| self.name.strip_suffix(".rat") == Some(name))
+    }
+
     /// Returns a project of the text and its strokes.
     #[must_use]
     pub fn project(&self, text: &str) -> Project {

@@ -3,6 +3,7 @@
 
 mod reference;
 
+use crate::first;
 use crate::page::Page;
 use crate::panel::Panel;
 use crate::wish::{Setting, Wish, Wishes};
@@ -10,7 +11,7 @@ use crate::{places, theme};
 use egui::{RichText, ScrollArea, Ui};
 use reference::Reference;
 
-const LANGUAGE: [(&str, &str); 9] = [
+const LANGUAGE: [(&str, &str); 10] = [
     (
         "surface flesh, diffuse Coral, specular White, shine 40, blobbiness -2",
         "a material; blobbiness makes its shapes soft",
@@ -32,6 +33,10 @@ const LANGUAGE: [(&str, &str); 9] = [
     (
         "var r = 0.3 hot",
         "a number with a name; hot makes it a slider",
+    ),
+    (
+        "preset thin, set r 0.1",
+        "a button that sets sliders: each name, and its value",
     ),
     (
         "for i = 1 to 10 { sphere flesh 0.2, i/4 0 0 }",
@@ -135,6 +140,7 @@ impl Panel for Help {
 
 fn words(ui: &mut Ui, mut hints: bool, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
+    first::offer(ui, wishes);
     ui.label(
         "A model is a text: a list of shapes made of materials. Soft shapes melt into each \
             other where they come near. Change a number and the picture follows; the link \
