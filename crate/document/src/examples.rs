@@ -289,6 +289,15 @@ mod tests {
     }
 
     #[test]
+    fn slow_examples_are_of_the_gallery() {
+        let slow = ALL.iter().filter(|example| example.is_slow()).count();
+        assert_eq!(slow, include_str!("slow.txt").lines().count());
+        for (name, is_slow) in [("coils", true), ("still-life", true), ("tide", false)] {
+            assert_eq!(ALL[find(name).unwrap()].is_slow(), is_slow, "{name}");
+        }
+    }
+
+    #[test]
     fn links_lead_to_examples() {
         for (hash, index) in [
             ("#example=tide", Some(Some(0))),
