@@ -1,5 +1,5 @@
 // The way of a newcomer: the first shape in five steps, from the reference into the page, at all sizes; what examples that take
-// long show meanwhile; hints that suit fingers.
+// long show meanwhile; presets of sliders.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { launch, until } from './page.mjs';
@@ -81,14 +81,4 @@ sphere s r, C
     assert.deepEqual(sinew.troubles, []);
     await sinew.close();
   }
-});
-
-test('on a phone the hint speaks of fingers', async () => {
-  const sinew = await browser.open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
-  await sinew.finished();
-  const { x, y, w, h } = await sinew.place('picture');
-  await sinew.page.mouse.move(x + w / 2, y + h / 2);
-  await sinew.still();
-  await sinew.keep('hint on a phone');
-  await sinew.close();
 });

@@ -5,7 +5,7 @@
 pub struct Step {
     /// The title.
     pub title: &'static str,
-    /// What happens.
+    /// An explanation.
     pub words: &'static str,
     /// The lines to write at the end of the text; empty if the hands do something else.
     pub code: &'static str,

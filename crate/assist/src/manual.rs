@@ -167,7 +167,8 @@ and <code>1 - 2</code> is one.</p>
 /// Writes the steps to the first shape.
 fn first(page: &mut String) {
     *page += "<h2 id=\"first\">Your first shape</h2>\n\
-        <p>Five steps. <a href=\"./#first\">Take them in Sinew</a>, which writes along.</p>\n<ol>\n";
+        <p>Five steps. <a href=\"./#first\">Take them in Sinew</a>, \
+        which writes along.</p>\n<ol>\n";
     for step in first::STEPS {
         let (title, words) = (step.title, step.words);
         let _ = write!(page, "<li><b>{title}.</b> {words}");

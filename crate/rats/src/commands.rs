@@ -83,8 +83,8 @@ mod tests {
             light fog background cloud remove report reset preview shoot \
             animate play split collage fli convert resize diff and xor show kill refresh tile \
             colors rats table shell horn \
-            material blobscale sky ground tone body curve deform seed preset for if else define influence \
-            skeleton contact motion tree spikes sphereflake spiral";
+            material blobscale sky ground tone body curve deform seed preset for if else define \
+            influence skeleton contact motion tree spikes sphereflake spiral";
         for name in names.split_whitespace() {
             assert!(find(name).is_some(), "{name}");
             assert!(find(&name.to_uppercase()).is_some(), "{name}");

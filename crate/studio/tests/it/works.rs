@@ -384,31 +384,32 @@ fn the_first_shape_is_offered_and_skipped() {
     browser::set_hash("");
 }
 
+fn open_example(window: &mut Window, name: &str) {
+    let index = examples::find(name).unwrap();
+    ask(window, WorkWish::OpenExample(index));
+    window.steps(2);
+}
+
+fn stand_in_of(window: &Window) -> Option<&'static str> {
+    window.parts.outbox.borrow().report.stand_in
+}
+
 /// A slow example shows what was drawn when it was made, until its own picture comes or it is
 /// changed.
 #[test]
 fn slow_examples_are_shown_as_made_before() {
     let mut window = Window::open(1000.0, 700.0);
-    let open = |window: &mut Window, name: &str| {
-        let index = examples::find(name).unwrap();
-        window
-            .parts
-            .requests
-            .ask(Request::Wish(WorkWish::OpenExample(index).into()));
-        window.steps(4);
-    };
-    let stand_in = |window: &Window| window.parts.outbox.borrow().report.stand_in;
-    open(&mut window, "tshape");
-    assert_ne!(stand_in(&window), Some("made before"));
-    open(&mut window, "still-life");
-    assert_eq!(stand_in(&window), Some("made before"));
+    open_example(&mut window, "tshape");
+    assert_ne!(stand_in_of(&window), Some("made before"));
+    open_example(&mut window, "still-life");
+    assert_eq!(stand_in_of(&window), Some("made before"));
     window.place("made before");
     window.edit();
     window.write("# mine\n");
     window.steps(1);
-    assert_ne!(stand_in(&window), Some("made before"));
-    open(&mut window, "still-life");
-    assert_eq!(stand_in(&window), Some("made before"));
+    assert_ne!(stand_in_of(&window), Some("made before"));
+    open_example(&mut window, "still-life");
+    assert_eq!(stand_in_of(&window), Some("made before"));
     window
         .parts
         .requests
@@ -416,7 +417,7 @@ fn slow_examples_are_shown_as_made_before() {
     for _ in 0..400 {
         std::thread::sleep(std::time::Duration::from_millis(50));
         window.steps(1);
-        if stand_in(&window).is_none() {
+        if stand_in_of(&window).is_none() {
             assert!(!window.image().is_empty());
             return;
         }
