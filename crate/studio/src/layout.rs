@@ -367,7 +367,7 @@ fn small_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wi
                 ui.add_space(46.0);
             }
             first::show(page, &mut ui, wishes);
-            text(page, panels, &mut ui, wishes);
+            CentralPanel::no_frame().show(&mut ui, |ui| text(page, panels, ui, wishes));
         }
         Tab::Sliders => {
             Frame::new().inner_margin(14).show(&mut ui, |ui| {

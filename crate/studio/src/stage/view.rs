@@ -179,13 +179,18 @@ pub fn show(ui: &mut Ui, rect: Rect, scenery: &Scenery<'_>, wishes: &mut Wishes)
         let place = inscribe(&painter, rect, egui::Align2::CENTER_TOP, "made before");
         places::note(ui.ctx(), "made before", place);
     }
-    if hint && !grasp.draws && response.hovered() && !response.dragged() {
-        let text = if touch {
-            "drag to turn · two fingers to move and zoom · tap a shape to edit it"
+    let is_free = !(touch && (old || is_kept));
+    if hint && is_free && !grasp.draws && response.hovered() && !response.dragged() {
+        // At the lower edge of a narrow picture is the button to draw.
+        let (align, text) = if touch {
+            let text = "drag to turn · two fingers to move and zoom · tap a shape to edit it";
+            (egui::Align2::CENTER_TOP, text)
         } else {
-            "drag to turn · shift-drag to move · scroll to zoom · click a shape to edit it"
+            let text =
+                "drag to turn · shift-drag to move · scroll to zoom · click a shape to edit it";
+            (egui::Align2::CENTER_BOTTOM, text)
         };
-        inscribe(&painter, rect, egui::Align2::CENTER_BOTTOM, text);
+        inscribe(&painter, rect, align, text);
     }
     response
 }

@@ -13,6 +13,7 @@ use studio::app::App;
 use studio::page::Parts;
 use studio::places;
 use studio::scripts::request::Request;
+use studio::wish::{Dialog, Wish};
 
 const TEXT: &str = "\
 framesize 64 48
@@ -346,6 +347,20 @@ fn texts_of(window: &Window) -> String {
         }
     }
     texts
+}
+
+#[test]
+fn windows_over_the_page_are_within_the_smallest_phone() {
+    let mut window = Window::open(320.0, 568.0);
+    window.load(TEXT);
+    for dialog in [Dialog::Help, Dialog::Gallery, Dialog::Versions] {
+        let wish = Wish::Open(dialog);
+        window.parts.requests.ask(Request::Wish(wish));
+        window.steps(6);
+        let place = window.place("dialog");
+        let screen = window.harness.ctx.content_rect();
+        assert!(screen.contains_rect(place), "{dialog:?} {place:?}");
+    }
 }
 
 #[test]

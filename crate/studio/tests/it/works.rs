@@ -330,7 +330,12 @@ fn the_first_shape_is_made_in_five_steps() {
         window.steps(3);
         for step in 0..4 {
             let card = window.place("first shape");
-            assert!(window.place("editor").height() > 60.0, "{size:?} {card:?}");
+            let editor = window.place("editor");
+            assert!(editor.height() > 60.0, "{size:?} {card:?}");
+            assert!(
+                card.bottom() <= editor.top() + 1.0,
+                "{size:?} {card:?} {editor:?}"
+            );
             window.harness.get_by_label("Write it").click();
             window.steps(3);
             assert!(
