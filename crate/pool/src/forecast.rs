@@ -85,7 +85,7 @@ mod tests {
         let mut tasks: Vec<Task> = costs
             .iter()
             .map(|cost| Task {
-                expected: cost / 30.0 * noise.powf(random.range(-1.0, 1.0)),
+                expected: cost / 30.0 * random.range(1.0 / noise, noise),
                 taken: None,
             })
             .collect();
