@@ -47,6 +47,34 @@ test('controls are elements at their places, and axe finds nothing serious', asy
   await audit('the gallery');
   await button('Close').first().evaluate((element) => element.click());
   await until(() => sinew.places(), ({ dialog }) => !dialog);
+  await button('How it works').evaluate((element) => element.click());
+  await button('Your first shape').waitFor({ state: 'attached' });
+  await audit('the help');
+  await button('Close').first().evaluate((element) => element.click());
+  await until(() => sinew.places(), ({ dialog }) => !dialog);
+  await sinew.page.setViewportSize({ width: 390, height: 844 });
+  await sinew.still();
+  await audit('the page on a phone');
+  await sinew.page.setViewportSize({ width: 1200, height: 760 });
+  await sinew.still();
+});
+
+test('axe finds nothing serious in the pages beside it', async () => {
+  const axe = await readFile(new URL('./node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
+  for (const colorScheme of ['dark', 'light']) {
+    const page = await browser.blank({ colorScheme });
+    for (const name of ['reference', 'figures', 'neurons', 'lattices', 'metaballs']) {
+      await page.goto(new URL(`${name}.html`, browser.address).href);
+      await page.evaluate(axe);
+      const found = await page.evaluate(async () => {
+        const { violations } = await globalThis.axe.run(document);
+        return violations.map(({ id, impact, nodes }) => ({ id, impact, html: nodes.slice(0, 3).map((node) => node.html.slice(0, 200)) }));
+      });
+      const serious = found.filter(({ impact }) => impact === 'serious' || impact === 'critical');
+      assert.deepEqual(serious, [], `${name}, ${colorScheme}`);
+    }
+    await page.close();
+  }
 });
 
 test('what is done with an element is done in the page', async () => {
@@ -100,5 +128,49 @@ test('a journey by keyboard alone', async () => {
   await sinew.keep('card with focus');
   await keyboard.press('Enter');
   await sinew.written((text) => text.includes('object TEE'));
+  // A mistake is written and heard, and then taken back.
+  await tabTo('Text of the model');
+  const before = await sinew.text();
+  await keyboard.press('Control+End');
+  await keyboard.press('Enter');
+  await keyboard.type('sphree s 1');
+  await sinew.written((text) => text.includes('sphree'));
+  const said = () => sinew.page.locator('#voice [aria-live]').allTextContents();
+  await until(said, (said) => said.some((words) => /sphree/.test(words)));
+  await keyboard.press('Home');
+  await keyboard.press('Shift+End');
+  await keyboard.press('Delete');
+  await keyboard.press('Backspace');
+  await sinew.written((text) => text === before);
+  await sinew.finished();
+  // Tab indents in the text; Escape leaves it.
+  await keyboard.press('Escape');
+  await tabTo('Download');
+  await keyboard.press('Enter');
+  await tabTo('Picture\n');
+  const coming = sinew.page.waitForEvent('download', { timeout: 60_000 });
+  await keyboard.press('Enter');
+  assert.match((await coming).suggestedFilename(), /\.png$/);
   assert.deepEqual(sinew.troubles, []);
+});
+
+test('more contrast is painted where it is asked for, and nothing moves where that is', async () => {
+  const ask = async (options) => {
+    const asked = await browser.open({ viewport: { width: 720, height: 500 }, before: (tab) => tab.emulateMedia(options) });
+    await asked.load(TEXT);
+    await asked.finished();
+    await asked.still();
+    const screen = await asked.screen('status');
+    await asked.close();
+    return screen;
+  };
+  const weak = await ask({ colorScheme: 'dark', contrast: 'no-preference' });
+  const sharp = await ask({ colorScheme: 'dark', contrast: 'more' });
+  const forced = await ask({ colorScheme: 'dark', forcedColors: 'active' });
+  const calm = await ask({ colorScheme: 'dark', contrast: 'no-preference', reducedMotion: 'reduce' });
+  // The brightest and the mean tell the palette.
+  const sum = ({ data }) => data.reduce((sum, value) => sum + value, 0);
+  assert.ok(sum(sharp) > 1.02 * sum(weak), `${sum(sharp)} ${sum(weak)}`);
+  assert.ok(sum(forced) > 1.02 * sum(weak), `${sum(forced)} ${sum(weak)}`);
+  assert.ok(Math.abs(sum(calm) - sum(weak)) < 0.02 * sum(weak));
 });

@@ -8,7 +8,7 @@ const entries = [...document.querySelectorAll('section, .colours span, .swatches
   name: folded(element.id || element.textContent.trim()),
   text: folded(element.textContent),
 }));
-const titles = [...document.querySelectorAll('main > h1, main > h2, main > p:not(#none), main > nav, #functions + p + table, .colours, .swatches')];
+const titles = [...document.querySelectorAll('main > h1, main > h2, main > p:not(#none), main > ol, main > nav, #functions + p + table, .colours, .swatches')];
 
 function find() {
   const query = folded(search.value.trim());

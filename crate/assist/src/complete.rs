@@ -329,6 +329,7 @@ impl Offers {
             Names::Variable => SymbolKind::Variable,
             Names::Command => SymbolKind::Command,
             Names::Node => SymbolKind::Node,
+            Names::Preset => SymbolKind::Preset,
         };
         for (name, value, kind) in &here.variables {
             if *value == Type::Name {

@@ -31,6 +31,8 @@ pub enum SymbolKind {
     File,
     /// A node of a skeleton.
     Node,
+    /// A set of values for sliders.
+    Preset,
 }
 
 impl SymbolKind {
@@ -47,6 +49,7 @@ impl SymbolKind {
             Self::Command => "command",
             Self::File => "file",
             Self::Node => "node",
+            Self::Preset => "preset",
         }
     }
 

@@ -23,6 +23,7 @@
 
 pub mod complete;
 pub mod definition;
+pub mod first;
 pub mod fold;
 pub mod format;
 mod grammar;

@@ -2,11 +2,33 @@
 
 use crate::complete::hex;
 use crate::grammar::{Grammar, Param};
-use crate::swatches;
+use crate::{first, swatches};
 use rats::commands::{self, CommandSpec, GROUPS, Group, Kind, OptionSpec};
 use rats::link::{self, Shared};
 use rats::{File, Project, colours, functions, manual};
 use std::fmt::Write;
+
+/// The groups by what they are for, in the order in which a newcomer needs them.
+pub const TASKS: [(Group, &str); 9] = [
+    (Group::Primitives, "Shapes"),
+    (Group::Materials, "Materials and textures"),
+    (Group::Objects, "Objects"),
+    (Group::Scene, "Light and picture"),
+    (Group::Camera, "Camera"),
+    (Group::Extensions, "Programming and ready-made shapes"),
+    (Group::Options, "Settings"),
+    (Group::Run, "Running"),
+    (Group::Tools, "Pictures and films"),
+];
+
+/// Returns the commands of a group.
+#[must_use]
+pub fn commands_of(group: Group) -> &'static [&'static CommandSpec] {
+    let mut groups = GROUPS.iter();
+    groups
+        .find(|(name, _)| *name == group)
+        .map_or(&[], |(_, list)| *list)
+}
 
 /// Returns the manual page of a command as plain text; `None` if there is no such command.
 ///
@@ -70,10 +92,10 @@ fn project_of(spec: &CommandSpec) -> Project {
 pub fn reference() -> String {
     let mut page = String::with_capacity(200_000);
     page += HEAD;
-    page += "<nav>\n";
-    for (group, list) in GROUPS {
-        let _ = write!(page, "<p><a href=\"#group-{0:?}\">{0:?}</a>", group);
-        for spec in *list {
+    page += "<nav>\n<p><a href=\"#first\">Your first shape</a></p>\n";
+    for (group, title) in TASKS {
+        let _ = write!(page, "<p><a href=\"#group-{group:?}\">{title}</a>");
+        for spec in commands_of(group) {
             let _ = write!(page, " <a class=\"c\" href=\"#{0}\">{0}</a>", spec.name);
         }
         page += "</p>\n";
@@ -81,15 +103,16 @@ pub fn reference() -> String {
     page += "<p><a href=\"#functions\">Functions</a> <a href=\"#textures\">Textures</a> \
         <a href=\"#waves\">Waves</a> \
         <a href=\"#lights\">Light and air</a> <a href=\"#colours\">Colours</a></p>\n</nav>\n";
+    first(&mut page);
     page += RULES;
-    for (group, list) in GROUPS {
+    for (group, title) in TASKS {
         let _ = writeln!(
             page,
-            "<h2 id=\"group-{group:?}\">{group:?}</h2>\n<p>{}</p>",
-            about(*group)
+            "<h2 id=\"group-{group:?}\">{title}</h2>\n<p>{}</p>",
+            about(group)
         );
-        for spec in *list {
-            command(&mut page, spec, *group == Group::Extensions);
+        for spec in commands_of(group) {
+            command(&mut page, spec, group == Group::Extensions);
         }
     }
     functions(&mut page);
@@ -140,6 +163,27 @@ operands
 and <code>1 - 2</code> is one.</p>
 <p><span class=\"ours\">ours</span> marks what RATS did not have.</p>
 ";
+
+/// Writes the steps to the first shape.
+fn first(page: &mut String) {
+    *page += "<h2 id=\"first\">Your first shape</h2>\n\
+        <p>Five steps. <a href=\"./#first\">Take them in Sinew</a>, \
+        which writes along.</p>\n<ol>\n";
+    for step in first::STEPS {
+        let (title, words) = (step.title, step.words);
+        let _ = write!(page, "<li><b>{title}.</b> {words}");
+        if !step.code.is_empty() {
+            let _ = write!(page, "\n<pre>{}</pre>", escape(step.code.trim_end()));
+        }
+        *page += "</li>\n";
+    }
+    let text = first::STEPS.iter().map(|step| step.code);
+    let text: String = core::iter::once(first::START).chain(text).collect();
+    *page += "</ol>\n";
+    if let Some(link) = fragment("my-first-shape", text) {
+        let _ = writeln!(page, "<p><a href=\"./#{link}\">Open the whole text</a></p>");
+    }
+}
 
 /// Describes a group.
 fn about(group: Group) -> &'static str {

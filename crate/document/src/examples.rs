@@ -36,6 +36,13 @@ impl Example {
         words.iter().all(|word| text.contains(word))
     }
 
+    /// Whether its picture takes more than 15 s on two cores, as `cargo xtask examples` measures.
+    #[must_use]
+    pub fn is_slow(&self) -> bool {
+        let mut slow = include_str!("slow.txt").lines();
+        slow.any(|name| self.name.strip_suffix(".rat") == Some(name))
+    }
+
     /// Returns a project of the text and its strokes.
     #[must_use]
     pub fn project(&self, text: &str) -> Project {
@@ -278,6 +285,15 @@ mod tests {
             let thumbnail = decode(&bytes).expect(example.title);
             let largest = thumbnail.size[0].max(thumbnail.size[1]);
             assert!(largest >= 200, "{}", example.title);
+        }
+    }
+
+    #[test]
+    fn slow_examples_are_of_the_gallery() {
+        let slow = ALL.iter().filter(|example| example.is_slow()).count();
+        assert_eq!(slow, include_str!("slow.txt").lines().count());
+        for (name, is_slow) in [("coils", true), ("still-life", true), ("tide", false)] {
+            assert_eq!(ALL[find(name).unwrap()].is_slow(), is_slow, "{name}");
         }
     }
 

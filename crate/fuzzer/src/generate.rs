@@ -286,6 +286,7 @@ impl Writer {
             Names::Object => self.choose(u, &["o0", "o0", "o1", "o2"]),
             Names::Variable => self.choose(u, &["v0", "V1", "c2", "i", "j", "a"]),
             Names::Node => self.choose(u, &["A", "A", "B", "n"]),
+            Names::Preset => self.choose(u, &["small", "large"]),
             Names::Command => {
                 let all: Vec<&CommandSpec> = commands::all().collect();
                 let name = u.choose(&all)?.name;

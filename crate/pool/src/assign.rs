@@ -108,7 +108,7 @@ impl Run {
 
     /// Returns the expected seconds of a tile in a pass: for the worker that should do it, and for
     /// any other.
-    fn cost(&self, pass: usize, tile: usize) -> (f64, f64) {
+    pub(super) fn cost(&self, pass: usize, tile: usize) -> (f64, f64) {
         let usual = self.costs.estimate(pass);
         match self.passes[pass] {
             Pass::Coarse => (usual, usual),

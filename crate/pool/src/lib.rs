@@ -39,6 +39,7 @@ pub mod assembly;
 mod assign;
 pub mod clock;
 mod core;
+mod forecast;
 pub mod job;
 pub mod life;
 mod partition;

@@ -1,5 +1,6 @@
 //! State of the picture being traced: which tiles are done, left or given up in each pass.
 
+use crate::forecast::{Forecast, Task, work_left};
 use crate::job::{SMALL_TILE, TILE};
 use crate::progress::{Costs, Progress};
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -65,6 +66,9 @@ pub struct Run {
     pub(super) completed: [usize; 3],
     pass_seconds: [Option<f64>; 3],
     pub(super) costs: Costs,
+    /// Seconds that each finished task took.
+    taken: Vec<Option<f64>>,
+    forecast: Forecast,
     begun: f64,
     pub ended: Option<f64>,
     fraction: f64,
@@ -86,6 +90,7 @@ impl Run {
             (passes, TILE)
         };
         let tiles = tracer::tile::tiles(plan.size[0], plan.size[1], side);
+        let tiles_in_passes = tiles.len() * passes.len();
         let mut run = Self {
             plan,
             left: vec![(0..tiles.len()).collect(); passes.len()],
@@ -95,7 +100,7 @@ impl Run {
             awake: vec![false; workers],
             home: Vec::new(),
             holder: vec![None; tiles.len()],
-            over: vec![false; tiles.len() * passes.len()],
+            over: vec![false; tiles_in_passes],
             tiles,
             passes,
             again: Vec::new(),
@@ -105,6 +110,8 @@ impl Run {
             completed: [0; 3],
             pass_seconds: [None; 3],
             costs: Costs::default(),
+            taken: vec![None; tiles_in_passes],
+            forecast: Forecast::default(),
             begun: now,
             ended: None,
             fraction: 0.0,
@@ -152,6 +159,25 @@ impl Run {
             left += cost * (self.tiles.len() - self.completed[pass]) as f64;
         }
         (all, left)
+    }
+
+    /// Computes the seconds of work that is left, from what each open tile is expected to cost.
+    fn work_left(&self) -> f64 {
+        let count = self.tiles.len();
+        let mut left = 0.0;
+        for pass in 0..self.passes.len() {
+            let tasks = (0..count).map(|tile| (tile, pass * count + tile));
+            // A task that was given up neither tells nor takes anything.
+            let tasks = tasks.filter(|(_, task)| !self.over[*task] || self.taken[*task].is_some());
+            let tasks: Vec<Task> = tasks
+                .map(|(tile, task)| Task {
+                    expected: self.cost(pass, tile).0,
+                    taken: self.taken[task],
+                })
+                .collect();
+            left += work_left(&tasks);
+        }
+        left
     }
 
     /// Whether all tiles of a pass are done or given up.
@@ -202,6 +228,12 @@ impl Run {
             Pass::Smooth => {}
         }
         self.costs.add(pass, seconds.max(0.0));
+        self.taken[task] = Some(seconds.max(0.0));
+        if self.costs.enough() && self.forecast.is_due(self.begun, now) {
+            let workers = self.awake.iter().filter(|awake| **awake).count();
+            let left = self.work_left() / workers.max(1) as f64;
+            self.forecast.note(left, now);
+        }
         self.stats += *stats;
         self.update(now);
     }
@@ -237,8 +269,8 @@ impl Run {
             progress.pass = (0..self.passes.len())
                 .find(|pass| !self.is_complete(*pass))
                 .map(|pass| self.passes[pass]);
-            progress.remaining_seconds = (self.costs.enough() && progress.workers > 0)
-                .then(|| self.estimate().1 / progress.workers as f64);
+            let remaining = self.forecast.remaining(now);
+            progress.remaining_seconds = remaining.filter(|_| progress.workers > 0);
         }
     }
 }

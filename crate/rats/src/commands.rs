@@ -18,6 +18,7 @@ use crate::suggest;
 
 /// Lists of words that editors ask for by name.
 pub mod options {
+    pub use crate::evaluator::presets::PRESET_OPTIONS;
     pub use crate::evaluator::textures::{MAPPINGS, SOLIDS, TARGETS, TEXTURE_OPTIONS, WAVES};
     pub use crate::evaluator::variables::VAR_OPTIONS;
 }
@@ -82,8 +83,8 @@ mod tests {
             light fog background cloud remove report reset preview shoot \
             animate play split collage fli convert resize diff and xor show kill refresh tile \
             colors rats table shell horn \
-            material blobscale sky ground tone body curve deform seed for if else define influence \
-            skeleton contact motion tree spikes sphereflake spiral";
+            material blobscale sky ground tone body curve deform seed preset for if else define \
+            influence skeleton contact motion tree spikes sphereflake spiral";
         for name in names.split_whitespace() {
             assert!(find(name).is_some(), "{name}");
             assert!(find(&name.to_uppercase()).is_some(), "{name}");

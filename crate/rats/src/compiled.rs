@@ -1,5 +1,6 @@
 //! The result of compiling a text.
 
+use crate::value::Value;
 use crate::{Diagnostic, Tool};
 use glam::{DAffine3, DVec3};
 use limbs::Recipe;
@@ -21,6 +22,8 @@ pub struct Compiled {
     pub diagnostics: Vec<Diagnostic>,
     /// The variables that are marked `hot`.
     pub hot: Vec<HotVariable>,
+    /// The sets of values for them that have a name.
+    pub presets: Vec<Preset>,
     /// The work on files that the text asks for, in order.
     pub tools: Vec<Tool>,
     /// The things that the program does before, between and behind the pictures, in order.
@@ -176,6 +179,15 @@ pub struct HotVariable {
     pub step: Option<f64>,
 }
 
+/// A set of values for hot variables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preset {
+    /// The name.
+    pub name: String,
+    /// Names of variables, each with its value.
+    pub values: Vec<(String, HotValue)>,
+}
+
 /// A value that can be adjusted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HotValue {
@@ -185,4 +197,16 @@ pub enum HotValue {
     Vector([f64; 3]),
     /// A colour.
     Colour([f32; 3]),
+}
+
+impl HotValue {
+    /// Returns a variable's value as one that can be adjusted; `None` if it is a name.
+    pub(crate) fn of(value: Value) -> Option<Self> {
+        Some(match value {
+            Value::Scalar(x) => Self::Scalar(x),
+            Value::Vector(v) => Self::Vector(v.to_array()),
+            Value::Colour(c) => Self::Colour(c.to_array().map(|x| x as f32)),
+            Value::Name(_) => return None,
+        })
+    }
 }

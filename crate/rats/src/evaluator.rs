@@ -29,6 +29,7 @@ mod objects;
 mod options;
 mod palette;
 mod picture;
+pub(crate) mod presets;
 mod primitives;
 mod run;
 mod scene_commands;
@@ -109,6 +110,7 @@ pub fn run<'a>(
         earlier: earlier.collect(),
         diagnostics: state.report.finish(project),
         hot: state.hot,
+        presets: state.presets,
         tools: state.tools,
         interludes: state.interludes,
         tool_origins: state.tool_origins,

@@ -66,7 +66,7 @@ pub use asset::Asset;
 pub use compile::{compile, compile_at, provenance};
 pub use compiled::{
     Act, Compiled, Control, Deform, HotValue, HotVariable, Interlude, Output, Picture, Placement,
-    Unread,
+    Preset, Unread,
 };
 pub use diagnostic::{Diagnostic, Related, Severity};
 pub use limbs::Recipe;

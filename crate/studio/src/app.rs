@@ -40,6 +40,8 @@ use std::rc::Rc;
 
 /// Seconds of running without trouble after which a start counts as a good one.
 const HEALTHY: f64 = 4.0;
+/// Fragment of the address that leads to the first shape.
+const FIRST: &str = "#first";
 /// Seconds after a letter was typed in which its word is no mistake.
 const TYPING: f64 = 1.0;
 /// Seconds that tiles wait to be shown where the processor that traces them draws the page, too:
@@ -91,8 +93,8 @@ impl App {
         browser::set_stopped(true);
         let hash = browser::hash();
         let lesson = Lesson::of_hash(&hash);
-        // A link to a lesson or to an example carries no work.
-        let to_example = examples::of_hash(&hash).is_some();
+        // A link to a lesson, to an example or to the first shape carries no work.
+        let to_example = examples::of_hash(&hash).is_some() || hash == FIRST;
         let carried = if lesson.is_some() || to_example {
             ""
         } else {
@@ -154,6 +156,7 @@ impl App {
                 film: FilmPanel::default().length(),
                 dialog: None,
                 tab: Tab::Text,
+                first: None,
                 is_refused: false,
                 notice: None,
                 wishes: Wishes::default(),
@@ -362,12 +365,16 @@ impl App {
         let touch = ctx.input(egui::InputState::has_touch_screen) || screen::is_narrow(&ctx);
         if screen.touch != Some(touch) {
             screen.touch = Some(touch);
-            theme::set_sharp(browser::is_wanted("(prefers-contrast: more)"));
+            let sharp = "(prefers-contrast: more), (forced-colors: active)";
+            theme::set_sharp(browser::is_wanted(sharp));
             theme::apply(&ctx, touch);
             let is_calm = browser::is_wanted("(prefers-reduced-motion: reduce)");
             if screen.rest > 0.0 || is_calm {
                 // Fading draws many frames, each at the cost of the picture.
-                ctx.all_styles_mut(|style| style.animation_time = 0.0);
+                ctx.all_styles_mut(|style| {
+                    style.animation_time = 0.0;
+                    style.scroll_animation = egui::style::ScrollAnimation::none();
+                });
             }
         }
         let mut wishes = Wishes::default();
@@ -547,6 +554,10 @@ impl App {
         self.carry_out(LabWish::Follow(lesson).into(), at);
         at.ctx.request_repaint();
         if lesson.is_some() {
+            return;
+        }
+        if hash == FIRST {
+            self.carry_out(WorkWish::First.into(), at);
             return;
         }
         if let Some(name) = examples::of_hash(&hash) {

@@ -12,7 +12,7 @@ use crate::text::files;
 use crate::theme::{self, STRIP};
 use crate::wish::{Dialog, Setting, ViewWish, Wish, Wishes};
 use crate::works::versions;
-use crate::{bar, download, fit, notice, places, problems, screen, sculpt, status, tray};
+use crate::{bar, download, first, fit, notice, places, problems, screen, sculpt, status, tray};
 use document::{intake, size};
 use egui::{
     Align, Button, CentralPanel, Color32, Context, Frame, Layout, Margin, Panel, Popup, Rect,
@@ -122,10 +122,11 @@ fn text_side(page: &Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wishes)
     if rows > 0.0 {
         let most = (0.4 * ui.available_height()).clamp(60.0, 260.0);
         Panel::bottom("sliders")
-            .exact_size(rows.min(most) + 42.0)
+            .exact_size(rows.min(most) + 50.0)
             .frame(inset)
             .show(ui, |ui| panels.sliders.show(page, ui, wishes));
     }
+    first::show(page, ui, wishes);
     CentralPanel::no_frame().show(ui, |ui| text(page, panels, ui, wishes));
 }
 
@@ -324,8 +325,13 @@ fn small_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wi
     let palette = theme::palette(ui.visuals());
     let all = ui.available_rect_before_wrap();
     let [w, h] = page.work.session.frame().map(|side| side as f32);
-    // With the keyboard up there is little room; the text then matters more.
-    let share = if all.height() < 420.0 { 0.34 } else { 0.5 };
+    // With the keyboard or a card up there is little room; the text then matters more.
+    let low = if first::step_of(page).is_some() {
+        520.0
+    } else {
+        420.0
+    };
+    let share = if all.height() < low { 0.34 } else { 0.5 };
     if panels.stage.pencil.tool().is_some() {
         stage(page, panels, ui, all, wishes);
         return;
@@ -360,7 +366,8 @@ fn small_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wi
                 files::show(&mut strip, session, editor, false, wishes);
                 ui.add_space(46.0);
             }
-            text(page, panels, &mut ui, wishes);
+            first::show(page, &mut ui, wishes);
+            CentralPanel::no_frame().show(&mut ui, |ui| text(page, panels, ui, wishes));
         }
         Tab::Sliders => {
             Frame::new().inner_margin(14).show(&mut ui, |ui| {

@@ -16,6 +16,7 @@ mod download;
 pub mod entry;
 pub mod export;
 pub mod film;
+pub mod first;
 pub mod fit;
 pub mod help;
 mod keys;

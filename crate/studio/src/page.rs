@@ -130,6 +130,8 @@ pub struct Page {
     pub tab: Tab,
     /// Whether the picture is not begun, as it may take hours.
     pub is_refused: bool,
+    /// The step of the first shape, and the number of its work.
+    pub first: Option<(u64, usize)>,
     /// The message across the top of the picture.
     pub notice: Option<Notice>,
     /// Wishes of panels to other panels, which are carried out next.

@@ -114,6 +114,9 @@ pub fn show(
                     StandIn::Draft => {
                         "The shapes before they melt together stand in for the traced picture"
                     }
+                    StandIn::Kept => {
+                        "This picture was traced when the example was made; yours is on its way"
+                    }
                     StandIn::Mesh => "A mesh of the surface stands in for the traced picture",
                 };
                 (stand_in.id().to_owned(), tip.to_owned())

@@ -295,5 +295,6 @@ fn kind_of(names: Names) -> SymbolKind {
         Names::Variable => SymbolKind::Variable,
         Names::Command => SymbolKind::Command,
         Names::Node => SymbolKind::Node,
+        Names::Preset => SymbolKind::Preset,
     }
 }

@@ -295,7 +295,13 @@ impl<'p> Slots<'_, 'p> {
             && match self.datum(0) {
                 Some(Datum::Number(_) | Datum::Sign(b'-' | b'(')) => true,
                 Some(Datum::Sign(b'+')) => self.datum(1) != Some(Datum::Sign(b'=')),
-                Some(Datum::Word(_)) => !self.is_option_next(options::VAR_OPTIONS),
+                Some(Datum::Word(_)) => {
+                    let ends = match self.option {
+                        Some(_) => options::PRESET_OPTIONS,
+                        None => options::VAR_OPTIONS,
+                    };
+                    !self.is_option_next(ends)
+                }
                 _ => false,
             };
         if goes_on {

@@ -54,6 +54,8 @@ fn the_last_definition_counts() {
     check_definition("define leg(surface «s») {\n sphere |s 1 0 0 0\n}\n");
     check_definition("define walk() { leg 1, b|=3 }\ndefine leg(a, «b» = 2) {\n}\n");
     check_definition("define leg(a, «b» = 2) {\n}\nleg 1, b|=3\n");
+    check_definition("var «r» = 1 hot\nvar h = 2 hot\npreset big, set h 3, set |r 4, set h 5\n");
+    check_definition("var r = 1 hot\nvar «V» = 1 2 3 hot\npreset big set r 3 set V| 4 5 6\n");
     check_definition("for «i» = 1 to 3 {\n sphere s |i 0 0 0\n}\n");
     check_definition("var i = 1\nfor «i» = 1 to 3 { sphere s |i 0 0 0 }\n");
     check_definition("for i = 1 to 3 { for «i» = i to 3 { sphere s |i 0 0 0 } }\n");

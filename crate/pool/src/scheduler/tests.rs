@@ -481,6 +481,10 @@ fn remaining_time_is_known_once_measured() {
     for _ in 0..20 {
         crowd.work();
     }
+    // Within the first second nothing is told.
+    assert_eq!(crowd.progress().remaining_seconds, None);
+    crowd.now += 1.0;
+    crowd.work();
     let progress = crowd.progress();
     assert!(progress.remaining_seconds.unwrap() > 0.0);
     assert!(progress.pass.is_some());

@@ -71,6 +71,8 @@ pub enum Names {
     Command,
     /// A node of a skeleton.
     Node,
+    /// A set of values for sliders.
+    Preset,
 }
 
 impl Names {
@@ -84,6 +86,7 @@ impl Names {
             Self::Variable => "variable",
             Self::Command => "command",
             Self::Node => "node",
+            Self::Preset => "preset",
         }
     }
 }

@@ -166,6 +166,7 @@ fn reset<'a>(
         if is("var") {
             run.scope.clear();
             run.hot.clear();
+            run.presets.clear();
         }
     }
     Ok(Flow::Next)

@@ -9,7 +9,7 @@ use super::shots::Shots;
 use super::surroundings::Air;
 use super::view_plane::ViewPlane;
 use super::watched::Watch;
-use crate::compiled::{Deform, HotVariable, Interlude, Output, Unread};
+use crate::compiled::{Deform, HotVariable, Interlude, Output, Preset, Unread};
 use crate::limits;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Reader;
@@ -70,6 +70,7 @@ pub struct Evaluator<'a> {
     pub(super) scaled: bool,
     pub(super) definitions: HashMap<Symbol, (usize, &'a Define)>,
     pub(super) hot: Vec<HotVariable>,
+    pub(super) presets: Vec<Preset>,
     pub(super) tools: Vec<Tool>,
     pub(super) interludes: Vec<Interlude>,
     pub(super) tool_origins: Vec<Origin>,
@@ -137,6 +138,7 @@ impl<'a> Evaluator<'a> {
             scaled: false,
             definitions: HashMap::new(),
             hot: Vec::new(),
+            presets: Vec::new(),
             tools: Vec::new(),
             interludes: Vec::new(),
             tool_origins: Vec::new(),

@@ -1,8 +1,8 @@
 //! The table of commands, in the order of appendix C of the thesis: a line for each.
 
 use super::{
-    air, camera, contact, deform, lights, materials, motion, objects, options, primitives, run,
-    scene_commands, skeleton, structure, textures, tools, variables,
+    air, camera, contact, deform, lights, materials, motion, objects, options, presets, primitives,
+    run, scene_commands, skeleton, structure, textures, tools, variables,
 };
 use crate::commands::{CommandSpec, Group};
 
@@ -166,6 +166,7 @@ pub static GROUPS: &[(Group, &[&CommandSpec])] = &[
             &motion::MOTION,
             &deform::DEFORM,
             &variables::SEED,
+            &presets::PRESET,
             &structure::FOR,
             &structure::IF,
             &structure::ELSE,

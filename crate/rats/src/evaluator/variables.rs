@@ -415,11 +415,8 @@ fn make_hot(
         run.warn(&span, message, "set it before, outside of the braces");
         return;
     }
-    let value = match value {
-        Value::Scalar(x) => HotValue::Scalar(x),
-        Value::Vector(v) => HotValue::Vector(v.to_array()),
-        Value::Colour(c) => HotValue::Colour(c.to_array().map(|x| x as f32)),
-        Value::Name(_) => return,
+    let Some(value) = HotValue::of(value) else {
+        return;
     };
     let variable = HotVariable {
         name: name.to_owned(),

@@ -180,6 +180,32 @@ fn hot_variables() {
 }
 
 #[test]
+fn presets_are_sets_of_values_by_name() {
+    let text = "surface s diff Red\nvar r = 1 hot\nvar P = 0 0 0 hot\nvar C = Gold hot\n\
+        preset one, set r 2, set P 1 -2 -3, set C 1 0 0\npreset two, set r 2*r\n\
+        preset one set r -r\nsphere s r P\n";
+    let presets = run(text).presets;
+    let all = [
+        ("one", HotValue::Scalar(-1.0)),
+        ("two", HotValue::Scalar(2.0)),
+    ];
+    for (preset, (name, r)) in presets.iter().zip(all) {
+        assert_eq!(
+            (&*preset.name, &*preset.values),
+            (name, &[(String::from("r"), r)][..])
+        );
+    }
+    assert_eq!(presets.len(), 2);
+    let first = text.replace("preset one set", "preset three set");
+    let values = run(&first).presets.swap_remove(0).values;
+    let values: Vec<HotValue> = values.into_iter().map(|(_, value)| value).collect();
+    let place = HotValue::Vector([1.0, -2.0, -3.0]);
+    let colour = HotValue::Colour([1.0, 0.0, 0.0]);
+    assert_eq!(values, [HotValue::Scalar(2.0), place, colour]);
+    assert_eq!(run(&format!("{text}reset var\n")).presets, []);
+}
+
+#[test]
 fn hot_variables_of_other_files() {
     let file = |name: &str, text: &str| File {
         name: name.to_owned(),

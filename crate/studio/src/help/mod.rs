@@ -3,14 +3,15 @@
 
 mod reference;
 
+use crate::first;
 use crate::page::Page;
 use crate::panel::Panel;
 use crate::wish::{Setting, Wish, Wishes};
-use crate::{places, theme};
+use crate::{places, screen, theme};
 use egui::{RichText, ScrollArea, Ui};
 use reference::Reference;
 
-const LANGUAGE: [(&str, &str); 9] = [
+const LANGUAGE: [(&str, &str); 10] = [
     (
         "surface flesh, diffuse Coral, specular White, shine 40, blobbiness -2",
         "a material; blobbiness makes its shapes soft",
@@ -32,6 +33,10 @@ const LANGUAGE: [(&str, &str); 9] = [
     (
         "var r = 0.3 hot",
         "a number with a name; hot makes it a slider",
+    ),
+    (
+        "preset thin, set r 0.1",
+        "a button that sets sliders: each name, and its value",
     ),
     (
         "for i = 1 to 10 { sphere flesh 0.2, i/4 0 0 }",
@@ -97,13 +102,19 @@ impl Help {
     fn head(&mut self, ui: &mut Ui, wishes: &mut Wishes) {
         let palette = theme::palette(ui.visuals());
         ui.horizontal(|ui| {
+            // The narrowest phones need the room for the button.
+            let is_short = ui.available_width() < 300.0;
+            let size = if is_short { 12.5 } else { 17.0 };
+            if is_short {
+                ui.spacing_mut().item_spacing.x = 2.0;
+            }
             for (leaf, title) in [
                 (Leaf::Words, "How it works"),
                 (Leaf::Reference, "Reference"),
             ] {
                 let open = self.leaf == leaf;
                 let colour = if open { palette.strong } else { palette.weak };
-                let title = RichText::new(title).size(17.0).color(colour);
+                let title = RichText::new(title).size(size).color(colour);
                 let tab = ui.selectable_label(open, title);
                 places::note(ui.ctx(), format!("help {leaf:?}").to_lowercase(), tab.rect);
                 if tab.clicked() {
@@ -135,6 +146,7 @@ impl Panel for Help {
 
 fn words(ui: &mut Ui, mut hints: bool, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
+    first::offer(ui, wishes);
     ui.label(
         "A model is a text: a list of shapes made of materials. Soft shapes melt into each \
             other where they come near. Change a number and the picture follows; the link \
@@ -152,23 +164,9 @@ fn words(ui: &mut Ui, mut hints: bool, wishes: &mut Wishes) {
         ui.add_space(5.0);
     }
     heading(ui, "Hands");
-    egui::Grid::new("keys").spacing([18.0, 5.0]).show(ui, |ui| {
-        for (key, meaning) in KEYS {
-            ui.label(RichText::new(key).color(palette.text).size(13.0));
-            ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
-            ui.end_row();
-        }
-    });
+    keys(ui, "keys", &KEYS);
     heading(ui, "Sculpt");
-    egui::Grid::new("sculpt keys")
-        .spacing([18.0, 5.0])
-        .show(ui, |ui| {
-            for (key, meaning) in modeling::KEYS {
-                ui.label(RichText::new(key).color(palette.text).size(13.0));
-                ui.label(RichText::new(meaning).color(palette.weak).size(13.0));
-                ui.end_row();
-            }
-        });
+    keys(ui, "sculpt keys", &modeling::KEYS);
     ui.add_space(6.0);
     if ui
         .checkbox(
@@ -185,6 +183,31 @@ fn words(ui: &mut Ui, mut hints: bool, wishes: &mut Wishes) {
             someone sends you never overwrites it. Texts, images and meshes can be dropped on \
             the page; links carry the texts.",
     );
+}
+
+/// Lists keys with their meanings, side by side where there is room.
+fn keys(ui: &mut Ui, name: &str, rows: &[(&str, &str)]) {
+    let palette = theme::palette(ui.visuals());
+    let texts = rows.iter().map(|(key, meaning)| {
+        let [key, meaning] = [(*key, palette.text), (*meaning, palette.weak)]
+            .map(|(text, colour)| RichText::new(text).color(colour).size(13.0));
+        (key, meaning)
+    });
+    if screen::is_narrow(ui.ctx()) {
+        for (key, meaning) in texts {
+            ui.label(key);
+            ui.label(meaning);
+            ui.add_space(5.0);
+        }
+        return;
+    }
+    egui::Grid::new(name).spacing([18.0, 5.0]).show(ui, |ui| {
+        for (key, meaning) in texts {
+            ui.label(key);
+            ui.label(meaning);
+            ui.end_row();
+        }
+    });
 }
 
 fn heading(ui: &mut Ui, text: &str) {

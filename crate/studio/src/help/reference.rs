@@ -1,32 +1,13 @@
 //! The reference in the help: the commands of the language by group, with a search field.
 
+use crate::first;
 use crate::wish::{Wishes, WorkWish};
 use crate::{places, theme};
+use assist::manual::{TASKS, commands_of};
 use egui::text::{LayoutJob, TextFormat};
 use egui::{CollapsingHeader, Color32, FontId, Label, RichText, TextEdit, Ui};
-use rats::commands::{CommandSpec, GROUPS, Group};
+use rats::commands::CommandSpec;
 use rats::{library, manual};
-
-/// The groups in the order in which a newcomer needs them.
-const ORDER: [(Group, &str); 9] = [
-    (Group::Primitives, "Shapes"),
-    (Group::Materials, "Materials and textures"),
-    (Group::Objects, "Objects"),
-    (Group::Scene, "Light and picture"),
-    (Group::Camera, "Camera"),
-    (Group::Extensions, "Programming and ready-made shapes"),
-    (Group::Options, "Settings"),
-    (Group::Run, "Running"),
-    (Group::Tools, "Pictures and films"),
-];
-
-/// Returns the commands of a group.
-fn group_list(group: Group) -> &'static [&'static CommandSpec] {
-    GROUPS
-        .iter()
-        .find(|(name, _)| *name == group)
-        .map_or(&[], |(_, list)| *list)
-}
 
 /// The state of the reference.
 #[derive(Default)]
@@ -53,10 +34,14 @@ impl Reference {
                 .margin(egui::Margin::symmetric(8, 6)),
         );
         places::note(ui.ctx(), "search commands", field.rect);
+        if self.search.is_empty() {
+            ui.add_space(6.0);
+            first::offer(ui, wishes);
+        }
         let wanted = self.wanted.take();
         let mut found = 0;
-        for (group, title) in ORDER {
-            let hits: Vec<&CommandSpec> = group_list(group)
+        for (group, title) in TASKS {
+            let hits: Vec<&CommandSpec> = commands_of(group)
                 .iter()
                 .copied()
                 .filter(|spec| matches(spec, &self.search))
@@ -211,13 +196,13 @@ mod tests {
 
     #[test]
     fn every_group_is_shown_once() {
-        let shown: usize = ORDER
+        let shown: usize = TASKS
             .iter()
-            .map(|(group, _)| group_list(*group).len())
+            .map(|(group, _)| commands_of(*group).len())
             .sum();
         assert_eq!(shown, commands::all().count());
-        let groups: std::collections::HashSet<_> = ORDER.iter().map(|(group, _)| group).collect();
-        assert_eq!(groups.len(), ORDER.len());
+        let groups: std::collections::HashSet<_> = TASKS.iter().map(|(group, _)| group).collect();
+        assert_eq!(groups.len(), TASKS.len());
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::{places, screen, theme};
 use document::session::Session;
 use egui::{Context, DragValue, RichText, ScrollArea, Slider, SliderClamping, Ui};
 use pad::Bounds;
-use rats::{HotValue, HotVariable, TextEdit, hot};
+use rats::{HotValue, HotVariable, Preset, TextEdit, hot};
 use std::collections::HashMap;
 
 /// The ranges of the sliders. They do not change while a slider is dragged.
@@ -171,7 +171,12 @@ impl Panel for Sliders {
         let palette = theme::palette(ui.visuals());
         places::note(ui.ctx(), "sliders", ui.max_rect());
         let waits = page.work.session.shows_errors();
-        if waits || !screen::is_small(ui.ctx()) {
+        let (hot, presets) = {
+            let compiled = page.work.session.compilation();
+            (&compiled.hot, &compiled.presets)
+        };
+        let has_room = !screen::is_small(ui.ctx());
+        if waits || has_room || !presets.is_empty() {
             let (text, colour) = if waits {
                 (
                     "Sliders: the picture waits until the errors are mended",
@@ -180,23 +185,92 @@ impl Panel for Sliders {
             } else {
                 ("Sliders", palette.weak)
             };
-            ui.label(RichText::new(text).size(12.5).color(colour))
-                .on_hover_text("Variables marked hot in the text");
+            let head = ScrollArea::horizontal().id_salt("presets");
+            head.auto_shrink([false, true]).show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    if waits || has_room {
+                        ui.label(RichText::new(text).size(12.5).color(colour))
+                            .on_hover_text("Variables marked hot in the text");
+                    }
+                    if !waits {
+                        preset_buttons(ui, &page.work.session, has_room, wishes);
+                    }
+                });
+            });
         }
         ScrollArea::vertical()
             .id_salt("sliders")
             .min_scrolled_height(0.0)
             .auto_shrink(false)
-            .show(ui, |ui| {
-                let hot = &page.work.session.compilation().hot;
-                self.rows(ui, hot, wishes);
-            });
+            .show(ui, |ui| self.rows(ui, hot, wishes));
     }
 
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
         self.ranges.clear();
         self.height = 0.0;
     }
+}
+
+/// Shows a button for each preset of the text, and with `keeps` one that writes a new one.
+fn preset_buttons(ui: &mut Ui, session: &Session, keeps: bool, wishes: &mut Wishes) {
+    let compiled = session.compilation();
+    for (index, preset) in compiled.presets.iter().enumerate() {
+        let button = ui.push_id(index, |ui| {
+            ui.button(RichText::new(&preset.name).size(12.5))
+                .on_hover_text("Set the sliders to this preset")
+        });
+        let button = button.inner;
+        places::note(ui.ctx(), format!("preset {}", preset.name), button.rect);
+        if button.clicked() {
+            let edits = edits_of(preset, &compiled.hot);
+            wishes.push(TextWish::Edit { edits, step: true });
+        }
+    }
+    let kept = keeps.then(|| keep(session)).flatten();
+    let Some(edit) = kept else {
+        return;
+    };
+    let button = ui.button(RichText::new("Keep").size(12.5));
+    places::note(ui.ctx(), "keep preset", button.rect);
+    let button = button.on_hover_text("Write these values into the text, as a preset");
+    if button.clicked() {
+        wishes.push(TextWish::step(edit));
+    }
+}
+
+/// Returns the changes of the text that a preset asks for, in its order.
+fn edits_of(preset: &Preset, hot: &[HotVariable]) -> Vec<TextEdit> {
+    let mut edits: Vec<TextEdit> = Vec::new();
+    for variable in hot {
+        let mut values = preset.values.iter().rev();
+        let value = values.find(|(name, _)| *name == variable.name);
+        if let (Some((_, value)), Some(range)) = (value, &variable.literal) {
+            let edit = TextEdit::new(variable.file, range.clone(), hot::write(value));
+            edits.push(edit);
+        }
+    }
+    edits.sort_by_key(|edit| (edit.file, edit.span.start));
+    edits
+}
+
+/// Returns the change that writes a preset of the present values below the last variable; `None`
+/// if there are no sliders.
+fn keep(session: &Session) -> Option<TextEdit> {
+    let compiled = session.compilation();
+    let all = compiled.hot.iter().filter(|hot| hot.literal.is_some());
+    let last = all.clone().next_back()?;
+    let names = (1..).map(|number| format!("set{number}"));
+    let mut free = names.filter(|name| compiled.presets.iter().all(|known| known.name != *name));
+    let mut line = format!("preset {}", free.next()?);
+    for variable in all {
+        line += &format!(", set {} {}", variable.name, hot::write(&variable.value));
+    }
+    let (text, end) = (session.text(last.file), last.literal.as_ref()?.end);
+    let end = text
+        .get(end..)?
+        .find('\n')
+        .map_or(text.len(), |far| end + far);
+    Some(TextEdit::new(last.file, end..end, format!("\n{line}")))
 }
 
 /// Returns the height of the rows of these variables together.

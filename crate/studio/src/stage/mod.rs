@@ -14,6 +14,8 @@ pub mod wish;
 use crate::page::{self, Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
+use crate::settings::Show;
+use crate::thumbnail::Thumbnail;
 use crate::wish::{TextWish, ViewWish, Wishes, WorkWish};
 use crate::{places, screen};
 use apart::Apart;
@@ -37,6 +39,39 @@ pub enum StandIn {
     Draft,
     /// A mesh of their surface.
     Mesh,
+    /// The picture as it was traced when the example was made.
+    Kept,
+}
+
+/// The picture of an example, traced when it was made, as long as nobody changes the example or the
+/// view.
+struct Kept {
+    /// Address of the file beside the page.
+    path: &'static str,
+    /// The session's revision that it shows.
+    revision: u64,
+    picture: Option<Thumbnail>,
+}
+
+impl Kept {
+    /// Returns the picture while no true one is there; `None` if it has not come or does not fit.
+    fn texture(&mut self, page: &Page, ui: &Ui) -> Option<TextureId> {
+        let session = &page.work.session;
+        let fits = self.revision == session.revision() && session.user_camera().is_none();
+        let is_wanted = page.settings.show != Show::Draft && page.renderer.texture().is_none();
+        if !fits || !is_wanted {
+            return None;
+        }
+        let path = self.path;
+        let picture = self
+            .picture
+            .get_or_insert_with(|| Thumbnail::fetch(ui, path));
+        picture.arrive(ui);
+        match picture {
+            Thumbnail::Here(texture) => Some(texture.id()),
+            _ => None,
+        }
+    }
 }
 
 impl StandIn {
@@ -46,6 +81,7 @@ impl StandIn {
         match self {
             Self::Draft => "draft",
             Self::Mesh => "mesh",
+            Self::Kept => "made before",
         }
     }
 }
@@ -55,6 +91,8 @@ pub struct Stage {
     draft: Option<Draft>,
     /// The draft where there is none on the window's device.
     apart: Apart,
+    /// The picture of an example that takes long.
+    kept: Option<Kept>,
     /// The true surface for the draft.
     live: LiveMesh,
     /// The stand-in for the traced picture on the screen.
@@ -79,6 +117,7 @@ impl Stage {
         Self {
             draft: state.map(Draft::new),
             apart: Apart::default(),
+            kept: None,
             live: LiveMesh::new(tools),
             stand_in: None,
             hands: Hands::default(),
@@ -99,6 +138,14 @@ impl Stage {
                 if camera.is_some() {
                     self.live.want();
                 }
+            }
+            ViewWish::ShowKept(path) => {
+                let revision = session.revision();
+                self.kept = Some(Kept {
+                    path,
+                    revision,
+                    picture: None,
+                });
             }
             ViewWish::ShowAll => {
                 if let Some(scene) = session.scene() {
@@ -143,14 +190,19 @@ impl Stage {
     }
 
     /// Returns the texture of the stand-in for the traced picture, if one is needed.
-    fn stand_in(&mut self, page: &Page, ctx: &Context, now: f64) -> Option<TextureId> {
+    fn stand_in(&mut self, page: &Page, ui: &Ui, now: f64) -> Option<TextureId> {
+        let ctx = ui.ctx();
         let (session, slow) = (&page.work.session, page.screen.rest > 0.0);
         if slow && page.renderer.is_near(view::SOON, now) {
             // If it does not come by then, the draft is drawn.
             ctx.request_repaint_after_secs(view::SOON as f32);
         }
         let mut stand_in = StandIn::Draft;
-        let texture = if page.is_refused && slow {
+        let kept = self.kept.as_mut().and_then(|kept| kept.texture(page, ui));
+        let texture = if kept.is_some() {
+            stand_in = StandIn::Kept;
+            kept
+        } else if page.is_refused && slow {
             None
         } else if view::needs_draft(page.settings.show, session, &page.renderer, slow, now) {
             match &mut self.draft {
@@ -194,7 +246,8 @@ impl Panel for Stage {
         ];
         places::note(ui.ctx(), "picture", rect);
         let now = browser::now(ui.ctx());
-        let draft = self.stand_in(page, ui.ctx(), now);
+        let draft = self.stand_in(page, ui, now);
+        let is_kept = self.stand_in == Some(StandIn::Kept);
         let draws = self.pencil.tool().is_some();
         let scenery = Scenery {
             session,
@@ -202,7 +255,9 @@ impl Panel for Stage {
             draft,
             show: page.settings.show,
             now,
+            is_kept,
             hint: !page.settings.turned,
+            touch: page.screen.touch == Some(true),
             old: session.has_old_scene() && session.shows_errors(),
             round: if narrow { 0.0 } else { 5.0 },
             grasp: Grasp {
@@ -240,7 +295,7 @@ impl Panel for Stage {
             session,
             caret: self.caret,
             covered,
-            draft: draft.is_some(),
+            draft: draft.is_some() && !is_kept,
             touch,
         };
         self.hands.show(ui, rect, &picture, &around, wishes);
@@ -269,6 +324,7 @@ impl Panel for Stage {
     }
 
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
+        self.kept = None;
         self.live.forget();
         self.hands.clear();
         self.pencil.clear();

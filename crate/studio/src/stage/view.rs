@@ -35,8 +35,12 @@ pub struct Scenery<'a> {
     pub show: Show,
     /// Seconds on the app's clock.
     pub now: f64,
+    /// Whether the draft is a picture that was traced when the example was made.
+    pub is_kept: bool,
     /// Whether to show a hint of how to turn the picture.
     pub hint: bool,
+    /// Whether fingers turn it.
+    pub touch: bool,
     /// Whether the text has errors, so that the picture is of one before.
     pub old: bool,
     /// Radius of the corners.
@@ -115,7 +119,9 @@ pub fn show(ui: &mut Ui, rect: Rect, scenery: &Scenery<'_>, wishes: &mut Wishes)
         draft,
         show,
         now,
+        is_kept,
         hint,
+        touch,
         old,
         round,
         grasp,
@@ -130,7 +136,7 @@ pub fn show(ui: &mut Ui, rect: Rect, scenery: &Scenery<'_>, wishes: &mut Wishes)
         let shape = RectShape::filled(rect, round, Color32::WHITE.gamma_multiply(alpha));
         painter.add(shape.with_texture(texture, whole));
     };
-    let draft = draft.filter(|_| show != Show::Traced);
+    let draft = draft.filter(|_| is_kept || show != Show::Traced);
     if let Some(draft) = draft {
         image(draft, 1.0);
     }
@@ -169,9 +175,22 @@ pub fn show(ui: &mut Ui, rect: Rect, scenery: &Scenery<'_>, wishes: &mut Wishes)
         let place = inscribe(&painter, rect, egui::Align2::CENTER_TOP, text);
         places::note(ui.ctx(), "old picture", place);
     }
-    if hint && !grasp.draws && response.hovered() && !response.dragged() {
-        let text = "drag to turn · shift-drag to move · scroll to zoom · click a shape to edit it";
-        inscribe(&painter, rect, egui::Align2::CENTER_BOTTOM, text);
+    if is_kept && !old {
+        let place = inscribe(&painter, rect, egui::Align2::CENTER_TOP, "made before");
+        places::note(ui.ctx(), "made before", place);
+    }
+    let is_free = !(touch && (old || is_kept));
+    if hint && is_free && !grasp.draws && response.hovered() && !response.dragged() {
+        // At the lower edge of a narrow picture is the button to draw.
+        let (align, text) = if touch {
+            let text = "drag to turn · two fingers to move and zoom · tap a shape to edit it";
+            (egui::Align2::CENTER_TOP, text)
+        } else {
+            let text =
+                "drag to turn · shift-drag to move · scroll to zoom · click a shape to edit it";
+            (egui::Align2::CENTER_BOTTOM, text)
+        };
+        inscribe(&painter, rect, align, text);
     }
     response
 }

@@ -8,6 +8,8 @@ use scene::Camera;
 pub enum ViewWish {
     /// Look at the scene with this camera, or with that of the text if it is `None`.
     SetCamera(Option<Camera>),
+    /// Show this picture, a file beside the page, until the first one is traced.
+    ShowKept(&'static str),
     /// Bring the whole model into view.
     ShowAll,
     /// Let a mesh of the surface follow the hand, which begins to drag.

@@ -1,5 +1,6 @@
 //! The gallery: the user's own works, and examples.
 
+use crate::first;
 use crate::page::Page;
 use crate::panel::Panel;
 use crate::places;
@@ -285,6 +286,9 @@ impl Panel for Gallery {
         ScrollArea::vertical()
             .auto_shrink([false, true])
             .show(ui, |ui| {
+                if self.entries.is_empty() && self.search.is_empty() {
+                    first::offer(ui, wishes);
+                }
                 self.works(ui, shelf.open_id(), now, wishes);
                 self.examples(ui, wishes);
             });

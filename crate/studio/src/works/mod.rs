@@ -6,7 +6,8 @@ pub mod gallery;
 pub mod versions;
 pub mod wish;
 
-use crate::page::{self, Moment, Page};
+use crate::first;
+use crate::page::{self, Moment, Page, Tab};
 use crate::scripts::request::Request;
 use crate::stage::pencil::tool::Tool;
 use crate::wish::{Notice, TextWish, ViewWish, WorkWish};
@@ -26,7 +27,7 @@ impl Gallery {
                 match example.and_then(|example| example.text) {
                     Some(text) => {
                         let result = page.work.open_example(index, text, Vec::new());
-                        show_opened(page, result);
+                        show_example(page, index, result);
                     }
                     None => arrivals::fetch_example(page, index),
                 }
@@ -39,7 +40,7 @@ impl Gallery {
                 assets,
             } => {
                 let result = page.work.open_example(index, &text, assets);
-                show_opened(page, result);
+                show_example(page, index, result);
             }
             WorkWish::OpenFetched { text: None, .. } => {
                 page.dialog = None;
@@ -94,6 +95,14 @@ impl Gallery {
                 let result = page.work.open_text("Untitled", text, Origin::Fresh);
                 show_opened(page, result);
             }
+            WorkWish::First => {
+                let text = String::from(first::TEXT);
+                let result = page.work.open_text("My first shape", text, Origin::Fresh);
+                page.first = Some((page.work.number(), 0));
+                page.tab = Tab::Text;
+                show_opened(page, result);
+            }
+            WorkWish::Step(step) => page.first = step,
             WorkWish::DrawNew => {
                 let text = sketch::page::fresh(page::ratio(at.ctx));
                 let result = page.work.open_text("Drawing", text, Origin::Fresh);
@@ -143,6 +152,14 @@ fn show_opened(page: &mut Page, result: Result<(), String>) {
         page.dialog = None;
     }
     page.accept(result);
+}
+
+/// Shows an example that was opened, at first as it was drawn before if its picture takes long.
+fn show_example(page: &mut Page, index: usize, result: Result<(), String>) {
+    if result.is_ok() && examples::ALL[index].is_slow() {
+        page.wish(ViewWish::ShowKept(examples::ALL[index].thumbnail));
+    }
+    show_opened(page, result);
 }
 
 /// Writes all texts, images and meshes to one file.

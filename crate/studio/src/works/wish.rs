@@ -36,6 +36,11 @@ pub enum WorkWish {
     },
     /// Begin an empty work.
     New,
+    /// Begin the first shape.
+    First,
+    /// Go to a step of the first shape: the number of its work, and the step; leave it if it is
+    /// `None`.
+    Step(Option<(u64, usize)>),
     /// Begin an empty work to draw on.
     DrawNew,
     /// Go back to the user's own work, which a link has replaced.

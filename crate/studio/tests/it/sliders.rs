@@ -93,3 +93,48 @@ fn many_sliders_leave_room_for_the_text() {
     assert!(window.place("editor").height() > 150.0);
     assert!(window.place("sliders").height() > 80.0);
 }
+
+const PRESETS: &str = "\
+framesize 64 48
+eyep 0 0 6
+surface flesh, diffuse Coral, blobbiness -2
+var r = 0.5 hot
+var C = 0.5 0.5 0 hot
+preset small, set C 0 -1 0, set r 0.25
+sphere flesh r, C
+";
+
+/// A preset's button is one undo step, and the values that are kept come back by another button.
+#[test]
+fn presets_set_all_their_sliders_at_once() {
+    let mut window = Window::with_text(PRESETS);
+    let keep = window.place("keep preset").center();
+    window.click(keep);
+    let kept = "hot\npreset set1, set r 0.5, set C 0.5 0.5 0\npreset small";
+    assert!(window.text().contains(kept), "{}", window.text());
+    let with_both = window.text();
+    let small = window.place("preset small").center();
+    window.click(small);
+    let text = window.text();
+    assert!(
+        text.contains("var r = 0.25 hot\nvar C = 0 -1 0 hot\n"),
+        "{text}"
+    );
+    let own = window.place("preset set1").center();
+    window.click(own);
+    assert_eq!(window.text(), with_both);
+    window.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.text(), text);
+    assert_eq!(window.errors(), 0);
+}
+
+#[test]
+fn presets_have_buttons_on_a_phone() {
+    let mut window = Window::open(390.0, 844.0);
+    window.load(PRESETS);
+    let tab = window.place("tab sliders").center();
+    window.click(tab);
+    let small = window.place("preset small").center();
+    window.click(small);
+    assert!(window.text().contains("var r = 0.25 hot"));
+}

@@ -13,6 +13,7 @@ use studio::app::App;
 use studio::page::Parts;
 use studio::places;
 use studio::scripts::request::Request;
+use studio::wish::{Dialog, Wish};
 
 const TEXT: &str = "\
 framesize 64 48
@@ -334,6 +335,51 @@ fn after_a_bad_start_nothing_is_drawn_until_the_user_says_so() {
     harness.run_steps(5);
     assert_ne!(parts.outbox.borrow().report.phase, "idle");
     browser::set_stopped(false);
+}
+
+/// Returns all texts that are painted.
+fn texts_of(window: &Window) -> String {
+    let mut texts = String::new();
+    for clipped in &window.harness.output().shapes {
+        if let egui::Shape::Text(text) = &clipped.shape {
+            texts += text.galley.text();
+            texts.push('\n');
+        }
+    }
+    texts
+}
+
+#[test]
+fn windows_over_the_page_are_within_the_smallest_phone() {
+    let mut window = Window::open(320.0, 568.0);
+    window.load(TEXT);
+    for dialog in [Dialog::Help, Dialog::Gallery, Dialog::Versions] {
+        let wish = Wish::Open(dialog);
+        window.parts.requests.ask(Request::Wish(wish));
+        window.steps(6);
+        let place = window.place("dialog");
+        let screen = window.harness.ctx.content_rect();
+        assert!(screen.contains_rect(place), "{dialog:?} {place:?}");
+    }
+}
+
+#[test]
+fn the_hint_on_the_picture_speaks_of_what_one_has() {
+    for (width, height, words, other) in [
+        (1000.0, 700.0, "shift-drag", "two fingers"),
+        (390.0, 844.0, "two fingers", "shift-drag"),
+        (320.0, 568.0, "two fingers", "scroll"),
+    ] {
+        let mut window = Window::open(width, height);
+        window.load(TEXT);
+        assert!(!texts_of(&window).contains(words));
+        let picture = window.place("picture");
+        window.harness.event(Event::PointerMoved(picture.center()));
+        window.steps(2);
+        let painted = texts_of(&window);
+        assert!(painted.contains(words), "{painted}");
+        assert!(!painted.contains(other), "{painted}");
+    }
 }
 
 /// Checks that parts of the page are on the screen and do not overlap.

@@ -4,9 +4,11 @@ use crate::driver::Window;
 use browser::{choose_files, hold_back, let_come};
 use document::examples::{self, Example};
 use document::intake::Incoming;
+use egui::vec2;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use studio::places;
 use studio::scripts::request::{Request, Told};
 use studio::wish::{Dialog, FitWish, SculptWish, Wish, WorkWish};
 
@@ -309,4 +311,121 @@ fn very_many_shapes_are_not_traced_before_the_user_says_so() {
     window.steps(3);
     assert_eq!(window.parts.outbox.borrow().report.phase, "tracing");
     assert!(!is_told(&window, "The picture was not begun"));
+}
+
+/// Five steps lead to a shape; each is written by a button, and by hand as well.
+#[test]
+fn the_first_shape_is_made_in_five_steps() {
+    for size in [
+        [1200.0, 760.0],
+        [390.0, 844.0],
+        [320.0, 568.0],
+        [720.0, 450.0],
+    ] {
+        let mut window = Window::open(size[0], size[1]);
+        window
+            .parts
+            .requests
+            .ask(Request::Wish(WorkWish::First.into()));
+        window.steps(3);
+        for step in 0..4 {
+            let card = window.place("first shape");
+            let editor = window.place("editor");
+            assert!(editor.height() > 60.0, "{size:?} {card:?}");
+            assert!(
+                card.bottom() <= editor.top() + 1.0,
+                "{size:?} {card:?} {editor:?}"
+            );
+            window.harness.get_by_label("Write it").click();
+            window.steps(3);
+            assert!(
+                window.harness.query_by_label("Write it").is_none(),
+                "{step}"
+            );
+            window.harness.get_by_label("Next").click();
+            window.steps(3);
+        }
+        let picture = window.place("picture");
+        window.drag(picture.center(), picture.center() + vec2(40.0, 0.0));
+        window.harness.get_by_label("Finish").click();
+        window.steps(3);
+        assert!(!places::all(&window.harness.ctx).contains_key("first shape"));
+        assert_eq!(window.errors(), 0);
+        assert!(window.text().contains("for i = 0 to 3"));
+    }
+}
+
+#[test]
+fn the_first_shape_is_offered_and_skipped() {
+    let mut window = Window::open(1200.0, 760.0);
+    let examples = window.place("examples").center();
+    window.click(examples);
+    window.steps(3);
+    let offer = window.place("offer first shape").center();
+    window.click(offer);
+    window.steps(3);
+    window.place("first shape");
+    window.harness.get_by_label("Skip").click();
+    window.steps(3);
+    assert!(!places::all(&window.harness.ctx).contains_key("first shape"));
+    // Another work has no card, though the step was not left.
+    window
+        .parts
+        .requests
+        .ask(Request::Wish(WorkWish::First.into()));
+    window.steps(3);
+    window.place("first shape");
+    window
+        .parts
+        .requests
+        .ask(Request::Wish(WorkWish::New.into()));
+    window.steps(3);
+    assert!(!places::all(&window.harness.ctx).contains_key("first shape"));
+    // An address leads there, too.
+    browser::set_hash("#first");
+    window.parts.requests.ask(Request::HashChanged);
+    window.steps(3);
+    window.place("first shape");
+    browser::set_hash("");
+}
+
+fn open_example(window: &mut Window, name: &str) {
+    let index = examples::find(name).unwrap();
+    ask(window, WorkWish::OpenExample(index));
+    window.steps(2);
+}
+
+fn stand_in_of(window: &Window) -> Option<&'static str> {
+    window.parts.outbox.borrow().report.stand_in
+}
+
+/// A slow example shows what was drawn when it was made, until its own picture comes or it is
+/// changed.
+#[test]
+fn slow_examples_are_shown_as_made_before() {
+    let mut window = Window::open(1000.0, 700.0);
+    open_example(&mut window, "tshape");
+    assert_ne!(stand_in_of(&window), Some("made before"));
+    open_example(&mut window, "still-life");
+    assert_eq!(stand_in_of(&window), Some("made before"));
+    window.place("made before");
+    window.edit();
+    window.write("# mine\n");
+    window.steps(1);
+    assert_ne!(stand_in_of(&window), Some("made before"));
+    open_example(&mut window, "still-life");
+    assert_eq!(stand_in_of(&window), Some("made before"));
+    window
+        .parts
+        .requests
+        .ask(Request::PictureSize(Some([8, 6])));
+    for _ in 0..400 {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        window.steps(1);
+        if stand_in_of(&window).is_none() {
+            assert!(!window.image().is_empty());
+            return;
+        }
+    }
+    panic!("the true picture never came");
 }
