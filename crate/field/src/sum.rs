@@ -365,26 +365,28 @@ impl Implicit for Sum {
         // only if all of these are large together.
         let mut least = [Some(f64::INFINITY); 2];
         let mut sum = 0.0;
-        let mut add_bound = |bound: &Bound| {
-            let size = bound.magnitude(bound.nearness(ball.center, ball.radius));
-            if size == 0.0 {
-                return;
-            }
-            let is_small = size < enough;
-            let own = (!bound.has_profile()).then(|| bound.kernel_width());
-            let all = &mut least[usize::from(is_small)];
-            *all = all.zip(own).map(|(all, own)| all.at_most(own));
-            if is_small {
-                sum += size;
-            }
+        let own: &mut dyn Iterator<Item = usize> = match part {
+            Some(part) => &mut part.terms.iter().map(|i| *i as usize),
+            None => &mut (0..terms.len()),
         };
-        let mut add = |i: usize| match &parts[i][..] {
-            [] => add_bound(&terms[i].bound),
-            parts => parts.iter().for_each(&mut add_bound),
-        };
-        match part {
-            Some(part) => part.terms.iter().for_each(|i| add(*i as usize)),
-            None => (0..terms.len()).for_each(add),
+        for i in own {
+            let bounds = match &parts[i][..] {
+                [] => core::slice::from_ref(&terms[i].bound),
+                parts => parts,
+            };
+            for bound in bounds {
+                let size = bound.magnitude(bound.nearness(ball.center, ball.radius));
+                if size == 0.0 {
+                    continue;
+                }
+                let is_small = size < enough;
+                let own = (!bound.has_profile()).then(|| bound.kernel_width());
+                let all = &mut least[usize::from(is_small)];
+                *all = all.zip(own).map(|(all, own)| all.at_most(own));
+                if is_small {
+                    sum += size;
+                }
+            }
         }
         let [own, others] = least;
         if sum < enough {

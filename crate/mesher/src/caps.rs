@@ -25,17 +25,14 @@ pub struct Caps {
 
 /// Leaves out ends that meet another one at the same place, where the limbs go on in each other.
 fn drop_joints(ends: &[FlatEnd]) -> Vec<FlatEnd> {
-    let is_joint = |(i, own): &(usize, &FlatEnd)| {
-        let mut others = ends.iter().enumerate().filter(|(other, _)| other != i);
-        others.any(|(_, other)| {
-            let near = SAME * own.radius.min(other.radius);
-            own.at.distance(other.at) <= near && own.outward.dot(other.outward) < 0.0
+    let free = ends.iter().enumerate().filter(|(i, own)| {
+        !ends.iter().enumerate().any(|(other, end)| {
+            let near = SAME * own.radius.min(end.radius);
+            let is_same = own.at.distance(end.at) <= near;
+            other != *i && is_same && own.outward.dot(end.outward) < 0.0
         })
-    };
-    let all = ends.iter().enumerate();
-    all.filter(|end| !is_joint(end))
-        .map(|(_, end)| *end)
-        .collect()
+    });
+    free.map(|(_, end)| *end).collect()
 }
 
 /// Parts the only group of a mesh: triangles of flat ends come last, with a group and a material

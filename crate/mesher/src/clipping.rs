@@ -125,7 +125,7 @@ impl Clipping {
 /// The meshes that cut the hard elements of a scene. They are placed one element at a time, as
 /// there may be many copies.
 pub struct HardClips<'a> {
-    /// By the command that made them, in the order of the elements.
+    /// Elements with what cuts them, in their order, by the command that made them.
     of: BTreeMap<[u32; 3], Vec<(&'a Element, (&'a Function, &'a Clip))>>,
     last: Option<((&'a Function, &'a Clip), Clipping)>,
 }

@@ -169,8 +169,8 @@ fn copies_are_clipped_by_copies_of_the_mesh() {
     }
     // Soft ones blend, and the mesh of neither cuts both.
     let model = build(&scene(&copies, &clip), false);
-    let is_told = |note: &String| note.contains("not clipped, as other limbs");
-    assert!(model.notes.iter().any(is_told), "{:?}", model.notes);
+    let mut notes = model.notes.iter();
+    assert!(notes.any(|note| note.contains("not clipped, as other limbs")));
     assert!(model.bounds().min.x < -8.0);
     // As bodies of their own each is cut.
     let bodies = format!("body B\n{LIMBS}\nclose\ninstance B, COPY translate 5 0 8");
@@ -216,8 +216,8 @@ fn meshes_of_too_many_triangles_clip_nothing() {
     };
     for text in [LIMBS.to_owned(), format!("soft off\n{LIMBS}")] {
         let model = build(&scene(&text, &clip), false);
-        let is_told = |note: &String| note.contains("not clipped, as the mesh that clips it has");
-        assert!(model.notes.iter().any(is_told), "{:?}", model.notes);
+        let mut notes = model.notes.iter();
+        assert!(notes.any(|note| note.contains("not clipped, as the mesh that clips it has")));
         assert!(model.bounds().min.x < -8.0);
     }
 }

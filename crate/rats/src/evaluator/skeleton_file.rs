@@ -178,11 +178,10 @@ pub(super) fn add<'a>(
     used.dedup();
     if clip.is_some() {
         // Meshes look for what clips a ball among the limbs before it.
-        let has_limbs = |material: &usize| {
+        used.sort_by_key(|material| {
             let mut groups = graph.limbs.iter().map(|limb| limb.group as usize);
-            groups.any(|group| own.get(group) == Some(material))
-        };
-        used.sort_by_key(|material| !has_limbs(material));
+            !groups.any(|group| own.get(group) == Some(material))
+        });
     }
     let mut result = Ok(());
     for material in used {

@@ -258,7 +258,7 @@ fn hard_or_too_many_limbs_are_told() {
 }
 
 #[test]
-fn closed_lines_have_no_ends() {
+fn lines_that_close_have_no_ends() {
     for closed in [
         "arc Flesh 5, 1, <0 0 0>, <0 0 1>, 0 360",
         "arc Flesh 5, 1, <0 3 0>, <0 1 1>, 30 390",
