@@ -261,7 +261,7 @@ fn hard_or_too_many_limbs_are_told() {
 fn lines_that_close_have_no_ends() {
     for closed in [
         "arc Flesh 5, 1, <0 0 0>, <0 0 1>, 0 360",
-        "arc Flesh 5, 1, <0 3 0>, <0 1 1>, 30 390",
+        "arc Flesh 5, 1, <0 3 0>, <0 1 1>, 30 360",
         "curve Flesh 1, <0 0 0> <9 0 0> <9 9 0> <0 0 0>",
         "curve Flesh 1, <0 0 0> <9 0 0> <9 3 0> <9 9 0> <5 9 0> <0 9 0> <0 0 0>",
         "skeleton Flesh, S { node A <-9 0 0> node B <0 9 0> node C <9 0 0> curve A B C A",
