@@ -4,12 +4,12 @@ use glam::DVec3;
 
 /// Corners of each side, counter-clockwise as seen from outside.
 pub const SIDES: [[u32; 4]; 6] = [
-    [0, 4, 6, 2],
-    [1, 3, 7, 5],
-    [0, 1, 5, 4],
-    [2, 6, 7, 3],
     [0, 2, 3, 1],
     [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [1, 3, 7, 5],
+    [3, 2, 6, 7],
+    [2, 0, 4, 6],
 ];
 
 /// Returns the corners of a box.
