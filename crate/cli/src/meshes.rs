@@ -296,8 +296,13 @@ impl Mesh {
                 body.name, body.coat.left_out
             );
         }
+        let notes: Vec<&String> = bodies.iter().flat_map(|body| &body.notes).collect();
+        for note in &notes {
+            eprintln!("{note}");
+        }
         if self.json {
             let summary = json!({
+                "notes": notes,
                 "bound": bound,
                 "millimetres": millimetres,
                 "evaluations": evaluations,

@@ -194,25 +194,42 @@ fn choose_writer(to: &Path) -> Result<fn(&Graph, &str) -> limbs::Written, String
     }
 }
 
-/// Returns a text that draws a skeleton in the block form.
+/// Returns a text that draws a skeleton in the block form. Types have materials of their names, so
+/// that the way back finds them.
 fn write_text(graph: &Graph, name: &str) -> limbs::Written {
     let letters = name.chars().map(|c| match c {
         c if c.is_ascii_alphanumeric() => c,
         _ => '_',
     });
     let name: String = "S_".chars().chain(letters).collect();
-    let block = graph.write_block("Flesh", &name, &[]);
+    let types = graph.groups.iter().map(|group| &group.name[..]);
+    let types: Vec<(&str, &str)> = types
+        .filter(|kind| graph.groups.len() > 1 && is_word(kind))
+        .map(|kind| (kind, kind))
+        .collect();
+    let block = graph.write_block("Flesh", &name, &types);
+    let mut text = view::write(graph);
+    for (_, material) in types.iter().filter(|(kind, _)| *kind != "Flesh") {
+        text += &format!("surface {material} = Flesh\n");
+    }
     limbs::Written {
-        text: view::write(graph) + &block.text,
+        text: text + &block.text,
         remarks: block.remarks,
     }
 }
 
-/// Returns the lines and balls of a scene; the kinds of limbs are the numbers of their materials.
+/// Whether a type can be the name of a material.
+fn is_word(kind: &str) -> bool {
+    kind.starts_with(|c: char| c.is_ascii_alphabetic())
+        && kind.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// Returns the lines and balls of a scene; the kinds of limbs are the names of their materials.
 fn gather(scene: &Scene) -> Result<Graph, limbs::Error> {
     let mut builder = Builder::default();
     for element in &scene.elements {
-        let kind = format!("material{}", element.finish);
+        let finish = scene.finishes.get(element.finish as usize);
+        let kind = finish.map_or("", |finish| &finish.name);
         if let Shape::Function(function) = &element.shape {
             let growth = function.growth();
             for ends in function
@@ -221,7 +238,7 @@ fn gather(scene: &Scene) -> Result<Graph, limbs::Error> {
                 .flat_map(scene::Curves::pieces)
             {
                 let places = ends.map(|(place, _)| function.to_world.transform_point3(place));
-                builder.limb(places, ends.map(|(_, radius)| radius * growth), &kind)?;
+                builder.limb(places, ends.map(|(_, radius)| radius * growth), kind)?;
             }
         }
         let Some(bone) = element.shape.bone() else {
@@ -229,14 +246,14 @@ fn gather(scene: &Scene) -> Result<Graph, limbs::Error> {
         };
         let radii = bone.radii(scene.radius(element));
         match bone.skeleton.dimension() {
-            0 => builder.ball(bone.skeleton.middle(), radii[0], &kind)?,
+            0 => builder.ball(bone.skeleton.middle(), radii[0], kind)?,
             1 => {
                 for line in bone.skeleton.lines(1.0) {
                     let count = (line.len() - 1).max(1) as f64;
                     for (i, ends) in line.windows(2).enumerate() {
                         let own = [i, i + 1]
                             .map(|i| radii[0] + (radii[1] - radii[0]) * (i as f64 / count));
-                        builder.limb([ends[0], ends[1]], own, &kind)?;
+                        builder.limb([ends[0], ends[1]], own, kind)?;
                     }
                 }
             }

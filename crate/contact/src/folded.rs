@@ -183,8 +183,8 @@ impl Implicit for Folded {
         self.local.turn_smoothly(part, ball, step)
     }
 
-    fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
-        Some(self.bulge.fineness() * self.local.least_width(part, ball)?)
+    fn least_width(&self, part: Option<&Part>, ball: Ball, enough: f64) -> Option<f64> {
+        Some(self.bulge.fineness() * self.local.least_width(part, ball, enough)?)
     }
 
     fn most(&self, ball: Ball) -> f64 {

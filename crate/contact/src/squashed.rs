@@ -235,15 +235,15 @@ impl Implicit for Squashed {
         }
     }
 
-    fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
-        let own = self.own.least_width(part, ball)?;
+    fn least_width(&self, part: Option<&Part>, ball: Ball, enough: f64) -> Option<f64> {
+        let own = self.own.least_width(part, ball, enough)?;
         let near = self.partners.iter().filter(|partner| {
             !partner.reach.is_some_and(|reach| {
                 reach.center.distance(ball.center) > reach.radius + ball.radius
             })
         });
         near.into_iter().try_fold(own, |least, partner| {
-            let width = partner.function.least_width(None, ball)?;
+            let width = partner.function.least_width(None, ball, enough)?;
             Some(least.min(partner.bulge.fineness() * width))
         })
     }

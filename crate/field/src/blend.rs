@@ -126,13 +126,15 @@ impl Implicit for Blend {
         functions.fold(sum, Variation::plus)
     }
 
-    fn least_width(&self, part: Option<&implicit::Part>, ball: Ball) -> Option<f64> {
+    fn least_width(&self, part: Option<&implicit::Part>, ball: Ball, enough: f64) -> Option<f64> {
         if let Some(function) = self.single() {
-            return function.least_width(part, ball);
+            return function.least_width(part, ball, enough);
         }
-        let sum = self.sum.least_width(part, ball)?;
+        // Functions that are weak by themselves may matter together.
+        let each = enough / (self.parts.len() + 1) as f64;
+        let sum = self.sum.least_width(part, ball, each)?;
         self.parts.iter().try_fold(sum, |least, part| {
-            Some(least.min(part.function.least_width(None, ball)?))
+            Some(least.min(part.function.least_width(None, ball, each)?))
         })
     }
 

@@ -295,9 +295,10 @@ pub trait Implicit: Send + Sync {
     }
 
     /// Returns the least width of a kernel among the terms that matter in a ball, within that of
-    /// the part if there is one: on shorter ways none of them changes much. `None` if the function
-    /// has no such terms, or they have finer details.
-    fn least_width(&self, _part: Option<&Part>, _ball: Ball) -> Option<f64> {
+    /// the part if there is one: on shorter ways none of them changes much. Terms do not matter
+    /// that are together smaller than `enough`; if none matters, the width is infinite. `None` if
+    /// the terms that matter have no kernels, or finer details.
+    fn least_width(&self, _part: Option<&Part>, _ball: Ball, _enough: f64) -> Option<f64> {
         None
     }
 

@@ -40,7 +40,6 @@ pub mod window;
 pub use bounds::{Bounds, Halves, Two};
 pub use build::{Limb, LimbPiece, LocalError, MOST_LINKS};
 
-use crate::sum::MATTERS;
 use crate::term::Evaluate;
 use crate::{Ball, Bound, Enclosure, Implicit, Jet, Part, Primitive, THRESHOLD, Variation};
 use cells::Cells;
@@ -141,8 +140,7 @@ impl Local {
     /// Returns the least width of a kernel among the pieces that count in a ball, or that may be
     /// another fold there; infinite if all pieces together do not matter. `None` if one has a
     /// profile.
-    fn least_width_in(&self, ball: &Ball) -> Option<f64> {
-        let enough = MATTERS * THRESHOLD;
+    fn least_width_in(&self, ball: &Ball, enough: f64) -> Option<f64> {
         if self.tree.most(&self.pieces, ball, enough) < enough {
             return Some(f64::INFINITY);
         }
@@ -202,8 +200,8 @@ impl Implicit for Local {
         Some(self.turn_mean(ball, step))
     }
 
-    fn least_width(&self, _part: Option<&Part>, ball: Ball) -> Option<f64> {
-        self.least_width_in(&ball)
+    fn least_width(&self, _part: Option<&Part>, ball: Ball, enough: f64) -> Option<f64> {
+        self.least_width_in(&ball, enough)
     }
 
     fn most(&self, ball: Ball) -> f64 {

@@ -1,4 +1,5 @@
 //! Fields that end at planes.
+use crate::implicit::{Part, Variation};
 use crate::{Ball, Enclosure, Evaluate, Implicit, Jet, Real, Sum, THRESHOLD};
 use glam::DVec3;
 use wide::f32x8;
@@ -144,6 +145,30 @@ impl Implicit for Sliced {
             slope: own.slope.max(slope),
             curvature: f64::INFINITY,
         }
+    }
+
+    fn variation(&self, _part: Option<&Part>, ball: Ball) -> Variation {
+        let own = self.field.variation(None, ball);
+        if own.range.value[1] <= self.cap(ball)[0] {
+            return own;
+        }
+        let range = self.enclose(ball);
+        if range.curvature.is_finite() {
+            return Variation::rough(range);
+        }
+        // Planes have no curvature, and the gradient is nowhere longer than the slope.
+        Variation {
+            curvature: own.curvature,
+            third: 0.0,
+            rough: own.curvature,
+            jump: 2.0 * range.slope,
+            step: own.step,
+            range,
+        }
+    }
+
+    fn least_width(&self, _part: Option<&Part>, ball: Ball, enough: f64) -> Option<f64> {
+        (self.most(ball) < enough).then_some(f64::INFINITY)
     }
 
     fn most(&self, ball: Ball) -> f64 {

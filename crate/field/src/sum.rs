@@ -4,7 +4,8 @@ use crate::far_field::{Cell, FarField, power};
 use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
 use crate::{
-    Ball, Bound, Cut, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD,
+    Ball, Bound, Cut, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, Shaping, Skeleton,
+    THRESHOLD, Taper,
 };
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
@@ -37,14 +38,14 @@ pub struct Sum {
     pub primitives: Vec<Primitive>,
     /// Bounds of each term for enclosures, made at first use.
     bounds: OnceLock<Vec<TermBounds>>,
+    /// The parts of each bone that tapers, see [`parts_by_width`], made at first use.
+    parts: OnceLock<Vec<Vec<Bound>>>,
     /// The hierarchy for those who bear its error, made at first use; `None` if it would not pay.
     far: OnceLock<Option<Box<FarField>>>,
 }
 
 /// Fewest terms with an expansion for which a hierarchy pays.
 const MANY: usize = 64;
-/// Least size of a term, in thresholds, at which its kernel's width matters.
-pub(crate) const MATTERS: f64 = 0.05;
 /// Half the side of the hierarchy's cube, over the radius of the ball that holds the surface.
 const ROOM: f64 = 1.25;
 
@@ -99,6 +100,7 @@ impl Sum {
         Self {
             primitives,
             bounds: OnceLock::new(),
+            parts: OnceLock::new(),
             far: OnceLock::new(),
         }
     }
@@ -162,6 +164,48 @@ impl Sum {
             bounds.collect()
         })
     }
+}
+
+/// Returns bounds on the parts of a bone that tapers, along each of which its radius is halved at
+/// most; none if it hardly tapers or has a profile.
+fn parts_by_width(primitive: &Primitive) -> Option<Vec<Bound>> {
+    let shaping = primitive.tapered.as_deref()?;
+    let radii = [0.0, 1.0].map(|share| shaping.at(share).radius);
+    let (thick, thin) = (radii[0].max(radii[1]), radii[0].min(radii[1]));
+    // Not so for NaN.
+    if primitive.profile.is_some() || !(thin > 0.0 && thick > 2.0 * thin) {
+        return None;
+    }
+    let mut shares = vec![0.0];
+    let mut radius = 0.5 * thick;
+    while radius > thin {
+        shares.push((thick - radius) / (thick - thin));
+        radius *= 0.5;
+    }
+    shares.push(1.0);
+    if radii[1] > radii[0] {
+        shares = shares.iter().rev().map(|share| 1.0 - share).collect();
+    }
+    let bones = shares.windows(2);
+    let bones = bones.map(|ends| primitive.skeleton.part(ends[0], ends[1]));
+    let bones: Vec<Skeleton> = bones.collect::<Option<_>>()?;
+    let whole: f64 = bones.iter().map(Skeleton::measure).sum();
+    let mut before = 0.0;
+    let parts = bones.into_iter().map(|bone| {
+        let after = before + bone.measure();
+        let [start, end] = [before, after].map(|at| shaping.at(at / whole));
+        before = after;
+        let taper = Some(Taper {
+            radius: end.radius,
+            blobbiness: end.blobbiness,
+        });
+        Some(Bound::new(&Primitive::new(
+            bone,
+            &Shaping { taper, ..start },
+            None,
+        )?))
+    });
+    parts.collect()
 }
 
 /// Value and gradient of the sum of some primitives, added up in their order.
@@ -311,31 +355,41 @@ impl Implicit for Sum {
         all
     }
 
-    fn least_width(&self, part: Option<&Part>, ball: Ball) -> Option<f64> {
+    fn least_width(&self, part: Option<&Part>, ball: Ball, enough: f64) -> Option<f64> {
         let terms = self.bounds();
-        // Of terms that matter by themselves, and of the others, which may matter together.
+        let parts = self.parts.get_or_init(|| {
+            let parts = self.primitives.iter().map(parts_by_width);
+            parts.map(Option::unwrap_or_default).collect()
+        });
+        // Each term, or part of one, is large or small in the ball. The widths of small ones count
+        // only if all of these are large together.
         let mut least = [Some(f64::INFINITY); 2];
         let mut sum = 0.0;
-        let mut add = |term: &TermBounds| {
-            let bound = &term.bound;
-            let size = bound.magnitude(bound.nearness(ball.center, ball.radius));
-            if size == 0.0 {
-                return;
-            }
-            let is_small = size < MATTERS * THRESHOLD;
-            let own = (!bound.has_profile()).then(|| bound.kernel_width());
-            let all = &mut least[usize::from(is_small)];
-            *all = all.zip(own).map(|(all, own)| all.at_most(own));
-            if is_small {
-                sum += size;
-            }
+        let own: &mut dyn Iterator<Item = usize> = match part {
+            Some(part) => &mut part.terms.iter().map(|i| *i as usize),
+            None => &mut (0..terms.len()),
         };
-        match part {
-            Some(part) => part.terms.iter().for_each(|i| add(&terms[*i as usize])),
-            None => terms.iter().for_each(add),
+        for i in own {
+            let bounds = match &parts[i][..] {
+                [] => core::slice::from_ref(&terms[i].bound),
+                parts => parts,
+            };
+            for bound in bounds {
+                let size = bound.magnitude(bound.nearness(ball.center, ball.radius));
+                if size == 0.0 {
+                    continue;
+                }
+                let is_small = size < enough;
+                let own = (!bound.has_profile()).then(|| bound.kernel_width());
+                let all = &mut least[usize::from(is_small)];
+                *all = all.zip(own).map(|(all, own)| all.at_most(own));
+                if is_small {
+                    sum += size;
+                }
+            }
         }
         let [own, others] = least;
-        if sum < MATTERS * THRESHOLD {
+        if sum < enough {
             own
         } else {
             own.zip(others).map(|(own, others)| own.at_most(others))

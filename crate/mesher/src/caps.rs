@@ -11,13 +11,40 @@ const WIDE: f64 = 1.2;
 /// Least cosine of the angle between the plane and a triangle of a flat end.
 const ALONG: f64 = 0.9;
 
+/// Share of its radius within which the places of two flat ends are one.
+const SAME: f64 = 1e-6;
+
+/// Number of holes that flat ends leave in a mesh, and whether vertices were moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Caps {
+    /// Number of open ends.
+    pub holes: usize,
+    /// Whether vertices were moved, so that triangles may touch that did not.
+    pub are_moved: bool,
+}
+
+/// Leaves out ends that meet another one at the same place, where the limbs go on in each other.
+fn drop_joints(ends: &[FlatEnd]) -> Vec<FlatEnd> {
+    let free = ends.iter().enumerate().filter(|(i, own)| {
+        !ends.iter().enumerate().any(|(other, end)| {
+            let near = SAME * own.radius.min(end.radius);
+            let is_same = own.at.distance(end.at) <= near;
+            other != *i && is_same && own.outward.dot(end.outward) < 0.0
+        })
+    });
+    free.map(|(_, end)| *end).collect()
+}
+
 /// Parts the only group of a mesh: triangles of flat ends come last, with a group and a material
 /// for each, `inlet` for the widest end and `outlet-1` … for the others. Their vertices are moved
-/// into the plane. Triangles of open ends are taken out; returns the number of holes.
-pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) -> usize {
-    let [whole] = &mesh.groups[..] else { return 0 };
+/// into the plane. Triangles of open ends are taken out. Ends that meet are none.
+pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) -> Caps {
+    let ends = &drop_joints(ends)[..];
+    let [whole] = &mesh.groups[..] else {
+        return Caps::default();
+    };
     if ends.is_empty() {
-        return 0;
+        return Caps::default();
     }
     let whole = whole.clone();
     let mut of: Vec<Option<usize>> = (0..mesh.triangles.len())
@@ -37,7 +64,7 @@ pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) -> usize {
             *position -= end.outward * end.outward.dot(*position - end.at);
         }
     }
-    // What lies in the plane now is part of the end, too.
+    // A triangle whose three corners were moved into the plane of an end is part of that end.
     for (end, triangle) in of.iter_mut().zip(&mesh.triangles) {
         let [a, b, c] = triangle.map(|i| end_at[i as usize]);
         if a == b && b == c {
@@ -86,7 +113,10 @@ pub fn part(mesh: &mut TriangleMesh, ends: &[FlatEnd]) -> usize {
     if holes > 0 {
         drop_lonely_vertices(mesh);
     }
-    holes
+    Caps {
+        holes,
+        are_moved: end_at.iter().any(Option::is_some),
+    }
 }
 
 /// Takes out the vertices that no triangle has.
@@ -162,7 +192,7 @@ mod tests {
                 is_open: false,
             });
         let mut mesh = prism();
-        assert_eq!(part(&mut mesh, &ends), 0);
+        assert_eq!(part(&mut mesh, &ends).holes, 0);
         let names: Vec<(&str, u32)> = mesh
             .groups
             .iter()
@@ -185,7 +215,7 @@ mod tests {
             outward: DVec3::NEG_X,
             ..ends[1]
         };
-        assert_eq!(part(&mut same, &[other]), 0);
+        assert_eq!(part(&mut same, &[other]), Caps::default());
         assert_eq!(same.triangles, prism().triangles);
         assert_eq!(same.groups, prism().groups);
         // One that is open is a hole, and the other one the widest that there is.
@@ -194,7 +224,7 @@ mod tests {
             is_open: true,
             ..ends[1]
         };
-        assert_eq!(part(&mut mesh, &[ends[0], open]), 1);
+        assert_eq!(part(&mut mesh, &[ends[0], open]).holes, 1);
         let names: Vec<(&str, u32)> = mesh
             .groups
             .iter()

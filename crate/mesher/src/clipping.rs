@@ -7,15 +7,21 @@ use scene::curves::Clip;
 use scene::{Element, Function, Scene, Shape, Surface};
 use std::collections::BTreeMap;
 
+/// Most triangles of the meshes that cut a surface.
+const MOST_TRIANGLES: usize = 100_000;
+
 /// Closed meshes that a surface is cut by.
 pub struct Clipping {
     is_inside: bool,
     meshes: Vec<TriangleMesh>,
+    is_too_large: bool,
 }
 
 impl Clipping {
-    /// Returns what a soft body is cut by; `None` if nothing cuts it. A note says if it cuts only
-    /// some of the body's elements, which then are not cut.
+    /// Returns the meshes that cut a soft body; `None` if nothing cuts it, or if its elements are
+    /// not all cut by the same meshes at the same place, of which a note tells. Elements of a
+    /// command without meshes of their own, as the balls of a lattice, are cut by those of the
+    /// command's others.
     pub fn of_body(
         scene: &Scene,
         surface: &Surface,
@@ -26,67 +32,52 @@ impl Clipping {
         elements.sort_unstable();
         elements.dedup();
         let elements = elements.iter().map(|i| &scene.elements[*i as usize]);
-        // What one command makes is clipped together.
-        let mut by_command: BTreeMap<_, Vec<(&Function, &Clip)>> = BTreeMap::new();
+        // Whether each command has meshes that cut.
+        let mut commands: BTreeMap<_, bool> = BTreeMap::new();
+        let mut clips: Vec<(&Function, &Clip)> = Vec::new();
         for element in elements {
-            let own = by_command.entry(place_of(element)).or_default();
-            own.extend(clip_of(element));
+            let own = clip_of(element);
+            *commands.entry(place_of(element)).or_default() |= own.is_some();
+            clips.extend(own);
         }
-        let clips: Vec<_> = by_command.values().flatten().copied().collect();
-        let &(_, first) = clips.first()?;
-        let is_mixed = by_command.values().any(Vec::is_empty)
-            || clips
-                .iter()
-                .any(|(_, clip)| clip.is_inside != first.is_inside);
+        let first = clips.first()?;
+        let is_mixed = commands.values().any(|has_clip| !has_clip)
+            || clips.iter().any(|own| !is_same(own, first));
         if is_mixed {
             notes.push(format!(
                 "{name}: not clipped, as other limbs or shapes of the body are not clipped so"
             ));
             return None;
         }
-        Some(Self::new(&clips))
+        Some(Self::new(first))
     }
 
-    /// Returns what each command's elements are cut by, for hard ones.
-    pub fn by_command(scene: &Scene) -> BTreeMap<[u32; 3], Self> {
-        let mut clips: BTreeMap<_, Vec<(&Function, &Clip)>> = BTreeMap::new();
-        for element in &scene.elements {
-            if let Some(own) = clip_of(element) {
-                clips.entry(place_of(element)).or_default().push(own);
-            }
-        }
-        let clips = clips.into_iter();
-        clips.map(|(place, own)| (place, Self::new(&own))).collect()
-    }
-
-    fn new(clips: &[(&Function, &Clip)]) -> Self {
+    fn new((function, clip): &(&Function, &Clip)) -> Self {
+        let triangles = clip.meshes.iter().map(|(_, triangles)| triangles.len());
+        let is_too_large = triangles.sum::<usize>() > MOST_TRIANGLES;
         let mut meshes: Vec<TriangleMesh> = Vec::new();
-        for (function, clip) in clips {
-            for (positions, triangles) in &clip.meshes {
-                let positions = positions.iter();
-                let mut mesh = TriangleMesh::new(
-                    positions
-                        .map(|p| function.to_world.transform_point3(*p))
-                        .collect(),
-                    triangles.clone(),
-                );
-                let is_sound = mesh.positions.iter().all(|p| p.is_finite())
-                    && (mesh.triangles.as_flattened().iter())
-                        .all(|i| (*i as usize) < mesh.positions.len());
-                if !is_sound {
-                    mesh = TriangleMesh::default();
-                } else if mesh.signed_volume() < 0.0 {
-                    mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-                }
-                // Elements of several materials have the same.
-                if !meshes.contains(&mesh) {
-                    meshes.push(mesh);
-                }
+        for (positions, triangles) in clip.meshes.iter().filter(|_| !is_too_large) {
+            let positions = positions.iter();
+            let mut mesh = TriangleMesh::new(
+                positions
+                    .map(|p| function.to_world.transform_point3(*p))
+                    .collect(),
+                triangles.clone(),
+            );
+            let is_sound = mesh.positions.iter().all(|p| p.is_finite())
+                && (mesh.triangles.as_flattened().iter())
+                    .all(|i| (*i as usize) < mesh.positions.len());
+            if !is_sound {
+                mesh = TriangleMesh::default();
+            } else if mesh.signed_volume() < 0.0 {
+                mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
             }
+            meshes.push(mesh);
         }
         Self {
-            is_inside: clips.first().is_none_or(|(_, clip)| clip.is_inside),
+            is_inside: clip.is_inside,
             meshes,
+            is_too_large,
         }
     }
 
@@ -101,7 +92,14 @@ impl Clipping {
         notes: &mut Vec<String>,
         progress: &mut Progress<'_>,
     ) -> Result<bool, MeshError> {
-        match unite::clip(mesh, &self.meshes, self.is_inside, progress) {
+        let cut = if self.is_too_large {
+            Err(MeshError::Failed(format!(
+                "the mesh that clips it has more than {MOST_TRIANGLES} triangles"
+            )))
+        } else {
+            unite::clip(mesh, &self.meshes, self.is_inside, progress)
+        };
+        match cut {
             Ok(cut) => {
                 let side = if self.is_inside { "inside" } else { "outside" };
                 if cut.triangles.is_empty() {
@@ -112,10 +110,11 @@ impl Clipping {
                 *mesh = cut;
                 Ok(true)
             }
-            Err(MeshError::Failed(_)) => {
-                notes.push(format!(
-                    "{name}: not clipped, as the mesh that clips it is not closed"
-                ));
+            Err(MeshError::Failed(why)) => {
+                let note = format!("{name}: not clipped, as {why}");
+                if notes.last() != Some(&note) {
+                    notes.push(note);
+                }
                 Ok(false)
             }
             Err(other) => Err(other),
@@ -123,8 +122,46 @@ impl Clipping {
     }
 }
 
+/// The meshes that cut the hard elements of a scene. They are placed one element at a time, as
+/// there may be many copies.
+pub struct HardClips<'a> {
+    /// Elements with what cuts them, in their order, by the command that made them.
+    of: BTreeMap<[u32; 3], Vec<(&'a Element, (&'a Function, &'a Clip))>>,
+    last: Option<((&'a Function, &'a Clip), Clipping)>,
+}
+
+impl<'a> HardClips<'a> {
+    /// Lists the meshes of a scene.
+    pub fn new(scene: &'a Scene) -> Self {
+        let mut of: BTreeMap<_, Vec<_>> = BTreeMap::new();
+        for element in &scene.elements {
+            if let Some(own) = clip_of(element) {
+                of.entry(place_of(element))
+                    .or_default()
+                    .push((element, own));
+            }
+        }
+        Self { of, last: None }
+    }
+
+    /// Returns the meshes that cut an element of the scene. One without its own, as a ball of a
+    /// lattice, is cut by those of the last element before it that the same command made, and
+    /// otherwise by those of the first behind it: copies stand together.
+    pub fn find(&mut self, element: &Element) -> Option<&Clipping> {
+        let all = self.of.get(&place_of(element))?;
+        let before = all.partition_point(|(other, _)| {
+            core::ptr::from_ref(*other) <= core::ptr::from_ref(element)
+        });
+        let (_, clip) = all[before.saturating_sub(1)];
+        if !(self.last.as_ref()).is_some_and(|(last, _)| is_same(last, &clip)) {
+            self.last = Some((clip, Clipping::new(&clip)));
+        }
+        self.last.as_ref().map(|(_, clipping)| clipping)
+    }
+}
+
 /// The place of the command that made an element.
-pub fn place_of(element: &Element) -> [u32; 3] {
+fn place_of(element: &Element) -> [u32; 3] {
     [
         element.origin.file,
         element.origin.start,
@@ -139,4 +176,10 @@ fn clip_of(element: &Element) -> Option<(&Function, &Clip)> {
     };
     let clip = function.curves()?.clip.as_deref()?;
     Some((function, clip))
+}
+
+/// Whether two elements are cut by the same meshes at the same place.
+fn is_same((function, clip): &(&Function, &Clip), (other, others): &(&Function, &Clip)) -> bool {
+    let is_one = core::ptr::eq(*clip, *others);
+    function.to_world == other.to_world && (is_one || clip == others)
 }

@@ -187,10 +187,14 @@ impl Bounded {
             };
         }
         let variation = around(space, cell.part, center, size);
-        // Largest change of the gradient's part along a side of the cell, times that side.
-        let turn = (variation.curvature * longest + variation.jump) * longest;
-        // No cell is so small that bounds tell nothing of a kink in it.
-        let is_small = variation.jump > 0.0 && cell.level >= space.forest.usual;
+        // Largest change of the gradient's part along a side of the cell, times that side: between
+        // kinks, and with them.
+        let bent = variation.curvature * longest * longest;
+        let turn = bent + variation.jump * longest;
+        // However small a cell with a kink is, its jump stays: there a cell of the usual size will
+        // do, if the function is tame beside the kink.
+        let most = hiding * THRESHOLD;
+        let is_small = bent <= most && variation.jump > 0.0 && cell.level >= space.forest.usual;
         Self {
             range: coarse_range(&variation, off),
             slope: variation.range.slope,
@@ -198,7 +202,7 @@ impl Bounded {
             jump: variation.jump,
             step: variation.step,
             off,
-            is_tame: turn <= hiding * THRESHOLD || is_small,
+            is_tame: turn <= most || is_small,
         }
     }
 
@@ -610,7 +614,8 @@ fn decide(
         if !is_crossed && sure != Side::Crossing {
             fates[*i] = Fate::Leaf(sure);
         } else if own.is_tame || cell.level >= space.forest.deepest {
-            // Where derivatives are not known, cells inside may be calmer.
+            // Bounds of a tame cell hold for the cells inside it, which need none of their own;
+            // infinite ones would tell nothing there.
             if own.is_tame && own.jump.is_finite() {
                 let cell = &mut space.forest.cells[leaves[*i] as usize];
                 (cell.bend, cell.jumps) = (own.bend, [own.jump, own.step]);

@@ -126,7 +126,7 @@ pub fn distances(
         let toward = if at.value > 0.0 { -uphill } else { uphill };
         let first = (1.05 * at.value.abs() / at.gradient.length()).clamp(1e-9 * size, size);
         let ray = |direction: DVec3| along_ray(space, p, direction, first, most);
-        // Where the gradient jumps it may lead past a place that is near.
+        // Near a kink the gradient may lead past a place of the surface that is nearer.
         let mut least = most;
         for direction in [toward, normal, -normal] {
             least = least.min(ray(direction).unwrap_or(most));

@@ -1,7 +1,8 @@
 //! The meshes of a scene.
 
 use crate::cages::Cage;
-use crate::clipping::{Clipping, place_of};
+use crate::caps::Caps;
+use crate::clipping::{Clipping, HardClips};
 use crate::coating::{Coat, Coating};
 use crate::file::approximate;
 use crate::level::QuadricFunction;
@@ -10,13 +11,12 @@ use crate::options::{MeshError, Options, Phase, Progress};
 use crate::paint::{Paint, Parts};
 use crate::refine::EXCESS;
 use crate::solids::{Solid, tessellate};
-use crate::surface::{SurfaceMesh as Mesh, box_of, extent, polygonize};
+use crate::surface::{MOST_CROSSINGS, SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
 use glam::{DMat3, DVec3};
-use mesh::{Aabb, Topology, TriangleMesh};
+use mesh::{Aabb, Topology, TriangleMesh, self_intersections};
 use scene::{Element, Scene, Shape, Surface};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// How far the mesh may be from the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -176,13 +176,16 @@ pub fn mesh_scene(
     }
     let progress = &mut progress.part(0.85, 1.0).in_phase(Phase::Solids);
     progress.at(0.0)?;
+    let mut clips = HardClips::new(scene);
     for body in 0..scene.bodies.len() as u32 {
         let elements = plan
             .hard
             .iter()
             .copied()
             .filter(|element| element.body == body);
-        hard_parts(scene, wishes, &plan, elements, &mut model, progress)?;
+        hard_parts(
+            scene, wishes, &plan, elements, &mut clips, &mut model, progress,
+        )?;
     }
     let drop_cavities = |model: &mut Model| {
         for part in model.parts.iter_mut().filter(|part| part.is_closed) {
@@ -214,6 +217,8 @@ pub struct CoatedBody {
     pub name: String,
     /// The mesh, with normals and colours.
     pub coat: Coat,
+    /// Sentences for the user: whether ends are open.
+    pub notes: Vec<String>,
 }
 
 /// Coats the skeletons of all bodies of a scene. `coatings` has one for each body, with what was
@@ -244,11 +249,11 @@ pub fn coat_scene(
         if coat.mesh.triangles.is_empty() {
             continue;
         }
-        Paint::new(scene, surface).apply(&mut coat.mesh, 1, &mut progress.part(0.9, 1.0))?;
-        bodies.push(CoatedBody {
-            name: name_of(scene, surface.body(), ""),
-            coat,
-        });
+        let paint = Paint::new(scene, surface);
+        let Caps { holes, .. } = paint.apply(&mut coat.mesh, 1, &mut progress.part(0.9, 1.0))?;
+        let name = name_of(scene, surface.body(), "");
+        let notes = describe_holes(&name, holes).into_iter().collect();
+        bodies.push(CoatedBody { name, coat, notes });
     }
     Ok(bodies)
 }
@@ -260,8 +265,6 @@ struct Plan<'a> {
     /// Where infinite elements end.
     limits: Aabb,
     tolerance: f64,
-    /// Meshes by which the elements of a command are cut, see [`place_of`].
-    clippings: BTreeMap<[u32; 3], Clipping>,
 }
 
 impl<'a> Plan<'a> {
@@ -370,7 +373,6 @@ impl<'a> Plan<'a> {
             hard,
             limits,
             tolerance,
-            clippings: Clipping::by_command(scene),
         })
     }
 }
@@ -437,6 +439,15 @@ fn name_of(scene: &Scene, body: u32, what: &str) -> String {
     }
 }
 
+/// Returns a sentence about the open ends of a body, if there are any.
+fn describe_holes(name: &str, holes: usize) -> Option<String> {
+    match holes {
+        0 => None,
+        1 => Some(format!("{name}: one end is open")),
+        _ => Some(format!("{name}: {holes} ends are open")),
+    }
+}
+
 fn soft_part(
     scene: &Scene,
     wishes: &Wishes,
@@ -471,7 +482,7 @@ fn soft_part(
         undecided,
         unproved,
         measured,
-        crossings,
+        mut crossings,
         raw_triangles,
         evaluations,
         is_cut,
@@ -492,12 +503,23 @@ fn soft_part(
     {
         mesh.colors = None;
     }
-    let holes = Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
-    match holes {
-        0 => {}
-        1 => model.notes.push(format!("{name}: one end is open")),
-        _ => model.notes.push(format!("{name}: {holes} ends are open")),
+    let Caps { holes, are_moved } =
+        Paint::new(scene, surface).apply(&mut mesh, wishes.threads, progress)?;
+    let mut is_closed = holes == 0;
+    if are_moved {
+        let found = self_intersections(&mesh, MOST_CROSSINGS)
+            .map_err(|error| MeshError::Failed(error.to_string()))?;
+        let now = found.pairs.len() + found.flat.len();
+        let is_torn = is_closed && !Topology::of(&mesh).is_ok_and(|t| t.is_closed_manifold());
+        if now > crossings || is_torn {
+            model.notes.push(format!(
+                "{name}: where flat ends are near each other or the tolerance is large, triangles \
+                 touch each other; set the ends apart, or choose a smaller tolerance"
+            ));
+        }
+        (is_closed, crossings) = (is_closed && !is_torn, now.min(MOST_CROSSINGS));
     }
+    model.notes.extend(describe_holes(&name, holes));
     model.evaluations += evaluations;
     if is_cut {
         model.notes.push(format!(
@@ -526,7 +548,7 @@ fn soft_part(
     model.parts.push(ModelPart {
         name,
         mesh,
-        is_closed: holes == 0,
+        is_closed,
         overlaps: false,
         is_measured,
         error,
@@ -545,6 +567,7 @@ fn hard_parts<'a>(
     wishes: &Wishes,
     plan: &Plan<'_>,
     elements: impl Iterator<Item = &'a Element>,
+    clips: &mut HardClips<'_>,
     model: &mut Model,
     progress: &mut Progress<'_>,
 ) -> Result<(), MeshError> {
@@ -581,8 +604,8 @@ fn hard_parts<'a>(
             [shell] => shell.clone(),
             shells => unite::union(shells, progress)?,
         };
-        if let Some(clipping) = plan.clippings.get(&place_of(element))
-            && !whole.triangles.is_empty()
+        if !whole.triangles.is_empty()
+            && let Some(clipping) = clips.find(element)
         {
             let name = name_of(scene, body, "");
             clipping.apply(&mut whole, &name, &mut model.notes, progress)?;

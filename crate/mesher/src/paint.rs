@@ -1,6 +1,6 @@
 //! Colours and materials of meshes.
 
-use crate::caps;
+use crate::caps::{self, Caps};
 use crate::options::{MeshError, Progress};
 use crate::parallel::map_told;
 use field::Skeleton;
@@ -51,8 +51,7 @@ impl<'a> Paint<'a> {
     }
 
     /// Gives a mesh one group with the material that most primitives have, further ones of flat
-    /// ends, and vertex colours if there are several materials. Returns the number of ends that
-    /// are open.
+    /// ends, and vertex colours if there are several materials.
     ///
     /// # Errors
     /// If the caller cancels.
@@ -61,7 +60,7 @@ impl<'a> Paint<'a> {
         mesh: &mut TriangleMesh,
         threads: usize,
         progress: &mut Progress<'_>,
-    ) -> Result<usize, MeshError> {
+    ) -> Result<Caps, MeshError> {
         let mut counts = vec![0; self.materials.len()];
         self.of.iter().for_each(|i| counts[*i as usize] += 1);
         // The first of the most frequent ones.

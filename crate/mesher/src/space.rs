@@ -1,7 +1,7 @@
 //! A function with its terms sorted by place, so that evaluations cost what is nearby.
 
 use core::sync::atomic::{AtomicU64, Ordering};
-use field::{Ball, Implicit, Jet, Logarithm, Part, Slack, Variation};
+use field::{Ball, Implicit, Jet, Logarithm, Part, Slack, THRESHOLD, Variation};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -23,6 +23,9 @@ const BORNE: f64 = 0.2;
 /// Largest coordinates at which single precision tells places apart, over the tolerance: some
 /// hundred roundings of 2⁻²⁴.
 const SINGLE: f64 = 1e-5;
+
+/// Least size of terms, in thresholds, at which the widths of their kernels matter.
+const MATTERS: f64 = 0.05;
 
 /// Parts with fewer terms are not divided further.
 const FEW_TERMS: usize = 4;
@@ -154,7 +157,8 @@ impl<'a> Space<'a> {
     /// Returns the least width of a kernel that matters in a ball within that of a part; 0 if it is
     /// not known.
     pub fn least_width(&self, part: u32, ball: Ball) -> f64 {
-        let width = self.function.least_width(self.part(part), ball);
+        let enough = MATTERS * THRESHOLD;
+        let width = self.function.least_width(self.part(part), ball, enough);
         width.unwrap_or(0.0)
     }
 

@@ -106,19 +106,28 @@ pub fn union(
 /// Returns the part of a closed mesh that is inside other closed meshes, or outside all of them.
 ///
 /// # Errors
-/// If a mesh is not closed or has too many triangles, or if the caller cancels.
+/// With the reason if a mesh is not closed or the cut fails, or if the caller cancels.
 pub fn clip(
     mesh: &TriangleMesh,
     by: &[TriangleMesh],
     is_inside: bool,
     progress: &mut Progress<'_>,
 ) -> Result<TriangleMesh, MeshError> {
-    let by = joint(by, progress)?;
+    fn because(error: MeshError, why: &str) -> MeshError {
+        match error {
+            MeshError::Failed(_) => MeshError::Failed(why.into()),
+            other => other,
+        }
+    }
+    let by = joint(by, progress);
+    let by = by.map_err(|error| because(error, "the mesh that clips it is not closed"))?;
+    let own = manifold(mesh).map_err(|error| because(error, "its own mesh is not closed"))?;
     let operation = match is_inside {
         true => OpType::Intersect,
         false => OpType::Subtract,
     };
-    triangles(&joined(&manifold(mesh)?, &by, operation, progress)?)
+    let cut = triangles(&joined(&own, &by, operation, progress)?);
+    cut.map_err(|error| because(error, "the cut fails"))
 }
 
 /// The union of closed meshes.

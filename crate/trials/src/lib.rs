@@ -22,9 +22,12 @@
 //! With the feature `field` there are random skeletons, with `scene` random scenes; the crate
 //! `oracle` has rays through them and their judge.
 //!
+//! [`boxes`] are the meshes of tests that need one with known topology and volume.
+//!
 //! [`WorkClock`] is for tests of the time that something takes.
 
 pub mod bits;
+pub mod boxes;
 mod random;
 #[cfg(feature = "scene")]
 pub mod scenes;

@@ -224,4 +224,11 @@ fn degenerate_models_end_with_a_mesh_or_words() {
     let (code, words) = said("star", &star, &["--coat", "0.1"]);
     assert_eq!(code, Some(0), "{words}");
     assert!(words.contains("would take too long"), "{words}");
+
+    let open = format!("{soft}cylinder s 0.3 <0 0 0> <4 0 0> ends open\n");
+    for wish in ["--coat=0.1", "--relative=0.01"] {
+        let (code, words) = said("open", &open, &[wish]);
+        assert_eq!(code, Some(0), "{words}");
+        assert!(words.contains("2 ends are open"), "{wish}: {words}");
+    }
 }

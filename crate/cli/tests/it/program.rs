@@ -668,6 +668,30 @@ fn animate_follows_the_variables() {
 }
 
 #[test]
+fn types_of_a_neuron_are_materials_and_come_back() {
+    let folder = Folder::new("types");
+    let neuron = folder.write(
+        "n.swc",
+        "1 1 0 0 0 5 -1\n2 3 0 8 0 1.5 1\n3 3 0 20 0 1 2\n4 2 0 -8 0 1 1\n5 2 0 -30 0 0.5 4\n",
+    );
+    let (text, again) = (folder.path("n.rat"), folder.path("again.swc"));
+    for (from, to) in [(&neuron, &text), (&text, &again)] {
+        let output = sinew(&["skeleton", from, "--to", to], "");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+    }
+    let types = [&neuron, &again].map(|file| {
+        let output = sinew(&["skeleton", file, "--json"], "");
+        let known: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+        let mut types: Vec<String> = serde_json::from_value(known["types"].clone()).expect("names");
+        types.sort_unstable();
+        (types, known["limbs"].clone())
+    });
+    assert_eq!(types[0].0, ["axon", "dendrite", "soma"]);
+    assert_eq!(types[1], types[0]);
+}
+
+#[test]
 fn a_skeleton_is_drawn_without_a_dataset() {
     let folder = Folder::new("skeleton");
     // In millimetres, far from the origin, as data are.

@@ -44,7 +44,7 @@ pub(super) fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<Option<Graph>,
     draft.remark_count(counts.uneven, text);
     let text = "triangles beside the beams are left out: this file is read as a skeleton";
     draft.remark_count(counts.triangles, text);
-    let text = "lattices are clipped by a mesh: meshes that are made of them are, pictures are not";
+    let text = "lattices have a mesh that clips them, which pictures leave out";
     draft.remark_count(counts.clips, text);
     draft.weld();
     draft.finish(reading.radius).map(Some)

@@ -209,7 +209,7 @@ fn clipping_meshes_come_along() {
         if let Some(clip) = graph.clips.first() {
             assert_eq!(clip.mesh.triangles.len(), 2);
             assert_eq!(clip.mesh.positions[3], DVec3::new(100.0, 100.0, 50.0));
-            assert!(remarks(&graph)[0].starts_with("1 lattices are clipped by a mesh"));
+            assert!(remarks(&graph)[0].starts_with("1 lattices have a mesh that clips them"));
         }
     }
 }

@@ -7,8 +7,9 @@ use meshoptimizer_rs::codec::{
     IndexEncoding, VertexEncoding, encode_index_buffer, encode_vertex_buffer,
 };
 use std::fmt::Write as _;
+use trials::boxes::{SIDES, triangles};
 
-/// Corners of a box of 3 × 2 × 1, and its triangles.
+/// Corners of a box of 3 × 2 × 1.
 const CORNERS: [[f64; 3]; 8] = [
     [0.0, 0.0, 0.0],
     [3.0, 0.0, 0.0],
@@ -19,21 +20,6 @@ const CORNERS: [[f64; 3]; 8] = [
     [0.0, 2.0, 1.0],
     [3.0, 2.0, 1.0],
 ];
-const QUADS: [[u32; 4]; 6] = [
-    [0, 2, 3, 1],
-    [4, 5, 7, 6],
-    [0, 1, 5, 4],
-    [1, 3, 7, 5],
-    [3, 2, 6, 7],
-    [2, 0, 4, 6],
-];
-
-fn triangles() -> Vec<[u32; 3]> {
-    let halves = QUADS
-        .iter()
-        .map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
-    halves.flatten().collect()
-}
 
 /// Checks that a mesh is the box as often as said, its first corner at a place.
 fn check_boxes(mesh: &TriangleMesh, count: usize, least: [f64; 3], most: [f64; 3]) {
@@ -118,7 +104,7 @@ fn stl_is_words_not_lines() {
 #[test]
 fn strips_of_ply_are_triangles() {
     // Each side of the box is a strip of two triangles.
-    let strips: Vec<String> = QUADS
+    let strips: Vec<String> = SIDES
         .map(|[a, b, c, d]| format!("{b} {c} {a} {d}"))
         .to_vec();
     let list = strips.join(" -1 ");

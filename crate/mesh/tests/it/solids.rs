@@ -2,23 +2,13 @@
 
 use glam::DVec3;
 use mesh::{PolygonSoup, TriangleMesh};
+use trials::boxes;
 
 /// Returns a cube of six quadrilaterals from 0 to 1.
 pub fn cube() -> PolygonSoup {
-    let mut soup = PolygonSoup::new(
-        (0..8)
-            .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
-            .collect(),
-    );
-    for face in [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ] {
-        soup.add_face(&face);
+    let mut soup = PolygonSoup::new(boxes::corners(DVec3::ZERO, DVec3::ONE));
+    for side in boxes::SIDES {
+        soup.add_face(&side);
     }
     soup
 }

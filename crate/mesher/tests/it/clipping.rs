@@ -2,12 +2,14 @@
 
 use crate::judges::assert_manifold;
 use glam::DVec3;
+use mesh::{Aabb, Topology, TriangleMesh};
 use mesher::{Model, Progress, Step, Tolerance, Wishes, mesh_scene};
 use rats::{Project, compile};
 use scene::curves::Clip;
 use scene::{Form, Scene, Shape};
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use trials::boxes;
 
 /// Limbs: two that cross, and a third beside them.
 const LIMBS: &str = "skeleton Flesh, S { node A <-9 0 0> node B <9 0 0> node C <0 -9 0> \
@@ -33,22 +35,7 @@ fn scene(text: &str, clip: &Clip) -> Scene {
 
 /// A box from one corner to another, as a mesh.
 fn block(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let faces = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
-    let halves = faces
-        .into_iter()
-        .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    let corners = (0..8_u32).map(|i| {
-        let is_high = glam::BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0);
-        DVec3::select(is_high, high, low)
-    });
-    (corners.collect(), halves.collect())
+    (boxes::corners(low, high), boxes::triangles())
 }
 
 fn build(scene: &Scene, is_united: bool) -> Model {
@@ -160,4 +147,77 @@ fn what_cannot_be_clipped_is_told() {
         &mut Progress::new(&mut go_on),
     );
     assert!(none.is_err());
+}
+
+/// Copies have meshes of their own: each hard one is cut at its own.
+#[test]
+fn copies_are_clipped_by_copies_of_the_mesh() {
+    let half = block(DVec3::new(0.25, -20.0, -20.0), DVec3::splat(20.0));
+    let clip = Clip {
+        is_inside: true,
+        meshes: vec![half],
+    };
+    let copies = format!("{LIMBS}\ninstance S, COPY translate 5 0 8");
+    let model = build(&scene(&format!("soft off\n{copies}"), &clip), false);
+    let [part] = &model.parts[..] else {
+        panic!("{} parts", model.parts.len())
+    };
+    for shell in shells(&part.mesh) {
+        let is_copy = shell.max.z > 6.0;
+        let least = if is_copy { 5.25 } else { 0.25 };
+        assert!((shell.min.x - least).abs() < 1e-9, "{shell:?}");
+    }
+    // Soft ones blend, and the mesh of neither cuts both.
+    let model = build(&scene(&copies, &clip), false);
+    let mut notes = model.notes.iter();
+    assert!(notes.any(|note| note.contains("not clipped, as other limbs")));
+    assert!(model.bounds().min.x < -8.0);
+    // As bodies of their own each is cut.
+    let bodies = format!("body B\n{LIMBS}\nclose\ninstance B, COPY translate 5 0 8");
+    let model = build(&scene(&bodies, &clip), false);
+    let least = model.parts.iter().map(|part| part.mesh.bounds().min.x);
+    let least: Vec<f64> = least.collect();
+    assert!((least[0] - 0.25).abs() < 1e-9 && (least[1] - 5.25).abs() < 1e-9);
+}
+
+/// The boxes of a mesh's connected parts.
+fn shells(mesh: &TriangleMesh) -> Vec<Aabb> {
+    let topology = Topology::of(mesh).unwrap();
+    let mut boxes = vec![Aabb::EMPTY; topology.genera.len()];
+    let mut shell: Vec<usize> = (0..mesh.positions.len()).collect();
+    let mut is_done = false;
+    while !is_done {
+        is_done = true;
+        for triangle in &mesh.triangles {
+            let least = triangle.iter().map(|i| shell[*i as usize]).min().unwrap();
+            for i in triangle {
+                is_done &= shell[*i as usize] == least;
+                shell[*i as usize] = least;
+            }
+        }
+    }
+    let mut firsts = shell.clone();
+    firsts.sort_unstable();
+    firsts.dedup();
+    assert_eq!(firsts.len(), boxes.len());
+    for (at, first) in mesh.positions.iter().zip(&shell) {
+        let own = &mut boxes[firsts.binary_search(first).unwrap()];
+        *own = own.union(&Aabb::of_points([*at]));
+    }
+    boxes
+}
+
+#[test]
+fn meshes_of_too_many_triangles_clip_nothing() {
+    let (positions, triangles) = block(DVec3::new(0.25, -20.0, -20.0), DVec3::splat(20.0));
+    let clip = Clip {
+        is_inside: true,
+        meshes: vec![(positions, triangles.repeat(9_000))],
+    };
+    for text in [LIMBS.to_owned(), format!("soft off\n{LIMBS}")] {
+        let model = build(&scene(&text, &clip), false);
+        let mut notes = model.notes.iter();
+        assert!(notes.any(|note| note.contains("not clipped, as the mesh that clips it has")));
+        assert!(model.bounds().min.x < -8.0);
+    }
 }

@@ -1,12 +1,13 @@
 //! Flat and open ends of limbs in meshes.
 
-use crate::judges::assert_manifold;
+use crate::judges::{assert_embedded, assert_manifold};
 use glam::DVec3;
-use mesh::TriangleMesh;
-use mesher::{Model, Progress, Tolerance, Wishes, mesh_scene};
+use mesh::{Topology, TriangleMesh};
+use mesher::{Model, ModelPart, Progress, Tolerance, Wishes, mesh_scene};
 use rats::{Project, compile};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use trials::Random;
 
 /// Meshes a text behind a soft material.
 fn build(text: &str, wishes: &Wishes) -> Model {
@@ -132,5 +133,91 @@ fn open_ends_are_holes_in_their_planes() {
                 assert!((own / radius - 1.0).abs() < 0.08, "{limb}: {own}");
             }
         }
+    }
+}
+
+/// Asserts that a part is what is told of it.
+fn assert_told(name: &str, part: &ModelPart) {
+    if part.is_closed {
+        assert_manifold(name, &part.mesh);
+    }
+    if part.crossings == 0 {
+        assert_embedded(name, &part.mesh);
+    }
+}
+
+/// Ends at which another limb goes on are none.
+#[test]
+fn flat_ends_that_meet_are_none() {
+    let limbs = "cylinder Flesh 1, <-9 0 0>, <0 0 0> ends flat\n\
+        cylinder Flesh 1, <0 0 0>, <9 0 0> ends flat";
+    let model = build(limbs, &wishes());
+    let [part] = &model.parts[..] else {
+        panic!("one part")
+    };
+    assert!(part.is_closed && part.crossings == 0);
+    assert_told("flat", part);
+    let names: Vec<&str> = areas(&part.mesh).iter().map(|(name, _)| *name).collect();
+    assert_eq!(names.len(), 3, "{names:?}");
+    let model = build(&limbs.replace("flat", "open"), &wishes());
+    assert_eq!(rims(&model.parts[0].mesh).len(), 2);
+    let mut notes = model.notes.iter();
+    assert!(notes.any(|note| note.ends_with("2 ends are open")));
+}
+
+/// Moving vertices into planes may fold a mesh; then it is told.
+#[test]
+fn what_is_told_is_true_of_near_planes() {
+    for shift in [-0.05, -0.01, 0.01, 0.03] {
+        for other in ["<9 0 0>", "<7 4 0>"] {
+            let limbs = format!(
+                "cylinder Flesh 1, <-9 0 0>, <0 0 0> ends flat\n\
+                 cylinder Flesh 1, <{shift} 0 0>, {other} ends flat"
+            );
+            for part in &build(&limbs, &wishes()).parts {
+                let name = format!("{shift} {other}");
+                println!("{name}: {} {}", part.is_closed, part.crossings);
+                assert_told(&name, part);
+            }
+        }
+    }
+}
+
+/// Parts that are smaller than cells of the usual size are seen beside flat ends, too.
+#[test]
+fn small_parts_at_flat_ends_are_not_missed() {
+    let mut random = Random::new(5);
+    let mut text = String::from("cylinder Flesh 1, <-9 0 0>, <0 0 0> ends flat\n");
+    for _ in 0..12 {
+        let [y, z] = [(); 2].map(|()| random.range(-0.7, 0.7));
+        let x = random.range(0.045, 0.06);
+        text += &format!("sphere Flesh 0.012, <{x} {y} {z}>\n");
+    }
+    let wishes = Wishes {
+        tolerance: Tolerance::Absolute(0.02),
+        ..wishes()
+    };
+    let model = build(&text, &wishes);
+    let shells = Topology::of(&model.parts[0].mesh).unwrap().genera.len();
+    assert_eq!(shells, 13);
+}
+
+/// Tips of cones take about as long as thick ends.
+#[test]
+fn tips_of_cones_are_quick() {
+    for kernel in ["compact6", "quartic"] {
+        let [tip, thick] = ["0", "0.1"].map(|radius| {
+            let text = format!(
+                "verbose off\neyep 0 0 90\nsurface s, diffuse Red, kernel {kernel}, \
+                 blobbiness -8\ncone s 1, <-4 0 0>, {radius}, <4 0 0>"
+            );
+            let scene = compile(&Project::single(text)).scene;
+            let go_on = &mut |_| ControlFlow::Continue(());
+            let model = mesh_scene(&scene, &wishes(), &mut Progress::new(go_on)).unwrap();
+            assert_eq!(Topology::of(&model.parts[0].mesh).unwrap().genera, [0]);
+            println!("{kernel} {radius}: {}", model.evaluations);
+            model.evaluations
+        });
+        assert!(tip < 4 * thick, "{kernel}: {tip} {thick}");
     }
 }

@@ -1,7 +1,7 @@
 //! Meshes whose error is measured: sound at any tolerance, and the same on any number of threads.
 
 use crate::judges::{Distances, assert_embedded, assert_manifold, crossings, of_mesh};
-use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, Taper};
+use field::{BlobScale, Implicit, Kernel, Primitive, Profile, Shaping, Skeleton, Sum, Taper, Wave};
 use glam::DVec3;
 use mesh::{Aabb, Topology};
 use mesher::{
@@ -319,6 +319,66 @@ fn weak_points_are_not_missed_together() {
         let shells = Topology::of(&surface.mesh).unwrap().genera;
         assert_eq!(shells, [0; 3], "{kernel:?}");
     }
+}
+
+/// Skeletons side by side, none of which has a surface by itself.
+#[test]
+fn weak_skeletons_are_not_missed_together() {
+    let mut text = String::from("surface s diffuse White blob -2 strength 0.004\n");
+    for i in 0..60 {
+        let [x, z] = [i % 8, i / 8].map(|k| f64::from(k) * 1e-3);
+        text += &format!(
+            "skeleton s, S{i} local 5 {{\n\
+                 node A <{x} 0 {z}> radius 0.04 node B <0.3 0.1 0.2> radius 0.04 curve A B\n}}\n"
+        );
+    }
+    text += "surface t diffuse White blob -2\n\
+        skeleton t, THICK local 5 {\n\
+            node A <-9 -5 -7> radius 0.4 node B <-6 -5 -7> radius 0.4 curve A B\n\
+        }\n";
+    let model = mesh(&compile(text), Tolerance::Absolute(0.05)).unwrap();
+    let shells = Topology::of(&model.parts[0].mesh).unwrap().genera;
+    assert_eq!(shells, [0; 2]);
+}
+
+/// Balls where the gradient of another shape jumps, smaller than cells of the usual size.
+#[test]
+fn small_balls_at_kinks_are_not_missed() {
+    let mut random = Random::new(13);
+    let profile = Profile {
+        waves: [Wave::Hat, Wave::One],
+        scale: [4.0, 1.0],
+        bounds: [0.5, 1.0],
+        ..Profile::default()
+    };
+    let (base, apex) = (DVec3::NEG_X * 4.0, DVec3::X * 4.0);
+    let shaping = Shaping {
+        kernel: Kernel::Gauss,
+        radius: 0.5,
+        blobbiness: 2.0,
+        blob_scale: BlobScale::Relative,
+        strength: 1.0,
+        influence: 1e-3,
+        taper: None,
+    };
+    let line = Primitive::new(Skeleton::Segment { base, apex }, &shaping, Some(profile));
+    let mut sum: Sum = line.into_iter().collect();
+    for i in 0..12 {
+        let center = DVec3::new(
+            random.range(-0.05, 0.05),
+            1.6 + 0.05 * f64::from(i),
+            random.range(-0.1, 0.1),
+        );
+        let shaping = Shaping {
+            radius: 0.012,
+            ..shaping
+        };
+        let ball = Primitive::new(Skeleton::Point { center }, &shaping, None);
+        sum.primitives.extend(ball);
+    }
+    let surface = build(&sum, &Options::new(0.02)).unwrap();
+    let shells = Topology::of(&surface.mesh).unwrap().genera.len();
+    assert!(shells == 13, "{shells}");
 }
 
 /// Bounds on local convolution tell nothing of large cells.

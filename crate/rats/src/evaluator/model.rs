@@ -67,6 +67,16 @@ impl Part {
     }
 }
 
+impl Part {
+    /// Returns the number of its flat ends that count; a limb by itself counts as one.
+    fn flat_ends(&self) -> usize {
+        match self.element.shape.bone() {
+            Some(bone) => usize::from(bone.soft_ends != [Ends::Round; 2]),
+            None => self.element.shape.curves().map_or(0, |own| own.flat.len()),
+        }
+    }
+}
+
 /// The kind of an object, by the command that begins it.
 #[derive(Clone, Debug)]
 pub enum Group<'a> {
@@ -111,6 +121,8 @@ pub struct Model<'a> {
     count: usize,
     /// Weight of the shapes, see [`Part::weight`].
     weight: usize,
+    /// Number of flat ends, see [`Part::flat_ends`].
+    flat: usize,
     /// The last shape or closed object.
     last: Option<Range<usize>>,
     /// The material of the chain that is open.
@@ -131,6 +143,15 @@ impl<'a> Model<'a> {
     /// # Errors
     /// Fatally, if there are too many.
     pub fn push(&mut self, part: Part, span: &Range<usize>) -> Outcome<()> {
+        let flat = self.flat + part.flat_ends();
+        if flat > MOST_FLAT {
+            return Err(Problem::new(
+                span,
+                format!("stopped here: there are more than {MOST_FLAT} flat ends"),
+            )
+            .hint("let ends be round where that does not matter")
+            .fatal());
+        }
         let weight = self.weight + part.weight();
         if weight > MAX_ELEMENTS {
             let hint = if self.parts.len() < MAX_ELEMENTS / 2 {
@@ -148,7 +169,7 @@ impl<'a> Model<'a> {
             .hint(hint)
             .fatal());
         }
-        self.weight = weight;
+        (self.weight, self.flat) = (weight, flat);
         self.last = Some(self.parts.len()..self.parts.len() + 1);
         self.parts.push(part);
         Ok(())
@@ -431,7 +452,7 @@ impl<'a> Model<'a> {
         self.parts.clear();
         self.contacts.clear();
         self.contact_places.clear();
-        self.weight = 0;
+        (self.weight, self.flat) = (0, 0);
         self.closed.clear();
         self.last = None;
         for object in &mut self.open {

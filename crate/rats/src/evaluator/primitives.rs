@@ -65,7 +65,11 @@ fn add<'a>(
     run.add_of(command, material, shape, Kernel::Cauchy)
 }
 
-/// Returns a shape with the ends that the options ask for. They are for soft lines.
+/// Share of a line's length within which its ends are at one place, so that it has none.
+const CLOSED: f64 = 1e-9;
+
+/// Returns a shape with the ends that the options ask for. They are for soft lines that are not
+/// closed.
 fn with_ends(
     run: &mut Evaluator<'_>,
     options: &Options<'_>,
@@ -82,7 +86,11 @@ fn with_ends(
         let hint = "a hard cylinder has lids, a hard pipe none";
         run.warn(&sn.span, message, hint);
     } else if let Shape::Bone(bone) = &mut shape {
-        bone.soft_ends = [ends; 2];
+        let line = &bone.skeleton;
+        let gap = line.at(0.0).distance(line.at(1.0));
+        if gap > CLOSED * line.measure() {
+            bone.soft_ends = [ends; 2];
+        }
     }
     Ok(shape)
 }
@@ -385,13 +393,19 @@ fn curve<'a>(
         .hint("each curve after the first takes two control points and an end point"));
     }
     let last = points.len() - 4;
+    let (start, end) = (points[0], points[last + 3]);
+    let size = points
+        .iter()
+        .map(|point| point.distance(start))
+        .fold(0.0, f64::max);
+    let is_closed = start.distance(end) <= CLOSED * size;
     for i in (0..=last).step_by(3) {
         let control = [points[i], points[i + 1], points[i + 2], points[i + 3]];
         let mut shape = with_ends(run, options, &sn, Shape::curve(control, radius))?;
         if let Shape::Bone(bone) = &mut shape {
-            // Where another one goes on there is no end.
+            // Only the first curve's start and the last one's end are free, unless they meet.
             for (end, is_free) in bone.soft_ends.iter_mut().zip([i == 0, i == last]) {
-                if !is_free {
+                if !is_free || is_closed {
                     *end = Ends::Round;
                 }
             }

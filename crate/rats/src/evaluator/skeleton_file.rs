@@ -145,7 +145,9 @@ pub(super) fn add<'a>(
     let mut remarks: Vec<String> = read.remarks.iter().map(ToString::to_string).collect();
     remarks.extend(graph.remarks.iter().map(ToString::to_string));
     let clip = find_clip(&graph).unwrap_or_else(|why| {
-        remarks.push(format!("meshes are not clipped either: {why}"));
+        remarks.push(format!(
+            "meshes that are made of them are not clipped either: {why}"
+        ));
         None
     });
     tell_remarks(run, file, &remarks);
@@ -174,6 +176,13 @@ pub(super) fn add<'a>(
     let mut used: Vec<usize> = own.clone();
     used.sort_unstable();
     used.dedup();
+    if clip.is_some() {
+        // Meshes look for what clips a ball among the limbs before it.
+        used.sort_by_key(|material| {
+            let mut groups = graph.limbs.iter().map(|limb| limb.group as usize);
+            !groups.any(|group| own.get(group) == Some(material))
+        });
+    }
     let mut result = Ok(());
     for material in used {
         result = add_material(run, command, options, sn, (&graph, &clip), (material, &own));
@@ -247,30 +256,38 @@ fn shaping(run: &Evaluator<'_>, material: usize) -> Shaping {
     }
 }
 
-/// Returns the meshes that all limbs are clipped by, if any.
+/// Returns the mesh that all limbs are clipped by, if any.
 ///
 /// # Errors
 /// If only some limbs are clipped, or in unlike ways, or by too many triangles.
 fn find_clip(graph: &Graph) -> Result<Option<Arc<Clip>>, &'static str> {
-    let Some(first) = graph.clips.first() else {
+    let mut used: Vec<Option<u32>> = graph.limbs.iter().map(|limb| limb.clip).collect();
+    used.sort_unstable();
+    used.dedup();
+    let used = used.iter().map(|i| graph.clips.get((*i)? as usize));
+    let Some(clips) = used.clone().collect::<Option<Vec<_>>>() else {
+        return match used.flatten().next() {
+            Some(_) => Err("only some of its limbs are"),
+            None => Ok(None),
+        };
+    };
+    let Some(first) = clips.first() else {
         return Ok(None);
     };
-    if graph.limbs.iter().any(|limb| limb.clip.is_none()) {
-        return Err("only some of its limbs are");
-    }
-    if graph.clips.iter().any(|clip| clip.side != first.side) {
+    if clips.iter().any(|clip| clip.side != first.side) {
         return Err("some limbs are kept inside of a mesh, others outside");
     }
-    let meshes = graph.clips.iter().map(|clip| &clip.mesh);
-    let triangles: usize = meshes.clone().map(|mesh| mesh.triangles.len()).sum();
-    if triangles > MOST_CLIPPING {
+    if clips.iter().any(|clip| clip.mesh != first.mesh) {
+        return Err(
+            "limbs are clipped by different meshes; write each lattice into a file of its own",
+        );
+    }
+    if first.mesh.triangles.len() > MOST_CLIPPING {
         return Err("the mesh that clips has too many triangles");
     }
     Ok(Some(Arc::new(Clip {
         is_inside: first.side == Side::Inside,
-        meshes: meshes
-            .map(|mesh| (mesh.positions.clone(), mesh.triangles.clone()))
-            .collect(),
+        meshes: vec![(first.mesh.positions.clone(), first.mesh.triangles.clone())],
     })))
 }
 

@@ -240,10 +240,39 @@ fn hard_or_too_many_limbs_are_told() {
     assert_eq!(hard.scene.flat_ends(0), []);
     let mut told = hard.diagnostics.iter();
     assert!(told.any(|told| told.message.contains("`ends` is for soft limbs")));
-    let many = read("for i = 1 to 300 { cylinder Flesh 0.2, <i 0 0>, <i 3 0>, ends flat }");
-    let told = many
-        .diagnostics
-        .iter()
-        .any(|told| told.message.contains("too many") || told.message.contains("more than"));
-    assert!(told);
+    let mut skeletons = String::new();
+    for i in 0..200 {
+        skeletons += &format!(
+            "skeleton Flesh, S{i} {{ node A <{i} 0 0> node B <{i} 3 0> curve A B ends flat }}\n"
+        );
+    }
+    for text in [
+        "for i = 1 to 300 { cylinder Flesh 0.2, <i 0 0>, <i 3 0>, ends flat }",
+        &skeletons,
+    ] {
+        let many = read(text);
+        let mut told = many.diagnostics.iter();
+        assert!(told.any(|told| told.message.contains("more than 256 flat ends")));
+        assert!(many.scene.flat_ends(0).len() <= 512);
+    }
+}
+
+#[test]
+fn lines_that_close_have_no_ends() {
+    for closed in [
+        "arc Flesh 5, 1, <0 0 0>, <0 0 1>, 0 360",
+        "arc Flesh 5, 1, <0 3 0>, <0 1 1>, 30 360",
+        "curve Flesh 1, <0 0 0> <9 0 0> <9 9 0> <0 0 0>",
+        "curve Flesh 1, <0 0 0> <9 0 0> <9 3 0> <9 9 0> <5 9 0> <0 9 0> <0 0 0>",
+        "skeleton Flesh, S { node A <-9 0 0> node B <0 9 0> node C <9 0 0> curve A B C A",
+    ] {
+        let flat = scene(&with_ends(closed, "flat"));
+        assert_eq!(flat.flat_ends(0), [], "{closed}");
+        let round = surface(&scene(&with_ends(closed, "round")));
+        for place in [DVec3::X * 5.0, DVec3::ONE, DVec3::new(3.0, 4.0, 0.5)] {
+            assert_eq!(value(&surface(&flat), place), value(&round, place));
+        }
+    }
+    let most = scene("arc Flesh 5, 1, <0 0 0>, <0 0 1>, 0 359 ends flat");
+    assert_eq!(most.flat_ends(0).len(), 2);
 }

@@ -565,14 +565,15 @@ fn flat_ends_are_planes() {
 }
 
 /// A 3MF package of lattices, given by their attributes, which all have one beam; object 1 is a
-/// tetrahedron of the side 9.
+/// tetrahedron of the side 9, object 9 a copy of it at another place.
 fn lattices(attributes: &[&str]) -> Vec<u8> {
     let mut objects = String::from(
         "<object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"9\" y=\"0\" \
          z=\"0\"/><vertex x=\"0\" y=\"9\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"9\"/></vertices>\
          <triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/>\
          <triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles>\
-         </mesh></object>",
+         </mesh></object><object id=\"9\"><components><component objectid=\"1\" \
+         transform=\"1 0 0 0 1 0 0 0 1 2 0 0\"/></components></object>",
     );
     let mut items = String::new();
     for (own, id) in attributes.iter().zip(2..) {
@@ -614,19 +615,23 @@ fn clips_of_lattices_are_kept_for_meshes() {
     for (own, is_inside) in [(inside, true), (outside, false)] {
         let compiled = read(&[own, own], "skeleton s, N n.3mf scale 2");
         let clip = clip(&compiled).expect("a clip");
-        assert_eq!((clip.is_inside, clip.meshes.len()), (is_inside, 2));
+        assert_eq!((clip.is_inside, clip.meshes.len()), (is_inside, 1));
         let (positions, triangles) = &clip.meshes[0];
         assert_eq!((positions[1], triangles.len()), (DVec3::X * 18.0, 4));
         assert_eq!(messages(&compiled).len(), 1);
         assert!(
             messages(&compiled)[0]
                 .1
-                .contains("2 lattices are clipped by a mesh")
+                .ends_with("2 lattices have a mesh that clips them, which pictures leave out")
         );
     }
     for (own, why) in [
         ([inside, ""], "only some of its limbs are"),
         ([inside, outside], "some limbs are kept inside"),
+        (
+            [inside, "clippingmode=\"inside\" clippingmesh=\"9\""],
+            "limbs are clipped by different meshes",
+        ),
     ] {
         let compiled = read(&own, "skeleton s, N n.3mf");
         assert_eq!(clip(&compiled), None);
