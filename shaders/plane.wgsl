@@ -1,4 +1,4 @@
-// The plane z = 0, thickened to a slab. a.x: half the thickness, 0 for a plane.
+// The plane z = 0, thickened to a slab. a.x: half the thickness, 0 for a plane; a.y: see scene.wgsl.
 
 fn meet_plane(ray: Ray, solid: Solid) -> Hit {
     let faces = between(ray.origin.z, ray.direction.z, solid.a.x);

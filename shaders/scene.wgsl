@@ -83,7 +83,10 @@ fn meet_solid(place: u32, origin: vec3f, direction: vec3f, first: f32, last: f32
         }
     }
     let t = (hit.s - start) * unit;
-    if hit.met && hit.s > ray.start && t < last {
+    // A soft plane within its body's octree is drawn with the body.
+    let away = abs(origin + t * direction);
+    let is_beyond = high.w != 4u || max(away.x, max(away.y, away.z)) >= solid.a.y;
+    if hit.met && hit.s > ray.start && t < last && is_beyond {
         out.met = true;
         out.t = t;
         out.normal = rotate(rotation, hit.normal);

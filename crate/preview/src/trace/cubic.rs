@@ -4,7 +4,9 @@
 //! up to the third degree along each axis follows from sums over the samples:
 //! `c_ijk = Σ f·T_i·T_j·T_k` times 1/4 for each degree 0, 1/2 for others. Of these 64 terms the
 //! cubic keeps the 20 of total degree 3 or less. The sizes of the others, which are at most 1 times
-//! their coefficients in the cube, tell how well it stands for the function.
+//! their coefficients in the cube, tell how well it stands for the function. They tell nothing of
+//! the fourth and fifth degree along an axis, which is all that is left out of a function of one
+//! coordinate: value and gradient in the middle do.
 
 use glam::DVec3;
 
@@ -117,6 +119,15 @@ impl Cubic {
         cubic
     }
 
+    /// Adds to the error how far the cubic misses a value and a gradient in the middle.
+    pub(crate) fn check_center(&mut self, value: f64, gradient: DVec3) {
+        let [own, x, y, z, ..] = self.coefficients;
+        // There T₄ is 1, and T₅ has the slope 5.
+        let slope = gradient.distance(DVec3::new(x, y, z)) / 5.0;
+        let off = (value - own).abs() + slope;
+        self.error += if off.is_finite() { off } else { f64::INFINITY };
+    }
+
     /// Computes the value at a place in the cube.
     #[cfg(test)]
     pub(crate) fn value(&self, place: DVec3) -> f64 {
@@ -159,6 +170,18 @@ mod tests {
             let off = fitted.value(place) - truth.value(place);
             assert!(off.abs() < 1e-13, "{off}");
             assert!((fitted.value(place) - fitted.mean).abs() <= fitted.spread);
+        }
+    }
+
+    #[test]
+    fn errors_of_functions_of_one_coordinate_are_told_in_the_middle() {
+        for degree in [4.0, 5.0] {
+            let function = |z: f64| libm::cos(degree * libm::acos(z));
+            let mut fitted = Cubic::fit(&places().map(|place| function(place.z)));
+            let (ahead, behind) = (function(1e-6), function(-1e-6));
+            let slope = (ahead - behind) / 2e-6;
+            fitted.check_center(function(0.0), DVec3::new(0.0, 0.0, slope));
+            assert!(fitted.error > 0.9, "{degree}: {}", fitted.error);
         }
     }
 

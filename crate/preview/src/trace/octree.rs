@@ -3,9 +3,9 @@
 //!
 //! A cell is settled if bounds on the function, or its samples where they vary smoothly, leave the
 //! threshold out. Else it is halved until a cubic follows the function so closely that normals are
-//! off by less than a degree, or until it is smaller than a pixel of a usual picture. There the
-//! terms that matter are listed, if their formulas are on the card: then the cubic stands for what
-//! is far only.
+//! off by less than a degree, or until it is smaller than a pixel of a usual picture. There, or
+//! somewhat before if they are few, the terms that matter are listed, if their formulas are on the
+//! card: then the cubic stands for what is far only.
 
 use super::cubic::{Cubic, SAMPLES, places};
 use field::{Ball, Implicit, Part, Slack, THRESHOLD};
@@ -20,12 +20,19 @@ const SLACK: Slack = Slack {
     far: 2e-4,
 };
 /// Most error of a cubic over its spread: normals are off by some three to nine times as much.
-const CLOSE: f64 = 0.004;
+const CLOSE: f64 = 0.01;
+/// Most distance by which a cubic may miss the surface, over 1 plus the distance from the scene's
+/// middle, in draft units.
+const OFF: f64 = 1e-4;
 /// Most error of a cubic over its spread with which its range settles a cell.
 const SMOOTH: f64 = 0.1;
 /// Half of the side of the smallest cell, over 1 plus its distance from the scene's middle, in
 /// draft units.
 const FINEST: f64 = 0.003;
+/// Half of the side of the largest cell that lists terms, as [`FINEST`].
+const LISTED: f64 = 4.0 * FINEST;
+/// Most terms of a cell that are listed before it is as small as may be.
+const SHORT: usize = 20;
 /// Number of cells that are looked at together.
 const BATCH: usize = 4096;
 /// Fewest cells that are worth a thread.
@@ -34,7 +41,7 @@ const FEW: usize = 64;
 /// Value that samples are cut off at.
 const HIGH: f32 = 1e6;
 /// Half of the side of the octree of a body that has no end.
-const ENDLESS: f64 = 64.0;
+pub(crate) const ENDLESS: f64 = 8.0;
 
 /// Knowledge of a cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -244,7 +251,8 @@ fn look(
     if low - slack > THRESHOLD {
         return Look::Settled(Cell::Inside);
     }
-    let finest = cell.half <= FINEST * (1.0 + cell.center.length());
+    let away = 1.0 + cell.center.length();
+    let finest = cell.half <= FINEST * away;
     // A cell that is much larger than what is in it is not looked at closely.
     if room && !finest && !(variation.curvature * ball.radius * ball.radius < 64.0) {
         return Look::Unknown(part);
@@ -253,7 +261,8 @@ fn look(
         Some(part) => function.jet8_of(part, points).value,
         None => function.jet8(points).value,
     });
-    let cubic = Cubic::fit(&samples);
+    let mut cubic = Cubic::fit(&samples);
+    cubic.check_center(jet.value, DVec3::from_array(jet.gradient) * cell.half);
     let reach = cubic.spread + 4.0 * cubic.error + slack;
     if cubic.error <= SMOOTH * cubic.spread && (cubic.mean - THRESHOLD).abs() > reach {
         return Look::Settled(if cubic.mean > THRESHOLD {
@@ -262,14 +271,15 @@ fn look(
             Cell::Outside
         });
     }
-    let is_rough = cubic.error > CLOSE * cubic.spread;
-    if is_rough && room && !finest {
+    let is_rough = cubic.error > CLOSE.min(OFF * away / cell.half) * cubic.spread;
+    let listed = if is_rough && (!room || cell.half <= LISTED * away) {
+        list(of_part.map(|part| part.terms.as_slice()))
+    } else {
+        Vec::new()
+    };
+    if is_rough && room && !finest && !(1..=SHORT).contains(&listed.len()) {
         return Look::Unknown(part);
     }
-    let listed = match is_rough {
-        true => list(of_part.map(|part| part.terms.as_slice())),
-        false => Vec::new(),
-    };
     let far = of_part.and_then(|part| part.far.as_ref());
     let cubic = match far {
         _ if listed.is_empty() => cubic,

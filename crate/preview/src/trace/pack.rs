@@ -2,14 +2,14 @@
 
 use super::formulas;
 use super::hierarchy;
-use super::octree::{Cell, Leaf, Octree, corners};
+use super::octree::{Cell, ENDLESS, Leaf, Octree, corners};
 use crate::facets;
 use crate::materials::{Table, draft_colours, finite, with};
 use crate::solid::{Kind, Solid};
 use bytemuck::{Pod, Zeroable};
-use field::Primitive;
+use field::{Primitive, Skeleton};
 use glam::{DVec3, Vec3};
-use scene::{Finish, Rgb, Scene, Surface};
+use scene::{Finish, Rgb, Scene, Shape, Surface};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Words of cells, as in `shaders/march.wgsl`.
@@ -68,18 +68,24 @@ impl Packed {
         self.data.push([x, y, z, word]);
     }
 
-    /// Adds hard shapes, planes first, and their hierarchy.
+    /// Adds hard shapes, planes first, and their hierarchy. Soft planes are among them for what is
+    /// beyond the octree of their body.
     fn add_solids(&mut self, scene: &Scene, materials: &Table) {
         let detail = facets::detail(scene);
         let mut solids = Vec::new();
-        let elements = scene.elements.iter();
-        for element in elements.filter(|element| !scene.is_soft(element)) {
-            if element.finish as usize >= scene.finishes.len() {
+        for element in &scene.elements {
+            let is_soft = scene.is_soft(element);
+            let is_plane = matches!(&element.shape, Shape::Bone(bone)
+                if matches!(bone.skeleton, Skeleton::Plane { .. }));
+            if element.finish as usize >= scene.finishes.len() || is_soft && !is_plane {
                 continue;
             }
             let own = Solid::of(scene, element, detail);
-            self.elements += usize::from(!own.is_empty());
-            for solid in own {
+            self.elements += usize::from(!own.is_empty() && !is_soft);
+            for mut solid in own {
+                if is_soft {
+                    solid.a[1] = ENDLESS;
+                }
                 let paint = element.paint.as_ref().filter(|_| solid.kind == Kind::Patch);
                 let finish = paint.map_or(element.finish, |paint| paint.finish);
                 let material = materials.slot(finish as usize);

@@ -1,14 +1,14 @@
 //! The true surface on an adapter, held to the tracer.
 
-use crate::common::traced::{Differs, compare, open};
+use crate::common::traced::{Card, Differs, compare, open};
 use field::Kernel;
 use preview::trace::{Detail, Stage};
 use scene::Scene;
-use trials::scenes::{KINDS, Kind};
+use trials::scenes::KINDS;
 use trials::{Random, count};
 
 /// Width and height of the pictures.
-const SIZE: [u32; 2] = [192, 192];
+const SIZE: [u32; 2] = [128, 128];
 
 macro_rules! examples {
     ($($name:literal)*) => {
@@ -16,9 +16,9 @@ macro_rules! examples {
     };
 }
 
-/// A plain sum, blended colours, hard shapes, endless kernels, contact and local convolution.
-const EXAMPLES: [(&str, &str); 6] =
-    examples!["seahorse" "tshape" "blends" "planets" "squeeze" "folds"];
+/// Endless kernels; a plain sum, hard shapes and blended colours; a soft plane; a function that is
+/// no sum.
+const EXAMPLES: [(&str, &str); 4] = examples!["planets" "tshape" "blends" "coating"];
 
 fn compile(name: &str, text: &str) -> Scene {
     let project = rats::Project {
@@ -31,23 +31,25 @@ fn compile(name: &str, text: &str) -> Scene {
     std::sync::Arc::unwrap_or_clone(compiled.scene)
 }
 
-fn differs(scene: &Scene) -> Option<Differs> {
-    let card = open()?;
+fn differs(card: &Card, scene: &Scene) -> Differs {
     let (mut tracer, _) = card.prepare(scene, Detail::Fine, Stage::Compute);
     let pixels = card.read(&mut tracer, &scene.camera, SIZE);
-    Some(compare(scene, SIZE, &pixels))
+    compare(scene, SIZE, &pixels)
+}
+
+/// Whether a picture is as the tracer's. A pixel of the edge weighs more in a small one.
+fn is_close(found: Differs) -> bool {
+    found.coverage <= 0.004 && found.distance <= 0.01 && found.normal <= 0.02
 }
 
 #[test]
 fn examples_are_as_traced() {
+    let Some(card) = open() else { return };
     let mut failed = Vec::new();
     for (name, text) in EXAMPLES {
-        let Some(found) = differs(&compile(name, text)) else {
-            return;
-        };
+        let found = differs(&card, &compile(name, text));
         println!("{name}: {found:?}");
-        // A pixel of the edge weighs more in a small picture.
-        if found.coverage > 0.004 || found.distance > 0.01 || found.normal > 0.02 {
+        if !is_close(found) {
             failed.push((name, found));
         }
     }
@@ -57,7 +59,7 @@ fn examples_are_as_traced() {
 #[test]
 fn both_stages_draw_the_same() {
     let Some(card) = open() else { return };
-    for (name, text) in &EXAMPLES[..3] {
+    for (name, text) in &EXAMPLES[1..2] {
         let scene = compile(name, text);
         let (mut tracer, _) = card.prepare(&scene, Detail::Fine, Stage::Compute);
         let pixels = card.read(&mut tracer, &scene.camera, SIZE);
@@ -79,22 +81,18 @@ fn both_stages_draw_the_same() {
 
 #[test]
 fn random_scenes_are_as_traced() {
+    let Some(card) = open() else { return };
     let mut random = Random::new(45);
-    let (mut failed, mut all) = (Vec::new(), 0);
-    for kernel in Kernel::ALL {
-        for kind in KINDS.into_iter().filter(|kind| *kind != Kind::Plane) {
-            if !random.chance(count(25) as f64 / 100.0) {
-                continue;
-            }
-            let (scene, _) = trials::scenes::scene(kernel, kind, &mut random);
-            let Some(found) = differs(&scene) else { return };
-            println!("{kernel:?} {kind:?}: {found:?}");
-            all += 1;
-            if found.coverage > 0.004 || found.distance > 0.01 || found.normal > 0.02 {
-                failed.push((kernel, kind, found));
-            }
+    let mut failed = Vec::new();
+    for n in 0..count(9) {
+        let kernel = Kernel::ALL[n % Kernel::ALL.len()];
+        let kind = KINDS[random.below(KINDS.len())];
+        let (scene, _) = trials::scenes::scene(kernel, kind, &mut random);
+        let found = differs(&card, &scene);
+        println!("{kernel:?} {kind:?}: {found:?}");
+        if !is_close(found) {
+            failed.push((kernel, kind, found));
         }
     }
-    assert!(all > 5);
     assert!(failed.is_empty(), "{failed:#?}");
 }
