@@ -26,6 +26,9 @@ const CLOSE: f64 = 0.01;
 const OFF: f64 = 1e-4;
 /// Most error of a cubic over its spread with which its range settles a cell.
 const SMOOTH: f64 = 0.1;
+/// Bound on the change that a cell's linear part leaves out, in units of the threshold, from which
+/// on samples would not tell how the function goes.
+const LIVELY: f64 = 16.0;
 /// Half of the side of the smallest cell, over 1 plus its distance from the scene's middle, in
 /// draft units.
 const FINEST: f64 = 0.003;
@@ -150,7 +153,7 @@ impl Octree {
                 self.rough += usize::from(is_rough);
                 self.cells[cell.place] = Cell::Leaf(self.leaves.len() as u32);
                 self.leaves.push(Leaf {
-                    cubic,
+                    cubic: *cubic,
                     center: cell.center,
                     half: cell.half,
                     terms: part.map(|part| part.terms.clone()),
@@ -210,7 +213,7 @@ fn map(cells: &[Open], look: impl Fn(&Open) -> Look + Sync) -> Vec<Look> {
 enum Look {
     Settled(Cell),
     Crossed {
-        cubic: Cubic,
+        cubic: Box<Cubic>,
         part: Option<Arc<Part>>,
         is_rough: bool,
         listed: Vec<u32>,
@@ -253,8 +256,8 @@ fn look(
     }
     let away = 1.0 + cell.center.length();
     let finest = cell.half <= FINEST * away;
-    // A cell that is much larger than what is in it is not looked at closely.
-    if room && !finest && !(variation.curvature * ball.radius * ball.radius < 64.0) {
+    let bend = (variation.curvature * ball.radius + variation.jump) * ball.radius + variation.step;
+    if room && !finest && (bend >= LIVELY || bend.is_nan()) {
         return Look::Unknown(part);
     }
     let samples = sample(cell, nodes, |points| match of_part {
@@ -287,7 +290,7 @@ fn look(
         None => Cubic::fit(&[0.0; SAMPLES]),
     };
     Look::Crossed {
-        cubic,
+        cubic: Box::new(cubic),
         part,
         is_rough,
         listed,

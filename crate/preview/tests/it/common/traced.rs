@@ -138,7 +138,7 @@ pub fn compare(scene: &Scene, size: [u32; 2], pixels: &[Pixel]) -> Differs {
         } else {
             hit.normal
         };
-        counts[2] += usize::from(normal.dot(seen) < 5_f64.to_radians().cos());
+        counts[2] += usize::from(normal.dot(seen) < libm::cos(5_f64.to_radians()));
     }
     let [coverage, distance, normal] = counts.map(|count| count as f64);
     let both = f64::from(both.max(1));
