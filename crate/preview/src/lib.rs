@@ -13,7 +13,8 @@
 //!
 //! [`Draft`] draws; [`orbit`] moves a camera with the pointer, or to where it sees everything.
 //!
-//! [`trace`] draws the true surface, with shadows, by a ray for each pixel.
+//! [`trace`] draws the true surface, with shadows, by a ray for each pixel. The page does not use
+//! it yet.
 //!
 //! All run wherever wgpu does, WebGL2 included, without storage buffers and compute shaders; the
 //! tracer uses those where they are.

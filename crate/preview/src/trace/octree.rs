@@ -315,3 +315,100 @@ fn sample(
     }
     samples
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use field::{Enclosure, Jet};
+
+    /// Thin shell around a ball of radius ½: its function is 0 but there.
+    struct Shell;
+
+    /// Slope of the shell's function.
+    const STEEP: f64 = 100.0;
+
+    impl Implicit for Shell {
+        fn jet(&self, point: DVec3) -> Jet<f64> {
+            let depth = point.length() - 0.5;
+            let value = f64::max(2.0 - STEEP * depth.abs(), 0.0);
+            let slope = if value > 0.0 { -STEEP } else { 0.0 };
+            Jet {
+                value,
+                gradient: (point.normalize_or_zero() * slope * depth.signum()).to_array(),
+            }
+        }
+
+        fn jet32(&self, point: [f32; 3]) -> Jet<f32> {
+            let jet = self.jet(point.map(f64::from).into());
+            Jet {
+                value: jet.value as f32,
+                gradient: jet.gradient.map(|x| x as f32),
+            }
+        }
+
+        fn jet8(&self, points: [f32x8; 3]) -> Jet<f32x8> {
+            let [x, y, z] = points.map(f32x8::to_array);
+            let jets: [Jet<f32>; 8] = core::array::from_fn(|i| self.jet32([x[i], y[i], z[i]]));
+            Jet {
+                value: jets.each_ref().map(|jet| jet.value).into(),
+                gradient: [0, 1, 2].map(|axis| jets.each_ref().map(|j| j.gradient[axis]).into()),
+            }
+        }
+
+        fn enclose(&self, ball: Ball) -> Enclosure {
+            let middle = (ball.center.length() - 0.5).abs();
+            let [high, low] = [middle - ball.radius, middle + ball.radius]
+                .map(|depth| f64::max(2.0 - STEEP * f64::max(depth, 0.0), 0.0));
+            Enclosure {
+                value: [low, high],
+                slope: if high > 0.0 { STEEP } else { 0.0 },
+                curvature: f64::INFINITY,
+            }
+        }
+
+        fn shares(&self, _: DVec3, _: &mut Vec<(u32, f64)>) {}
+
+        fn support(&self) -> Option<Ball> {
+            Some(Ball {
+                center: DVec3::ZERO,
+                radius: 1.0,
+            })
+        }
+    }
+
+    #[test]
+    fn thin_shells_between_the_samples_are_found() {
+        let tree = Octree::new(&Shell, 100_000, &|_| Vec::new()).expect("a surface");
+        for n in 0..1000 {
+            let turn = f64::from(n) * 2.4;
+            let z = f64::from(n) / 500.0 - 0.999;
+            let around = libm::sqrt(1.0 - z * z);
+            let out = DVec3::new(around * libm::cos(turn), around * libm::sin(turn), z);
+            for (depth, is_inside) in [(0.0, true), (0.02, false)] {
+                let place = out * (0.5 + depth);
+                let found = match tree.find(place) {
+                    (Cell::Leaf(number), own) => {
+                        tree.leaves[*number as usize].cubic.value(own) > THRESHOLD
+                    }
+                    (cell, _) => *cell == Cell::Inside,
+                };
+                assert_eq!(found, is_inside, "{place}");
+            }
+        }
+    }
+
+    impl Octree {
+        /// Returns the smallest cell around a place, and the place in its own coordinates.
+        fn find(&self, place: DVec3) -> (&Cell, DVec3) {
+            let (mut center, mut half) = (self.center, self.half);
+            let mut cell = &self.cells[0];
+            while let Cell::Parted(first) = cell {
+                let upper = place.cmpge(center).bitmask() as usize;
+                half *= 0.5;
+                center += half * corners()[upper];
+                cell = &self.cells[*first as usize + upper];
+            }
+            (cell, (place - center) / half)
+        }
+    }
+}
