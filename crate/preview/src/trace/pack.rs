@@ -19,7 +19,7 @@ const LEAF: u32 = 0xc000_0000;
 /// Mark of a mixture of materials, as in `shaders/scene.wgsl`.
 const MIXED: u32 = 0x8000_0000;
 /// Most terms that a leaf lists.
-const MOST_TERMS: usize = 64;
+const MOST_TERMS: usize = 128;
 /// Share of an element in a field below which its material is not mixed in.
 const NEGLIGIBLE: f64 = 1e-3;
 
