@@ -18,7 +18,7 @@ struct Near {
     normal: vec3f,
 }
 
-fn near_circle(ray: Ray, solid: Varying, s: f32) -> Near {
+fn near_circle(ray: Ray, solid: Solid, s: f32) -> Near {
     let p = ray.origin + s * ray.direction;
     let sweep = solid.a.x;
     let axial = max(length(vec2f(p.x + sweep, p.y)), 1e-12);
@@ -44,7 +44,7 @@ const STEPS: u32 = 64u;
 // 1 - sweep * (distance to the axis)'' >= 1 - sweep * w^2 / (distance to the axis). As long as that
 // distance stays above 3/4 of its present value, a parabola bounds h from below, and up to the
 // parabola's root the ray is outside. So it is for a step of the distance to the tube.
-fn enter(ray: Ray, solid: Varying, first: f32, last: f32) -> f32 {
+fn enter(ray: Ray, solid: Solid, first: f32, last: f32) -> f32 {
     let tube = solid.a.y;
     let across = dot(ray.direction.xy, ray.direction.xy);
     let tolerance = 1e-4 * tube * tube + 1e-6 * tube;
@@ -75,7 +75,7 @@ fn enter(ray: Ray, solid: Varying, first: f32, last: f32) -> f32 {
 
 // The first s from `first` on where the ray leaves the tube, given that it is inside there. Here
 // h''/2 <= 1, so a parabola bounds h from above.
-fn leave(ray: Ray, solid: Varying, first: f32) -> f32 {
+fn leave(ray: Ray, solid: Solid, first: f32) -> f32 {
     let tube = solid.a.y;
     var s = first;
     for (var i = 0u; i < STEPS; i++) {
@@ -91,7 +91,7 @@ fn leave(ray: Ray, solid: Varying, first: f32) -> f32 {
 
 // The s at which the ray crosses the lid's half plane, 1e30 if it does not. `side` is 1 for the
 // lid where the arc ends, -1 where it begins.
-fn cross_lid(ray: Ray, solid: Varying, side: f32) -> f32 {
+fn cross_lid(ray: Ray, solid: Solid, side: f32) -> f32 {
     let sine = solid.a.z;
     let cosine = solid.a.w;
     let height = side * cosine * ray.origin.y - sine * ray.origin.x - solid.b.x;
@@ -106,17 +106,17 @@ fn cross_lid(ray: Ray, solid: Varying, side: f32) -> f32 {
     return select(1e30, s, along >= 0.0);
 }
 
-fn lid_normal(solid: Varying, side: f32) -> vec3f {
+fn lid_normal(solid: Solid, side: f32) -> vec3f {
     return vec3f(-solid.a.z, side * solid.a.w, 0.0);
 }
 
 // Whether a point of the ray is in the sector that the arc sweeps.
-fn swept(ray: Ray, solid: Varying, s: f32) -> bool {
+fn swept(ray: Ray, solid: Solid, s: f32) -> bool {
     let p = ray.origin + s * ray.direction;
     return solid.a.w * abs(p.y) - solid.a.z * p.x - solid.b.x <= 0.0;
 }
 
-fn meet(ray: Ray, solid: Varying) -> Hit {
+fn meet_arc(ray: Ray, solid: Solid) -> Hit {
     // The part of the ray within the element's box.
     let half = 0.5 * (solid.high - solid.low) + vec3f(BOX_ROOM);
     let middle = ray.origin - 0.5 * (solid.high + solid.low);

@@ -1,7 +1,7 @@
 // A cylinder or a cone along z, with flat lids or without. a.x: radius in the middle; a.y: half the
 // length; a.z: how much the radius grows per unit of z; a.w: 1 for a pipe, which has no lids.
 
-fn meet(ray: Ray, solid: Varying) -> Hit {
+fn meet_cylinder(ray: Ray, solid: Solid) -> Hit {
     let lids = between(ray.origin.z, ray.direction.z, solid.a.y);
 
     // The endless wall: where the ray is within the radius of the axis, seen along the axis. From

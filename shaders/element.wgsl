@@ -1,12 +1,8 @@
 // What the draft's shapes share: the box that covers an element on the screen, and the viewing ray in the element's own
 // coordinates.
 //
-// This file follows view.wgsl, and a shape's file follows this one. It defines
-//     fn meet(ray: Ray, solid: Varying) -> Hit
-// which finds the nearest point of the shape in front of the eye.
-//
-// Every element has its own coordinates, in which its size is about 1, so that neither tiny nor huge elements run out of
-// f32's digits.
+// This file follows view.wgsl and solid.wgsl, and a shape's file follows this one. A last line names the shape's function
+//     fn meet(ray: Ray, solid: Solid) -> Hit
 
 struct Instance {
     @location(0) origin_high: vec3f,
@@ -34,37 +30,6 @@ struct Varying {
     @location(4) @interpolate(flat, either) low: vec3f,
     @location(5) @interpolate(flat, either) high: vec3f,
     @location(6) @interpolate(flat, either) material: u32,
-}
-
-// A viewing ray in an element's coordinates: the points origin + s * direction.
-struct Ray {
-    // The point of the ray's line nearest to the element's own origin: seen from far off, the
-    // coefficients of the equations stay small.
-    origin: vec3f,
-    // Unit vector.
-    direction: vec3f,
-    // The value of s at the eye; what lies before it is behind the eye.
-    start: f32,
-}
-
-struct Hit {
-    met: bool,
-    s: f32,
-    // Not necessarily of unit length, nor turned to the eye.
-    normal: vec3f,
-    // Factor of the material's ambient and diffuse colours.
-    paint: vec3f,
-}
-
-const WHITE = vec3f(1.0);
-const MISS: Hit = Hit(false, 0.0, vec3f(0.0), WHITE);
-
-fn rotate(q: vec4f, v: vec3f) -> vec3f {
-    return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
-}
-
-fn unrotate(q: vec4f, v: vec3f) -> vec3f {
-    return rotate(vec4f(-q.xyz, q.w), v);
 }
 
 // The element's origin seen from the eye. Near elements lose no digits, because differences of
@@ -105,9 +70,6 @@ fn cube_corner(index: u32) -> vec3f {
     }
 }
 
-// A little room around the box, so that rounding never cuts a silhouette.
-const BOX_ROOM: f32 = 1e-3;
-
 // The box of an element. Its back faces are drawn, which are there even for an eye inside it.
 @vertex
 fn cover_box(@builtin(vertex_index) index: u32, instance: Instance) -> Varying {
@@ -141,7 +103,7 @@ fn draw(solid: Varying) -> Fragment {
     ray.start = dot(solid.eye.xyz, ray.direction);
     ray.origin = solid.eye.xyz - ray.start * ray.direction;
 
-    let hit = meet(ray, solid);
+    let hit = meet(ray, Solid(solid.a, solid.b, solid.low, solid.high));
     if !hit.met || hit.s <= ray.start {
         discard;
     }
@@ -151,27 +113,10 @@ fn draw(solid: Varying) -> Fragment {
     var look = look_of(solid.material);
     look.ambient *= hit.paint;
     look.diffuse *= hit.paint;
-    let light = phong(look, distance * gaze, normal);
+    let light = phong(look, view.eye_high.xyz + distance * gaze, gaze, normal);
 
     var out: Fragment;
     out.colour = written(foggy(light, gaze, distance));
     out.depth = depth_at(distance, gaze);
     return out;
-}
-
-// The first s in front of the eye of a convex solid that the ray enters at `near` and leaves at
-// `far`: where it enters it, or for an eye inside, where it leaves it.
-fn boundary(ray: Ray, near: f32, far: f32) -> f32 {
-    return select(far, near, near > ray.start);
-}
-
-// Where a line is between two parallel planes: the values of s at which origin + s * slope is
-// -half and half, in order. A parallel line is between them always or never.
-fn between(origin: f32, slope: f32, half: f32) -> vec2f {
-    if abs(slope) < 1e-12 {
-        return select(vec2f(1.0, -1.0), vec2f(-1.0, 1.0), abs(origin) <= half) * 1e30;
-    }
-    let middle = -origin / slope;
-    let reach = half / abs(slope);
-    return vec2f(middle - reach, middle + reach);
 }

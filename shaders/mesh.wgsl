@@ -49,8 +49,9 @@ fn draw(corner: Varying) -> Fragment {
     let normal = select(outward, -outward, dot(outward, gaze) > 0.0);
     let shine = exp2(SHINE_OCTAVES * corner.ambient.w) - 1.0;
     let look = Look(corner.ambient.rgb, shine, corner.diffuse, corner.specular);
+    let light = phong(look, view.eye_high.xyz + corner.seen, gaze, normal);
     var out: Fragment;
-    out.colour = written(foggy(phong(look, corner.seen, normal), gaze, distance));
+    out.colour = written(foggy(light, gaze, distance));
     out.depth = depth_at(distance, gaze);
     return out;
 }

@@ -1,6 +1,6 @@
-// The plane z = 0, thickened to a slab. a.x: half the thickness, 0 for a plane.
+// The plane z = 0, thickened to a slab. a.x: half the thickness, 0 for a plane; a.y: see scene.wgsl.
 
-fn meet(ray: Ray, solid: Varying) -> Hit {
+fn meet_plane(ray: Ray, solid: Solid) -> Hit {
     let faces = between(ray.origin.z, ray.direction.z, solid.a.x);
     if faces.x > faces.y {
         return MISS;

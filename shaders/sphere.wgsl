@@ -1,6 +1,6 @@
 // A ball about the origin. a.x: its radius.
 
-fn meet(ray: Ray, solid: Varying) -> Hit {
+fn meet_sphere(ray: Ray, solid: Solid) -> Hit {
     // The ray's origin is its point nearest to the centre, so half the chord follows by Pythagoras.
     let square = solid.a.x * solid.a.x - dot(ray.origin, ray.origin);
     if square < 0.0 {

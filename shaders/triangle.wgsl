@@ -32,7 +32,7 @@ fn cut(span: Span, ray: Ray, p: vec2f, q: vec2f) -> Span {
     return out;
 }
 
-fn meet(ray: Ray, solid: Varying) -> Hit {
+fn meet_triangle(ray: Ray, solid: Solid) -> Hit {
     let faces = between(ray.origin.z, ray.direction.z, solid.b.z);
     let z = vec3f(0.0, 0.0, 1.0);
     var span = Span(faces.x, faces.y, z, z);

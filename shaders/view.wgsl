@@ -93,15 +93,18 @@ fn written(light: vec3f) -> vec4f {
     return vec4f(pow(clamp(toned, vec3f(0.0), vec3f(1.0)), vec3f(1.0 / view.picture.z)), 1.0);
 }
 
-// The unit vector from the eye through a place of the picture, in samples: the ray of the projection that the tracer uses
-// too, through the middle of the sample.
-fn gaze_at(position: vec2f) -> vec3f {
+// The way from the eye through a place of the picture, in samples, to the plane at the distance 1 along the view: the ray of
+// the projection that the tracer uses too, through the middle of the sample.
+fn way_at(position: vec2f) -> vec3f {
     let across = vec2f(2.0, -2.0) * (position * view.picture.xy) + vec2f(-1.0, 1.0);
-    return normalize(
-        view.forward.xyz
-            + (across.x * view.right.w + view.eye_high.w) * view.right.xyz
-            + (across.y * view.up.w + view.eye_low.w) * view.up.xyz,
-    );
+    return view.forward.xyz
+        + (across.x * view.right.w + view.eye_high.w) * view.right.xyz
+        + (across.y * view.up.w + view.eye_low.w) * view.up.xyz;
+}
+
+// The unit vector along that way.
+fn gaze_at(position: vec2f) -> vec3f {
+    return normalize(way_at(position));
 }
 
 // Depth of a point at a distance along a gaze. Nearer is larger. The quotient keeps f32's full relative precision at every
@@ -143,11 +146,11 @@ fn look_of(material: u32) -> Look {
     return Look(ambient.rgb, ambient.w, diffuse, specular);
 }
 
-// Colour of the point seen: Phong's model with all lights, without shadows. `seen` leads from the
-// eye to the point, `normal` is turned to the eye.
-fn phong(look: Look, seen: vec3f, normal: vec3f) -> vec3f {
-    let place = view.eye_high.xyz + seen;
-    let mirrored = reflect(normalize(seen), normal);
+// Colour of a point: Phong's model with all lights. `gaze` is the unit vector from the eye to it, `normal` is turned to the
+// eye. A program's last file says how much of a light's way is free:
+//     fn unblocked(light: u32, place: vec3f, normal: vec3f, towards: vec3f, limit: f32) -> f32
+fn phong(look: Look, place: vec3f, gaze: vec3f, normal: vec3f) -> vec3f {
+    let mirrored = reflect(gaze, normal);
     var colour = look.ambient + look.diffuse * daylight(normal);
     for (var i = 0u; i < 8u; i++) {
         if f32(i) >= view.picture.w {
@@ -156,11 +159,12 @@ fn phong(look: Look, seen: vec3f, normal: vec3f) -> vec3f {
         let light = view.lights[i];
         let way = light.place.xyz - light.place.w * place;
         let towards = way / max(length(way), 1e-30);
-        let share = spot(light, towards);
         let slope = dot(normal, towards);
         if slope <= 0.0 {
             continue;
         }
+        let limit = select(1e30, length(way), light.place.w > 0.5);
+        let share = spot(light, towards) * unblocked(i, place, normal, towards, limit);
         // No highlight away from the mirror's side, even for an exponent of 0. (And pow of
         // nothing is undefined on a GPU.)
         let gleam = dot(mirrored, towards);

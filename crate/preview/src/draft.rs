@@ -9,8 +9,7 @@ use crate::pipelines::Pipelines;
 use crate::solid::{Kind, Solid};
 use crate::targets::{Sampling, Targets};
 use crate::view::{Air, Lights, Tone, View};
-use glam::DVec3;
-use scene::{Camera, Ground, Scene, Shape};
+use scene::{Camera, Scene, Shape};
 
 /// Elements that the draft takes; of more, the first ones are drawn.
 pub const MAX_ELEMENTS: usize = 200_000;
@@ -87,13 +86,7 @@ impl Draft {
         self.units = Bounds::of(scene).units();
         let (lights, lights_left_out) = Lights::new(&scene.lights, self.units);
         self.lights = lights;
-        let lowest = match scene.ground {
-            Some(Ground { height: None, .. }) => {
-                Bounds::lowest(scene, scene.up.normalize_or(DVec3::Y))
-            }
-            _ => 0.0,
-        };
-        self.air = Air::new(scene, self.units, lowest);
+        self.air = Air::of(scene, self.units);
 
         let mut drawn = Drawn {
             lights_left_out,

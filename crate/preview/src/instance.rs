@@ -28,13 +28,7 @@ impl Instance {
     /// Packs a solid, `units` telling how draft units come from world coordinates.
     pub(crate) fn new(solid: &Solid, material: u32, units: Units) -> Self {
         let (origin_high, origin_low) = units.place(solid.origin);
-        // A patch is covered by itself and needs no box, but has normals.
-        let [low, high] = if solid.kind == Kind::Patch {
-            let [[a, b], [c, d], [e, f]] = solid.normals.map(fold);
-            [[a, b, c], [d, e, f]]
-        } else {
-            [solid.low, solid.high].map(|corner| corner.as_vec3().to_array())
-        };
+        let [low, high] = solid.corners().map(|corner| corner.to_array());
         Self {
             origin_high,
             material,
@@ -46,6 +40,19 @@ impl Instance {
             b: solid.b.map(|x| x as f32),
             low,
             high,
+        }
+    }
+}
+
+impl Solid {
+    /// Returns the numbers `low` and `high` of the shaders: the corners of the box. A patch is
+    /// covered by itself and needs no box, but has normals.
+    pub(crate) fn corners(&self) -> [Vec3; 2] {
+        if self.kind == Kind::Patch {
+            let [[a, b], [c, d], [e, f]] = self.normals.map(fold);
+            [Vec3::new(a, b, c), Vec3::new(d, e, f)]
+        } else {
+            [self.low, self.high].map(|corner| corner.as_vec3())
         }
     }
 }

@@ -13,7 +13,11 @@
 //!
 //! [`Draft`] draws; [`orbit`] moves a camera with the pointer, or to where it sees everything.
 //!
-//! It runs wherever wgpu does, WebGL2 included: no storage buffers, no compute shaders.
+//! [`trace`] draws the true surface, with shadows, by a ray for each pixel. The page does not use
+//! it yet.
+//!
+//! All run wherever wgpu does, WebGL2 included, without storage buffers and compute shaders; the
+//! tracer uses those where they are.
 
 mod bounds;
 mod draft;
@@ -25,6 +29,7 @@ pub mod orbit;
 mod pipelines;
 mod solid;
 mod targets;
+pub mod trace;
 mod view;
 
 pub use bounds::Bounds;

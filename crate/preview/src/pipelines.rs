@@ -11,6 +11,19 @@ pub(crate) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Format of its depth: a float, because nearer is larger and farther is near zero.
 pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// The text of a file in `shaders/`.
+macro_rules! shader {
+    ($name:literal) => {
+        include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../shaders/",
+            $name,
+            ".wgsl"
+        ))
+    };
+}
+pub(crate) use shader;
+
 impl Kind {
     pub(crate) fn label(self) -> &'static str {
         match self {
@@ -25,21 +38,27 @@ impl Kind {
 
     fn code(self) -> &'static str {
         macro_rules! element {
-            ($name:literal) => {
+            ($name:literal $(, $more:literal)*) => {
                 concat!(
-                    include_str!("../../../shaders/view.wgsl"),
-                    include_str!("../../../shaders/element.wgsl"),
-                    include_str!(concat!("../../../shaders/", $name))
+                    shader!("view"),
+                    shader!("shadeless"),
+                    shader!("solid"),
+                    shader!("element"),
+                    shader!($name),
+                    $(shader!($more),)*
+                    "fn meet(ray: Ray, solid: Solid) -> Hit { return meet_",
+                    $name,
+                    "(ray, solid); }\n"
                 )
             };
         }
         match self {
-            Self::Sphere => element!("sphere.wgsl"),
-            Self::Cylinder => element!("cylinder.wgsl"),
-            Self::Arc => element!("arc.wgsl"),
-            Self::Triangle => element!("triangle.wgsl"),
-            Self::Plane => element!("plane.wgsl"),
-            Self::Patch => element!("patch.wgsl"),
+            Self::Sphere => element!("sphere"),
+            Self::Cylinder => element!("cylinder"),
+            Self::Arc => element!("arc"),
+            Self::Triangle => element!("triangle"),
+            Self::Plane => element!("plane"),
+            Self::Patch => element!("patch", "corners"),
         }
     }
 
@@ -122,7 +141,7 @@ impl Pipelines {
     }
 }
 
-fn uniform_buffer(device: &wgpu::Device, label: &str, size: usize) -> wgpu::Buffer {
+pub(crate) fn uniform_buffer(device: &wgpu::Device, label: &str, size: usize) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: size as u64,
@@ -131,7 +150,7 @@ fn uniform_buffer(device: &wgpu::Device, label: &str, size: usize) -> wgpu::Buff
     })
 }
 
-fn uniform(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+pub(crate) fn uniform(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
@@ -144,7 +163,7 @@ fn uniform(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayou
     }
 }
 
-fn texture(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
+pub(crate) fn texture(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
@@ -157,7 +176,7 @@ fn texture(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGroupLayou
     }
 }
 
-fn layout(
+pub(crate) fn layout(
     device: &wgpu::Device,
     label: &str,
     entries: &[wgpu::BindGroupLayoutEntry],
@@ -199,10 +218,7 @@ fn mesh_pipeline(device: &wgpu::Device, bindings: &wgpu::BindGroupLayout) -> wgp
         device,
         Stages {
             label: "mesh",
-            code: concat!(
-                include_str!("../../../shaders/view.wgsl"),
-                include_str!("../../../shaders/mesh.wgsl")
-            ),
+            code: concat!(shader!("view"), shader!("shadeless"), shader!("mesh")),
             vertex: "cover",
             fragment: "draw",
         },
@@ -233,8 +249,10 @@ fn backdrop_pipeline(
         Stages {
             label: "backdrop",
             code: concat!(
-                include_str!("../../../shaders/view.wgsl"),
-                include_str!("../../../shaders/backdrop.wgsl")
+                shader!("view"),
+                shader!("shadeless"),
+                shader!("sky"),
+                shader!("backdrop")
             ),
             vertex: "cover",
             fragment: "draw",
@@ -255,7 +273,7 @@ fn resolve_pipeline(
         device,
         Stages {
             label: "resolve",
-            code: include_str!("../../../shaders/resolve.wgsl"),
+            code: shader!("resolve"),
             vertex: "cover",
             fragment: "resolve",
         },

@@ -1,10 +1,11 @@
 //! Uniforms of the camera and the lights.
 
+use crate::bounds::Bounds;
 use crate::instance::Units;
 use crate::materials::{finite, with};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
-use scene::{Background, Camera, Light, LightKind, Scene, Tone as Tonemap};
+use scene::{Background, Camera, Ground, Light, LightKind, Scene, Tone as Tonemap};
 
 /// Lights that the draft can take. Of more, the strongest count.
 pub const MAX_LIGHTS: usize = 8;
@@ -105,6 +106,8 @@ impl View {
 pub(crate) struct Lights {
     packed: [PackedLight; MAX_LIGHTS],
     count: usize,
+    /// A bit for each of them that casts shadows.
+    pub(crate) shadows: u32,
 }
 
 impl Lights {
@@ -152,7 +155,14 @@ impl Lights {
             };
         }
         let count = order.len().min(MAX_LIGHTS);
-        (Self { packed, count }, order.len() - count)
+        let bits =
+            (order.iter().take(count).enumerate()).map(|(i, light)| u32::from(light.shadow) << i);
+        let lights = Self {
+            packed,
+            count,
+            shadows: bits.sum(),
+        };
+        (lights, order.len() - count)
     }
 }
 
@@ -173,6 +183,17 @@ pub(crate) struct Air {
 }
 
 impl Air {
+    /// The air of a scene, which may stand on the ground.
+    pub(crate) fn of(scene: &Scene, units: Units) -> Self {
+        let lowest = match scene.ground {
+            Some(Ground { height: None, .. }) => {
+                Bounds::lowest(scene, scene.up.normalize_or(DVec3::Y))
+            }
+            _ => 0.0,
+        };
+        Self::new(scene, units, lowest)
+    }
+
     /// The air of a scene. `lowest` is the least height of its elements along its direction up.
     pub(crate) fn new(scene: &Scene, units: Units, lowest: f64) -> Self {
         let up = scene.up.normalize_or(DVec3::Y);

@@ -44,6 +44,7 @@ mod shared;
 pub mod soft;
 pub mod surface;
 pub mod surroundings;
+pub mod unit;
 
 pub use body::{Body, Frame};
 pub use camera::{Camera, Projection};
@@ -62,6 +63,7 @@ pub use shape::{Bone, Cuboid, Ends, Shape, extent};
 pub use soft::SoftSurface;
 pub use surface::{ComposedSurface, Surface};
 pub use surroundings::{Background, Cloud, Fog, Ground, Lens, Sky};
+pub use unit::Unit;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

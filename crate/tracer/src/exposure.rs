@@ -11,12 +11,11 @@ use crate::layout::PACKET;
 use crate::meet::Seen;
 use crate::ray::Ray;
 use crate::stats::Stats;
-use crate::unit::Unit;
 use crate::view::View;
 use crate::workspace::Workspace;
 use crate::world::World;
 use glam::Vec3;
-use scene::Scene;
+use scene::{Scene, Unit};
 use texture::disc;
 use texture::sequence::{Purpose, sample};
 

@@ -3,12 +3,11 @@ use crate::body::Body;
 use crate::cells::search::Search;
 use crate::cells::{Cells, search_in};
 use crate::ray::Ray;
-use crate::unit::Unit;
 use crate::walk::Quest;
 use core::sync::atomic::AtomicUsize;
 use field::{Ball, Implicit};
 use glam::DVec3;
-use scene::{ComposedSurface, Scene};
+use scene::{ComposedSurface, Scene, Unit};
 use std::sync::Arc;
 
 /// Length below which pieces of rays are not halved, in units of the scene's size.

@@ -169,7 +169,6 @@ mod surface_samples;
 mod tests;
 pub mod tile;
 mod transmission;
-mod unit;
 mod view;
 mod walk;
 mod workspace;

@@ -5,10 +5,9 @@ use crate::function::range;
 use crate::picture::Hit;
 use crate::ray::Ray;
 use crate::solids::Solids;
-use crate::unit::Unit;
 use field::Ball;
 use glam::DVec3;
-use scene::{Scene, Surface, surface};
+use scene::{Scene, Surface, Unit, surface};
 
 /// A scene prepared for single rays.
 ///

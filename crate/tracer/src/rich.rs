@@ -4,10 +4,10 @@ use crate::air::Air;
 use crate::material::{Materials, is_plain, lets_light_through};
 use crate::soft::{MakeUp, Soft};
 use crate::solids::Solids;
-use crate::unit::{Unit, lowest};
 use field::Skeleton;
 use glam::{DVec3, Vec3};
-use scene::{Background, Light, Scene, Settings, Tone};
+use scene::unit::lowest;
+use scene::{Background, Light, Scene, Settings, Tone, Unit};
 use std::collections::BTreeMap;
 
 /// Keys of sheets, beyond the numbers of all surfaces.

@@ -3,8 +3,7 @@ use crate::area::Area;
 use crate::beam::Beam;
 use crate::layout::halves_across;
 use crate::ray::Ray;
-use crate::unit::Unit;
-use scene::{Camera, Projection, Scene};
+use scene::{Camera, Projection, Scene, Unit};
 
 /// The camera of a picture of a given size.
 #[derive(Clone, Copy, Debug)]

@@ -6,11 +6,10 @@ use crate::root_finder::{FoundBody, RootFinder};
 use crate::shade::Finish;
 use crate::soft::Soft;
 use crate::solids::Solids;
-use crate::unit::Unit;
 use core::sync::atomic::AtomicUsize;
 use field::Implicit;
 use glam::{DVec3, Vec3};
-use scene::{Light, Scene, Surface};
+use scene::{Light, Scene, Surface, Unit};
 use std::sync::Arc;
 
 /// A scene's surfaces and lights, in units of the scene's size.

@@ -5,3 +5,4 @@ mod pictures;
 mod shaders;
 mod shapes;
 mod sheet;
+mod traced;

@@ -3,59 +3,71 @@
 
 use naga::back::glsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// The code of each pipeline, put together as the crate does: the shapes' files are continuations
-/// of `element.wgsl`, and all but the last pass begin with `view.wgsl`.
-fn programs() -> BTreeMap<String, String> {
+/// Shapes that rays meet.
+const SHAPES: [&str; 6] = ["sphere", "cylinder", "arc", "triangle", "plane", "patch"];
+
+/// The code of each pipeline, put together as the crate does.
+fn programs() -> BTreeMap<&'static str, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shaders");
-    let mut files: BTreeMap<String, String> = std::fs::read_dir(&folder)
+    let files: BTreeMap<String, String> = std::fs::read_dir(&folder)
         .expect("the folder shaders/")
         .map(|entry| entry.expect("an entry of shaders/"))
         .filter(|entry| entry.path().is_file())
         .map(|entry| {
             let name = entry.file_name().into_string().expect("a name in Unicode");
             let text = std::fs::read_to_string(entry.path()).expect("a text file");
-            (name, text)
+            (name.replace(".wgsl", ""), text)
         })
         .collect();
-    let view = files.remove("view.wgsl").expect("view.wgsl");
-    let element = files.remove("element.wgsl").expect("element.wgsl");
-    for (name, text) in &mut files {
-        match name.as_str() {
-            "resolve.wgsl" => {}
-            "backdrop.wgsl" | "mesh.wgsl" => *text = format!("{view}{text}"),
-            _ => *text = format!("{view}{element}{text}"),
-        }
+    let mut parts: BTreeMap<&str, Vec<&str>> = BTreeMap::from([
+        ("mesh", vec!["view", "shadeless", "mesh"]),
+        ("backdrop", vec!["view", "shadeless", "sky", "backdrop"]),
+        ("resolve", vec!["resolve"]),
+    ]);
+    for shape in SHAPES {
+        let corners = (shape == "patch").then_some("corners");
+        let shared = ["view", "shadeless", "solid", "element", shape];
+        parts.insert(shape, shared.into_iter().chain(corners).collect());
     }
-    files
+    for entry in ["compute", "fragment"] {
+        let tracer = ["view", "sky", "solid"].into_iter().chain(SHAPES);
+        parts.insert(entry, tracer.chain(["march", "scene", entry]).collect());
+    }
+    let used: BTreeSet<&str> = parts.values().flatten().copied().collect();
+    let all: BTreeSet<&str> = files.keys().map(String::as_str).collect();
+    assert_eq!(used, all, "files of no program, or missing ones");
+    let programs = parts.into_iter().map(|(name, parts)| {
+        let mut code: String = parts.iter().map(|part| files[*part].as_str()).collect();
+        if SHAPES.contains(&name) {
+            code += &format!("fn meet(r: Ray, s: Solid) -> Hit {{ return meet_{name}(r, s); }}");
+        }
+        if parts.contains(&"march") {
+            for formulas in ["plain_term", "profile_of_term"] {
+                code += &format!("fn {formulas}(kind: u32, at: u32, count: u32, p: vec3f)");
+                code += " -> vec4f { return vec4f(); }";
+            }
+        }
+        (name, code)
+    });
+    programs.collect()
 }
 
 #[test]
 fn shaders_are_valid_and_translate_to_webgl2() {
     let programs = programs();
-    let names: Vec<&str> = programs.keys().map(String::as_str).collect();
-    assert_eq!(
-        names,
-        [
-            "arc.wgsl",
-            "backdrop.wgsl",
-            "cylinder.wgsl",
-            "mesh.wgsl",
-            "patch.wgsl",
-            "plane.wgsl",
-            "resolve.wgsl",
-            "sphere.wgsl",
-            "triangle.wgsl"
-        ]
-    );
     for (name, code) in &programs {
         let module = naga::front::wgsl::parse_str(code)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(code)));
         let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
             .validate(&module)
             .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(code)));
+        if *name == "compute" {
+            assert_eq!(module.entry_points.len(), 1);
+            continue;
+        }
         assert!(module.entry_points.len() >= 2, "{name} draws nothing");
         for entry in &module.entry_points {
             let glsl = to_glsl(&module, &info, entry)

@@ -4,3 +4,4 @@
 pub mod gpu;
 pub mod reference;
 pub mod scenes;
+pub mod traced;

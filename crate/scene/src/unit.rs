@@ -1,12 +1,12 @@
 //! The map that brings a scene to unit size around the origin.
 //!
 //! Single precision is used where rays meet the soft surface, so a scene far from the origin, very
-//! large or very small would lose digits. Before tracing it is moved to the origin and scaled by a
-//! power of two (which costs no digits) to about unit size. Nothing else changes: fields, angles
-//! and colours are the same.
+//! large or very small would lose digits. Before tracing it is moved to the origin and scaled to
+//! about unit size, for pictures by a power of two (which costs no digits). Nothing else changes:
+//! fields, angles and colours are the same.
+use crate::{Element, LightKind, Scene, Shape};
 use field::skeleton::Map;
 use glam::{DAffine3, DQuat, DVec3};
-use scene::{Element, LightKind, Scene, Shape};
 
 /// The map from the world to the unit scene: `scale·(p − center)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,20 +22,20 @@ impl Unit {
         scale: 1.0,
     };
 
-    /// Returns the map that fits a scene, and the scene mapped. Elements with coordinates that are
-    /// not finite, which no ray can meet, become hard balls of radius 0, which have no surface, so
-    /// that all elements keep their numbers.
+    /// Returns the map of a ball to that of radius 1 around the origin. The radius must be > 0.
+    #[must_use]
+    pub fn of_ball(center: DVec3, radius: f64) -> Self {
+        Self {
+            center,
+            scale: 1.0 / radius,
+        }
+    }
+
+    /// Returns the map that fits a scene, and the scene mapped as [`Unit::map_scene`] does.
     #[must_use]
     pub fn fit(scene: &Scene) -> (Self, Scene) {
         let mut mapped = scene.clone();
-        // An element without a surface.
-        let nothing = Element::new(Shape::sphere(DVec3::ZERO, 0.0));
-        for element in &mut mapped.elements {
-            let (low, high) = corners(&element.shape);
-            if !low.is_finite() || !high.is_finite() {
-                *element = nothing.clone();
-            }
-        }
+        let nothing = drop_endless(&mut mapped);
         let mut low = DVec3::INFINITY;
         let mut high = DVec3::NEG_INFINITY;
         for element in mapped.elements.iter().filter(|e| **e != nothing) {
@@ -58,6 +58,17 @@ impl Unit {
         };
         unit.apply(&mut mapped);
         (unit, mapped)
+    }
+
+    /// Returns a scene mapped. Elements with coordinates that are not finite, which no ray can
+    /// meet, become hard balls of radius 0, which have no surface, so that all elements keep their
+    /// numbers.
+    #[must_use]
+    pub fn map_scene(&self, scene: &Scene) -> Scene {
+        let mut mapped = scene.clone();
+        drop_endless(&mut mapped);
+        self.apply(&mut mapped);
+        mapped
     }
 
     /// Maps a scene.
@@ -147,6 +158,18 @@ impl Map for Unit {
             -self.scale * self.center,
         )
     }
+}
+
+/// Replaces elements that are not finite by one without a surface, and returns that.
+fn drop_endless(scene: &mut Scene) -> Element {
+    let nothing = Element::new(Shape::sphere(DVec3::ZERO, 0.0));
+    for element in &mut scene.elements {
+        let (low, high) = corners(&element.shape);
+        if !low.is_finite() || !high.is_finite() {
+            *element = nothing.clone();
+        }
+    }
+    nothing
 }
 
 /// Returns the least and the greatest corner of a box that holds a shape's skeleton; of a plane its

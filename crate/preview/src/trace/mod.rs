@@ -1,0 +1,538 @@
+//! The true surface, traced on the card.
+//!
+//! The functions of all bodies ([`scene::Scene::surfaces`]) are divided into cells ([`octree`]),
+//! those that the surface passes with a cubic each ([`cubic`]) and, where that is not enough, with
+//! the chart's formulas ([`formulas`]); hard shapes have a hierarchy of boxes ([`hierarchy`]).
+//! [`pack`] lays them out, and `shaders/scene.wgsl` sends a ray from the eye through each pixel,
+//! and one from what it meets to each light. Nothing of it depends on the camera: while one turns,
+//! only the view changes.
+
+mod cubic;
+mod formulas;
+mod hierarchy;
+mod octree;
+mod pack;
+
+use crate::bounds::Bounds;
+use crate::materials;
+use crate::pipelines::{COLOUR, layout, shader, texture, uniform, uniform_buffer};
+use crate::view::{Air, Lights, Tone, View};
+use bytemuck::{Pod, Zeroable};
+use pack::{Frame, Packed};
+use scene::{Camera, Scene, Unit};
+use std::collections::BTreeSet;
+
+/// The text that both entries share.
+const COMMON: &str = concat!(
+    shader!("view"),
+    shader!("sky"),
+    shader!("solid"),
+    shader!("sphere"),
+    shader!("cylinder"),
+    shader!("arc"),
+    shader!("triangle"),
+    shader!("plane"),
+    shader!("patch"),
+    shader!("march"),
+    shader!("scene")
+);
+
+/// A pixel as the compute entry writes it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Pixel {
+    /// Red, green, blue, gamma applied, and 1.
+    pub colour: [f32; 4],
+    /// The unit normal, turned to the eye.
+    pub normal: [f32; 3],
+    /// Distance from the eye, in radii of the scene's [`Bounds`]; below 0 where no surface is.
+    pub distance: f32,
+    /// Number of evaluations of the field for this pixel, and three numbers that are 0.
+    pub evaluations: [u32; 4],
+}
+
+/// Care with which the space around a scene is divided before it is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// Large cells, in which rays add up the terms near them: made in an instant, for scenes that
+    /// change with every frame. Functions that are no sums are drawn roughly.
+    Quick,
+    /// Small cells, in most of which rays need not add up anything.
+    #[default]
+    Fine,
+}
+
+impl Detail {
+    /// Most leaves of all bodies together.
+    fn most_leaves(self) -> usize {
+        match self {
+            Self::Quick => 3000,
+            Self::Fine => 600_000,
+        }
+    }
+}
+
+/// Numbers of what a scene is made of for the card.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shown {
+    /// Elements that are drawn.
+    pub elements: usize,
+    /// Cells that a surface passes.
+    pub leaves: usize,
+    /// Number of such cells in which the cubic is not close to the function.
+    pub rough: usize,
+    /// Lights left out: at most [`crate::MAX_LIGHTS`] count.
+    pub lights_left_out: usize,
+}
+
+/// The stage of the card that traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Compute shaders, with data in a buffer.
+    Compute,
+    /// A fragment shader, with data in a texture: all that WebGL2 has.
+    Fragment,
+}
+
+/// Width of the texture of data, as in `shaders/fragment.wgsl`.
+const ROW: usize = 2048;
+
+/// Draws the true surface of a scene.
+pub struct Tracer {
+    stage: Stage,
+    /// The formulas that it has, and the program.
+    program: Option<(BTreeSet<u32>, Program)>,
+    bindings: wgpu::BindGroupLayout,
+    view: wgpu::Buffer,
+    frame: wgpu::Buffer,
+    scene: Option<Prepared>,
+    target: Option<([u32; 2], Target)>,
+}
+
+/// Program of either stage.
+enum Program {
+    Compute(wgpu::ComputePipeline),
+    Fragment(wgpu::RenderPipeline),
+}
+
+/// Buffer or texture that a frame is written to.
+#[derive(Debug)]
+pub enum Target {
+    /// The [`Pixel`]s row by row from the top, of [`Stage::Compute`].
+    Pixels(wgpu::Buffer),
+    /// A picture (`Rgba8Unorm`), of [`Stage::Fragment`].
+    Picture(wgpu::Texture),
+}
+
+/// The data of a scene.
+enum Data {
+    Buffer(wgpu::Buffer),
+    Texture(wgpu::TextureView),
+}
+
+/// A scene on the card.
+struct Prepared {
+    data: Data,
+    materials: wgpu::TextureView,
+    frame: Frame,
+    bounds: Bounds,
+    lights: Lights,
+    tone: Tone,
+    air: Air,
+}
+
+impl Stage {
+    /// Returns the stage that a device has.
+    #[must_use]
+    pub fn of(device: &wgpu::Device) -> Self {
+        if device.limits().max_storage_buffers_per_shader_stage >= 2 {
+            Self::Compute
+        } else {
+            Self::Fragment
+        }
+    }
+
+    /// Returns the number of vectors of four that data may take.
+    fn room(self, device: &wgpu::Device) -> usize {
+        let limits = device.limits();
+        match self {
+            Self::Compute => {
+                let most = limits.max_storage_buffer_binding_size;
+                most.min(limits.max_buffer_size) as usize / 16
+            }
+            Self::Fragment => limits.max_texture_dimension_2d as usize * ROW,
+        }
+    }
+
+    /// Hands over the data of a scene.
+    fn upload(self, device: &wgpu::Device, queue: &wgpu::Queue, data: &mut Vec<[u32; 4]>) -> Data {
+        match self {
+            Self::Compute => {
+                let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("tracer's data"),
+                    size: size_of_val(&data[..]) as u64,
+                    usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                queue.write_buffer(&buffer, 0, bytemuck::cast_slice(data));
+                Data::Buffer(buffer)
+            }
+            Self::Fragment => {
+                data.resize(data.len().next_multiple_of(ROW), [0; 4]);
+                let size = wgpu::Extent3d {
+                    width: ROW as u32,
+                    height: (data.len() / ROW) as u32,
+                    depth_or_array_layers: 1,
+                };
+                let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+                let texture = device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some("tracer's data"),
+                    size,
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format: wgpu::TextureFormat::Rgba32Uint,
+                    usage,
+                    view_formats: &[],
+                });
+                queue.write_texture(
+                    texture.as_image_copy(),
+                    bytemuck::cast_slice(data),
+                    wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(size.width * 16),
+                        rows_per_image: None,
+                    },
+                    size,
+                );
+                Data::Texture(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+            }
+        }
+    }
+
+    /// Makes what a frame of a size is written to.
+    fn target(self, device: &wgpu::Device, [width, height]: [u32; 2]) -> Target {
+        let label = Some("traced picture");
+        match self {
+            Self::Compute => Target::Pixels(device.create_buffer(&wgpu::BufferDescriptor {
+                label,
+                size: u64::from(width) * u64::from(height) * size_of::<Pixel>() as u64,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })),
+            Self::Fragment => Target::Picture(device.create_texture(&wgpu::TextureDescriptor {
+                label,
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: COLOUR,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })),
+        }
+    }
+
+    fn layout(self, device: &wgpu::Device) -> wgpu::BindGroupLayout {
+        let stage = match self {
+            Self::Compute => wgpu::ShaderStages::COMPUTE,
+            Self::Fragment => wgpu::ShaderStages::FRAGMENT,
+        };
+        let data = match self {
+            Self::Compute => vec![
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Storage { read_only: true },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Storage { read_only: false },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+            ],
+            Self::Fragment => vec![wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Uint,
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            }],
+        };
+        let mut entries = vec![uniform(0, stage), texture(1, stage), uniform(2, stage)];
+        entries.extend(
+            (3..)
+                .zip(data)
+                .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+                    binding,
+                    visibility: stage,
+                    ty,
+                    count: None,
+                }),
+        );
+        layout(device, "tracer", &entries)
+    }
+
+    /// Returns the text of the program with some formulas.
+    fn code(self, formulas: &BTreeSet<u32>) -> String {
+        let entry = match self {
+            Self::Compute => shader!("compute"),
+            Self::Fragment => shader!("fragment"),
+        };
+        [COMMON, &formulas::code(formulas.iter().copied()), entry].concat()
+    }
+
+    /// Compiles the program with some formulas.
+    fn compile(
+        self,
+        device: &wgpu::Device,
+        bindings: &wgpu::BindGroupLayout,
+        formulas: &BTreeSet<u32>,
+    ) -> Program {
+        let label = Some("tracer");
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label,
+            source: wgpu::ShaderSource::Wgsl(self.code(formulas).into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &[Some(bindings)],
+            immediate_size: 0,
+        });
+        match self {
+            Self::Compute => {
+                let descriptor = wgpu::ComputePipelineDescriptor {
+                    label,
+                    layout: Some(&layout),
+                    module: &module,
+                    entry_point: Some("trace"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    cache: None,
+                };
+                Program::Compute(device.create_compute_pipeline(&descriptor))
+            }
+            Self::Fragment => {
+                let descriptor = wgpu::RenderPipelineDescriptor {
+                    label,
+                    layout: Some(&layout),
+                    vertex: wgpu::VertexState {
+                        module: &module,
+                        entry_point: Some("cover"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        buffers: &[],
+                    },
+                    primitive: wgpu::PrimitiveState::default(),
+                    depth_stencil: None,
+                    multisample: wgpu::MultisampleState::default(),
+                    fragment: Some(wgpu::FragmentState {
+                        module: &module,
+                        entry_point: Some("draw"),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        targets: &[Some(COLOUR.into())],
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                };
+                Program::Fragment(device.create_render_pipeline(&descriptor))
+            }
+        }
+    }
+}
+
+impl Tracer {
+    /// Prepares a device for a stage, which it must have: [`Stage::of`] tells one.
+    #[must_use]
+    pub fn new(device: &wgpu::Device, stage: Stage) -> Self {
+        Self {
+            stage,
+            program: None,
+            bindings: stage.layout(device),
+            view: uniform_buffer(device, "tracer's view", size_of::<View>()),
+            frame: uniform_buffer(device, "tracer's frame", size_of::<Frame>()),
+            scene: None,
+            target: None,
+        }
+    }
+
+    /// Replaces the scene. Its own camera is not used. Returns the numbers of what is drawn.
+    pub fn set_scene(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &Scene,
+        detail: Detail,
+    ) -> Shown {
+        let bounds = Bounds::of(scene);
+        let units = bounds.units();
+        let table = materials::upload(device, queue, scene);
+        let mapped = Unit::of_ball(bounds.center, bounds.radius).map_scene(scene);
+        let mut most = detail.most_leaves();
+        let mut packed = Packed::new(&mapped, &table, most);
+        while packed.data.len() > self.stage.room(device) && most > 1 {
+            most = most.min(packed.leaves) / 2;
+            packed = Packed::new(&mapped, &table, most);
+        }
+        let known = (self.program.take()).filter(|(formulas, _)| *formulas == packed.formulas);
+        self.program = Some(known.unwrap_or_else(|| {
+            let program = self.stage.compile(device, &self.bindings, &packed.formulas);
+            (packed.formulas.clone(), program)
+        }));
+        let (lights, lights_left_out) = Lights::new(&scene.lights, units);
+        let mut frame = packed.frame;
+        frame.counts[3] = lights.shadows;
+        self.scene = Some(Prepared {
+            data: self.stage.upload(device, queue, &mut packed.data),
+            materials: table.view,
+            frame,
+            bounds,
+            lights,
+            tone: Tone::of(scene),
+            air: Air::of(scene, units),
+        });
+        Shown {
+            elements: packed.elements,
+            leaves: packed.leaves,
+            rough: packed.rough,
+            lights_left_out,
+        }
+    }
+
+    /// Traces the scene from a camera into a picture of `size` pixels, and gives it; `None` before
+    /// the first scene.
+    pub fn render(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        camera: &Camera,
+        size: [u32; 2],
+    ) -> Option<&Target> {
+        let scene = self.scene.as_ref()?;
+        let (_, program) = self.program.as_ref()?;
+        scene.look(queue, [&self.view, &self.frame], camera, size);
+        let target = (self.target.take()).filter(|(old, _)| *old == size);
+        let target = target.unwrap_or_else(|| (size, self.stage.target(device, size)));
+        let (_, target) = self.target.insert(target);
+        let mut resources = vec![
+            self.view.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&scene.materials),
+            self.frame.as_entire_binding(),
+            match &scene.data {
+                Data::Buffer(buffer) => buffer.as_entire_binding(),
+                Data::Texture(view) => wgpu::BindingResource::TextureView(view),
+            },
+        ];
+        if let Target::Pixels(buffer) = target {
+            resources.push(buffer.as_entire_binding());
+        }
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let label = Some("tracer");
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label,
+            layout: &self.bindings,
+            entries: &entries,
+        });
+        match (program, &*target) {
+            (Program::Compute(pipeline), _) => {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.dispatch_workgroups(size[0].div_ceil(8), size[1].div_ceil(8), 1);
+            }
+            (Program::Fragment(pipeline), Target::Picture(picture)) => {
+                let view = picture.create_view(&wgpu::TextureViewDescriptor::default());
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    label,
+                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                        view: &view,
+                        depth_slice: None,
+                        resolve_target: None,
+                        ops: wgpu::Operations {
+                            load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                            store: wgpu::StoreOp::Store,
+                        },
+                    })],
+                    ..wgpu::RenderPassDescriptor::default()
+                });
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            (Program::Fragment(_), Target::Pixels(_)) => {}
+        }
+        Some(target)
+    }
+}
+
+impl Prepared {
+    /// Writes the uniforms of a camera.
+    fn look(
+        &self,
+        queue: &wgpu::Queue,
+        [view, frame]: [&wgpu::Buffer; 2],
+        camera: &Camera,
+        size: [u32; 2],
+    ) {
+        let units = self.bounds.units();
+        let seen = View::new(camera, size, size, units, self.tone, &self.lights, self.air);
+        queue.write_buffer(view, 0, bytemuck::bytes_of(&seen));
+        let projection = camera.projection(size[0], size[1]);
+        let forward = -projection.world_from_view.z_axis;
+        let eye = Unit::of_ball(units.center, units.radius).map(projection.eye);
+        let ahead = (-eye.dot(forward)).max(0.0);
+        let [x, y, z] = (eye + ahead * forward).as_vec3().to_array();
+        let place = Frame {
+            middle: [x, y, z, ahead as f32],
+            ..self.frame
+        };
+        queue.write_buffer(frame, 0, bytemuck::bytes_of(&place));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use naga::back::glsl;
+    use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+    #[test]
+    fn all_formulas_fit_both_stages() {
+        let all: BTreeSet<u32> = formulas::all().collect();
+        for stage in [Stage::Compute, Stage::Fragment] {
+            let code = stage.code(&all);
+            let module = naga::front::wgsl::parse_str(&code)
+                .unwrap_or_else(|error| panic!("{stage:?}: {}", error.emit_to_string(&code)));
+            let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+                .validate(&module)
+                .unwrap_or_else(|error| panic!("{stage:?}: {}", error.emit_to_string(&code)));
+            if stage == Stage::Compute {
+                continue;
+            }
+            let options = glsl::Options {
+                version: glsl::Version::Embedded {
+                    version: 300,
+                    is_webgl: true,
+                },
+                ..glsl::Options::default()
+            };
+            let pipeline = glsl::PipelineOptions {
+                entry_point: "draw".into(),
+                shader_stage: naga::ShaderStage::Fragment,
+                multiview: None,
+            };
+            let mut text = String::new();
+            let policies = naga::proc::BoundsCheckPolicies::default();
+            let written =
+                glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
+                    .and_then(|mut writer| writer.write());
+            assert!(written.is_ok(), "{written:?}");
+        }
+    }
+}
