@@ -33,6 +33,14 @@ pub struct Spoke {
     pub reach: f64,
 }
 
+impl Spoke {
+    /// Returns the radius of the flesh around the ray's origin.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.step / STEP
+    }
+}
+
 /// A closed mesh of rays.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cage {

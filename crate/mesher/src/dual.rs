@@ -18,6 +18,8 @@ use glam::DVec3;
 
 /// Most times that leaves are split for the sake of the mesh's topology.
 const ROUNDS: usize = 24;
+/// The same for a mesh that may touch or cut itself.
+const ROUGH: usize = 3;
 /// Most leaves that are split at once for its sake.
 const MOST_PINCHED: usize = 5000;
 /// Largest distances from the surface of the middle of a triangle and of a vertex, by first-order
@@ -55,26 +57,12 @@ pub fn dual(
     sizes: &Sizes,
     progress: &mut Progress<'_>,
 ) -> Result<Option<Raw>, MeshError> {
-    let mut crossed = Vec::new();
     for round in 0..ROUNDS {
         let start = round as f32 / ROUNDS as f32;
-        grow(
-            space,
-            corners,
-            crossed,
-            sizes,
-            &mut progress.part(start, 1.0),
-        )?;
-        if is_cut(space) {
-            return Ok(None);
-        }
-        let Some(polygons) = polygons(space, corners, sizes.threads, progress)? else {
+        let mut part = progress.part(start, 1.0);
+        let Some(polygons) = close(space, corners, sizes, &mut part)? else {
             return Ok(None);
         };
-        crossed = find_missing(space, &polygons);
-        if !crossed.is_empty() {
-            continue;
-        }
         let rings = polygons.iter().map(Polygon::corners);
         let mut bad = find_pinched(rings);
         if bad.is_empty() {
@@ -95,6 +83,63 @@ pub fn dual(
             return Ok(None);
         }
         split_all(space, &bad, sizes.threads, progress)?;
+    }
+    Ok(None)
+}
+
+/// Makes the mesh as [`dual`] does, but leaves it where it is no manifold after some rounds.
+///
+/// # Errors
+/// If there are too many cells, or if the caller cancels.
+pub fn sketch(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Option<Raw>, MeshError> {
+    for round in 0..=ROUGH {
+        let mut part = progress.part(round as f32 / (ROUGH + 1) as f32, 1.0);
+        let Some(polygons) = close(space, corners, sizes, &mut part)? else {
+            break;
+        };
+        let mut bad = find_pinched(polygons.iter().map(Polygon::corners));
+        if bad.is_empty() || round == ROUGH {
+            let mut mesh = Mesh::new(space, corners, &polygons, sizes, progress)?;
+            bad = mesh.triangulate(&polygons);
+            if bad.is_empty() || round == ROUGH {
+                return Ok(Some(mesh.raw));
+            }
+        }
+        let deepest = space.forest.deepest;
+        bad.retain(|leaf| space.forest.cells[*leaf as usize].level < deepest);
+        split_all(space, &bad, sizes.threads, progress)?;
+    }
+    Ok(None)
+}
+
+/// Divides the cells that are not known yet, and returns the polygons between all that the surface
+/// crosses; `None` where it reaches the end of the box.
+fn close(
+    space: &mut Space<'_>,
+    corners: &mut Corners,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Option<Vec<Polygon>>, MeshError> {
+    let mut crossed = Vec::new();
+    for round in 0..ROUNDS {
+        let start = round as f32 / ROUNDS as f32;
+        let mut part = progress.part(start, 1.0);
+        grow(space, corners, crossed, sizes, &mut part)?;
+        if is_cut(space) {
+            break;
+        }
+        let Some(polygons) = polygons(space, corners, sizes.threads, progress)? else {
+            break;
+        };
+        crossed = find_missing(space, &polygons);
+        if crossed.is_empty() {
+            return Ok(Some(polygons));
+        }
     }
     Ok(None)
 }

@@ -167,7 +167,10 @@ impl Bounded {
         let (center, longest) = (space.forest.center(cell), size.max_element());
         let off = error(space, cell.part, size);
         let mut known = cell.bend;
-        if known.is_infinite() {
+        if hiding.is_infinite() {
+            // No bounds are asked for.
+            known = f64::MAX;
+        } else if known.is_infinite() {
             let radius = 0.5 * size.length();
             let width = space.least_width(cell.part, Ball { center, radius });
             if longest <= WIDTHS * width {
@@ -252,7 +255,7 @@ fn look(
     cell: &Cell,
     middle: &Vertex,
     corners: [&Vertex; 8],
-    tolerance: f64,
+    (tolerance, deepest): (f64, u32),
     is_crossed: bool,
 ) -> Fate {
     let forest = &space.forest;
@@ -286,7 +289,7 @@ fn look(
         let slope = all.fold(middle.gradient.length(), f64::max);
         // Where the function is flat its signs are those of roundings. Not so for NaN.
         let is_steep = slope * tolerance >= FLAT * THRESHOLD;
-        let can_split = cell.level < forest.deepest && (is_steep || !is_usual);
+        let can_split = cell.level < deepest && (is_steep || !is_usual);
         return if can_split {
             Fate::Split
         } else {
@@ -359,7 +362,7 @@ pub fn on_edge([a, b]: [&Vertex; 2]) -> DVec3 {
 pub struct Sizes {
     /// The tolerance.
     pub tolerance: f64,
-    /// Trust in bounds: one of [`HIDING`].
+    /// Trust in bounds: one of [`HIDING`], or infinity for a look at samples alone.
     pub hiding: f64,
     /// Most cells.
     pub most: usize,
@@ -623,6 +626,11 @@ fn decide(
             near.push((*i, Vertex::new(*center, jet)));
         }
     }
+    // Without bounds, samples tell nothing of finer parts.
+    let deepest = match hiding.is_infinite() {
+        true => space.forest.usual,
+        false => space.forest.deepest,
+    };
     // By all samples.
     let nodes: Vec<u32> = near.iter().map(|(i, _)| leaves[*i]).collect();
     corners.extend(space, &nodes, tolerance, threads, progress)?;
@@ -630,7 +638,7 @@ fn decide(
     let found = map_told(threads, &near, progress, |(i, middle)| {
         let cell = space.forest.cells[leaves[*i] as usize];
         match corners.of(leaves[*i]) {
-            Some(ends) => look(space, &cell, middle, ends, tolerance, is_crossed),
+            Some(ends) => look(space, &cell, middle, ends, (tolerance, deepest), is_crossed),
             None => Fate::Split,
         }
     })?;
@@ -712,7 +720,15 @@ mod tests {
                 continue;
             }
             let middle = on_ball(center);
-            if look(&space, &cell, &middle, corners.each_ref(), tolerance, false) == Fate::Split {
+            if look(
+                &space,
+                &cell,
+                &middle,
+                corners.each_ref(),
+                (tolerance, space.forest.deepest),
+                false,
+            ) == Fate::Split
+            {
                 seen += 1;
             } else {
                 assert!(

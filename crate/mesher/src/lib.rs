@@ -33,6 +33,9 @@
 //! makes its triangles fewer, and `file.rs` measures the error both ways, mends what is too far
 //! with `mend.rs`, and begins anew with more care where that is not enough.
 //!
+//! A mesh for the eye ([`look`]) is made the same way of coarse cells, which are found from the
+//! skeletons by samples alone.
+//!
 //! The way of a proven mesh, a file each:
 //! - `forest.rs` cuts a box into cubic cells of balanced sizes; `lattice.rs` fills them with
 //!   tetrahedra that fit together;
@@ -83,6 +86,7 @@ mod guard;
 mod improve;
 mod lattice;
 mod level;
+mod look;
 mod march;
 mod measure;
 mod mend;
@@ -101,6 +105,7 @@ mod unite;
 pub use cages::{Cage, Spoke};
 pub use coating::{Coat, Coating};
 pub use file::approximate;
+pub use look::look;
 pub use measure::Measured;
 pub use model::{CoatedBody, Model, ModelPart, Tolerance, Wishes, coat_scene, mesh_scene};
 pub use options::{MeshError, Options, Phase, Progress, Step};

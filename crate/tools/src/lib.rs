@@ -27,7 +27,6 @@ mod job;
 mod meshing;
 pub mod message;
 mod reading;
-mod track;
 mod view;
 mod work;
 

@@ -1,33 +1,27 @@
 //! The job of meshing a scene's soft surfaces for the eye: a picture of them for as long as the
 //! user turns the model or drags a part of it.
 //!
-//! The surfaces are followed through a grid from where rays from the skeletons leave them. The
-//! result is bytes as a GPU takes them, so that the page has nothing to convert in the frame in
+//! The result is bytes as a GPU takes them, so that the page has nothing to convert in the frame in
 //! which it comes.
 
 use crate::job::{Job, Pace, Progress};
-use crate::track::{eight, jets, track};
-use core::ops::ControlFlow;
-use field::{Implicit, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, TriangleMesh};
-use mesher::{Cage, MeshError, Spoke};
+use mesher::{Cage, MeshError, Spoke, look};
 use scene::{Scene, SoftSurface, Surface};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use wide::f32x8;
 
-/// Least and most side of the grid's cells, in diagonals of the skeletons' box with their flesh.
-const CELLS: [f64; 2] = [1.0 / 300.0, 1.0 / 70.0];
-/// Side of the grid's cells in radii of the thinnest part, within the limits of [`CELLS`].
-const OF_RADIUS: f64 = 0.5;
+/// Least and most side of cells where a surface bends, in diagonals of the skeletons' box with their flesh.
+const CELLS: [f64; 2] = [1.0 / 150.0, 1.0 / 50.0];
+/// Side of those cells in radii of the thinnest part, within the limits of [`CELLS`].
+const OF_RADIUS: f64 = 1.0;
 /// Side of the cells for a fine mesh relative to those for a coarse one.
 const FINER: f64 = 0.5;
-/// Most cells that a body's surface goes through.
-const MOST_CELLS: usize = 300_000;
-/// Halvings of the step of a ray in which it leaves the surface.
-const HALVINGS: usize = 5;
+/// Tolerance of a coarse mesh, in sides of the smallest usual cells.
+const OFF: f64 = 0.06;
 
 /// The closeness of the mesh of a [`ViewScene`] to the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -88,9 +82,12 @@ impl Job for ViewScene {
             .map(|surface| Cage::of_surface(&scene, surface))
             .collect();
         let spokes = cages.iter().flatten().flat_map(|cage| &cage.spokes);
-        let thinnest = spokes.clone().map(radius).fold(f64::INFINITY, f64::min);
+        let thinnest = spokes
+            .clone()
+            .map(Spoke::radius)
+            .fold(f64::INFINITY, f64::min);
         let bounds = Aabb::of_points(spokes.flat_map(|spoke| {
-            let radius = radius(spoke);
+            let radius = spoke.radius();
             [spoke.origin - radius, spoke.origin + radius]
         }));
         let size = bounds.size().length();
@@ -99,24 +96,25 @@ impl Job for ViewScene {
             return Err("there is no soft surface to see".into());
         }
         let [least, most] = CELLS.map(|share| share * size);
-        let finer = match detail {
-            Detail::Coarse => 1.0,
-            Detail::Fine => FINER,
+        let step = (OF_RADIUS * thinnest).clamp(least, most);
+        let sizes = match detail {
+            Detail::Coarse => [OFF * step, step],
+            Detail::Fine => [FINER * FINER * OFF * step, FINER * step],
         };
-        let step = finer * (OF_RADIUS * thinnest).clamp(least, most);
         let mut view = ViewMesh {
             origin: bounds.center(),
             unit: 0.5 * size,
             ..ViewMesh::default()
         };
         for (i, (surface, cages)) in surfaces.iter().zip(&cages).enumerate() {
-            let mut seeds = Vec::new();
-            for cage in cages {
-                seeds.extend(exits(surface.function(), &cage.spokes));
-            }
-            report(progress, i as f32 + 0.3, surfaces.len())?;
-            let mesh = track(surface.function(), &seeds, step, MOST_CELLS)?;
-            report(progress, i as f32 + 0.8, surfaces.len())?;
+            let [start, end] = [i, i + 1].map(|done| done as f32 / surfaces.len() as f32);
+            let mut told =
+                |step: mesher::Step| progress.report(start + step.fraction * (end - start));
+            let mut told = mesher::Progress::new(&mut told);
+            let mesh = match look(surface.function(), cages, sizes, &mut told) {
+                Err(MeshError::Nothing) => continue,
+                mesh => mesh.map_err(|error| error.to_string())?,
+            };
             add(&mut view, &scene, &looks, surface, &mesh);
         }
         if view.triangles.is_empty() {
@@ -124,72 +122,6 @@ impl Job for ViewScene {
         }
         Ok(view)
     }
-}
-
-/// Reports that `done` of the surfaces are meshed. Returns an error if the job is cancelled.
-fn report(progress: &mut Progress<'_, ViewMesh>, done: f32, surfaces: usize) -> Result<(), String> {
-    match progress.report(done / surfaces as f32) {
-        ControlFlow::Continue(()) => Ok(()),
-        ControlFlow::Break(()) => Err(MeshError::Cancelled.to_string()),
-    }
-}
-
-/// Returns the radius of the flesh around the start of a ray, which is searched in steps of half of
-/// it.
-fn radius(spoke: &Spoke) -> f64 {
-    2.0 * spoke.step
-}
-
-/// Returns the points where rays first leave the inside of a function, for those that begin inside
-/// and leave it.
-fn exits(function: &dyn Implicit, spokes: &[Spoke]) -> Vec<DVec3> {
-    /// Number of a cage's rays that are searched.
-    const RAYS: usize = 8;
-    let stride = spokes.len().div_ceil(RAYS).max(1);
-    // Rays with a distance that is inside, and the next one.
-    let mut searched: Vec<(&Spoke, f64, f64)> = spokes
-        .iter()
-        .step_by(stride)
-        .map(|spoke| (spoke, 0.0, 0.0))
-        .collect();
-    let mut left = Vec::new();
-    while !searched.is_empty() {
-        let points: Vec<DVec3> = searched.iter().map(|(s, _, far)| at(s, *far)).collect();
-        let found = jets(function, &points);
-        let mut going = Vec::new();
-        for ((spoke, near, far), jet) in searched.into_iter().zip(found) {
-            if f64::from(jet.value) > THRESHOLD {
-                let next = far + spoke.step;
-                if next <= spoke.reach {
-                    going.push((spoke, far, next));
-                }
-            } else if far > 0.0 {
-                left.push((spoke, near, far));
-            }
-        }
-        searched = going;
-    }
-    for _ in 0..HALVINGS {
-        let middles = left.iter();
-        let middles = middles.map(|(spoke, near, far)| at(spoke, 0.5 * (near + far)));
-        let middles: Vec<DVec3> = middles.collect();
-        for ((_, near, far), jet) in left.iter_mut().zip(jets(function, &middles)) {
-            let half = 0.5 * (*near + *far);
-            if f64::from(jet.value) > THRESHOLD {
-                *near = half;
-            } else {
-                *far = half;
-            }
-        }
-    }
-    left.iter()
-        .map(|(spoke, near, far)| at(spoke, 0.5 * (near + far)))
-        .collect()
-}
-
-/// Returns a point of a ray.
-fn at(spoke: &Spoke, along: f64) -> DVec3 {
-    spoke.origin + spoke.direction * along
 }
 
 /// Appends a surface's mesh.
@@ -221,6 +153,12 @@ fn add(
     for corner in mesh.triangles.iter().flatten() {
         view.triangles.extend((first + corner).to_le_bytes());
     }
+}
+
+/// Returns the coordinates of up to eight points; the last one fills the other lanes.
+fn eight(points: &[DVec3]) -> [f32x8; 3] {
+    let last = points.len() - 1;
+    [0, 1, 2].map(|axis| f32x8::from(core::array::from_fn(|i| points[i.min(last)][axis] as f32)))
 }
 
 /// Returns the mean of looks by their weights.

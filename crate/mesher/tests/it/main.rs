@@ -7,6 +7,7 @@ mod degenerate;
 mod ends;
 mod file;
 mod judges;
+mod look;
 mod painted;
 mod scenes;
 mod sculpted;
