@@ -122,12 +122,15 @@ impl Clipping {
     }
 }
 
+/// A mesh that cuts an element, with its place.
+type OwnClip<'a> = (&'a Function, &'a Clip);
+
 /// The meshes that cut the hard elements of a scene. They are placed one element at a time, as
 /// there may be many copies.
 pub struct HardClips<'a> {
     /// Elements with what cuts them, in their order, by the command that made them.
-    of: BTreeMap<[u32; 3], Vec<(&'a Element, (&'a Function, &'a Clip))>>,
-    last: Option<((&'a Function, &'a Clip), Clipping)>,
+    of: BTreeMap<[u32; 3], Vec<(&'a Element, OwnClip<'a>)>>,
+    last: Option<(OwnClip<'a>, Clipping)>,
 }
 
 impl<'a> HardClips<'a> {

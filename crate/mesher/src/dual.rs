@@ -18,7 +18,7 @@ use glam::DVec3;
 
 /// Most times that leaves are split for the sake of the mesh's topology.
 const ROUNDS: usize = 24;
-/// The same for a mesh that may touch or cut itself.
+/// Most times for a mesh that may touch or cut itself.
 const ROUGH: usize = 3;
 /// Most leaves that are split at once for its sake.
 const MOST_PINCHED: usize = 5000;

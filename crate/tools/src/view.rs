@@ -14,7 +14,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use wide::f32x8;
 
-/// Least and most side of cells where a surface bends, in diagonals of the skeletons' box with their flesh.
+/// Least and most side of cells where a surface bends, in diagonals of the skeletons' box with
+/// their flesh.
 const CELLS: [f64; 2] = [1.0 / 150.0, 1.0 / 50.0];
 /// Side of those cells in radii of the thinnest part, within the limits of [`CELLS`].
 const OF_RADIUS: f64 = 1.0;

@@ -37,13 +37,17 @@ fn creature(kernel: Kernel, thin: f64) -> (Sum, Vec<Cage>) {
     (all.into_iter().collect(), cages)
 }
 
-fn meshed(
+fn try_look(
     function: &dyn Implicit,
     cages: &[Cage],
     sizes: [f64; 2],
 ) -> Result<TriangleMesh, MeshError> {
-    let mut go_on = |_| ControlFlow::Continue(());
-    look(function, cages, sizes, &mut Progress::new(&mut go_on))
+    look(
+        function,
+        cages,
+        sizes,
+        &mut Progress::new(&mut |_| ControlFlow::Continue(())),
+    )
 }
 
 #[test]
@@ -52,7 +56,7 @@ fn mesh_is_closed_and_near_the_surface() {
         // Twice as thick as a cell, as thick, and a quarter of it.
         for thin in [0.2, 0.1, 0.025] {
             let (sum, cages) = creature(kernel, thin);
-            let mesh = meshed(&sum, &cages, [0.01, 0.1]).unwrap();
+            let mesh = try_look(&sum, &cages, [0.01, 0.1]).unwrap();
             let topology = Topology::of(&mesh).unwrap();
             let told = format!("{kernel:?} {thin}: {topology:?}");
             assert_eq!(topology.genera, [0, 0], "{told}");
@@ -83,7 +87,7 @@ fn mesh_is_closed_and_near_the_surface() {
 fn mesh_has_fewer_triangles_where_the_surface_is_flat() {
     let (sum, cages) = creature(Kernel::Gauss, 0.1);
     let counts = [0.02, 0.005].map(|tolerance| {
-        let mesh = meshed(&sum, &cages, [tolerance, 0.02]).unwrap();
+        let mesh = try_look(&sum, &cages, [tolerance, 0.02]).unwrap();
         mesh.triangles.len()
     });
     assert!(counts[1] > 2 * counts[0], "{counts:?}");
@@ -93,26 +97,31 @@ fn mesh_has_fewer_triangles_where_the_surface_is_flat() {
 fn what_cannot_be_meshed_is_told() {
     let (sum, cages) = creature(Kernel::Gauss, 0.1);
     assert_eq!(
-        meshed(&sum, &[], [0.01, 0.1]).unwrap_err(),
+        try_look(&sum, &[], [0.01, 0.1]).unwrap_err(),
         MeshError::Nothing
     );
     for sizes in [[0.0, 0.1], [0.1, f64::NAN], [f64::NAN, 0.1], [0.1, -1.0]] {
-        let error = meshed(&sum, &cages, sizes).unwrap_err();
+        let error = try_look(&sum, &cages, sizes).unwrap_err();
         assert!(
             matches!(error, MeshError::NotFinite(_)),
             "{sizes:?} {error}"
         );
     }
-    let error = meshed(&sum, &cages, [1e-9, 1e-6]).unwrap_err();
+    let error = try_look(&sum, &cages, [1e-9, 1e-6]).unwrap_err();
     assert!(matches!(error, MeshError::TooMany { .. }), "{error}");
     let plane = Skeleton::Plane {
         point: DVec3::ZERO,
         normal: DVec3::Z,
     };
     let plane: Sum = [flesh(plane, Kernel::Gauss, 0.5)].into_iter().collect();
-    let error = meshed(&plane, &cages, [0.01, 0.1]).unwrap_err();
+    let error = try_look(&plane, &cages, [0.01, 0.1]).unwrap_err();
     assert_eq!(error, MeshError::Unbounded);
-    let mut stop = |_| ControlFlow::Break(());
-    let error = look(&sum, &cages, [0.01, 0.1], &mut Progress::new(&mut stop)).unwrap_err();
+    let error = look(
+        &sum,
+        &cages,
+        [0.01, 0.1],
+        &mut Progress::new(&mut |_| ControlFlow::Break(())),
+    )
+    .unwrap_err();
     assert_eq!(error, MeshError::Cancelled);
 }
