@@ -24,8 +24,9 @@ for (const colorScheme of ['dark', 'light']) {
     const sinew = await browser.open({ colorScheme, fragment: '#first', viewport: { width: 1440, height: 900 } });
     await sinew.place('first shape');
     const write = async () => {
+      const before = await sinew.text();
       await sinew.page.locator('#voice button[aria-label="Write it"]').evaluate((element) => element.click());
-      await sinew.finished();
+      await sinew.written((text) => text.length > before.length);
       const next = sinew.page.locator('#voice button[aria-label="Next"]');
       await next.evaluate((element) => element.click());
       await sinew.still();

@@ -110,13 +110,13 @@ test('a journey by keyboard alone', async () => {
     const id = document.querySelector('#canvas').getAttribute('aria-activedescendant');
     return id && document.getElementById(id)?.getAttribute('aria-label');
   });
-  const tabTo = async (name) => {
+  const tabTo = async (name, key = 'Tab') => {
     for (let i = 0; i < 60; i++) {
-      await keyboard.press('Tab');
+      await keyboard.press(key);
       await sinew.still();
       if ((await focused())?.startsWith(name)) return;
     }
-    assert.fail(`Tab does not lead to ${name}`);
+    assert.fail(`${key} does not lead to ${name}`);
   };
   await keyboard.press('Escape');
   await tabTo('Examples');
@@ -143,9 +143,9 @@ test('a journey by keyboard alone', async () => {
   await keyboard.press('Backspace');
   await sinew.written((text) => text === before);
   await sinew.finished();
-  // Tab indents in the text; Escape leaves it.
+  // Tab indents in the text; Escape leaves it, and the way on is backwards.
   await keyboard.press('Escape');
-  await tabTo('Download');
+  await tabTo('Download', 'Shift+Tab');
   await keyboard.press('Enter');
   await tabTo('Picture\n');
   const coming = sinew.page.waitForEvent('download', { timeout: 60_000 });
@@ -170,7 +170,7 @@ test('more contrast is painted where it is asked for, and nothing moves where th
   const calm = await ask({ colorScheme: 'dark', contrast: 'no-preference', reducedMotion: 'reduce' });
   // The brightest and the mean tell the palette.
   const sum = ({ data }) => data.reduce((sum, value) => sum + value, 0);
-  assert.ok(sum(sharp) > 1.02 * sum(weak), `${sum(sharp)} ${sum(weak)}`);
-  assert.ok(sum(forced) > 1.02 * sum(weak), `${sum(forced)} ${sum(weak)}`);
-  assert.ok(Math.abs(sum(calm) - sum(weak)) < 0.02 * sum(weak));
+  assert.ok(sum(sharp) > 1.005 * sum(weak), `${sum(sharp)} ${sum(weak)}`);
+  assert.ok(sum(forced) > 1.005 * sum(weak), `${sum(forced)} ${sum(weak)}`);
+  assert.ok(Math.abs(sum(calm) - sum(weak)) < 0.003 * sum(weak));
 });

@@ -58,7 +58,7 @@ function update(element, role, [name, value, low, high, state], [x, y, w, h]) {
     const text = value || name;
     if (element.textContent !== text) element.textContent = text;
   } else {
-    set(element, 'aria-label', name || (role === 'textarea' ? 'Text of the model' : role === 'dialog' ? 'Window' : value || role));
+    set(element, 'aria-label', role === 'textarea' ? 'Text of the model' : name || (role === 'dialog' ? 'Window' : value || role));
     if (role === 'spinbutton') set(element, 'step', 'any');
     if (role === 'slider') {
       set(element, 'min', low || '0');

@@ -6,7 +6,7 @@ use crate::wish::{TextWish, Wishes, WorkWish};
 use crate::{places, screen, theme};
 use assist::first::{START, STEPS};
 use document::session::Session;
-use egui::{Button, Frame, Label, Margin, Panel, RichText, Ui};
+use egui::{Button, Frame, Id, Label, Margin, Panel, RichText, Ui, UiBuilder};
 use rats::TextEdit;
 
 /// Text of the work that it begins with.
@@ -57,7 +57,8 @@ pub fn show(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
         }
         ui.horizontal_wrapped(|ui| {
             let is_done = is_done(session, at);
-            if !is_done && !step.code.is_empty() && ui.button("Write it").clicked() {
+            let may_write = !is_done && !step.code.is_empty();
+            if may_write && shows(ui, "write", Button::new("Write it")) {
                 let end = session.text(0).len();
                 let gap = if session.text(0).ends_with('\n') {
                     ""
@@ -74,16 +75,23 @@ pub fn show(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
             } else {
                 Button::new(next)
             };
-            if ui.add(next).clicked() {
+            if shows(ui, "next", next) {
                 let next = (!is_last).then_some((number, at + 1));
                 wishes.push(WorkWish::Step(next));
             }
-            if !is_last && ui.button("Skip").clicked() {
+            if !is_last && shows(ui, "skip", Button::new("Skip")) {
                 wishes.push(WorkWish::Step(None));
             }
         });
     });
     places::note(ui.ctx(), "first shape", card.response.rect);
+}
+
+/// Shows a button that stays itself where others come and go beside it; returns whether it is
+/// clicked.
+fn shows(ui: &mut Ui, name: &str, button: Button<'_>) -> bool {
+    let part = UiBuilder::new().scope_id(Id::unique(("first shape", name)));
+    ui.scope_builder(part, |ui| ui.add(button).clicked()).inner
 }
 
 /// Whether the user, or the button, has done what a step asks for.
