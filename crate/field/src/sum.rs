@@ -3,10 +3,9 @@ use crate::bound::Nearness;
 use crate::far_field::{Cell, FarField, power};
 use crate::implicit::{Part, Slack, Variation};
 use crate::kinks::{self, Kink};
-use crate::{
-    Ball, Bound, Cut, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, Shaping, Skeleton,
-    THRESHOLD, Taper,
-};
+use crate::{Ball, Bound, Enclosure, Evaluate, Implicit, Jet, Logarithm, Primitive, THRESHOLD};
+#[cfg(feature = "widths")]
+use crate::{Cut, Shaping, Skeleton, Taper};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 use wide::f32x8;
@@ -38,7 +37,8 @@ pub struct Sum {
     pub primitives: Vec<Primitive>,
     /// Bounds of each term for enclosures, made at first use.
     bounds: OnceLock<Vec<TermBounds>>,
-    /// The parts of each bone that tapers, see [`parts_by_width`], made at first use.
+    /// The parts of each bone that tapers, see `parts_by_width`, made at first use.
+    #[cfg(feature = "widths")]
     parts: OnceLock<Vec<Vec<Bound>>>,
     /// The hierarchy for those who bear its error, made at first use; `None` if it would not pay.
     far: OnceLock<Option<Box<FarField>>>,
@@ -100,6 +100,7 @@ impl Sum {
         Self {
             primitives,
             bounds: OnceLock::new(),
+            #[cfg(feature = "widths")]
             parts: OnceLock::new(),
             far: OnceLock::new(),
         }
@@ -168,6 +169,7 @@ impl Sum {
 
 /// Returns bounds on the parts of a bone that tapers, along each of which its radius is halved at
 /// most; none if it hardly tapers or has a profile.
+#[cfg(feature = "widths")]
 fn parts_by_width(primitive: &Primitive) -> Option<Vec<Bound>> {
     let shaping = primitive.tapered.as_deref()?;
     let radii = [0.0, 1.0].map(|share| shaping.at(share).radius);
@@ -355,6 +357,7 @@ impl Implicit for Sum {
         all
     }
 
+    #[cfg(feature = "widths")]
     fn least_width(&self, part: Option<&Part>, ball: Ball, enough: f64) -> Option<f64> {
         let terms = self.bounds();
         let parts = self.parts.get_or_init(|| {
