@@ -10,6 +10,9 @@
 //!   that come before go from widget to widget, and take the focus along.
 //!
 //! Everything that comes after a waiting key waits with it.
+//!
+//! Where Escape has left a widget, as a text in which Tab indents, Tab goes on from there: it would
+//! begin at the top again, and never come past the text.
 
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 
@@ -22,6 +25,10 @@ pub struct Keyboard {
     focused: Option<Id>,
     /// Whether the last frame had an event that may move the focus.
     moved: bool,
+    /// Whether the last frame had an Escape.
+    escaped: bool,
+    /// The widget that Escape has left, as long as no other one has the focus.
+    left: Option<Id>,
 }
 
 impl egui::Plugin for Keyboard {
@@ -34,6 +41,11 @@ impl egui::Plugin for Keyboard {
         events.append(&mut input.events);
         let focused = ctx.memory(|memory| memory.focused());
         let is_new = focused.is_some() && focused != self.focused;
+        self.left = match focused {
+            Some(_) => None,
+            None if self.escaped => self.focused.or(self.left),
+            None => self.left,
+        };
         self.focused = focused;
         let focus = match focused {
             _ if is_new || self.moved => Focus::Moves,
@@ -42,6 +54,15 @@ impl egui::Plugin for Keyboard {
         };
         self.waiting = events.split_off(count(&events, focus));
         self.moved = events.iter().any(moves_focus);
+        self.escaped = presses(&events, Key::Escape);
+        if events.iter().any(is_click) {
+            self.left = None;
+        }
+        if presses(&events, Key::Tab)
+            && let Some(left) = self.left.take()
+        {
+            ctx.memory_mut(|memory| memory.request_focus(left));
+        }
         input.events = events;
         if !self.waiting.is_empty() {
             ctx.request_repaint();
@@ -75,10 +96,21 @@ fn count(events: &[Event], focus: Focus) -> usize {
     events.len()
 }
 
+/// Whether a key goes down.
+fn presses(events: &[Event], wanted: Key) -> bool {
+    events
+        .iter()
+        .any(|event| matches!(event, Event::Key { key, pressed: true, .. } if *key == wanted))
+}
+
+fn is_click(event: &Event) -> bool {
+    matches!(event, Event::PointerButton { .. })
+}
+
 /// Whether a widget may take the focus because of an event, now or in the next frame.
 fn moves_focus(event: &Event) -> bool {
     match event {
-        Event::PointerButton { .. } => true,
+        event if is_click(event) => true,
         Event::Key {
             key, pressed: true, ..
         } => matches!(

@@ -486,3 +486,20 @@ fn blocks_fold_with_f8_and_with_their_triangles() {
     window.steps(2);
     window.harness.get_by_label("Fold line 2");
 }
+
+#[test]
+fn tab_goes_on_from_the_text_that_escape_has_left() {
+    let mut window = window();
+    at_end(&mut window);
+    window.key(Modifiers::NONE, Key::Escape);
+    window.key(Modifiers::NONE, Key::Escape);
+    let focused = |window: &Window| window.harness.ctx.memory(|memory| memory.focused());
+    assert_eq!(focused(&window), None);
+    let before = window.text();
+    window.key(Modifiers::NONE, Key::Tab);
+    assert!(focused(&window).is_some_and(|own| own != egui::Id::unique("editor")));
+    let node = window.harness.get_by(|node| node.is_focused());
+    // Where it would begin at the top again.
+    assert_ne!(node.accesskit_node().label().as_deref(), Some("Work"));
+    assert_eq!(window.text(), before);
+}

@@ -36,10 +36,6 @@
 //! - All cells of a world take at most [`MOST_BYTES`]: beyond, cells are made for a ray and
 //!   forgotten, so that pictures are the same and take longer.
 //! - Functions without a ball around their surface have no cells. Their rays are halved alone.
-//!
-//! # What comes next
-//!
-//! Cells of sums, in place of slabs, shared spans and clusters, if they are as quick.
 mod flat;
 pub(crate) mod search;
 
