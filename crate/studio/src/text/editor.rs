@@ -13,7 +13,7 @@ mod tint;
 
 use crate::problems;
 use crate::text::code::Colouring;
-use crate::text::keyboard::is_brace;
+use crate::text::keyboard::{self, is_brace};
 use crate::text::marks::{self, Marks};
 use crate::theme::{self, Palette};
 use crate::wish::{TextWish, Wishes};
@@ -291,7 +291,7 @@ impl Editor {
             .code_editor()
             // Escape closes what is open, and only then leaves the text.
             .event_filter(egui::EventFilter {
-                tab: true,
+                tab: !keyboard::passes(ui.ctx()),
                 horizontal_arrows: true,
                 vertical_arrows: true,
                 escape: self.cards.completions.is_open()
@@ -378,7 +378,7 @@ impl Editor {
     /// Acts on F8, Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Returns
     /// whether the text changed.
     fn keys(&mut self, ui: &Ui) -> bool {
-        if !ui.memory(|memory| memory.has_focus(id())) {
+        if !ui.memory(|memory| memory.has_focus(id())) || keyboard::passes(ui.ctx()) {
             return false;
         }
         let folds = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::F8));

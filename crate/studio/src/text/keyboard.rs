@@ -58,11 +58,12 @@ impl egui::Plugin for Keyboard {
         if events.iter().any(is_click) {
             self.left = None;
         }
-        if presses(&events, Key::Tab)
-            && let Some(left) = self.left.take()
-        {
+        let from = presses(&events, Key::Tab).then(|| self.left.take());
+        let from = from.flatten();
+        if let Some(left) = from {
             ctx.memory_mut(|memory| memory.request_focus(left));
         }
+        ctx.data_mut(|data| data.insert_temp(passing(), from.is_some()));
         input.events = events;
         if !self.waiting.is_empty() {
             ctx.request_repaint();
@@ -94,6 +95,16 @@ fn count(events: &[Event], focus: Focus) -> usize {
         closed |= is_ours(event) || moves_focus(event) || wishes;
     }
     events.len()
+}
+
+fn passing() -> Id {
+    Id::unique("focus passes")
+}
+
+/// Whether a Tab of this frame goes on from a widget that Escape has left, which has the focus for
+/// as long as that takes and is not meant by it.
+pub fn passes(ctx: &Context) -> bool {
+    ctx.data(|data| data.get_temp(passing()).unwrap_or(false))
 }
 
 /// Whether a key goes down.

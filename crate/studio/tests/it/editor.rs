@@ -3,7 +3,7 @@
 
 use crate::driver::Window;
 use egui::{Event, Key, Modifiers, vec2};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use studio::places;
 
 const TEXT: &str = "\
