@@ -487,13 +487,17 @@ fn blocks_fold_with_f8_and_with_their_triangles() {
     window.harness.get_by_label("Fold line 2");
 }
 
+/// Returns the widget that has the focus.
+fn focused(window: &Window) -> Option<egui::Id> {
+    window.harness.ctx.memory(|memory| memory.focused())
+}
+
 #[test]
 fn tab_goes_on_from_the_text_that_escape_has_left() {
     let mut window = window();
     at_end(&mut window);
     window.key(Modifiers::NONE, Key::Escape);
     window.key(Modifiers::NONE, Key::Escape);
-    let focused = |window: &Window| window.harness.ctx.memory(|memory| memory.focused());
     assert_eq!(focused(&window), None);
     let before = window.text();
     window.key(Modifiers::NONE, Key::Tab);
