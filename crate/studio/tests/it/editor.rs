@@ -488,7 +488,7 @@ fn blocks_fold_with_f8_and_with_their_triangles() {
 }
 
 /// Returns the widget that has the focus.
-fn focused(window: &Window) -> Option<egui::Id> {
+fn find_focus(window: &Window) -> Option<egui::Id> {
     window.harness.ctx.memory(|memory| memory.focused())
 }
 
@@ -498,10 +498,10 @@ fn tab_goes_on_from_the_text_that_escape_has_left() {
     at_end(&mut window);
     window.key(Modifiers::NONE, Key::Escape);
     window.key(Modifiers::NONE, Key::Escape);
-    assert_eq!(focused(&window), None);
+    assert_eq!(find_focus(&window), None);
     let before = window.text();
     window.key(Modifiers::NONE, Key::Tab);
-    assert!(focused(&window).is_some_and(|own| own != egui::Id::unique("editor")));
+    assert!(find_focus(&window).is_some_and(|own| own != egui::Id::unique("editor")));
     let node = window.harness.get_by(|node| node.is_focused());
     // Where it would begin at the top again.
     assert_ne!(node.accesskit_node().label().as_deref(), Some("Work"));
