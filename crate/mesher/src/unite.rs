@@ -106,7 +106,7 @@ pub fn union(
 /// Returns the part of a closed mesh that is inside other closed meshes, or outside all of them.
 ///
 /// # Errors
-/// With the reason if a mesh is not closed or the cut fails, or if the caller cancels.
+/// If a mesh is not closed or the cut fails, with the reason, or if the caller cancels.
 pub fn clip(
     mesh: &TriangleMesh,
     by: &[TriangleMesh],

@@ -325,7 +325,7 @@ fn small_page(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wi
     let palette = theme::palette(ui.visuals());
     let all = ui.available_rect_before_wrap();
     let [w, h] = page.work.session.frame().map(|side| side as f32);
-    // With the keyboard or a card up there is little room; the text then matters more.
+    // The keyboard of a phone, or a card, leaves little room, which the text needs more.
     let low = if first::step_of(page).is_some() {
         520.0
     } else {

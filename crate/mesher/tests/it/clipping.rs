@@ -172,7 +172,7 @@ fn copies_are_clipped_by_copies_of_the_mesh() {
     let mut notes = model.notes.iter();
     assert!(notes.any(|note| note.contains("not clipped, as other limbs")));
     assert!(model.bounds().min.x < -8.0);
-    // As bodies of their own each is cut.
+    // Each is cut if it is a body of its own.
     let bodies = format!("body B\n{LIMBS}\nclose\ninstance B, COPY translate 5 0 8");
     let model = build(&scene(&bodies, &clip), false);
     let least = model.parts.iter().map(|part| part.mesh.bounds().min.x);

@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use trials::{Random, count};
 
-fn primitive(skeleton: Skeleton, kernel: Kernel, radius: f64) -> Primitive {
+pub fn primitive(skeleton: Skeleton, kernel: Kernel, radius: f64) -> Primitive {
     let shaping = Shaping {
         kernel,
         radius,

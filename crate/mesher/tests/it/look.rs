@@ -1,24 +1,11 @@
 //! Meshes for the eye: closed, outward, near the surface, and with thin limbs.
 
+use crate::file::primitive;
 use core::ops::ControlFlow;
-use field::{BlobScale, Implicit, Kernel, Primitive, Shaping, Skeleton, Sum, THRESHOLD};
+use field::{Implicit, Kernel, Skeleton, Sum, THRESHOLD};
 use glam::DVec3;
 use mesh::{Topology, TriangleMesh};
 use mesher::{Cage, MeshError, Progress, look};
-
-/// Returns a primitive of this kernel and radius.
-fn flesh(skeleton: Skeleton, kernel: Kernel, radius: f64) -> Primitive {
-    let shaping = Shaping {
-        kernel,
-        radius,
-        blobbiness: 2.0,
-        blob_scale: BlobScale::Relative,
-        strength: 1.0,
-        influence: 1e-3,
-        taper: None,
-    };
-    Primitive::new(skeleton, &shaping, None).expect("it has a field")
-}
 
 /// Returns a large ball, a small one apart from it, and a thin limb that leads from the large one
 /// to nowhere, with cages around their skeletons.
@@ -32,8 +19,8 @@ fn creature(kernel: Kernel, thin: f64) -> (Sum, Vec<Cage>) {
         base: DVec3::ZERO,
         apex: tip,
     };
-    let mut all = vec![flesh(limb, kernel, thin)];
-    all.extend(balls.map(|(center, radius)| flesh(Skeleton::Point { center }, kernel, radius)));
+    let mut all = vec![primitive(limb, kernel, thin)];
+    all.extend(balls.map(|(center, radius)| primitive(Skeleton::Point { center }, kernel, radius)));
     (all.into_iter().collect(), cages)
 }
 
@@ -113,7 +100,7 @@ fn what_cannot_be_meshed_is_told() {
         point: DVec3::ZERO,
         normal: DVec3::Z,
     };
-    let plane: Sum = [flesh(plane, Kernel::Gauss, 0.5)].into_iter().collect();
+    let plane: Sum = [primitive(plane, Kernel::Gauss, 0.5)].into_iter().collect();
     let error = try_look(&plane, &cages, [0.01, 0.1]).unwrap_err();
     assert_eq!(error, MeshError::Unbounded);
     let error = look(

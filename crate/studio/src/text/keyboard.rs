@@ -11,8 +11,8 @@
 //!
 //! Everything that comes after a waiting key waits with it.
 //!
-//! Where Escape has left a widget, as a text in which Tab indents, Tab goes on from there: it would
-//! begin at the top again, and never come past the text.
+//! Tab goes on from a widget that Escape has left, as a text in which Tab indents. Without that it
+//! would begin at the top again, and never come past the text.
 
 use egui::{Context, Event, Id, Key, Modifiers, RawInput};
 

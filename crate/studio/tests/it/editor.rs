@@ -503,7 +503,7 @@ fn tab_goes_on_from_the_text_that_escape_has_left() {
     window.key(Modifiers::NONE, Key::Tab);
     assert!(find_focus(&window).is_some_and(|own| own != egui::Id::unique("editor")));
     let node = window.harness.get_by(|node| node.is_focused());
-    // Where it would begin at the top again.
+    // The first widget of the page, from which Tab would begin again.
     assert_ne!(node.accesskit_node().label().as_deref(), Some("Work"));
     assert_eq!(window.text(), before);
 }
