@@ -147,6 +147,7 @@ impl App {
                     has_draft: render_state.is_some(),
                     rest,
                     touch: None,
+                    asked: [false; 2],
                     place: [640.0, 480.0],
                     width: 0.0,
                     forced: None,
@@ -363,12 +364,14 @@ impl App {
         let ctx = ui.ctx().clone();
         let screen = &mut self.page.screen;
         let touch = ctx.input(egui::InputState::has_touch_screen) || screen::is_narrow(&ctx);
-        if screen.touch != Some(touch) {
-            screen.touch = Some(touch);
-            let sharp = "(prefers-contrast: more), (forced-colors: active)";
-            theme::set_sharp(browser::is_wanted(sharp));
+        let sharp = "(prefers-contrast: more), (forced-colors: active)";
+        let calm = "(prefers-reduced-motion: reduce)";
+        let asked = [sharp, calm].map(browser::is_wanted);
+        if (screen.touch, screen.asked) != (Some(touch), asked) {
+            let [is_sharp, is_calm] = asked;
+            (screen.touch, screen.asked) = (Some(touch), asked);
+            theme::set_sharp(is_sharp);
             theme::apply(&ctx, touch);
-            let is_calm = browser::is_wanted("(prefers-reduced-motion: reduce)");
             if screen.rest > 0.0 || is_calm {
                 // Fading draws many frames, each at the cost of the picture.
                 ctx.all_styles_mut(|style| {

@@ -81,6 +81,8 @@ pub struct Screen {
     pub rest: f32,
     /// Whether fingers are likely; `None` before the first frame.
     pub touch: Option<bool>,
+    /// Whether the user's system asks for more contrast, and for less motion.
+    pub asked: [bool; 2],
     /// The picture's place in device pixels at the last frame.
     pub place: [f32; 2],
     /// Width that text and picture shared at the last frame, points.

@@ -301,6 +301,13 @@ impl Renderer {
         Some((self.texture.as_ref()?, self.shown?))
     }
 
+    /// Whether the picture has a ray for every pixel.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        let progress = &self.progress;
+        progress.generation == Some(self.number) && progress.pass_seconds[1].is_some()
+    }
+
     /// Returns the opacity of the picture over the draft, 0 … 1.
     #[must_use]
     pub fn opacity(&self, now: f64) -> f32 {

@@ -171,12 +171,9 @@ impl Panel for Sliders {
         let palette = theme::palette(ui.visuals());
         places::note(ui.ctx(), "sliders", ui.max_rect());
         let waits = page.work.session.shows_errors();
-        let (hot, presets) = {
-            let compiled = page.work.session.compilation();
-            (&compiled.hot, &compiled.presets)
-        };
+        let hot = &page.work.session.compilation().hot;
         let has_room = !screen::is_small(ui.ctx());
-        if waits || has_room || !presets.is_empty() {
+        if waits || has_room || !hot.is_empty() {
             let (text, colour) = if waits {
                 (
                     "Sliders: the picture waits until the errors are mended",
@@ -193,7 +190,7 @@ impl Panel for Sliders {
                             .on_hover_text("Variables marked hot in the text");
                     }
                     if !waits {
-                        preset_buttons(ui, &page.work.session, has_room, wishes);
+                        preset_buttons(ui, &page.work.session, wishes);
                     }
                 });
             });
@@ -211,8 +208,8 @@ impl Panel for Sliders {
     }
 }
 
-/// Shows a button for each preset of the text, and with `keeps` one that writes a new one.
-fn preset_buttons(ui: &mut Ui, session: &Session, keeps: bool, wishes: &mut Wishes) {
+/// Shows a button for each preset of the text, and one that writes a new one.
+fn preset_buttons(ui: &mut Ui, session: &Session, wishes: &mut Wishes) {
     let compiled = session.compilation();
     for (index, preset) in compiled.presets.iter().enumerate() {
         let button = ui.push_id(index, |ui| {
@@ -226,8 +223,7 @@ fn preset_buttons(ui: &mut Ui, session: &Session, keeps: bool, wishes: &mut Wish
             wishes.push(TextWish::Edit { edits, step: true });
         }
     }
-    let kept = keeps.then(|| keep(session)).flatten();
-    let Some(edit) = kept else {
+    let Some(edit) = keep(session) else {
         return;
     };
     let button = ui.button(RichText::new("Keep").size(12.5));

@@ -54,11 +54,12 @@ struct Kept {
 }
 
 impl Kept {
-    /// Returns the picture while no true one is there; `None` if it has not come or does not fit.
+    /// Returns the picture while no true one as fine is there; `None` if it has not come or does not
+    /// fit.
     fn texture(&mut self, page: &Page, ui: &Ui) -> Option<TextureId> {
         let session = &page.work.session;
         let fits = self.revision == session.revision() && session.user_camera().is_none();
-        let is_wanted = page.settings.show != Show::Draft && page.renderer.texture().is_none();
+        let is_wanted = page.settings.show != Show::Draft && !page.renderer.is_whole();
         if !fits || !is_wanted {
             return None;
         }

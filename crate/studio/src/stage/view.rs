@@ -142,8 +142,9 @@ pub fn show(ui: &mut Ui, rect: Rect, scenery: &Scenery<'_>, wishes: &mut Wishes)
     }
     match (traced, draft) {
         (Some((texture, _)), None) => image(texture.id(), 1.0),
-        (Some((texture, _)), Some(_)) if fresh && show == Show::Auto => {
-            let opacity = renderer.opacity(now);
+        (Some((texture, _)), Some(_)) if fresh && show == Show::Auto && !is_kept => {
+            let moves = ui.style().animation_time > 0.0;
+            let opacity = if moves { renderer.opacity(now) } else { 1.0 };
             image(texture.id(), opacity);
             if opacity < 1.0 {
                 ui.ctx().request_repaint();
