@@ -199,16 +199,16 @@ pub fn decay(power: i32, inverse: f32x8) -> f32x8 {
 /// Ratio of a cube's half diagonal to half its side, or more.
 const DIAGONAL: f64 = 1.733;
 
-/// Returns the exponent e and the square ε² of a kernel `(ε² + u²)^(−e/2)`; `None` for kernels that
-/// end and the Gaussian.
+/// Returns the exponent e, from 1 to 4, and the square ε² of a kernel `(ε² + u²)^(−e/2)`; `None`
+/// for all other kernels.
 #[must_use]
 pub fn power(kernel: Kernel) -> Option<(i32, f64)> {
     match kernel.tail() {
         Tail::Power {
             exponent,
             softening,
-        } => Some((exponent, softening)),
-        Tail::Compact | Tail::Fast => None,
+        } if exponent <= 4 => Some((exponent, softening)),
+        _ => None,
     }
 }
 

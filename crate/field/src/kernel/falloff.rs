@@ -113,7 +113,8 @@ pub(crate) trait Falloff: Sized {
             1 => ratio * ratio,
             2 => ratio,
             3 => libm::cbrt(ratio * ratio),
-            _ => ratio.sqrt(),
+            4 => ratio.sqrt(),
+            _ => libm::pow(ratio, 2.0 / f64::from(exponent)),
         };
         square - softening
     }
