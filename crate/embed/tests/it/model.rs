@@ -42,7 +42,7 @@ fn values_are_those_of_the_field() {
 
 #[test]
 fn films_have_frames() {
-    let text = b"surface s diffuse Gold blobbiness -1\nsphere s 1, <frame 0 0>";
+    let text = b"var x = 0 += 1\nsurface s diffuse Gold blobbiness -1\nsphere s 1, <x 0 0>";
     let mut model = model(&[("film.rat", text)]).unwrap();
     assert!(model.is_animated(), "{:?}", model.diagnostics());
     let before = model.values(&[5.0, 0.0, 0.0])[0];
