@@ -13,7 +13,8 @@ use mesher::{Tolerance, Wishes};
 use pool::{Ticket, Tools, clock};
 use rats::Project;
 use scene::Scene;
-use serde::Serialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::sync::Arc;
 use tools::{CoatScene, Coated, MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
 use viewport::Surface;
@@ -27,10 +28,13 @@ pub const MOST_EDGES: usize = 300_000;
 /// Seconds of a tick that frames of a motion may take.
 const SLICE: f64 = 0.008;
 
-/// The mesh file that is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The mesh file that is asked for. Scripts write it as JSON with any of these fields, the format
+/// as the file's ending.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(default)]
 pub struct Order {
     /// Format of the file.
+    #[serde(deserialize_with = "format")]
     pub format: Format,
     /// Largest distance between mesh and surface, as a part of the longest side.
     pub tolerance: f64,
@@ -43,6 +47,14 @@ pub struct Order {
     pub prove: bool,
     /// Whether skeletons become joints, and their motion an animation: in GLB files.
     pub rig: bool,
+}
+
+/// Reads a format from the ending of its files.
+fn format<'de, D: Deserializer<'de>>(from: D) -> Result<Format, D::Error> {
+    let ending = String::deserialize(from)?;
+    let format = Format::of_name(&format!("model.{ending}"));
+    let endings = Format::ENDINGS;
+    format.ok_or_else(|| D::Error::custom(format_args!("format is one of the endings {endings}")))
 }
 
 impl Default for Order {
@@ -615,8 +627,9 @@ impl MeshExport {
     }
 }
 
-/// Returns the job that meshes a scene for the dialog.
-fn meshing(scene: Arc<Scene>, order: Order, name: String) -> MeshScene {
+/// Returns the job that meshes a scene as an order says, without its file.
+#[must_use]
+pub fn meshing(scene: Arc<Scene>, order: Order, name: String) -> MeshScene {
     MeshScene {
         scene,
         wishes: Wishes {

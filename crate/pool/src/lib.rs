@@ -66,6 +66,8 @@ pub use job::{PictureJob, TileDone};
 pub use pool::Pool;
 pub use progress::Progress;
 pub use tickets::{Ticket, Tools};
+#[cfg(target_arch = "wasm32")]
+pub use web::set_folder;
 
 #[cfg(all(test, not(target_arch = "wasm32")))]
 mod tests;

@@ -1,6 +1,6 @@
 //! The folder for static hosts, and the sizes of its modules.
 
-use crate::packages::MODULES;
+use crate::packages::{MODULES, Module};
 use crate::page::{self, Build};
 use crate::shell::{command, find, read, root, tell};
 use anyhow::{Context, Result, bail};
@@ -14,18 +14,18 @@ pub fn dist() -> Result<PathBuf> {
     tell(&format!(
         "Wrote {path}; any static host can serve it from any path."
     ));
-    weigh(&folder)?;
+    weigh(&folder, &MODULES)?;
     Ok(folder)
 }
 
-/// Prints the sizes and fails if one is above its budget.
-fn weigh(folder: &Path) -> Result<()> {
+/// Prints the sizes of modules in a folder, and fails if one is above its budget.
+pub fn weigh(folder: &Path, modules: &[Module]) -> Result<()> {
     if find("node").is_none() {
         tell("Node.js is missing, so the sizes of the files after brotli are unknown.");
         return Ok(());
     }
     let mut heavy = Vec::new();
-    for module in MODULES {
+    for module in modules {
         let file = format!("{}_bg.wasm", module.name);
         let path = folder.join(&file);
         let bytes = std::fs::metadata(&path)?.len() / 1000;

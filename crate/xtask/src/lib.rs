@@ -8,6 +8,7 @@ pub mod examples;
 pub mod figures;
 pub mod fuzz;
 pub mod offline;
+pub mod package;
 pub mod packages;
 pub mod page;
 pub mod pictures;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
-use xtask::{check, dist, examples, figures, fuzz, pins, serve, shell};
+use xtask::{check, dist, examples, figures, fuzz, package, pins, serve, shell};
 
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "Builds, serves, packs and tests Sinew.")]
@@ -25,6 +25,8 @@ enum Command {
     },
     /// Write dist/, a folder that any static host can serve from any path.
     Dist,
+    /// Write target/npm/sinew/, an npm package for other pages.
+    Package,
     /// Run all tests, or one part of them.
     Test {
         /// Part to run.
@@ -69,6 +71,7 @@ fn run(command: Command) -> Result<()> {
     match command {
         Command::Serve { port, release } => serve::serve(port, release),
         Command::Dist => dist::dist().map(|_| ()),
+        Command::Package => package::package().map(|_| ()),
         Command::Test { part, filter } => check::test(part, filter),
         Command::Fuzz { minutes } => fuzz::fuzz(minutes),
         Command::Bench { parts } => {

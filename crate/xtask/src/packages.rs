@@ -54,6 +54,15 @@ pub const MODULES: [Module; 4] = [
     },
 ];
 
+/// The wasm file of the npm package, beside those of the page's workers.
+pub const EMBED: Module = Module {
+    package: "embed",
+    features: "",
+    profile: "page",
+    name: "embed",
+    budget: 1_500_000,
+};
+
 /// The packages with tests that also run as wasm, as their results must be the same in the page.
 pub const TESTED_AS_WASM: [&str; 6] = ["field", "motion", "rats", "sculpt", "texture", "worker"];
 

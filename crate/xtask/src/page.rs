@@ -24,7 +24,7 @@ pub enum Build {
 /// Builds the page into a folder, which is emptied first.
 pub fn build(build: Build, folder: &Path) -> Result<()> {
     tools::target(tools::WASM)?;
-    let modules = target().join("modules");
+    let modules = modules();
     tell("Building the page: some minutes the first time, later only as long as changes take.");
     // For a release each has a folder of its own to build in, and is optimised by one core; else
     // they share what is compiled.
@@ -38,15 +38,22 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     }
     copy(&root().join("www"), folder)?;
     copy(&root().join("index.html"), &folder.join("index.html"))?;
-    copy(&modules, folder)?;
+    for module in MODULES {
+        copy_module(&module, &modules, folder)?;
+    }
     if build == Build::Release {
         offline::list(folder)?;
     }
     Ok(())
 }
 
+/// Returns the folder in which modules are made.
+pub fn modules() -> PathBuf {
+    target().join("modules")
+}
+
 /// Makes NAME.js and NAME_bg.wasm.
-fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
+pub fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
     let begun = Instant::now();
     let profile = match build {
         Build::Development => "serve",
@@ -72,6 +79,15 @@ fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
         optimise(wasm_opt, &file, &file)?;
     }
     tell(&format!("built ({} s)", begun.elapsed().as_secs()));
+    Ok(())
+}
+
+/// Copies what [`make`] has made of a module.
+pub fn copy_module(module: &Module, from: &Path, to: &Path) -> Result<()> {
+    for ending in [".js", "_bg.wasm"] {
+        let file = format!("{}{ending}", module.name);
+        copy(&from.join(&file), &to.join(&file))?;
+    }
     Ok(())
 }
 
@@ -113,7 +129,7 @@ fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
 }
 
 /// Copies a file, or the contents of a folder.
-fn copy(from: &Path, to: &Path) -> Result<()> {
+pub fn copy(from: &Path, to: &Path) -> Result<()> {
     if !from.is_dir() {
         fs::copy(from, to).with_context(|| format!("{} is missing", from.display()))?;
         return Ok(());

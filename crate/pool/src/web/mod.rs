@@ -15,9 +15,10 @@ use std::rc::{Rc, Weak};
 use wasm_bindgen_futures::spawn_local;
 use workers::describe;
 
+pub use page::set_folder;
 pub use workers::WebWorkers as PlatformWorkers;
 
-/// The program that workers run: their script and its wasm, relative to the page.
+/// The program that workers run: their script and its wasm, files of the folder of workers.
 #[derive(Clone, Copy)]
 pub struct Program {
     script: &'static str,
@@ -28,22 +29,22 @@ pub struct Program {
 
 /// The program of tracing workers.
 pub const TRACER: Program = Program {
-    script: "./worker.js",
-    wasm: "./tracer_bg.wasm",
+    script: "worker.js",
+    wasm: "tracer_bg.wasm",
     name: "The tracer",
 };
 
 /// The program of tracing workers that have the root finders for comparison, too.
 pub const DIGGER: Program = Program {
-    script: "./digger_worker.js",
-    wasm: "./digger_bg.wasm",
+    script: "digger_worker.js",
+    wasm: "digger_bg.wasm",
     name: "The root finders for comparison (`digger`)",
 };
 
 /// The program of tools workers.
 pub const TOOLS: Program = Program {
-    script: "./tools_worker.js",
-    wasm: "./tools_bg.wasm",
+    script: "tools_worker.js",
+    wasm: "tools_bg.wasm",
     name: "they",
 };
 

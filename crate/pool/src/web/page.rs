@@ -1,6 +1,7 @@
 //! The page that workers are started by: its timers, and the loading of wasm.
 
 use js_sys::WebAssembly;
+use std::sync::OnceLock;
 use wasm_bindgen::prelude::*;
 use wasm_bindgen_futures::JsFuture;
 use web_sys::{Response, Window};
@@ -8,15 +9,29 @@ use web_sys::{Response, Window};
 /// Milliseconds between two searches for hanging workers while something is being done.
 const TICK: i32 = 120;
 
+/// The folder of the workers' files.
+static FOLDER: OnceLock<String> = OnceLock::new();
+
+/// Sets the folder that holds the files of workers, an address that ends with a slash, before the
+/// first crew is made. Without it they are beside the page. It is set once.
+pub fn set_folder(address: &str) {
+    let _ = FOLDER.set(String::from(address));
+}
+
+/// Returns the address of a file of workers.
+pub fn address(file: &str) -> String {
+    format!("{}{file}", FOLDER.get().map_or("./", |folder| folder))
+}
+
 /// Returns the page's window.
 pub fn window() -> Option<Window> {
     web_sys::window()
 }
 
-/// Fetches and compiles a wasm module, by its path relative to the page.
+/// Fetches and compiles a wasm module, a file of workers.
 pub async fn load(wasm: &str) -> Result<WebAssembly::Module, JsValue> {
     let window = window().ok_or("no window")?;
-    let response: Response = JsFuture::from(window.fetch_with_str(wasm))
+    let response: Response = JsFuture::from(window.fetch_with_str(&address(wasm)))
         .await?
         .unchecked_into();
     if !response.ok() {

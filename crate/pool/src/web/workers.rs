@@ -2,6 +2,7 @@
 //!
 //! The module is fetched and compiled once and sent to each worker, whose script instantiates it.
 
+use super::page::address;
 use crate::workers::{Message, Workers};
 use js_sys::{Array, Uint8Array, WebAssembly};
 use std::rc::Rc;
@@ -35,7 +36,7 @@ pub struct WebWorkers {
 }
 
 impl WebWorkers {
-    /// Creates places for `count` workers with this script, a path relative to the page. None can
+    /// Creates places for `count` workers with this script, a file of workers. None can
     /// be started before [`WebWorkers::set_module`].
     pub fn new(
         script: &'static str,
@@ -83,8 +84,8 @@ impl Workers for WebWorkers {
         let module = self.module.as_ref().ok_or("its wasm is not loaded")?;
         let options = WorkerOptions::new();
         options.set_type(WorkerType::Module);
-        let worker = Worker::new_with_options(self.script, &options).map_err(describe)?;
-        let script = self.script.trim_start_matches("./");
+        let script = self.script;
+        let worker = Worker::new_with_options(&address(script), &options).map_err(describe)?;
         let listeners = [
             self.listener(index, |event| {
                 let data = event.unchecked_ref::<MessageEvent>().data();

@@ -278,42 +278,11 @@ fn to_js(value: &impl serde::Serialize) -> Result<JsValue, JsValue> {
 
 /// Returns the mesh that a script asks for.
 fn order_of(options: &JsValue) -> Result<Order, JsValue> {
-    let mut order = Order::default();
     if options.is_undefined() || options.is_null() {
-        return Ok(order);
+        return Ok(Order::default());
     }
-    let part = |name: &str| {
-        let value = Reflect::get(options, &name.into())?;
-        Ok::<_, JsValue>((!value.is_undefined()).then_some(value))
-    };
-    if let Some(format) = part("format")? {
-        let name = format.as_string().unwrap_or_default();
-        let format = mesh::Format::of_name(&format!("model.{name}"));
-        order.format = format.ok_or_else(|| {
-            let endings = mesh::Format::ENDINGS;
-            js_sys::TypeError::new(&format!("format is one of the endings {endings}"))
-        })?;
-    }
-    for (name, place) in [
-        ("tolerance", &mut order.tolerance),
-        ("size", &mut order.size),
-    ] {
-        if let Some(number) = part(name)? {
-            let number = number.as_f64();
-            *place =
-                number.ok_or_else(|| js_sys::TypeError::new("tolerance and size are numbers"))?;
-        }
-    }
-    for (name, place) in [
-        ("union", &mut order.union),
-        ("prove", &mut order.prove),
-        ("rig", &mut order.rig),
-    ] {
-        if let Some(wanted) = part(name)? {
-            *place = wanted.is_truthy();
-        }
-    }
-    Ok(order)
+    let json = String::from(JSON::stringify(options)?);
+    serde_json::from_str(&json).map_err(|error| js_sys::TypeError::new(&error.to_string()).into())
 }
 
 /// Returns the project of texts that a script gives.

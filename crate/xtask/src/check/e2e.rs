@@ -4,7 +4,7 @@ use super::Chosen;
 use super::files::{File, Watch};
 use crate::page::{self, Build};
 use crate::shell::{artifacts, cargo, command, executable, root, target};
-use crate::{dist, tools};
+use crate::{dist, package, tools};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
@@ -27,6 +27,7 @@ impl Built {
         node.arg(file)
             .current_dir(root().join("tests"))
             .env("SINEW_PAGE", &self.page)
+            .env("SINEW_PACKAGE", package::folder())
             .env("SINEW_PROGRAM", &self.program)
             .env("SINEW_SCREENSHOTS", screenshots);
         Ok(node)
@@ -93,10 +94,13 @@ pub fn check(
 /// that is shipped, else the one that builds fastest.
 pub fn build(watch: &mut Watch, release: bool) -> Result<PathBuf> {
     let page = if release {
-        watch.step("page", dist::dist)?
+        let page = watch.step("page", dist::dist)?;
+        watch.step("package", || package::assemble(Build::Release))?;
+        page
     } else {
         let page = page::serve_folder();
         watch.step("page", || page::build(Build::Development, &page))?;
+        watch.step("package", || package::assemble(Build::Development))?;
         page
     };
     tools::node_packages()?;

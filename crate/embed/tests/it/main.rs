@@ -1,0 +1,3 @@
+//! Tests of the models of other pages.
+
+mod model;
