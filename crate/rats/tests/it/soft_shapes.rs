@@ -1,0 +1,148 @@
+//! Soft shapes of a depth of their own, stretched, and of strengths that textures say.
+
+use field::THRESHOLD;
+use glam::DVec3;
+use rats::{Compiled, Project, Severity, compile};
+use scene::{Scene, Shape};
+
+fn read(text: &str) -> Compiled {
+    compile(&Project::single(format!("verbose on\neyep 0 0 90\n{text}")))
+}
+
+/// The scene of a text that says nothing.
+fn scene(text: &str) -> Scene {
+    let compiled = read(text);
+    assert_eq!(compiled.diagnostics, [], "{text}");
+    std::sync::Arc::unwrap_or_clone(compiled.scene)
+}
+
+fn value(scene: &Scene, place: DVec3) -> f64 {
+    scene.surfaces()[0].function().jet(place).value
+}
+
+/// An element's depth is read as its material's would be.
+#[test]
+fn a_shape_has_a_depth_of_its_own() {
+    for (shape, own) in [
+        ("sphere S 9 <0 0 0>", " depth 2"),
+        ("dot S <0 0 0>", " depth 2"),
+        ("cylinder S 9 <-1 0 0> <1 0 0>", ", depth 2"),
+        ("line S <-1 0 0> <1 0 0>", " depth 2"),
+        ("arc S 3 9 <0 0 0> <0 0 1> 0 90", " depth 2"),
+        ("curve S 9 <0 0 0> <1 1 0> <2 -1 0> <3 0 0>", " depth 2"),
+    ] {
+        let material = "blobbiness -2 kernel quartic";
+        let by_shape = read(&format!("surface S radius 1 {material}\n{shape}{own}\n")).scene;
+        let by_material = read(&format!(
+            "fragile all\nsurface S depth 2 {material}\n{shape}\n"
+        ));
+        let [a, b] = [&by_shape, &by_material.scene].map(|scene| {
+            let element = &scene.elements[0];
+            scene.radius(element)
+        });
+        assert!((a - b).abs() < 1e-12 && a > 0.5, "{shape}: {a} {b}");
+    }
+    // Lengths grow with the object.
+    let text =
+        "surface S blobbiness -2 kernel quartic\nobject A\nsphere S 1 <0 0 0> depth 2\nclose\n";
+    let radius = |text: &str| {
+        let scene = scene(text);
+        scene.radius(&scene.elements[0])
+    };
+    let [one, three] = [radius(text), radius(&format!("{text}scale 3 3 3\n"))];
+    assert!((three - 3.0 * one).abs() < 1e-12, "{one} {three}");
+    let hard = read("surface S diffuse Red\nsphere S 1 <0 0 0> depth 2\n");
+    assert_eq!(hard.diagnostics.len(), 1);
+    assert_eq!(hard.diagnostics[0].severity, Severity::Warning);
+}
+
+/// Balls become ellipsoids, wherever they stand.
+#[test]
+fn balls_can_be_stretched() {
+    let ways = [DVec3::X * 2.0, DVec3::Y, DVec3::Z * 3.0];
+    for (material, kernel) in [
+        ("radius 0.5 blobbiness -1", "cauchy"),
+        ("radius 0.5 blobbiness -3", "gauss"),
+        ("radius 0.5 blobbiness -2 strength 2", "quartic"),
+    ] {
+        let text = format!(
+            "surface S {material} kernel {kernel}\nobject A\nsphere S 0.5 <1 0 0>\nclose\n\
+             scale 2 1 3\nrotate 0 0 1 90\n"
+        );
+        let scene = scene(&text);
+        let strong = material.contains("strength");
+        for way in ways {
+            let turned = DVec3::new(-way.y, way.x, way.z);
+            let value = value(&scene, DVec3::Y * 2.0 + turned * 0.5);
+            let wanted = if strong { 2.0 } else { 1.0 } * THRESHOLD;
+            assert!((value - wanted).abs() < 1e-9, "{text}{way}: {value}");
+        }
+    }
+    let hard = scene("surface S diffuse Red\nsphere S 0.5 <1 0 0>\nscale 2 1 3\n");
+    let Shape::Quadric(quadric) = &hard.elements[0].shape else {
+        panic!("{:?}", hard.elements[0].shape);
+    };
+    assert_eq!(quadric.center, DVec3::X * 2.0);
+    assert_eq!(quadric.axes, [DVec3::X, DVec3::Y * 0.5, DVec3::Z * 1.5]);
+    let even =
+        scene("surface S diffuse Red\nsphere S 0.5 <1 0 0>\nscale 2 -2 2\nrotate 1 2 3 40\n");
+    assert_eq!(even.elements[0].shape.radius(), 1.0);
+    // What fades as its kernel did at the surface.
+    let ball = scene("surface S radius 0.5 blobbiness -1\nsphere S 0.5 <0 0 0>\n");
+    let flat =
+        scene("surface S radius 0.5 blobbiness -1\nsphere S 0.5 <0 0 0>\nscale 1 1 0.999999\n");
+    let [a, b] =
+        [&ball, &flat].map(|scene| scene.surfaces()[0].function().jet(DVec3::X * 0.5).gradient[0]);
+    assert!((a - b).abs() < 1e-4, "{a} {b}");
+    let tube = read("surface S diffuse Red\ncylinder S 0.5 <0 0 0> <1 0 0>\nscale 2 1 3\n");
+    assert_eq!(tube.diagnostics.len(), 1, "{:?}", tube.diagnostics);
+}
+
+/// A solid says the strength of pieces: a checker's light fields stay, its dark ones vanish.
+#[test]
+fn solids_and_images_say_strengths() {
+    let text = "texture T strength checker scale 0.5 0.5 0.5\n\
+        surface S radius 0.3 blobbiness -8 texture T\ncylinder S 0.3 <-8 0.1 0.1> <8 0.1 0.1>\n";
+    let checked = scene(text);
+    assert_eq!(checked.elements.len(), 64);
+    let at = |x: f64| value(&checked, DVec3::new(x, 0.1, 0.1));
+    let places = [1.0, 3.0, 5.0, 7.0];
+    let fields = places.map(|x| at(x) > THRESHOLD);
+    assert_eq!(
+        fields,
+        [fields[0], !fields[0], fields[0], !fields[0]],
+        "{fields:?}"
+    );
+    // Turned with its object.
+    let turned = scene(&format!("{text}rotate 0 0 1 90\n"));
+    let place = DVec3::new(-0.1, 1.0, 0.1);
+    assert!((value(&turned, place) - at(1.0)).abs() < 1e-9);
+    // The image `hills.png`, along and around; and a point and a triangle.
+    for (method, shape, count) in [
+        ("hills.png plain", "cylinder S 0.3 <-8 0 0> <8 0 0>", 64),
+        ("marble", "triangle S <-2 -2 0> <2 -2 0> <0 2 0>", 64),
+        ("marble", "sphere S 0.3 <0 0 0>", 1),
+        ("granite", "arc S 2 0.3 <0 0 0> <0 0 1> 0 90", 64),
+    ] {
+        let text = format!(
+            "texture T strength {method} bounds <0.5 0.5 0.5> <1 1 1>\n\
+             surface S radius 0.3 blobbiness -2 texture T\n{shape}\n"
+        );
+        let scene = std::sync::Arc::unwrap_or_clone(read(&text).scene);
+        assert_eq!(scene.elements.len(), count, "{text}");
+        let strengths = scene.elements.iter().filter_map(|element| element.flesh);
+        let strengths = strengths.map(|index| scene.flesh[index as usize].strength);
+        let strengths: Vec<f64> = strengths.collect();
+        assert!(
+            strengths.iter().all(|s| (0.5..=1.0).contains(s)),
+            "{strengths:?}"
+        );
+        let differ = strengths.iter().any(|s| *s != strengths[0]);
+        assert_eq!(differ, count > 1, "{text}");
+    }
+    let curve = read(
+        "texture T strength marble\nsurface S radius 0.3 blobbiness -2 texture T\n\
+         curve S 0.3 <0 0 0> <1 1 0> <2 -1 0> <3 0 0>\n",
+    );
+    assert_eq!(curve.diagnostics.len(), 1, "{:?}", curve.diagnostics);
+}
