@@ -44,6 +44,7 @@ mod structure;
 mod surroundings;
 pub(crate) mod table;
 pub(crate) mod textures;
+mod thickened;
 mod tints;
 mod tools;
 mod values;
@@ -103,6 +104,7 @@ pub fn run<'a>(
     };
     let earlier = shots.into_iter().map(|shot| Picture {
         scene: Arc::new(shot.scene),
+        placements: shot.placements,
         output: shot.output,
         origin: shot.origin,
     });

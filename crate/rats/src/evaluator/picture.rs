@@ -112,6 +112,7 @@ impl Evaluator<'_> {
                 repeated: part.repeated,
             });
         }
+        self.thicken_meshes(&mut scene, &mut placements);
         self.settle_exact(&mut scene, &mut placements);
         self.settle_patterns(&mut scene, &mut placements);
         if scene.camera.eye == scene.camera.target {

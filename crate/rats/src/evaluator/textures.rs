@@ -220,7 +220,6 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         return Err(read.missing("what the texture changes, such as `pigment`"));
     };
     let below = read.operands(word.parameters, TEXTURE_OPTIONS)?;
-    let start = read.start();
     let method = match word.name {
         "texture" => None,
         _ => Some(method(&mut read)?),

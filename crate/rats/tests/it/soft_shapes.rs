@@ -146,3 +146,50 @@ fn solids_and_images_say_strengths() {
     );
     assert_eq!(curve.diagnostics.len(), 1, "{:?}", curve.diagnostics);
 }
+
+/// With `soft off` a soft mesh is two sheets at its radius, closed along the rim, in place of a
+/// prism for each facet.
+#[test]
+fn offset_surfaces_of_meshes_are_sheets() {
+    let text = "surface S radius 0.1 blobbiness -8\nterra S hills.png <-3 -3 0> <3 3 1.5>\n";
+    let soft = scene(text);
+    let hard = scene(&format!("soft off\n{text}"));
+    let facets = soft.elements.len();
+    assert!(hard.elements.len() > 2 * facets && hard.elements.len() < 3 * facets);
+    // No corner is farther from the facets than the radius, and none of the sheets is nearer than
+    // what steep slopes make of it.
+    let corners = |scene: &Scene| -> Vec<DVec3> {
+        let bones = scene
+            .elements
+            .iter()
+            .filter_map(|element| element.shape.skeleton());
+        bones.flat_map(field::Skeleton::samples).collect()
+    };
+    let [facets, sheets] = [&soft, &hard].map(corners);
+    for sheet in sheets.iter().step_by(97) {
+        let distances = facets.iter().map(|corner| corner.distance(*sheet));
+        let nearest = distances.fold(f64::INFINITY, f64::min);
+        assert!(nearest < 0.1001, "{sheet}: {nearest}");
+    }
+    for element in &hard.elements {
+        assert_eq!(hard.radius(element), 0.0);
+    }
+    // Each edge belongs to two triangles: nothing is open.
+    let mut edges = std::collections::HashMap::new();
+    for element in &hard.elements {
+        let Some(field::Skeleton::Triangle { corners }) = element.shape.skeleton() else {
+            panic!("{:?}", element.shape);
+        };
+        for i in 0..3 {
+            let ends = [corners[i], corners[(i + 1) % 3]];
+            let mut ends = ends.map(|end| end.to_array().map(f64::to_bits));
+            ends.sort_unstable();
+            *edges.entry(ends).or_insert(0) += 1;
+        }
+    }
+    assert!(edges.values().all(|count| *count == 2));
+    // Triangles by themselves are prisms, as before.
+    let prism =
+        scene("soft off\nsurface S radius 0.1 blobbiness -8\ntriangle S <0 0 0> <1 0 0> <0 1 0>\n");
+    assert_eq!(prism.radius(&prism.elements[0]), 0.1);
+}
