@@ -237,7 +237,10 @@ impl Evaluator<'_> {
             }
             let own = &terms[first..term];
             let flesh = element.flesh.map(|flesh| &scene.flesh[flesh as usize]);
-            if flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
+            // Pieces of a bone may be as weak as its texture says.
+            let surface = self.palette.surfaces.get(element.finish as usize);
+            let is_piece = surface.is_some_and(|surface| surface.pattern.is_some());
+            if is_piece || flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
                 continue;
             }
             // Most are strong enough by themselves, which is soon seen.

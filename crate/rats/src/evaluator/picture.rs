@@ -140,14 +140,17 @@ impl Evaluator<'_> {
         let (fit, others): (Vec<_>, Vec<_>) =
             elements.partition(|(_, element)| exact::is_fit(scene, element));
         let other = others.iter().find(|(_, element)| {
-            if is_triad(scene, element) {
-                return false;
-            }
-            let skeleton = element.shape.skeleton();
-            !matches!(
-                skeleton,
-                Some(Skeleton::Point { .. } | Skeleton::Plane { .. })
-            )
+            let stays = match &element.shape {
+                Shape::Bone(bone) => {
+                    matches!(
+                        bone.skeleton,
+                        Skeleton::Point { .. } | Skeleton::Plane { .. }
+                    )
+                }
+                Shape::Function(function) => function.curves().is_none(),
+                _ => true,
+            };
+            !stays && !is_triad(scene, element)
         });
         let other = other.map(|(_, element)| element.origin);
         let fit: Vec<usize> = fit.into_iter().map(|(index, _)| index).collect();

@@ -496,7 +496,7 @@ pub static TRIAD: CommandSpec = row("triad", "triangle with the Newtonian kernel
     )
     .example(
         "light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine \
-         40, radius 0.4, blobbiness -2\ntriad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>",
+         40, radius 0.4, blobbiness -2, strength 3\ntriad Flesh, <-2 -1.5 0>, <2 -1.5 0>, <0 2 0>",
     );
 
 pub static CONE: CommandSpec = row("cone", "cone with lids")

@@ -138,6 +138,7 @@ fn what_cannot_be_exact_stays_as_it_is_and_says_so() {
     let material = "surface S radius 0.5 blobbiness -0.5 exact\n";
     for (shape, count) in [
         ("sphere S 0.5 <0 0 0>", 0),
+        ("sphere S 0.5 <0 0 0>\nscale 1 2 1", 0),
         ("curve S 0.5 <0 0 0> <1 1 0> <2 -1 0> <3 0 0>", 1),
         ("cone S 0.5 <0 0 0> 0.2 <3 0 0>", 1),
     ] {

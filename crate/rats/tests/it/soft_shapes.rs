@@ -140,6 +140,11 @@ fn solids_and_images_say_strengths() {
         let differ = strengths.iter().any(|s| *s != strengths[0]);
         assert_eq!(differ, count > 1, "{text}");
     }
+    // A dark place of an image is no mistake.
+    scene(
+        "texture T strength hills.png plain\nsurface S radius 0.3 blobbiness -4 texture T\n\
+         triangle S <-2 -2 0> <2 -2 0> <0 2 0>\n",
+    );
     let curve = read(
         "texture T strength marble\nsurface S radius 0.3 blobbiness -2 texture T\n\
          curve S 0.3 <0 0 0> <1 1 0> <2 -1 0> <3 0 0>\n",
