@@ -44,7 +44,8 @@ options! {
     /// Options of a limb by itself.
     LIMB_OPTIONS:
     ENDS: Word = ("ends", "round", "shape of its ends, where it is soft", END_SHAPE);
-    DEPTH: f64 = ("depth", "", "depth of influence, in place of its radius, where it is soft (ours)",
+    DEPTH: f64 = ("depth", "",
+        "depth of influence, in place of its radius, where it is soft (ours)",
         length("d", "the depth").at_least(1e-9));
 }
 

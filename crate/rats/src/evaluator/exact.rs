@@ -27,7 +27,7 @@ pub const MOST_EVALUATIONS: usize = 2_000_000;
 pub struct Joined {
     /// The elements, by their indices in the scene.
     pub elements: Vec<usize>,
-    /// Their common radius.
+    /// Radius that all of them have.
     pub radius: f64,
     /// A place on a bone in the middle, and the unit vector from there to the surface.
     pub middle: (DVec3, DVec3),
@@ -53,7 +53,7 @@ struct Solution {
     extensions: Vec<f64>,
 }
 
-/// What bones must have in common to be joined: body, material, frame, kernel, dimension and
+/// Bones that are joined have this in common: body, material, frame, kernel, dimension and
 /// radius.
 type Key = (u32, u32, u32, &'static str, u8, u64);
 
@@ -175,8 +175,8 @@ impl Nodes {
     /// Returns the number of the node at a place, a new one if there is none so near.
     fn find(&mut self, key: Key, place: DVec3, near: f64) -> usize {
         let size = 4.0 * near;
-        let cell = |place: DVec3| (place / size).floor().as_i64vec3();
-        let [low, high] = [cell(place - near), cell(place + near)];
+        let [low, own, high] =
+            [place - near, place, place + near].map(|place| (place / size).floor().as_i64vec3());
         for x in low.x..=high.x {
             for y in low.y..=high.y {
                 for z in low.z..=high.z {
@@ -190,7 +190,7 @@ impl Nodes {
         }
         self.places.push(place);
         let node = self.places.len() - 1;
-        self.cells.entry((key, cell(place))).or_default().push(node);
+        self.cells.entry((key, own)).or_default().push(node);
         node
     }
 }
@@ -266,14 +266,14 @@ impl Joined {
     /// radii.
     pub fn measure(&self) -> Option<f64> {
         let (middle, across) = self.middle;
-        let excess = |distance: f64| self.value(middle + across * distance) - THRESHOLD;
         let (mut low, mut high) = (1e-6 * self.radius, 4.0 * self.radius);
-        if excess(low) < 0.0 || excess(high) > 0.0 {
+        let [inside, outside] = [low, high].map(|way| self.value(middle + across * way));
+        if inside < THRESHOLD || outside > THRESHOLD {
             return None;
         }
         for _ in 0..30 {
             let half = 0.5 * (low + high);
-            if excess(half) > 0.0 {
+            if self.value(middle + across * half) > THRESHOLD {
                 low = half;
             } else {
                 high = half;
@@ -284,6 +284,9 @@ impl Joined {
 
     /// Returns the field of an extension of a tip.
     fn extension(&self, tip: usize, length: f64, place: DVec3) -> f64 {
+        if length <= 0.0 {
+            return 0.0;
+        }
         let Tip {
             place: base, way, ..
         } = self.tips[tip];
@@ -312,29 +315,22 @@ impl Joined {
             let mut change: f64 = 0.0;
             for tip in 0..count {
                 *left = left.checked_sub(40 * PREPARATION + 2 * count)?;
-                let at = |place: usize| {
+                let [at_tip, at_middle] = [tip, count].map(|place| {
                     let others = (0..count).filter(|&other| other != tip);
                     fixed[place] + others.map(|other| shares[other][place]).sum::<f64>()
-                };
-                let [at_tip, at_middle] = [at(tip), at(count)];
-                let excess = |length: f64| {
-                    let own = |place: usize| match length > 0.0 {
-                        true => self.extension(tip, length, places[place]),
-                        false => 0.0,
-                    };
-                    at_tip + own(tip) - at_middle - own(count)
-                };
-                let length = root(excess, self.radius)?;
+                });
+                let length = root(self.radius, |length| {
+                    let [own, far] = [places[tip], places[count]]
+                        .map(|place| self.extension(tip, length, place));
+                    at_tip + own - at_middle - far
+                })?;
                 change = change.max((length - extensions[tip]).abs());
                 extensions[tip] = length;
                 if length > 0.0 {
                     *left = left.checked_sub(PREPARATION * (count + 1))?;
                 }
                 for (place, share) in places.iter().zip(&mut shares[tip]) {
-                    *share = match length > 0.0 {
-                        true => self.extension(tip, length, *place),
-                        false => 0.0,
-                    };
+                    *share = self.extension(tip, length, *place);
                 }
             }
             if change <= 1e-10 * self.radius {
@@ -390,7 +386,7 @@ impl Joined {
 }
 
 /// Returns where a function that grows crosses 0, not below 0; `None` if that is too far.
-fn root(excess: impl Fn(f64) -> f64, radius: f64) -> Option<f64> {
+fn root(radius: f64, excess: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut at_low) = (0.0, excess(0.0));
     if at_low >= 0.0 {
         return Some(0.0);
@@ -447,13 +443,12 @@ fn middle_of_lines(
             at_node.entry(*node).or_default().push((bone, end));
         }
     }
-    let is_inner = |node: usize| degrees[&node] == 2;
     let mut seen = vec![false; bones.len()];
     let mut longest: (f64, Vec<(usize, usize)>) = (0.0, Vec::new());
     // Runs that begin at ends and forks; then those that close.
     for closes in [false, true] {
         for start in (0..bones.len()).flat_map(|bone| [(bone, 0), (bone, 1)]) {
-            if seen[start.0] || !closes && is_inner(nodes[start.0][start.1]) {
+            if seen[start.0] || !closes && degrees[&nodes[start.0][start.1]] == 2 {
                 continue;
             }
             let (mut bone, mut end) = start;
@@ -466,7 +461,7 @@ fn middle_of_lines(
                 let node = nodes[bone][1 - end];
                 let next = at_node[&node].iter().find(|(next, _)| !seen[*next]);
                 match next {
-                    Some(&next) if is_inner(node) => (bone, end) = next,
+                    Some(&next) if degrees[&node] == 2 => (bone, end) = next,
                     _ => break,
                 }
             }

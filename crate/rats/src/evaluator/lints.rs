@@ -212,7 +212,7 @@ impl Evaluator<'_> {
             };
             if (radius / joined.radius - 1.0).abs() > MOST_OFF {
                 told.insert(element.finish);
-                let [is, wanted] = [radius, joined.radius].map(rounded);
+                let [is, wanted] = [radius, joined.radius].map(round_off);
                 let message = format_args!(
                     "the surface stands {is} from the middle of this bone, not {wanted}: it is \
                      short for its blobbiness"
@@ -303,7 +303,7 @@ fn spread_of_logarithms(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns a number with three digits that count.
-fn rounded(x: f64) -> String {
+fn round_off(x: f64) -> String {
     let digits = (2.0 - libm::floor(libm::log10(1.0005 * x.max(1e-9)))).clamp(0.0, 11.0);
     format!("{x:.*}", digits as usize)
 }

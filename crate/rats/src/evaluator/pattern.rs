@@ -68,11 +68,11 @@ fn pieces_of(bone: &Skeleton) -> Option<Vec<(Skeleton, DVec2)>> {
     match bone {
         Skeleton::Point { .. } => Some(vec![(bone.clone(), DVec2::splat(0.5))]),
         Skeleton::Segment { .. } | Skeleton::Arc { .. } => {
-            let share = |i: usize| i as f64 / MOST_PIECES as f64;
-            (0..MOST_PIECES)
+            let numbers = (0..MOST_PIECES).map(|i| i as f64);
+            numbers
                 .map(|i| {
-                    let middle = 0.5 * (share(i) + share(i + 1));
-                    Some((bone.part(share(i), share(i + 1))?, DVec2::new(middle, 0.5)))
+                    let [from, middle, to] = [i, i + 0.5, i + 1.0].map(|i| i / MOST_PIECES as f64);
+                    Some((bone.part(from, to)?, DVec2::new(middle, 0.5)))
                 })
                 .collect()
         }
@@ -84,22 +84,17 @@ fn pieces_of(bone: &Skeleton) -> Option<Vec<(Skeleton, DVec2)>> {
 /// Cuts a triangle into 8·8 similar ones.
 fn triangles([a, b, c]: [DVec3; 3]) -> Vec<(Skeleton, DVec2)> {
     const ROWS: usize = 8;
-    let at = |u: usize, v: usize| {
-        let uv = DVec2::new(u as f64, v as f64) / ROWS as f64;
-        (a + (b - a) * uv.x + (c - a) * uv.y, uv)
-    };
     let mut pieces = Vec::with_capacity(ROWS * ROWS);
-    for u in 0..ROWS {
-        for v in 0..ROWS - u {
-            let mut add = |corners: [(DVec3, DVec2); 3]| {
-                let uv = corners.iter().map(|corner| corner.1).sum::<DVec2>() / 3.0;
-                let corners = corners.map(|corner| corner.0);
-                pieces.push((Skeleton::Triangle { corners }, uv));
-            };
-            add([at(u, v), at(u + 1, v), at(u, v + 1)]);
-            if u + v + 1 < ROWS {
-                add([at(u + 1, v), at(u + 1, v + 1), at(u, v + 1)]);
-            }
+    for (u, v) in (0..ROWS).flat_map(|u| (0..ROWS - u).map(move |v| (u, v))) {
+        let mut places = vec![[(u, v), (u + 1, v), (u, v + 1)]];
+        if u + v + 1 < ROWS {
+            places.push([(u + 1, v), (u + 1, v + 1), (u, v + 1)]);
+        }
+        for place in places {
+            let uv = place.map(|(u, v)| DVec2::new(u as f64, v as f64) / ROWS as f64);
+            let corners = uv.map(|uv| a + (b - a) * uv.x + (c - a) * uv.y);
+            let middle = (uv[0] + uv[1] + uv[2]) / 3.0;
+            pieces.push((Skeleton::Triangle { corners }, middle));
         }
     }
     pieces

@@ -126,17 +126,26 @@ impl Evaluator<'_> {
 }
 
 impl Evaluator<'_> {
+    /// Whether a shape is soft and of a material that is `exact`, or a `triad` whose strength is
+    /// not given.
+    fn is_exact(&self, scene: &Scene, element: &Element) -> bool {
+        let surface = self.palette.surfaces.get(element.finish as usize);
+        let is_exact = surface.is_some_and(|surface| {
+            surface.exact || !surface.has_strength && is_triad(scene, element)
+        });
+        is_exact && scene.is_soft(element)
+    }
+
+    /// Returns the solid or image that says the strength of a soft shape, if any.
+    fn pattern_of(&self, element: &Element) -> Option<&texture::Texture> {
+        let surface = self.palette.surfaces.get(element.finish as usize)?;
+        surface.pattern.as_ref().filter(|_| element.flesh.is_some())
+    }
+
     /// Makes the flesh of materials that are `exact` stand at its radius.
     fn settle_exact(&mut self, scene: &mut Scene, placements: &mut Vec<Placement>) {
-        let surfaces = &self.palette.surfaces;
-        let is_exact = |element: &Element| {
-            let surface = surfaces.get(element.finish as usize);
-            surface.is_some_and(|surface| {
-                surface.exact || !surface.has_strength && is_triad(scene, element)
-            }) && scene.is_soft(element)
-        };
         let elements = scene.elements.iter().enumerate();
-        let elements = elements.filter(|(_, element)| is_exact(element));
+        let elements = elements.filter(|(_, element)| self.is_exact(scene, element));
         let (fit, others): (Vec<_>, Vec<_>) =
             elements.partition(|(_, element)| exact::is_fit(scene, element));
         let other = others.iter().find(|(_, element)| {
@@ -183,15 +192,10 @@ impl Evaluator<'_> {
 impl Evaluator<'_> {
     /// Cuts bones whose strength a solid or an image says into pieces of their own strengths.
     fn settle_patterns(&mut self, scene: &mut Scene, placements: &mut Vec<Placement>) {
-        let surfaces = &self.palette.surfaces;
-        let pattern_of = |element: &Element| {
-            let pattern = surfaces.get(element.finish as usize)?.pattern.as_ref();
-            pattern.filter(|_| element.flesh.is_some())
-        };
         if !scene
             .elements
             .iter()
-            .any(|element| pattern_of(element).is_some())
+            .any(|element| self.pattern_of(element).is_some())
         {
             return;
         }
@@ -207,11 +211,12 @@ impl Evaluator<'_> {
         let mut whole = None;
         for (element, placement) in elements.into_iter().zip(places) {
             let frame = scene.frame(&element);
-            let pieces = pattern_of(&element)
+            let pieces = self
+                .pattern_of(&element)
                 .and_then(|pattern| pattern::cut(&element, frame, pattern, &images));
             let pieces = pieces.filter(|pieces| pieces.len() <= left);
             let (Some(pieces), Some(own)) = (pieces, element.flesh) else {
-                if pattern_of(&element).is_some() {
+                if self.pattern_of(&element).is_some() {
                     whole = whole.or(Some(element.origin));
                 }
                 scene.elements.push(element);

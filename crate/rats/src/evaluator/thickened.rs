@@ -59,6 +59,24 @@ impl Evaluator<'_> {
     }
 }
 
+/// Bits of a corner's coordinates, by which corners are the same.
+type Key = [u64; 3];
+
+fn key(corner: DVec3) -> Key {
+    corner.to_array().map(|x| (x + 0.0).to_bits())
+}
+
+/// Returns the keys of an edge's ends, in order.
+fn edge([a, b]: [DVec3; 2]) -> [Key; 2] {
+    let mut ends = [key(a), key(b)];
+    ends.sort_unstable();
+    ends
+}
+
+fn sides([a, b, c]: [DVec3; 3]) -> [[DVec3; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
 /// Adds the sheets of facets, which are used up.
 fn add_sheets(
     scene: &mut Scene,
@@ -69,15 +87,8 @@ fn add_sheets(
         return;
     };
     let radius = scene.radius(first);
-    let key = |corner: DVec3| corner.to_array().map(|x| (x + 0.0).to_bits());
-    let mut normals: HashMap<[u64; 3], DVec3> = HashMap::new();
-    let mut edges: HashMap<[[u64; 3]; 2], usize> = HashMap::new();
-    let sides = |[a, b, c]: [DVec3; 3]| [[a, b], [b, c], [c, a]];
-    let name = |[a, b]: [DVec3; 2]| {
-        let mut ends = [key(a), key(b)];
-        ends.sort_unstable();
-        ends
-    };
+    let mut normals: HashMap<Key, DVec3> = HashMap::new();
+    let mut edges: HashMap<[Key; 2], usize> = HashMap::new();
     for &(_, _, corners) in &*facets {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a);
@@ -85,15 +96,24 @@ fn add_sheets(
             *normals.entry(key(corner)).or_default() += normal;
         }
         for side in sides(corners) {
-            *edges.entry(name(side)).or_default() += 1;
+            *edges.entry(edge(side)).or_default() += 1;
         }
     }
-    let offset = |corner: DVec3| {
-        let normal = normals.get(&key(corner)).copied().unwrap_or_default();
-        normal.normalize_or_zero() * radius
-    };
+    for normal in normals.values_mut() {
+        *normal = normal.normalize_or_zero() * radius;
+    }
     for (element, placement, corners) in facets.drain(..) {
-        let mut add = |corners: [DVec3; 3], is_turned: bool| {
+        let over = corners.map(|corner| corner + normals[&key(corner)]);
+        let under = corners.map(|corner| corner - normals[&key(corner)]);
+        let mut sheets = vec![(over, false), ([under[0], under[2], under[1]], true)];
+        for (i, side) in sides(corners).into_iter().enumerate() {
+            if edges[&edge(side)] == 1 {
+                let j = (i + 1) % 3;
+                sheets.push(([under[i], under[j], over[j]], false));
+                sheets.push(([under[i], over[j], over[i]], false));
+            }
+        }
+        for (corners, is_turned) in sheets {
             let mut paint = element.paint.clone();
             if let (true, Some(paint)) = (is_turned, &mut paint) {
                 paint.corners.swap(1, 2);
@@ -105,18 +125,6 @@ fn add_sheets(
                 ..element.clone()
             });
             placements.push(placement);
-        };
-        let [a, b, c] = corners;
-        add(corners.map(|corner| corner + offset(corner)), false);
-        add([a, c, b].map(|corner| corner - offset(corner)), true);
-        for side in sides(corners)
-            .into_iter()
-            .filter(|side| edges[&name(*side)] == 1)
-        {
-            let [[a, over_a], [b, over_b]] =
-                side.map(|corner| [corner - offset(corner), corner + offset(corner)]);
-            add([a, b, over_b], false);
-            add([a, over_b, over_a], false);
         }
     }
 }

@@ -45,11 +45,10 @@ fn a_shape_has_a_depth_of_its_own() {
     // Lengths grow with the object.
     let text =
         "surface S blobbiness -2 kernel quartic\nobject A\nsphere S 1 <0 0 0> depth 2\nclose\n";
-    let radius = |text: &str| {
+    let [one, three] = [text, &format!("{text}scale 3 3 3\n")].map(|text| {
         let scene = scene(text);
         scene.radius(&scene.elements[0])
-    };
-    let [one, three] = [radius(text), radius(&format!("{text}scale 3 3 3\n"))];
+    });
     assert!((three - 3.0 * one).abs() < 1e-12, "{one} {three}");
     let hard = read("surface S diffuse Red\nsphere S 1 <0 0 0> depth 2\n");
     assert_eq!(hard.diagnostics.len(), 1);
@@ -105,9 +104,9 @@ fn solids_and_images_say_strengths() {
         surface S radius 0.3 blobbiness -8 texture T\ncylinder S 0.3 <-8 0.1 0.1> <8 0.1 0.1>\n";
     let checked = scene(text);
     assert_eq!(checked.elements.len(), 64);
-    let at = |x: f64| value(&checked, DVec3::new(x, 0.1, 0.1));
-    let places = [1.0, 3.0, 5.0, 7.0];
-    let fields = places.map(|x| at(x) > THRESHOLD);
+    let fields = [1.0, 3.0, 5.0, 7.0].map(|x| value(&checked, DVec3::new(x, 0.1, 0.1)));
+    let first = fields[0];
+    let fields = fields.map(|field| field > THRESHOLD);
     assert_eq!(
         fields,
         [fields[0], !fields[0], fields[0], !fields[0]],
@@ -116,7 +115,7 @@ fn solids_and_images_say_strengths() {
     // Turned with its object.
     let turned = scene(&format!("{text}rotate 0 0 1 90\n"));
     let place = DVec3::new(-0.1, 1.0, 0.1);
-    assert!((value(&turned, place) - at(1.0)).abs() < 1e-9);
+    assert!((value(&turned, place) - first).abs() < 1e-9);
     // The image `hills.png`, along and around; and a point and a triangle.
     for (method, shape, count) in [
         ("hills.png plain", "cylinder S 0.3 <-8 0 0> <8 0 0>", 64),
@@ -152,7 +151,7 @@ fn solids_and_images_say_strengths() {
     assert_eq!(curve.diagnostics.len(), 1, "{:?}", curve.diagnostics);
 }
 
-/// With `soft off` a soft mesh is two sheets at its radius, closed along the rim, in place of a
+/// A soft mesh with `soft off` is two sheets at its radius, closed along the rim, in place of a
 /// prism for each facet.
 #[test]
 fn offset_surfaces_of_meshes_are_sheets() {
@@ -163,14 +162,11 @@ fn offset_surfaces_of_meshes_are_sheets() {
     assert!(hard.elements.len() > 2 * facets && hard.elements.len() < 3 * facets);
     // No corner is farther from the facets than the radius, and none of the sheets is nearer than
     // what steep slopes make of it.
-    let corners = |scene: &Scene| -> Vec<DVec3> {
-        let bones = scene
-            .elements
-            .iter()
-            .filter_map(|element| element.shape.skeleton());
+    let [facets, sheets] = [&soft, &hard].map(|scene| -> Vec<DVec3> {
+        let bones = scene.elements.iter();
+        let bones = bones.filter_map(|element| element.shape.skeleton());
         bones.flat_map(field::Skeleton::samples).collect()
-    };
-    let [facets, sheets] = [&soft, &hard].map(corners);
+    });
     for sheet in sheets.iter().step_by(97) {
         let distances = facets.iter().map(|corner| corner.distance(*sheet));
         let nearest = distances.fold(f64::INFINITY, f64::min);
