@@ -1,7 +1,7 @@
 //! `sinew fit`: a mesh brought onto measured points and outlines.
 
 use crate::{Outcome, files, whole};
-use clap::{Args, ValueEnum};
+use clap::{ArgGroup, Args, ValueEnum};
 use fit::{Fitted, Kind, Observations, Options, Problem};
 use glam::DVec3;
 use mesh::{Aabb, Export, Format, Part, TriangleMesh};
@@ -25,6 +25,7 @@ enum Seen {
 
 /// `sinew fit MESH --control CAGE --points CLOUD -o OUT`.
 #[derive(Args)]
+#[command(group(ArgGroup::new("measured").required(true).multiple(true)))]
 pub struct Fit {
     /// The mesh
     #[arg(help = format!("The mesh: {}", Format::ENDINGS))]
@@ -33,10 +34,10 @@ pub struct Fit {
     #[arg(long, value_name = "CAGE")]
     control: PathBuf,
     /// Measured points: .ply or .xyz
-    #[arg(long, value_name = "CLOUD", required_unless_present = "silhouettes")]
+    #[arg(long, value_name = "CLOUD", group = "measured")]
     points: Option<PathBuf>,
     /// Outlines in pictures, as `sinew scan` writes them: .json
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "measured")]
     silhouettes: Option<PathBuf>,
     /// Implicit surface of the mesh
     #[arg(long, default_value = "triangular")]

@@ -637,6 +637,21 @@ impl Session {
         self.compiled.animated
     }
 
+    /// Returns the number of pictures that a text takes, where they are the frames to choose from.
+    #[must_use]
+    pub fn pictures(&self) -> usize {
+        match self.compiled.animated {
+            true => 1,
+            false => self.compiled.earlier.len() + 1,
+        }
+    }
+
+    /// Whether there are frames to choose from: those of a film, or several pictures.
+    #[must_use]
+    pub fn has_frames(&self) -> bool {
+        self.is_animated() || self.pictures() > 1
+    }
+
     /// Returns the frame of the film on show, from 0.
     #[must_use]
     pub fn film_frame(&self) -> u32 {
@@ -729,6 +744,9 @@ impl Session {
             return;
         }
         self.stale = false;
+        if !compiled.animated {
+            compiled.choose(self.film_frame as usize);
+        }
         self.compiled = compiled;
         self.choose_shown();
         self.compile_seconds = pool::clock::stopwatch() - start;
@@ -788,6 +806,37 @@ mod tests {
     fn edit(session: &mut Session, text: &str, now: f64) {
         session.edit(&[TextEdit::whole(0, text)], now).unwrap();
         session.compile();
+    }
+
+    /// Several pictures are frames to choose from, whose shapes can be taken hold of.
+    #[test]
+    fn pictures_of_a_text_are_frames() {
+        let mut session = Session::of_text("");
+        let text = "surface a, diffuse Red\nsphere a 1, 0 0 0\nshoot\nsphere a 1, 3 0 0\n\
+            filename second\nshoot\nsphere a 1, 6 0 0\nfilename third\nshoot\n";
+        edit(&mut session, text, 0.0);
+        assert!(session.has_frames() && !session.is_animated());
+        for (frame, count, name) in [(0, 1, "scene"), (1, 2, "second"), (2, 3, "third")] {
+            session.set_film_frame(frame);
+            session.compile();
+            assert_eq!(session.pictures(), 3);
+            assert_eq!(session.scene().unwrap().elements.len(), count);
+            assert_eq!(session.compilation().placements.len(), count);
+            assert_eq!(session.compilation().output.name, name);
+        }
+        session.set_film_frame(9);
+        session.compile();
+        assert_eq!(
+            session.scene().unwrap().elements.len(),
+            3,
+            "the last one stays"
+        );
+        edit(
+            &mut session,
+            "surface a, diffuse Red\nsphere a 1, 0 0 0\nshoot\n",
+            1.0,
+        );
+        assert!(!session.has_frames());
     }
 
     #[test]

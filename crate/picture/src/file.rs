@@ -21,12 +21,15 @@ pub enum Format {
     /// Graphics Interchange Format, 256 colours; holds animations.
     #[cfg(feature = "formats")]
     Gif,
+    /// Joint Photographic Experts Group: photographs, whose colours it keeps nearly.
+    #[cfg(feature = "formats")]
+    Jpg,
 }
 
 impl Format {
     /// The endings of names, for messages.
     #[cfg(feature = "formats")]
-    pub const ENDINGS: &str = ".png, .tga, .tif, .gif, .mtv";
+    pub const ENDINGS: &str = ".png, .jpg, .tga, .tif, .gif, .mtv";
     /// The endings of names, for messages.
     #[cfg(not(feature = "formats"))]
     pub const ENDINGS: &str = ".png, .mtv";
@@ -34,7 +37,7 @@ impl Format {
     /// Returns the format of a file's name by its ending, in capitals or not.
     ///
     /// # Errors
-    /// If the name has none of the [`Self::ENDINGS`] (`.tiff` is known as well).
+    /// If the name has none of the [`Self::ENDINGS`] (`.jpeg` and `.tiff` are known as well).
     pub fn of(path: &Path) -> Result<Self, Problem> {
         let ending = path.extension().and_then(OsStr::to_str).unwrap_or_default();
         match ending.to_ascii_lowercase().as_str() {
@@ -46,6 +49,8 @@ impl Format {
             "tif" | "tiff" => Ok(Self::Tif),
             #[cfg(feature = "formats")]
             "gif" => Ok(Self::Gif),
+            #[cfg(feature = "formats")]
+            "jpg" | "jpeg" => Ok(Self::Jpg),
             _ => Err(Problem::UnknownFormat(path.display().to_string())),
         }
     }
@@ -62,6 +67,8 @@ impl Format {
             Self::Tif => "TIFF",
             #[cfg(feature = "formats")]
             Self::Gif => "GIF",
+            #[cfg(feature = "formats")]
+            Self::Jpg => "JPEG",
         }
     }
 }
@@ -87,6 +94,8 @@ pub fn decode_at_most(bytes: &[u8], format: Format, max_pixels: u64) -> Result<P
         Format::Tga | Format::Tif | Format::Gif => {
             crate::formats::decode(bytes, format, max_pixels)
         }
+        #[cfg(feature = "formats")]
+        Format::Jpg => crate::jpeg::decode(bytes, max_pixels),
     }
 }
 
@@ -101,10 +110,13 @@ pub fn size(bytes: &[u8], format: Format) -> Result<[u32; 2], Problem> {
         Format::Mtv => mtv::size(bytes),
         #[cfg(feature = "formats")]
         Format::Tga | Format::Tif | Format::Gif => crate::formats::size(bytes, format),
+        #[cfg(feature = "formats")]
+        Format::Jpg => crate::jpeg::size(bytes),
     }
 }
 
-/// The bytes of a file. TGA, TIFF and PNG keep opacity, MTV drops it, GIF keeps 256 colours.
+/// The bytes of a file. TGA, TIFF and PNG keep opacity, MTV and JPEG drop it,
+/// GIF keeps 256 colours, JPEG keeps colours nearly.
 ///
 /// # Errors
 /// If the format cannot hold the picture.
@@ -113,6 +125,6 @@ pub fn encode(picture: &Picture, format: Format) -> Result<Vec<u8>, Problem> {
         Format::Png => png_file::encode(picture),
         Format::Mtv => Ok(mtv::encode(picture)),
         #[cfg(feature = "formats")]
-        Format::Tga | Format::Tif | Format::Gif => crate::formats::encode(picture, format),
+        _ => crate::formats::encode(picture, format),
     }
 }

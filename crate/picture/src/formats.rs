@@ -28,6 +28,7 @@ fn library_format(format: Format) -> ImageFormat {
         Format::Tga => ImageFormat::Tga,
         Format::Tif => ImageFormat::Tiff,
         Format::Gif => ImageFormat::Gif,
+        Format::Jpg => ImageFormat::Jpeg,
     }
 }
 
@@ -74,7 +75,11 @@ pub fn decode(bytes: &[u8], format: Format, max_pixels: u64) -> Result<Picture, 
 pub fn encode(picture: &Picture, format: Format) -> Result<Vec<u8>, Problem> {
     let mut bytes = Cursor::new(Vec::new());
     let [width, height] = picture.size();
-    let opaque = picture.is_opaque() && format != Format::Gif;
+    let opaque = match format {
+        Format::Gif => false,
+        Format::Jpg => true,
+        _ => picture.is_opaque(),
+    };
     let rgb;
     let (pixels, colour) = if opaque {
         rgb = picture.rgb();

@@ -15,8 +15,8 @@
 //! A [`Picture`] is a width, a height and four bytes a pixel. [`combine`] and [`resize()`] make new
 //! ones of old ones, [`collage()`] puts several on a sheet, [`plot()`] and [`swatches()`] draw
 //! simple ones, [`contour`] finds lines of equal value. [`file`] turns pictures into the bytes of
-//! PNG, TGA, TIFF, GIF and MTV files and back, [`animation`] does so with animations in PNG and
-//! GIF.
+//! PNG, JPEG, TGA, TIFF, GIF and MTV files and back, [`animation`] does so with animations in PNG
+//! and GIF.
 //!
 //! Without the feature `formats` only PNG and MTV are known. Bytes of files are never trusted: what
 //! is larger than the limits of [`limits`], cut or wrong is a [`Problem`], which is a sentence for
@@ -29,6 +29,8 @@ pub mod contour;
 pub mod file;
 #[cfg(feature = "formats")]
 mod formats;
+#[cfg(feature = "formats")]
+mod jpeg;
 pub mod limits;
 mod mtv;
 mod picture;

@@ -5,6 +5,7 @@ use crate::{Diagnostic, Tool};
 use glam::{DAffine3, DVec3};
 use limbs::Recipe;
 use scene::{Origin, Scene};
+use std::mem;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -41,6 +42,18 @@ pub struct Compiled {
     /// Skeletons that have not been read, where compiling does not read them: without them the
     /// scene is not that of the text (see [`crate::Asset::keep_skeleton`]).
     pub unread: Vec<Unread>,
+}
+
+impl Compiled {
+    /// Puts one of the pictures in the place of the last, counted from 0 in the order of their
+    /// `shoot`s; the last one stays if there are no more.
+    pub fn choose(&mut self, picture: usize) {
+        if let Some(earlier) = self.earlier.get_mut(picture) {
+            mem::swap(&mut self.scene, &mut earlier.scene);
+            mem::swap(&mut self.placements, &mut earlier.placements);
+            mem::swap(&mut self.output, &mut earlier.output);
+        }
+    }
 }
 
 /// Skeleton of a file that is still to be read.
@@ -80,6 +93,8 @@ pub enum Act {
 pub struct Picture {
     /// The scene.
     pub scene: Arc<Scene>,
+    /// The way of each element of the scene from its command.
+    pub placements: Vec<Placement>,
     /// The name under which it is to be saved.
     pub output: Output,
     /// The place of the `shoot`.

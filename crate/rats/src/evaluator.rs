@@ -11,6 +11,7 @@ mod camera;
 mod contact;
 mod curves;
 mod deform;
+mod exact;
 mod frozen;
 mod image_list;
 mod images;
@@ -28,6 +29,7 @@ mod motion;
 mod objects;
 mod options;
 mod palette;
+mod pattern;
 mod picture;
 pub(crate) mod presets;
 mod primitives;
@@ -42,6 +44,7 @@ mod structure;
 mod surroundings;
 pub(crate) mod table;
 pub(crate) mod textures;
+mod thickened;
 mod tints;
 mod tools;
 mod values;
@@ -101,6 +104,7 @@ pub fn run<'a>(
     };
     let earlier = shots.into_iter().map(|shot| Picture {
         scene: Arc::new(shot.scene),
+        placements: shot.placements,
         output: shot.output,
         origin: shot.origin,
     });

@@ -46,7 +46,8 @@ impl Scene {
     }
 
     /// Returns an element's flesh in lengths of the world; `None` if it has none.
-    pub(crate) fn flesh_in_world(&self, element: &Element) -> Option<Flesh> {
+    #[must_use]
+    pub fn flesh_in_world(&self, element: &Element) -> Option<Flesh> {
         let flesh = self.flesh_of(element)?;
         Some(flesh.scaled(self.frame(element).growth, self.settings.blob_scale))
     }
@@ -153,7 +154,8 @@ impl Scene {
 
     /// The kernel's parameters for an element with this radius and this flesh, in lengths of the
     /// world.
-    pub(crate) fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
+    #[must_use]
+    pub fn shaping(&self, element: &Element, flesh: &Flesh, radius: f64) -> field::Shaping {
         let bone = element.shape.bone();
         let (radius, end_radius) = match bone.and_then(|bone| Some((bone.radius, bone.end_radius?)))
         {

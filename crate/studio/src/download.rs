@@ -33,7 +33,7 @@ pub fn menu(page: &Page, formats: &[VideoFormat], ui: &mut Ui, wishes: &mut Wish
     ) {
         wishes.push(WorkWish::Save);
     }
-    if page.work.session.is_animated() {
+    if page.work.session.has_frames() {
         ui.separator();
         films(formats, ui, wishes);
     }

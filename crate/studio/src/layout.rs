@@ -284,7 +284,7 @@ fn stage(page: &mut Page, panels: &mut Panels, ui: &mut Ui, mut place: Rect, wis
     let narrow = screen::is_small(ui.ctx());
     let line = Stroke::new(1.0, palette.line);
     ui.painter().rect_filled(place, 0.0, palette.stage);
-    if page.work.session.is_animated() {
+    if page.work.session.has_frames() {
         let height = if narrow { 48.0 } else { STRIP };
         let mut strip = strip(ui, &mut place, height, "timeline");
         panels.film.show(page, &mut strip, wishes);

@@ -277,6 +277,9 @@ fn bad_input_is_told_in_words() {
         arguments.extend(extra);
         refusal(&arguments)
     };
+    let neither = fit(&head, &[]);
+    assert_says(&neither, "--points <CLOUD>");
+    assert_says(&neither, "--silhouettes <FILE>");
     let one = folder.write("one.xyz", "0 0 1\n");
     assert_says(
         &fit(&head, &["--points", &one]),

@@ -2,12 +2,13 @@
 
 use super::state::Evaluator;
 use crate::commands::OptionSpec;
-use crate::commands::build::{options, word_of};
-use crate::commands::slot::{Slot, Word, word};
+use crate::commands::build::{options, plain, word_of};
+use crate::commands::slot::{Slot, Word, length, word};
 use crate::given::Options;
 use crate::limits::CURVE_WEIGHT;
 use crate::problem::{Outcome, Problem};
 use crate::reader::Name;
+use crate::syntax::Command;
 use field::{Shaping, Taper};
 use scene::curves::MOST_FLAT;
 use scene::{Curves, Element, Ends};
@@ -43,6 +44,38 @@ options! {
     /// Options of a limb by itself.
     LIMB_OPTIONS:
     ENDS: Word = ("ends", "round", "shape of its ends, where it is soft", END_SHAPE);
+    DEPTH: f64 = ("depth", "",
+        "depth of influence, in place of its radius, where it is soft (ours)",
+        length("d", "the depth").at_least(1e-9));
+}
+
+/// Options of a point.
+pub static POINT_OPTIONS: &[OptionSpec] = plain![DEPTH];
+
+impl Evaluator<'_> {
+    /// Gives the shapes that a command has added, those from `first` on, the depth of influence
+    /// that its options say.
+    pub(super) fn keep_depth(&mut self, command: &Command, options: &Options<'_>, first: usize) {
+        let Some(depth) = options.last(&DEPTH) else {
+            return;
+        };
+        let mut is_kept = true;
+        for part in &mut self.model.parts[first..] {
+            let bone = part.element.shape.bone();
+            let fits =
+                part.element.flesh.is_some() && bone.is_some_and(|bone| bone.end_radius.is_none());
+            part.depth = fits.then_some(depth);
+            is_kept &= fits;
+        }
+        if !is_kept {
+            let message = "a `depth` is for soft shapes of one radius: this one keeps its own";
+            self.warn(
+                &command.word_span,
+                message,
+                "give its material a `blobbiness`",
+            );
+        }
+    }
 }
 
 /// Returns the shape of free ends that a text asks for; round if it asks for none.

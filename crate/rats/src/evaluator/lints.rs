@@ -4,8 +4,8 @@
 //! Lints are about the finished scene, so they are looked for only when the text has no errors.
 //! Those that evaluate the field are left out in large scenes: an edit must not wait for them.
 
-use super::later;
 use super::state::Evaluator;
+use super::{exact, later};
 use crate::problem::Problem;
 use crate::{Severity, TextEdit};
 use field::{Primitive, THRESHOLD};
@@ -20,6 +20,10 @@ const MOST_WEIGHT: usize = 1000;
 const MOST_CONTACTS: usize = 50;
 /// Evaluations of one element's field that the lints may cost.
 const MOST_EVALUATIONS: usize = 40_000;
+/// Field of other bones below which a bone is by itself.
+const NEARLY_ALONE: f64 = 0.02;
+/// Largest share by which flesh may miss its radius without a note.
+const MOST_OFF: f64 = 0.1;
 
 impl Evaluator<'_> {
     /// Looks at the finished scene.
@@ -90,10 +94,13 @@ impl Evaluator<'_> {
             }
             _ => return,
         };
-        let Some(surface) = used
-            .first()
-            .map(|&index| &self.palette.surfaces[index as usize])
-        else {
+        let surfaces = &self.palette.surfaces;
+        let soft = scene
+            .elements
+            .iter()
+            .filter(|element| element.flesh.is_some());
+        let first = soft.map(|element| element.finish).min();
+        let Some(surface) = first.and_then(|index| surfaces.get(index as usize)) else {
             return;
         };
         let (file, name) = surface.origin.clone();
@@ -137,8 +144,7 @@ impl Evaluator<'_> {
                 n => format!(", and so are {n} more"),
             };
             let message = format_args!("this shape is outside the picture{more}");
-            let span = origin.start as usize..origin.end as usize;
-            self.say_at(origin.file as usize, Severity::Note, &span, message, "");
+            self.say_of(origin, Severity::Note, message, "");
         }
     }
 
@@ -159,12 +165,60 @@ impl Evaluator<'_> {
             );
         }
         let mut left = MOST_EVALUATIONS;
+        self.lint_radii(scene, &surfaces, &mut left);
         for surface in &surfaces {
             // Functions that are no sums make flesh visible, or hide it, in ways of their own.
             if let Surface::Sum(surface) = surface
                 && !self.lint_body(scene, surface, &mut left)
             {
                 return;
+            }
+        }
+    }
+
+    /// Notes bones by themselves whose flesh does not stand at its radius, once a material.
+    fn lint_radii(&mut self, scene: &Scene, surfaces: &[Surface], left: &mut usize) {
+        let elements = scene.elements.iter().enumerate();
+        let plain = elements.filter(|(_, element)| {
+            let flesh = element
+                .flesh
+                .and_then(|index| scene.flesh.get(index as usize));
+            let is_exact = self.palette.surfaces.get(element.finish as usize);
+            let is_exact = is_exact.is_none_or(|surface| surface.exact);
+            !is_exact
+                && flesh.is_some_and(|flesh| flesh.strength == 1.0)
+                && exact::is_fit(scene, element)
+        });
+        let plain: Vec<usize> = plain.map(|(index, _)| index).collect();
+        let mut told = BTreeSet::new();
+        for joined in exact::join(scene, &plain) {
+            let element = &scene.elements[joined.elements[0]];
+            let body = surfaces
+                .iter()
+                .find(|surface| surface.body() == element.body);
+            let Some(Surface::Sum(body)) = body.filter(|_| !told.contains(&element.finish)) else {
+                continue;
+            };
+            let terms = &body.sum.primitives;
+            let Some(rest) = left.checked_sub(terms.len() + 32 * joined.len()) else {
+                return;
+            };
+            *left = rest;
+            let (middle, across) = joined.middle;
+            let place = middle + across * joined.radius;
+            let others = value(terms, place) - joined.value(place);
+            let Some(radius) = joined.measure().filter(|_| others.abs() < NEARLY_ALONE) else {
+                continue;
+            };
+            if (radius / joined.radius - 1.0).abs() > MOST_OFF {
+                told.insert(element.finish);
+                let [is, wanted] = [radius, joined.radius].map(round_off);
+                let message = format_args!(
+                    "the surface stands {is} from the middle of this bone, not {wanted}: it is \
+                     short for its blobbiness"
+                );
+                let hint = "add `exact` to its material, or join it to others";
+                self.say_of(element.origin, Severity::Note, message, hint);
             }
         }
     }
@@ -183,7 +237,10 @@ impl Evaluator<'_> {
             }
             let own = &terms[first..term];
             let flesh = element.flesh.map(|flesh| &scene.flesh[flesh as usize]);
-            if flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
+            // Pieces of a bone may be as weak as its texture says.
+            let surface = self.palette.surfaces.get(element.finish as usize);
+            let is_piece = surface.is_some_and(|surface| surface.pattern.is_some());
+            if is_piece || flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
                 continue;
             }
             // Most are strong enough by themselves, which is soon seen.
@@ -243,6 +300,12 @@ fn spread_of_logarithms(values: impl Iterator<Item = f64>) -> f64 {
     let logs: Vec<f64> = values.map(libm::log).collect();
     let mean = logs.iter().sum::<f64>() / logs.len() as f64;
     logs.iter().map(|log| (log - mean) * (log - mean)).sum()
+}
+
+/// Returns a number with three digits that count.
+fn round_off(x: f64) -> String {
+    let digits = (2.0 - libm::floor(libm::log10(1.0005 * x.max(1e-9)))).clamp(0.0, 11.0);
+    format!("{x:.*}", digits as usize)
 }
 
 fn value(terms: &[Primitive], p: DVec3) -> f64 {

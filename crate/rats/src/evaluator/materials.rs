@@ -76,6 +76,7 @@ options! {
     KERNEL: Word = ("kernel", "the command's own: cauchy, or as it says",
         "the kernel of soft shapes (ours)",
         word("name", KERNELS, "the kernel's name"));
+    EXACT: () = ("exact", "", "short bones stand at their radius, too, and so do tips (ours)");
 }
 
 /// `surface`, `material`.
@@ -100,6 +101,10 @@ pub static SURFACE: CommandSpec = row("surface", "make a material")
          light that comes for `specular`, `reflective` and `transparent`. Light that goes into a \
          transparent material is bent by its `index`: glass 1.5, water 1.33, diamond 2.42; it \
          colours the shadow. `dispersion` is how much larger the index is for blue than for red. \
+         The flesh of a bone that is short for its blobbiness is thinner than its radius, as many \
+         short ones make a long one; `exact` makes up for that: bones that are joined end to end, \
+         and triangles, count as one, and a factor on their field and longer free ends let its \
+         middle and its tips stand at the radius where nothing else is near. \
          `surface new = old` copies a material; options behind it change the copy (ours).",
     )
     .example(
@@ -131,6 +136,9 @@ fn surface<'a>(
         None => Surface {
             finish: Finish::default(),
             flesh: Flesh::default(),
+            has_strength: false,
+            pattern: None,
+            exact: false,
             colours: Colours::default(),
             origin: (0, 0..0),
             used: false,
@@ -141,6 +149,8 @@ fn surface<'a>(
     (surface.used, surface.shown, surface.copied) = (false, false, false);
     surface.origin = (run.file, name.span.clone());
     set_flesh(options, &mut surface.flesh)?;
+    surface.exact |= options.has(&EXACT);
+    surface.has_strength |= options.last(&STRENGTH).is_some();
     set_finish(options, &mut surface.finish, &mut surface.colours);
     // A skeleton is soft without a blobbiness; it needs a radius.
     if let Some(chosen) = options.find(&KERNEL)
@@ -156,6 +166,7 @@ fn surface<'a>(
         let texture = run.palette.layers(&textures)?;
         surface.finish.layers = texture.layers;
         surface.flesh.profile = texture.profile;
+        surface.pattern = texture.pattern;
     }
     if let Some(earlier) = run.palette.idle_place(name.text).cloned() {
         run.say_made_twice(Severity::Warning, &name, earlier, || {

@@ -67,8 +67,19 @@ impl Evaluator<'_> {
 
     /// Warns of something in the command of an element, as [`Self::warn`] does.
     pub(super) fn warn_of(&mut self, of: Origin, message: impl Display, hint: impl Display) {
+        self.say_of(of, Severity::Warning, message, hint);
+    }
+
+    /// Says something of the command of an element, as [`Self::say_at`] does.
+    pub(super) fn say_of(
+        &mut self,
+        of: Origin,
+        severity: Severity,
+        message: impl Display,
+        hint: impl Display,
+    ) {
         let span = of.start as usize..of.end as usize;
-        self.say_at(of.file as usize, Severity::Warning, &span, message, hint);
+        self.say_at(of.file as usize, severity, &span, message, hint);
     }
 
     /// Whether a message about this place would be the first, and wanted.

@@ -27,6 +27,8 @@ const FLAT_WEIGHT: usize = MAX_ELEMENTS / MOST_FLAT;
 pub struct Part {
     /// The shape; its material is an index of the palette.
     pub element: Element,
+    /// The depth of influence from which its radius follows, in lengths of its command.
+    pub depth: Option<f64>,
     /// The factor by which it has been scaled, which its material's radius must follow.
     pub growth: f64,
     /// The map from the coordinates of its command to those of the world, if they differ. (In a
@@ -442,7 +444,7 @@ impl<'a> Model<'a> {
         self.parts[range].iter().any(|part| {
             let shape = &part.element.shape;
             let skeleton = shape.skeleton();
-            shape.curves().is_some() || skeleton.is_some_and(|bone| bone.dimension() < 2)
+            shape.curves().is_some() || skeleton.is_some_and(|bone| bone.dimension() == 1)
         })
     }
 

@@ -346,7 +346,7 @@ fn transform_by<'a>(
     let range = target(run, command, object.as_ref())?;
     charge(run, command, &range)?;
     if !transform.uniform && run.model.has_round(range.clone()) {
-        let message = "round shapes cannot be stretched: their radii grow by the mean factor";
+        let message = "tubes cannot be stretched: their radii grow by the mean factor";
         run.warn(&command.span, message, "use three equal factors");
     }
     run.model.transform(range, transform);

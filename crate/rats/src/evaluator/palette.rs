@@ -21,6 +21,12 @@ pub struct Surface {
     pub finish: Finish,
     /// The softness.
     pub flesh: Flesh,
+    /// Whether its strength was given.
+    pub has_strength: bool,
+    /// The texture that says the strength of pieces of its bones, if any.
+    pub pattern: Option<texture::Texture>,
+    /// Whether its flesh stands at its radius, however short its bones are.
+    pub exact: bool,
     /// The colours it was made with, which a copy goes on from.
     pub colours: Colours,
     /// The file and place of its name.
@@ -68,6 +74,8 @@ pub struct Texture {
     pub layers: Vec<texture::Texture>,
     /// The profile of the strength, if any.
     pub profile: Option<Profile>,
+    /// The solid or image that says the strength, if any.
+    pub pattern: Option<texture::Texture>,
 }
 
 /// The materials and textures.
@@ -264,7 +272,10 @@ impl<'a> Palette<'a> {
             let texture = self.texture(name)?;
             let fits = texture::stack(&mut together.layers, &texture.layers);
             together.profile = together.profile.or(texture.profile);
-            let count = together.layers.len() + usize::from(together.profile.is_some());
+            together.pattern = together.pattern.take().or_else(|| texture.pattern.clone());
+            let count = together.layers.len()
+                + usize::from(together.profile.is_some())
+                + usize::from(together.pattern.is_some());
             if fits.is_err() || count > MAX_LAYERS {
                 return Err(Problem::new(
                     &name.span,

@@ -3,16 +3,18 @@
 
 use super::model::Part;
 use super::state::Evaluator;
+use super::{exact, pattern};
 use crate::Severity;
 use crate::compiled::Placement;
 use crate::limits::MAX_MAGNITUDE;
-use field::Skeleton;
 use field::local::LocalError;
-use glam::DVec3;
-use scene::{Body, Element, Finish, Frame, Scene, Settings, Shape};
+use field::{Kernel, Primitive, Skeleton};
+use glam::{DAffine3, DMat3, DVec3};
+use scene::{Body, Element, Finish, Form, Frame, Function, Quadric, Scene, Settings, Shape};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::iter;
+use std::sync::Arc;
 
 /// Value of `sample`, if the text gives none, where colours are means over a lens, the shutter, a
 /// light or the sky.
@@ -86,6 +88,10 @@ impl Evaluator<'_> {
         for mut part in parts.into_iter().filter(|part| !part.removed) {
             let fault = if is_in_bounds(&part) {
                 part.element.frame = frame_of(&part, &mut scene.frames, &mut frames);
+                if let Some(depth) = part.depth {
+                    set_depth(&scene, &mut part.element, depth * part.growth);
+                }
+                stretch(&scene, &mut part);
                 fault(&scene, &part.element)
             } else {
                 Some((TOO_FAR.into(), ""))
@@ -106,6 +112,9 @@ impl Evaluator<'_> {
                 repeated: part.repeated,
             });
         }
+        self.thicken_meshes(&mut scene, &mut placements);
+        self.settle_exact(&mut scene, &mut placements);
+        self.settle_patterns(&mut scene, &mut placements);
         if scene.camera.eye == scene.camera.target {
             let (place, span) = self.aimed_at.clone();
             let message = "the eye is at the view reference point, so it looks nowhere";
@@ -115,6 +124,215 @@ impl Evaluator<'_> {
         (scene, placements)
     }
 }
+
+impl Evaluator<'_> {
+    /// Whether a shape is soft and of a material that is `exact`, or a `triad` whose strength is
+    /// not given.
+    fn is_exact(&self, scene: &Scene, element: &Element) -> bool {
+        let surface = self.palette.surfaces.get(element.finish as usize);
+        let is_exact = surface.is_some_and(|surface| {
+            surface.exact || !surface.has_strength && is_triad(scene, element)
+        });
+        is_exact && scene.is_soft(element)
+    }
+
+    /// Returns the solid or image that says the strength of a soft shape, if any.
+    fn pattern_of(&self, element: &Element) -> Option<&texture::Texture> {
+        let surface = self.palette.surfaces.get(element.finish as usize)?;
+        surface.pattern.as_ref().filter(|_| element.flesh.is_some())
+    }
+
+    /// Makes the flesh of materials that are `exact` stand at its radius.
+    fn settle_exact(&mut self, scene: &mut Scene, placements: &mut Vec<Placement>) {
+        let elements = scene.elements.iter().enumerate();
+        let elements = elements.filter(|(_, element)| self.is_exact(scene, element));
+        let (fit, others): (Vec<_>, Vec<_>) =
+            elements.partition(|(_, element)| exact::is_fit(scene, element));
+        let other = others.iter().find(|(_, element)| {
+            let stays = match &element.shape {
+                Shape::Bone(bone) => {
+                    matches!(
+                        bone.skeleton,
+                        Skeleton::Point { .. } | Skeleton::Plane { .. }
+                    )
+                }
+                Shape::Function(function) => function.curves().is_none(),
+                _ => true,
+            };
+            !stays && !is_triad(scene, element)
+        });
+        let other = other.map(|(_, element)| element.origin);
+        let fit: Vec<usize> = fit.into_iter().map(|(index, _)| index).collect();
+        if let Some(origin) = other {
+            let message = "`exact` is for segments, arcs and triangles of one radius: this shape \
+                           stays as it is";
+            self.say_of(origin, Severity::Note, message, "");
+        }
+        for joined in exact::join(scene, &fit) {
+            match joined.settle(scene, &mut self.exact_left) {
+                Some(added) => {
+                    for (index, element) in added {
+                        let placement = placements[index];
+                        scene.elements.push(element);
+                        placements.push(placement);
+                    }
+                }
+                None => {
+                    let origin = scene.elements[joined.elements[0]].origin;
+                    let message = "this cannot be made `exact`, or takes too long: it stays as it \
+                                   is";
+                    self.warn_of(origin, message, "make fewer shapes of this material");
+                    break;
+                }
+            }
+        }
+    }
+}
+
+impl Evaluator<'_> {
+    /// Cuts bones whose strength a solid or an image says into pieces of their own strengths.
+    fn settle_patterns(&mut self, scene: &mut Scene, placements: &mut Vec<Placement>) {
+        if !scene
+            .elements
+            .iter()
+            .any(|element| self.pattern_of(element).is_some())
+        {
+            return;
+        }
+        let images = scene.images.clone();
+        let images: Vec<&dyn texture::Image> = images
+            .iter()
+            .map(|image| &**image as &dyn texture::Image)
+            .collect();
+        let elements = std::mem::take(&mut scene.elements);
+        let places = std::mem::take(placements);
+        let mut strengths = HashMap::new();
+        let mut left = pattern::MOST_OF_ALL;
+        let mut whole = None;
+        for (element, placement) in elements.into_iter().zip(places) {
+            let frame = scene.frame(&element);
+            let pieces = self
+                .pattern_of(&element)
+                .and_then(|pattern| pattern::cut(&element, frame, pattern, &images));
+            let pieces = pieces.filter(|pieces| pieces.len() <= left);
+            let (Some(pieces), Some(own)) = (pieces, element.flesh) else {
+                if self.pattern_of(&element).is_some() {
+                    whole = whole.or(Some(element.origin));
+                }
+                scene.elements.push(element);
+                placements.push(placement);
+                continue;
+            };
+            left -= pieces.len();
+            for pattern::Piece {
+                mut element,
+                factor,
+            } in pieces
+            {
+                let flesh = &mut scene.flesh;
+                let index = strengths.entry((own, factor.to_bits())).or_insert_with(|| {
+                    let mut piece = flesh[own as usize].clone();
+                    piece.strength *= factor;
+                    flesh.push(piece);
+                    flesh.len() as u32 - 1
+                });
+                element.flesh = Some(*index);
+                scene.elements.push(element);
+                placements.push(placement);
+            }
+        }
+        if let Some(origin) = whole {
+            let message = "a solid or an image says no strength here: this shape stays as it is";
+            let hint = "it is for points, segments, arcs and triangles, 20,000 pieces in all";
+            self.say_of(origin, Severity::Note, message, hint);
+        }
+    }
+}
+
+/// Returns whether an element is a triangle of the command `triad`.
+fn is_triad(scene: &Scene, element: &Element) -> bool {
+    let flesh = element
+        .flesh
+        .and_then(|index| scene.flesh.get(index as usize));
+    element.kernel == Kernel::Inverse
+        && flesh.is_some_and(|flesh| flesh.kernel.is_none())
+        && matches!(element.shape.skeleton(), Some(Skeleton::Triangle { .. }))
+}
+
+/// Gives a soft shape the radius that has a depth of influence, a length of the world.
+fn set_depth(scene: &Scene, element: &mut Element, depth: f64) {
+    let Some(flesh) = scene.flesh_in_world(element) else {
+        return;
+    };
+    let shaping = scene.shaping(element, &flesh, 1.0);
+    if let Shape::Bone(bone) = &mut element.shape {
+        let radius = shaping.radius_of_depth(depth, bone.skeleton.dimension());
+        bone.radius = radius.unwrap_or(0.0);
+    }
+}
+
+/// Most that a map may stretch one direction more than another for balls to stay balls.
+const EVEN: f64 = 1e-9;
+
+/// Makes an ellipsoid of a ball that was stretched unevenly: hard, a quadric; soft, a ball whose
+/// field falls exponentially, as steeply at its surface as its kernel would.
+fn stretch(scene: &Scene, part: &mut Part) {
+    let element = &part.element;
+    let (Some(Skeleton::Point { center }), Some(moved)) =
+        (element.shape.skeleton(), part.moved.as_deref())
+    else {
+        return;
+    };
+    let columns = moved.matrix3.to_cols_array_2d().map(DVec3::from_array);
+    let lengths = columns.map(DVec3::length);
+    let longest = lengths.into_iter().fold(0.0, f64::max);
+    let is_even = (0..3).all(|i| {
+        let lean = columns[i].dot(columns[(i + 1) % 3]).abs();
+        longest - lengths[i] <= EVEN * longest && lean <= EVEN * longest * longest
+    });
+    let radius = scene.radius(element) / part.growth;
+    if is_even || !(radius.is_finite() && radius > 0.0) {
+        return;
+    }
+    let to_world = DAffine3::from_mat3_translation(moved.matrix3, *center);
+    let Some(flesh) = scene.flesh_in_world(element) else {
+        if element.flesh.is_none() {
+            let [x, y, z] = columns;
+            let ball = Quadric::new(DMat3::IDENTITY, DVec3::ZERO, -1.0, -DVec3::ONE, DVec3::ONE);
+            if let Some(mut quadric) = ball {
+                quadric.center = *center;
+                quadric.axes = [x * radius, y * radius, z * radius];
+                part.element.shape = Shape::Quadric(Box::new(quadric));
+            }
+        }
+        return;
+    };
+    // Its field at its surface, as if it had not been stretched.
+    let whole = radius * part.growth;
+    let shaping = field::Shaping {
+        strength: 1.0,
+        ..scene.shaping(element, &flesh, whole)
+    };
+    let point = Skeleton::Point {
+        center: DVec3::ZERO,
+    };
+    let Some(primitive) = Primitive::new(point, &shaping, None) else {
+        return;
+    };
+    let jet = primitive.jet([whole, 0.0, 0.0]);
+    let hardness = (-jet.gradient[0] / jet.value * part.growth).min(HARDEST / radius);
+    let grown = radius + libm::log(flesh.strength) / hardness;
+    if flesh.strength > 0.0 && hardness.is_finite() && hardness > 0.0 && grown > 0.0 {
+        let form = Form::Metaballs {
+            hardness,
+            balls: Arc::new(vec![(DVec3::ZERO, grown)]),
+        };
+        part.element.shape = Shape::Function(Box::new(Function { form, to_world }));
+    }
+}
+
+/// Largest hardness of a stretched ball, in inverse radii: [`field::Exponentials`] has a limit.
+const HARDEST: f64 = 40.0;
 
 /// Returns the index of a part's frame; shapes that were moved alike share one.
 fn frame_of(

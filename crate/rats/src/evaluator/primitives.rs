@@ -1,6 +1,6 @@
 //! PRIMITIVES: shapes made of a material.
 
-use super::curves::{LIMB_OPTIONS, ends_of};
+use super::curves::{LIMB_OPTIONS, POINT_OPTIONS, ends_of};
 use super::implicit_mesh::{self, MESH_OPTIONS};
 use super::model::Part;
 use super::state::{Evaluator, Flow};
@@ -46,7 +46,10 @@ macro_rules! makes {
                 let sn = values.take(|| SN)?;
                 let ($($value,)+) = ($(values.take(|| $slot)?,)+);
                 let shape = with_ends(run, &given.options, &sn, $shape)?;
-                $add(run, command, &sn, $($kernel,)? shape)
+                let first = run.model.parts.len();
+                let flow = $add(run, command, &sn, $($kernel,)? shape)?;
+                run.keep_depth(command, &given.options, first);
+                Ok(flow)
             },
             plain![SN, $($slot),+],
             $options,
@@ -127,6 +130,7 @@ impl<'a> Evaluator<'a> {
                 origin: self.origin(command),
                 ..Element::new(shape)
             },
+            depth: None,
             growth: 1.0,
             moved: None,
             repeated: self.repeating > 0 || !self.is_own(),
@@ -143,6 +147,7 @@ impl<'a> Evaluator<'a> {
 pub static SPHERE: CommandSpec = row("sphere", "sphere; a point when soft")
     .with(makes!(
         add,
+        [POINT_OPTIONS],
         |radius, center| Shape::sphere(center, radius),
         length("r", "the radius").role(Role::Radius),
         vector("POS", "the centre")
@@ -214,7 +219,10 @@ fn arc<'a>(
     }
     let shape = geometry::arc(center, normal, sweep, tube, start, width);
     let shape = with_ends(run, options, &sn, shape)?;
-    add(run, command, &sn, shape)
+    let first = run.model.parts.len();
+    add(run, command, &sn, shape)?;
+    run.keep_depth(command, options, first);
+    Ok(Flow::Next)
 }
 
 pub static ARCH: CommandSpec = row("arch", "arc through three points")
@@ -253,7 +261,10 @@ fn arch<'a>(
         }
     };
     let shape = with_ends(run, options, &sn, shape)?;
-    add(run, command, &sn, shape)
+    let first = run.model.parts.len();
+    add(run, command, &sn, shape)?;
+    run.keep_depth(command, options, first);
+    Ok(Flow::Next)
 }
 
 pub static TORUS: CommandSpec = row("torus", "ring of a round tube")
@@ -393,6 +404,7 @@ fn curve<'a>(
         .hint("each curve after the first takes two control points and an end point"));
     }
     let last = points.len() - 4;
+    let first = run.model.parts.len();
     let (start, end) = (points[0], points[last + 3]);
     let size = points
         .iter()
@@ -412,6 +424,7 @@ fn curve<'a>(
         }
         add(run, command, &sn, shape)?;
     }
+    run.keep_depth(command, options, first);
     Ok(Flow::Next)
 }
 
@@ -440,6 +453,7 @@ fn of_kernel<'a>(
 pub static DOT: CommandSpec = row("dot", "point with a polynomial kernel")
     .with(makes!(
         of_kernel(Kernel::Quartic),
+        [POINT_OPTIONS],
         |center| Shape::sphere(center, 0.0),
         vector("POS", "the position")
     ))
@@ -448,6 +462,7 @@ pub static DOT: CommandSpec = row("dot", "point with a polynomial kernel")
 pub static GAUSS: CommandSpec = row("gauss", "point with a Gaussian kernel")
     .with(makes!(
         of_kernel(Kernel::Gauss),
+        [POINT_OPTIONS],
         |center| Shape::sphere(center, 0.0),
         vector("POS", "the position")
     ))
@@ -474,8 +489,10 @@ pub static TRIAD: CommandSpec = row("triad", "triangle with the Newtonian kernel
         vector("V3", "the third corner")
     ))
     .details(
-        "The potential of a flat mass. Its flesh is as thick as the radius only where the \
-         triangle is many radii wide; smaller ones need more `strength`.",
+        "The potential of a flat mass. Without a `strength` in its material it is as strong as it \
+         takes for its flesh to stand at the radius over its middle, where nothing else is near, \
+         of those joined at corners over that of the largest. With one, its flesh is as thick as \
+         the radius only where the triangle is many radii wide and the strength 1.",
     )
     .example(
         "light White, position 4 8 10\nsurface Flesh, diffuse SandyBrown, specular Gray50, shine \

@@ -181,9 +181,10 @@ pub static SHOOT: CommandSpec = row("shoot", "draw the picture")
     .interrupts()
     .details(
         "The picture shows what has been made so far, and is saved under the `filename` that \
-         stands so far. A text can have several: the program writes each, the page shows the \
-         last. The model lives on behind a `shoot`: a material made again under its name changes \
-         the shapes that stand there, while shapes keep the variables that they were made with. \
+         stands so far. A text can have several: the program writes each, the page shows them \
+         as frames to choose from, or the last where frames are those of a film. The model lives \
+         on behind a `shoot`: a material made again under its name changes the shapes \
+         that stand there, while shapes keep the variables that they were made with. \
          What follows the last `shoot` is in its picture, too, up to a `reset`; without `shoot` \
          the picture shows what there is at the end.",
     )

@@ -94,11 +94,11 @@ impl<'a> Evaluator<'a> {
         model.parts.len() + self.palette.surfaces.len() + objects + air
     }
 
-    /// Says which of several pictures is seen in the page, and that one is written over.
+    /// Says how several pictures are seen in the page, and that one is written over.
     fn say_of_second_shot(&mut self, command: &'a Command) {
         if let [_] = self.shots.taken[..] {
-            let message = "the page shows the picture of the last `shoot`; the program writes \
-                           that of each";
+            let message = "the page shows these pictures as frames to choose from; the program \
+                           writes each";
             self.note(&command.span, message, "");
         }
         let name = self.output.file();

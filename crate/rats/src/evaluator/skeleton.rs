@@ -213,6 +213,7 @@ fn add_block<'a>(
         tapers: false,
         limbs: weigh(run, &element),
         element,
+        depth: None,
         growth: 1.0,
         moved: None,
         repeated: run.repeating > 0 || !run.is_own(),

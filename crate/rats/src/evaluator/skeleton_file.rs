@@ -370,6 +370,7 @@ fn add_material<'a>(
             tapers: false,
             limbs: weigh(run, &element),
             element,
+            depth: None,
             growth: 1.0,
             moved: None,
             repeated: true,

@@ -68,6 +68,8 @@ pub struct Evaluator<'a> {
     pub(super) sampled: bool,
     /// Whether `blobscale` has been given.
     pub(super) scaled: bool,
+    /// Evaluations that flesh which is `exact` may still cost.
+    pub(super) exact_left: usize,
     pub(super) definitions: HashMap<Symbol, (usize, &'a Define)>,
     pub(super) hot: Vec<HotVariable>,
     pub(super) presets: Vec<Preset>,
@@ -136,6 +138,7 @@ impl<'a> Evaluator<'a> {
             settings: Settings::default(),
             sampled: false,
             scaled: false,
+            exact_left: super::exact::MOST_EVALUATIONS,
             definitions: HashMap::new(),
             hot: Vec::new(),
             presets: Vec::new(),

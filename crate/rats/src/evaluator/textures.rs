@@ -14,7 +14,6 @@ use crate::suggest;
 use crate::syntax::Command;
 use field::Profile;
 use glam::DVec3;
-use std::ops::Range;
 use texture::{Fault, Mapping, Region, Solid, Target};
 
 /// Ways in which an image lies on a surface.
@@ -170,7 +169,8 @@ pub static TEXTURE: CommandSpec = row("texture", "make a texture")
          and scale with their object. `normal` makes bumps. u and v run from 0 to 1: along a limb \
          and around it, around a ball and up; each shape of a blend is textured by itself, and \
          the results are mixed. With the target `strength` waves are a profile: they model the \
-         flesh along the skeleton (thesis, section 3.4). `texture t1 + t2` puts layers upon each \
+         flesh along the skeleton (thesis, section 3.4); a solid or an image says the strength of \
+         pieces of it, up to 64 of a bone (ours). `texture t1 + t2` puts layers upon each \
          other, at most 12; `texture new = old` copies a texture. Options behind these change \
          each of the layers (ours).",
     )
@@ -220,12 +220,10 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
         return Err(read.missing("what the texture changes, such as `pigment`"));
     };
     let below = read.operands(word.parameters, TEXTURE_OPTIONS)?;
-    let start = read.start();
     let method = match word.name {
         "texture" => None,
         _ => Some(method(&mut read)?),
     };
-    let span = read.since(start);
     let options = read.read_options(TEXTURE_OPTIONS)?;
     read.end()?;
     let texture = match method {
@@ -233,7 +231,7 @@ fn make<'a>(run: &mut Evaluator<'a>, command: &'a Command) -> Outcome<()> {
             let below: Vec<_> = below.iter().filter_map(Named::of).collect();
             run.palette.layers(&below)?
         }
-        Some(method) => own_layer(run, target(word.name), method, span)?,
+        Some(method) => own_layer(run, target(word.name), method)?,
     };
     finish(run, &name, texture, options)
 }
@@ -243,20 +241,15 @@ fn own_layer<'a>(
     run: &mut Evaluator<'a>,
     target: Option<Target>,
     method: Method<'a>,
-    span: Range<usize>,
 ) -> Outcome<Texture> {
     let Some(target) = target else {
         let (waves, times) = match method {
             Method::Waves(waves) => (waves.map(|index| WAVE_KINDS[index].0), 1.0),
             Method::Colour(colour) => ([field::Wave::One; 2], colour.x),
-            Method::Solid(_) | Method::Image(..) => {
-                return Err(Problem::new(
-                    &span,
-                    "a strength varies along the bone only: it takes two waves",
-                )
-                .hint(
-                    "write two waves, such as `sin one`; `normal` with this method makes bumps",
-                ));
+            Method::Solid(solid) => return Ok(pattern(texture::Method::Solid(solid))),
+            Method::Image(name, mapping) => {
+                let image = run.image(&name)?;
+                return Ok(pattern(texture::Method::Image(image, mapping)));
             }
         };
         let profile = Profile {
@@ -283,6 +276,14 @@ fn own_layer<'a>(
     })
 }
 
+/// Returns the texture of a strength that a solid or an image says.
+fn pattern(method: texture::Method) -> Texture {
+    Texture {
+        pattern: Some(texture::Texture::new(Target::Strength, method)),
+        ..Texture::default()
+    }
+}
+
 /// Applies the options to every layer, puts the other layers that they name upon them, and keeps
 /// the result.
 fn finish<'a>(
@@ -305,7 +306,7 @@ fn finish<'a>(
             run.warn(&chosen.span, message, "leave it out");
         }
     }
-    for layer in &texture.layers {
+    for layer in texture.layers.iter().chain(&texture.pattern) {
         layer.check().map_err(|fault| {
             let span = mask.clone().unwrap_or(name.span.clone());
             let problem = Problem::new(&span, fault.to_string());
@@ -323,6 +324,7 @@ fn finish<'a>(
 fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
     let name = chosen.option.name;
     let layers = &mut texture.layers;
+    let has_pattern = texture.pattern.is_some();
     if let Some(profile) = &mut texture.profile {
         // A strength is one number: the first of three.
         if let Some(scale) = SCALE.of(chosen) {
@@ -331,12 +333,14 @@ fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
             profile.times = times.x;
         } else if let Some((low, high)) = BOUNDS.of(chosen) {
             profile.bounds = [low.x, high.x];
-        } else if layers.is_empty() && TRANSLATE.of(chosen) != Some(DVec3::ZERO) {
+        } else if layers.is_empty() && !has_pattern && TRANSLATE.of(chosen) != Some(DVec3::ZERO) {
             return Some(format!(
                 "`{name}` changes nothing about a strength: `scale`, `bounds` and `times` do"
             ));
         }
     }
+    let layers = layers.iter_mut().chain(&mut texture.pattern);
+    let mut layers: Vec<&mut texture::Texture> = layers.collect();
     let mut methods = layers.iter().map(|layer| layer.method);
     if (TURBULENCE.is(chosen) || OCTAVES.is(chosen))
         && !layers.is_empty()
@@ -346,7 +350,7 @@ fn set(texture: &mut Texture, chosen: &Chosen<'_>) -> Option<String> {
             "`{name}` says nothing here: it is the noise of solids such as `wood`"
         ));
     }
-    for layer in layers {
+    for layer in &mut layers {
         if let Some(shift) = TRANSLATE.of(chosen) {
             layer.translate = shift;
         } else if let Some(scale) = SCALE.of(chosen) {

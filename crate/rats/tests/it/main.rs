@@ -12,6 +12,8 @@ mod diagnostics;
 #[cfg(not(target_arch = "wasm32"))]
 mod ends;
 #[cfg(not(target_arch = "wasm32"))]
+mod exact;
+#[cfg(not(target_arch = "wasm32"))]
 mod examples;
 #[cfg(not(target_arch = "wasm32"))]
 mod limits;
@@ -24,5 +26,7 @@ mod motion;
 mod platforms;
 #[cfg(not(target_arch = "wasm32"))]
 mod skeleton_files;
+#[cfg(not(target_arch = "wasm32"))]
+mod soft_shapes;
 #[cfg(not(target_arch = "wasm32"))]
 mod strokes;

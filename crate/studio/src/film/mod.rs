@@ -165,8 +165,8 @@ impl Panel for FilmPanel {
 
     /// Shows the next frame of the film if its time has come, or saves the one that is finished.
     fn tick(&mut self, page: &mut Page, at: &Moment<'_>) {
-        let is_animated = page.work.session.is_animated();
-        if is_animated && self.formats.is_none() {
+        let has_frames = page.work.session.has_frames();
+        if has_frames && self.formats.is_none() {
             self.formats = Some(Vec::new());
             let requests = page.parts.requests.clone();
             browser::video_formats(move |formats| requests.ask(Request::Videos(formats)));
@@ -176,10 +176,13 @@ impl Panel for FilmPanel {
             self.save_frame(page, at);
             return;
         }
-        if !is_animated || page.is_lab_open {
+        if !has_frames || page.is_lab_open {
             self.player.pause();
         }
-        self.player.follow(page.work.session.film_rate());
+        match page.work.session.pictures() {
+            1 => self.player.follow(page.work.session.film_rate()),
+            count => self.player.count = count as u32,
+        }
         page.film = self.length();
         let has_draft = page.screen.has_draft && page.settings.show != Show::Traced;
         let ready = has_draft || page.is_finished();

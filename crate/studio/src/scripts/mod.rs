@@ -99,7 +99,7 @@ impl Scripts {
         state.fit = panels.fit.0.report();
         state.mesh = panels.mesh.report(page);
         state.drawing = panels.stage.pencil.tool().map(Tool::id);
-        state.frame = session.is_animated().then(|| session.film_frame());
+        state.frame = session.has_frames().then(|| session.film_frame());
         let text = (session.revision(), session.is_compiled());
         if self.reported != Some(text) {
             self.reported = Some(text);

@@ -91,6 +91,7 @@ impl Film {
             Ok(Format::Png) => "image/png",
             Ok(Format::Gif) => "image/gif",
             Ok(Format::Tif) => "image/tiff",
+            Ok(Format::Jpg) => "image/jpeg",
             _ => "application/octet-stream",
         }
     }
