@@ -20,10 +20,18 @@ struct Meeting {
     paint: vec3f,
     // Number of a material, or MIXED and where a leaf's mixture begins.
     look: u32,
+    // How far above the surface rays to lights begin: by what is less than a pixel, but of patches, whose light is that of a
+    // round surface, above their neighbours.
+    lift: f32,
     cell: Cell,
 }
 
 const MIXED: u32 = 0x80000000u;
+const LIFT: f32 = 2e-4;
+const LIFT_OF_PATCH: f32 = 4e-3;
+
+// That of the surface which is seen.
+var<private> lift: f32;
 
 // Whether the plane of a patch is met within it.
 fn is_in_patch(ray: Ray, solid: Solid) -> bool {
@@ -92,6 +100,7 @@ fn meet_solid(place: u32, origin: vec3f, direction: vec3f, first: f32, last: f32
         out.normal = rotate(rotation, hit.normal);
         out.paint = hit.paint;
         out.look = low.w;
+        out.lift = select(LIFT, LIFT_OF_PATCH, high.w > 4u);
     }
     return out;
 }
@@ -149,6 +158,7 @@ fn meet_scene(origin: vec3f, direction: vec3f, first: f32, last: f32, any: bool)
             best.normal = -found.gradient;
             best.paint = WHITE;
             best.cell = found.cell;
+            best.lift = LIFT;
             best.look = four(found.cell.word & PLACE).x;
         }
     }
@@ -160,9 +170,8 @@ fn unblocked(light: u32, place: vec3f, normal: vec3f, towards: vec3f, limit: f32
     if ((frame.counts.w >> light) & 1u) == 0u {
         return 1.0;
     }
-    // Above the surface by what is less than a pixel.
-    let lift = 2e-4 + 2e-6 * length(place);
-    let found = meet_scene(place + lift * normal, towards, lift, limit, true);
+    let above = lift + 2e-6 * length(place);
+    let found = meet_scene(place + above * normal, towards, above, limit, true);
     return select(1.0, 0.0, found.met);
 }
 
@@ -198,6 +207,7 @@ struct Seen {
 
 fn see(position: vec2f) -> Seen {
     evaluations = 0u;
+    lift = LIFT;
     let way = way_at(position);
     let long = length(way);
     let gaze = way / long;
@@ -214,6 +224,7 @@ fn see(position: vec2f) -> Seen {
         let outward = normalize(met.normal);
         out.normal = select(outward, -outward, dot(outward, gaze) > 0.0);
         out.distance = distance;
+        lift = met.lift;
         if ground.y == 0.0 || distance < ground.x {
             let light = phong(look_at(met, place), place, gaze, out.normal);
             out.colour = written(foggy(light, gaze, distance));
@@ -221,6 +232,7 @@ fn see(position: vec2f) -> Seen {
         }
     }
     var shade = 1.0;
+    lift = LIFT;
     if ground.y > 0.0 {
         let place = view.eye_high.xyz + ground.x * gaze;
         shade = sun(place);

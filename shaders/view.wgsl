@@ -17,7 +17,7 @@ struct View {
     right: vec4f,
     // Unit vector up in the picture; w: tangent of half the vertical angle of view.
     up: vec4f,
-    // Unit vector into the picture; w: distance of the nearest depth that can be told apart.
+    // Unit vector into the picture.
     forward: vec4f,
     // The eye as a sum of two numbers: its f32 value, and what that leaves out; their w: where the
     // middle of the picture lies, as tangents to the right and up.
@@ -100,34 +100,6 @@ fn way_at(position: vec2f) -> vec3f {
     return view.forward.xyz
         + (across.x * view.right.w + view.eye_high.w) * view.right.xyz
         + (across.y * view.up.w + view.eye_low.w) * view.up.xyz;
-}
-
-// The unit vector along that way.
-fn gaze_at(position: vec2f) -> vec3f {
-    return normalize(way_at(position));
-}
-
-// Depth of a point at a distance along a gaze. Nearer is larger. The quotient keeps f32's full relative precision at every
-// distance.
-fn depth_at(distance: f32, gaze: vec3f) -> f32 {
-    return min(view.forward.w / max(distance * dot(gaze, view.forward.xyz), 1e-30), 1.0);
-}
-
-struct Fragment {
-    @location(0) colour: vec4f,
-    @builtin(frag_depth) depth: f32,
-}
-
-// Clip coordinates of the point that `seen` leads to from the eye. The depth is written per fragment; half of w is never clipped,
-// near or far.
-fn on_picture(seen: vec3f) -> vec4f {
-    let distance = dot(seen, view.forward.xyz);
-    return vec4f(
-        (dot(seen, view.right.xyz) - view.eye_high.w * distance) / view.right.w,
-        (dot(seen, view.up.xyz) - view.eye_low.w * distance) / view.up.w,
-        0.5 * distance,
-        distance,
-    );
 }
 
 // The parameters of Phong's model at a point.

@@ -1,13 +1,13 @@
 //! Draws the true surface of a dataset on this machine's adapter, tells how long a frame takes, and
-//! with `--compare` how much it differs from the traced picture:
+//! with `--compare` how much it differs from the traced picture; with `--cubics` as the page does:
 //! `cargo run --release -p preview --example picture -- www/examples/seahorse.rat out.png 512 512`
 
 // The tests' way to a device without a window, and to the tracer.
 #[path = "../tests/it/common/traced.rs"]
 mod traced;
 
-use preview::orbit;
-use preview::trace::{Detail, Stage, Tracer};
+use cells::Detail;
+use preview::{Stage, Tracer, orbit};
 use scene::Camera;
 use std::error::Error;
 use std::path::Path;
@@ -24,7 +24,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .skip(1)
         .partition(|argument| argument.starts_with("--"));
     let [file, out, size @ ..] = arguments.as_slice() else {
-        return Err("usage: picture FILE OUT.png [WIDTH HEIGHT] [--compare] [--quick]".into());
+        return Err(
+            "usage: picture FILE OUT.png [WIDTH HEIGHT] [--compare] [--quick | --full] [--cubics]"
+                .into(),
+        );
     };
     let scene = load(Path::new(file))?;
     let size = match size {
@@ -33,13 +36,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let detail = if options.iter().any(|option| option == "--quick") {
         Detail::Quick
+    } else if options.iter().any(|option| option == "--full") {
+        Detail::Full
     } else {
         Detail::Fine
     };
     let card = traced::open().ok_or("no graphics adapter")?;
     let start = Instant::now();
-    let (mut tracer, shown) = card.prepare(&scene, detail, Stage::Compute);
-    println!("{shown:?}, prepared in {:.0?}", start.elapsed());
+    let has_formulas = !options.iter().any(|option| option == "--cubics");
+    let (mut tracer, packed) = card.prepare_with(&scene, detail, Stage::Compute, has_formulas);
+    println!(
+        "{} leaves, {} rough, work {}, {} kB, prepared in {:.0?}",
+        packed.leaves,
+        packed.rough,
+        packed.work,
+        packed.data.len() / 1000,
+        start.elapsed()
+    );
     let pixels = card.read(&mut tracer, &scene.camera, size);
     let bytes: Vec<u8> = (pixels.iter())
         .flat_map(|pixel| pixel.colour.map(|channel| (channel * 255.0 + 0.5) as u8))
@@ -76,10 +89,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     println!(
         "{{\"adapter\":{:?},\"elements\":{},\"surface_pixels\":{surface},\
-         \"frame_ms\":{frame_ms:.2},\"evaluations_per_pixel\":{:.2},\"meshed\":[]{differs}}}",
+         \"frame_ms\":{frame_ms:.2},\"evaluations_per_pixel\":{:.2},\"meshed\":{:?}{differs}}}",
         card.device.adapter_info().name,
-        shown.elements,
+        packed.elements,
         evaluations as f64 / pixels.len() as f64,
+        packed.meshed,
     );
     Ok(())
 }

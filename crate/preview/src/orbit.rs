@@ -4,7 +4,7 @@
 //! right; `down` of its height, positive downwards. So the feel is the same on a phone and on a
 //! large screen. All cameras that come out are finite and can be drawn.
 
-use crate::bounds::Bounds;
+use cells::Bounds;
 use core::f64::consts::PI;
 use glam::DVec3;
 use scene::{Camera, Scene};

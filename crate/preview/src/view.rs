@@ -1,42 +1,20 @@
 //! Uniforms of the camera and the lights.
 
-use crate::bounds::Bounds;
-use crate::instance::Units;
-use crate::materials::{finite, with};
 use bytemuck::{Pod, Zeroable};
+use cells::{Bounds, Units, finite, with};
 use glam::DVec3;
-use scene::{Background, Camera, Ground, Light, LightKind, Scene, Tone as Tonemap};
+use scene::{Background, Camera, Ground, Light, LightKind, Scene, Tone};
 
 /// Lights that the draft can take. Of more, the strongest count.
 pub const MAX_LIGHTS: usize = 8;
 
-/// The distance, in draft units, below which depths are no longer told apart. So small that it
-/// matters to nobody; depths are quotients of it, and `f32` has the exponents for that.
-const NEAREST: f32 = 1e-9;
-
-/// Colours as the draft writes them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Tone {
-    pub(crate) gamma: f32,
-    pub(crate) background: [f64; 3],
-}
-
-impl Tone {
-    pub(crate) fn of(scene: &Scene) -> Self {
-        let gamma = scene.settings.gamma;
-        // A gamma that makes no sense is none; within the range, powers stay finite.
-        let gamma = if gamma.is_finite() && gamma > 0.0 {
-            gamma.clamp(1e-2, 1e2)
-        } else {
-            1.0
-        };
-        Self {
-            gamma,
-            background: scene
-                .background
-                .mean()
-                .map(|channel| f64::from(libm::powf(finite(channel).clamp(0.0, 1.0), 1.0 / gamma))),
-        }
+/// Returns the gamma of a scene. One that makes no sense is 1; within the range, powers stay finite.
+pub(crate) fn gamma(scene: &Scene) -> f32 {
+    let gamma = scene.settings.gamma;
+    if gamma.is_finite() && gamma > 0.0 {
+        gamma.clamp(1e-2, 1e2)
+    } else {
+        1.0
     }
 }
 
@@ -63,23 +41,21 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// The view of a camera onto a picture of the size `frame`, which is drawn with `samples`
-    /// samples across and down.
+    /// The view of a camera onto a picture of a size.
     pub(crate) fn new(
         camera: &Camera,
-        frame: [u32; 2],
-        samples: [u32; 2],
+        size: [u32; 2],
         units: Units,
-        tone: Tone,
+        gamma: f32,
         lights: &Lights,
         air: Air,
     ) -> Self {
-        let projection = camera.projection(frame[0], frame[1]);
+        let projection = camera.projection(size[0], size[1]);
         let axes = projection.world_from_view;
         let [right, up, forward] = [
             (axes.x_axis, projection.half_width as f32),
             (axes.y_axis, projection.half_height as f32),
-            (-axes.z_axis, NEAREST),
+            (-axes.z_axis, 0.0),
         ]
         .map(|(axis, w)| axis.as_vec3().extend(w).to_array());
         let (high, low) = units.place(projection.eye);
@@ -90,9 +66,9 @@ impl View {
             eye_high: [high[0], high[1], high[2], projection.shift[0] as f32],
             eye_low: [low[0], low[1], low[2], projection.shift[1] as f32],
             picture: [
-                1.0 / samples[0] as f32,
-                1.0 / samples[1] as f32,
-                tone.gamma,
+                1.0 / size[0] as f32,
+                1.0 / size[1] as f32,
+                gamma,
                 lights.count as f32,
             ],
             lights: lights.packed,
@@ -191,11 +167,6 @@ impl Air {
             }
             _ => 0.0,
         };
-        Self::new(scene, units, lowest)
-    }
-
-    /// The air of a scene. `lowest` is the least height of its elements along its direction up.
-    pub(crate) fn new(scene: &Scene, units: Units, lowest: f64) -> Self {
         let up = scene.up.normalize_or(DVec3::Y);
         let center = units.center.dot(up);
         let inverse = |length: f64| {
@@ -222,7 +193,7 @@ impl Air {
         let ground = scene.ground.map(|ground| ground.height.unwrap_or(lowest));
         let fog = scene.fog.filter(|fog| fog.distance > 0.0);
         let thins = fog.and_then(|fog| fog.height);
-        let is_filmic = scene.settings.tone == Tonemap::Filmic;
+        let is_filmic = scene.settings.tone == Tone::Filmic;
         Self {
             zenith: [x, y, z, count as f32],
             background,
@@ -241,13 +212,5 @@ impl Air {
                 f32::from(u8::from(is_filmic)),
             ],
         }
-    }
-
-    /// Whether the ground, sky and background have one colour, which needs no pass of its own.
-    pub(crate) fn is_plain(&self) -> bool {
-        self.zenith[3] <= 1.0
-            && self.ground[3] == 0.0
-            && self.fog[3] == 0.0
-            && self.levels[3] == 0.0
     }
 }

@@ -61,7 +61,7 @@ pub use quadric::Quadric;
 pub use settings::{Digger, Fragile, Settings, Tone};
 pub use shape::{Bone, Cuboid, Ends, Shape, extent};
 pub use soft::SoftSurface;
-pub use surface::{ComposedSurface, Surface};
+pub use surface::{ComposedSurface, Surface, strongest};
 pub use surroundings::{Background, Cloud, Fog, Ground, Lens, Sky};
 pub use unit::Unit;
 

@@ -199,8 +199,7 @@ fn show_choice(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
             (
                 Show::Draft,
                 "Draft",
-                "Only the instant draft: shapes before they melt together; \
-                    once you turn or drag, a mesh of the surface if it comes soon enough",
+                "Only the draft: the surface itself, drawn by the graphics card",
             ),
             (Show::Traced, "Traced", "Only the ray-traced picture"),
         ] {

@@ -110,16 +110,15 @@ pub fn show(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(12.0);
             let on_screen = stand_in.map(|stand_in| {
-                let tip = match stand_in {
-                    StandIn::Draft => {
-                        "The shapes before they melt together stand in for the traced picture"
-                    }
-                    StandIn::Kept => {
+                let (text, tip) = match stand_in {
+                    StandIn::Draft { fps, meshed } => drawn(fps, meshed),
+                    StandIn::Kept => (
+                        stand_in.id().to_owned(),
                         "This picture was traced when the example was made; yours is on its way"
-                    }
-                    StandIn::Mesh => "A mesh of the surface stands in for the traced picture",
+                            .to_owned(),
+                    ),
                 };
-                (stand_in.id().to_owned(), tip.to_owned())
+                (text, tip)
             });
             for (text, tip) in facts(renderer, page.screen.backend, narrow)
                 .into_iter()
@@ -178,4 +177,18 @@ fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, St
         ));
     }
     facts
+}
+/// Returns words on what the card draws, and how often a second.
+fn drawn(fps: Option<u32>, meshed: usize) -> (String, String) {
+    let tip = "The graphics card draws the surface itself, until the traced picture is there";
+    let tip = match meshed {
+        0 => tip.to_owned(),
+        1 => format!("{tip}; of one body it draws a mesh"),
+        _ => format!("{tip}; of {meshed} bodies it draws meshes"),
+    };
+    let text = match fps {
+        Some(fps) => format!("draft, {fps} fps"),
+        None => "draft".to_owned(),
+    };
+    (text, tip)
 }

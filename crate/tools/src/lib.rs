@@ -19,6 +19,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod cells;
 mod coating;
 #[cfg(all(target_arch = "wasm32", feature = "entry"))]
 mod entry;
@@ -27,14 +28,14 @@ mod job;
 mod meshing;
 pub mod message;
 mod reading;
-mod view;
 mod work;
 
+pub use self::cells::PackScene;
 pub use coating::{CoatScene, Coated};
 pub use fitting::{Controls, FitMesh, FitStep};
 pub use job::{Job, News, Pace, Progress};
 pub use meshing::{MeshFacts, MeshScene, Meshed, Poses, WriteMesh, Written};
 pub use message::Answer;
 pub use reading::{ReadMeasured, ReadMesh, ReadSkeleton};
-pub use view::{Detail, ViewMesh, ViewScene};
+
 pub use work::{Request, Work, serve};

@@ -1,12 +1,13 @@
 //! The jobs of all types, and carrying them out in a worker.
 
+use crate::cells::PackScene;
 use crate::coating::CoatScene;
 use crate::fitting::FitMesh;
 use crate::job::{Job, News, Progress};
 use crate::meshing::{MeshScene, WriteMesh};
 use crate::message::{Answer, DIFFERENT_VERSIONS, pack};
 use crate::reading::{ReadMeasured, ReadMesh, ReadSkeleton};
-use crate::view::ViewScene;
+
 use core::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +46,7 @@ jobs!(
     ReadMesh,
     ReadMeasured,
     ReadSkeleton,
-    ViewScene,
+    PackScene,
     CoatScene,
     MeshScene,
     WriteMesh,

@@ -3,6 +3,4 @@
 mod common;
 mod pictures;
 mod shaders;
-mod shapes;
-mod sheet;
 mod traced;

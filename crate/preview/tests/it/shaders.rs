@@ -22,16 +22,7 @@ fn programs() -> BTreeMap<&'static str, String> {
             (name.replace(".wgsl", ""), text)
         })
         .collect();
-    let mut parts: BTreeMap<&str, Vec<&str>> = BTreeMap::from([
-        ("mesh", vec!["view", "shadeless", "mesh"]),
-        ("backdrop", vec!["view", "shadeless", "sky", "backdrop"]),
-        ("resolve", vec!["resolve"]),
-    ]);
-    for shape in SHAPES {
-        let corners = (shape == "patch").then_some("corners");
-        let shared = ["view", "shadeless", "solid", "element", shape];
-        parts.insert(shape, shared.into_iter().chain(corners).collect());
-    }
+    let mut parts: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for entry in ["compute", "fragment"] {
         let tracer = ["view", "sky", "solid"].into_iter().chain(SHAPES);
         parts.insert(entry, tracer.chain(["march", "scene", entry]).collect());
@@ -41,9 +32,6 @@ fn programs() -> BTreeMap<&'static str, String> {
     assert_eq!(used, all, "files of no program, or missing ones");
     let programs = parts.into_iter().map(|(name, parts)| {
         let mut code: String = parts.iter().map(|part| files[*part].as_str()).collect();
-        if SHAPES.contains(&name) {
-            code += &format!("fn meet(r: Ray, s: Solid) -> Hit {{ return meet_{name}(r, s); }}");
-        }
         if parts.contains(&"march") {
             for formulas in ["plain_term", "profile_of_term"] {
                 code += &format!("fn {formulas}(kind: u32, at: u32, count: u32, p: vec3f)");

@@ -1,8 +1,9 @@
 //! The true surface on an adapter, held to the tracer.
 
 use crate::common::traced::{Card, Differs, compare, open};
+use cells::Detail;
 use field::Kernel;
-use preview::trace::{Detail, Stage};
+use preview::Stage;
 use scene::Scene;
 use trials::scenes::KINDS;
 use trials::{Random, count};
@@ -32,7 +33,7 @@ fn compile(name: &str, text: &str) -> Scene {
 }
 
 fn differs(card: &Card, scene: &Scene) -> Differs {
-    let (mut tracer, _) = card.prepare(scene, Detail::Fine, Stage::Compute);
+    let (mut tracer, _) = card.prepare(scene, Detail::Full, Stage::Compute);
     let pixels = card.read(&mut tracer, &scene.camera, SIZE);
     compare(scene, SIZE, &pixels)
 }
@@ -61,9 +62,9 @@ fn both_stages_draw_the_same() {
     let Some(card) = open() else { return };
     for (name, text) in &EXAMPLES[1..2] {
         let scene = compile(name, text);
-        let (mut tracer, _) = card.prepare(&scene, Detail::Fine, Stage::Compute);
+        let (mut tracer, _) = card.prepare(&scene, Detail::Full, Stage::Compute);
         let pixels = card.read(&mut tracer, &scene.camera, SIZE);
-        let (mut tracer, _) = card.prepare(&scene, Detail::Fine, Stage::Fragment);
+        let (mut tracer, _) = card.prepare(&scene, Detail::Full, Stage::Fragment);
         let colours = card.colours(&mut tracer, &scene.camera, SIZE);
         let differ = pixels.iter().zip(&colours).filter(|(pixel, colour)| {
             let channels = pixel.colour.iter().zip(*colour);

@@ -1,82 +1,63 @@
-//! A mesh of the model's true surface for the draft, while the user turns the model or drags a part
-//! of it.
+//! The numbers by which the card draws the model's true surface ([`cells::Packed`]), while the user
+//! turns the model or drags a part of it.
 //!
-//! A tools worker makes it, apart from the page's thread: a coarse one while the text changes, and
-//! a fine one once nothing changes and no picture is traced. Until it is there, and where it would
-//! come too late to follow a drag, the draft shows the elements before they melt together. No mesh
-//! is made, and no worker fetched, before the user turns or drags for the first time.
+//! A tools worker makes them, apart from the page's thread: quickly while the text changes, and with
+//! care once nothing changes and no picture is traced. Until those of the present scene are there,
+//! the last ones stay. No worker is fetched before the user turns or drags for the first time, or
+//! the first picture is there.
 
+use cells::{Detail, Packed};
 use document::session::Session;
 use pool::{Ticket, Tools};
-use preview::Mesh;
-use scene::{Element, Scene};
+use scene::Scene;
 use std::sync::Arc;
-use tools::{Detail, ViewMesh, ViewScene};
+use tools::PackScene;
 
-/// Most seconds that a coarse mesh may take to follow a drag.
-const QUICK: f64 = 0.15;
-/// Seconds for which such a mesh stands in for the next one.
-const LATE: f64 = 0.35;
-/// Seconds without a change before a fine mesh is made.
+/// Seconds without a change before they are made with care.
 const STILL: f64 = 0.5;
-/// Seconds of work after which a mesh is given up.
-const LIMIT: f64 = 8.0;
-/// Most elements of a scene that is meshed.
-const MOST: usize = 20_000;
+/// Seconds of work after which they are given up.
+const LIMIT: f64 = 30.0;
+/// Most elements of a scene.
+const MOST: usize = 200_000;
 
-/// A mesh that is being made.
+/// Numbers that are being made.
 struct Running {
-    ticket: Ticket<ViewMesh>,
+    ticket: Ticket<Packed>,
+    scene: Arc<Scene>,
     shape: u64,
     detail: Detail,
     /// Time at which it was last seen to wait for its turn.
     start: f64,
 }
 
-/// A mesh that is there.
+/// Numbers that are there.
 pub struct Made {
-    /// A number that tells it from other meshes.
+    /// A number that tells them from others.
     pub number: u64,
-    mesh: ViewMesh,
-    /// [`Session::shape`] of its scene.
+    /// The packed scene.
+    pub packed: Packed,
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// [`Session::shape`] of the scene.
     shape: u64,
     detail: Detail,
-    /// Time at which it last was, or may have been, the mesh of the present scene.
-    current: f64,
 }
 
-impl Made {
-    /// Returns the mesh as the draft takes it.
-    #[must_use]
-    pub fn mesh(&self) -> Mesh<'_> {
-        Mesh {
-            vertices: &self.mesh.vertices,
-            triangles: &self.mesh.triangles,
-            origin: self.mesh.origin,
-            unit: self.mesh.unit,
-        }
-    }
-}
-
-/// The mesh of the present work.
-pub struct LiveMesh {
+/// The packed scene of the present work.
+pub struct LiveCells {
     tools: Tools,
     is_wanted: bool,
     running: Option<Running>,
     made: Option<Made>,
     count: u64,
-    /// Seconds that the last coarse mesh took.
-    seconds: f64,
-    /// [`Session::shape`] of a scene that cannot be meshed, or no finer.
+    /// [`Session::shape`] of a scene that cannot be packed, or not with care.
     hopeless: Option<u64>,
-    /// Number of elements of a scene that took too long: another try waits until it changes.
-    slow: Option<usize>,
     /// [`Session::shape`] of the scene seen last, and the time at which it changed.
     seen: (u64, f64),
 }
 
-impl LiveMesh {
-    /// Makes no mesh until one is wanted.
+impl LiveCells {
+    /// Makes nothing until it is wanted.
     #[must_use]
     pub fn new(tools: Tools) -> Self {
         Self {
@@ -85,14 +66,12 @@ impl LiveMesh {
             running: None,
             made: None,
             count: 0,
-            seconds: f64::INFINITY,
             hopeless: None,
-            slow: None,
             seen: (0, 0.0),
         }
     }
 
-    /// Makes meshes from now on, as the user turns or drags.
+    /// Packs scenes from now on, as the user turns or drags.
     pub fn want(&mut self) {
         self.is_wanted = true;
     }
@@ -102,23 +81,21 @@ impl LiveMesh {
         self.running = None;
         self.is_wanted = false;
         self.made = None;
-        self.seconds = f64::INFINITY;
         self.hopeless = None;
-        self.slow = None;
     }
 
-    /// Gives up a fine mesh, which is made later, so that the worker is free for other jobs.
+    /// Gives up what is made with care, and made later, so that the worker is free for other jobs.
     pub fn give_way(&mut self) {
         self.running
             .take_if(|running| running.detail == Detail::Fine);
     }
 
-    /// Takes in a mesh from the worker, and begins the next one. `is_drawn`: a draft is on the
+    /// Takes in what the worker made, and begins the next. `is_drawn`: a draft is needed on the
     /// screen; `rests`: no picture is being traced.
     pub fn tick(&mut self, session: &Session, now: f64, is_drawn: bool, rests: bool) {
         if let Some(running) = &mut self.running {
             if let Some(result) = running.ticket.result() {
-                self.take(result, now);
+                self.take(result);
             } else if running.ticket.fraction().is_none() {
                 running.start = now;
             }
@@ -127,41 +104,39 @@ impl LiveMesh {
         if self.seen.0 != shape {
             self.seen = (shape, now);
         }
-        if let Some(made) = self.made.as_mut().filter(|made| made.shape == shape) {
-            made.current = now;
-        }
         if let Some(running) = &self.running {
             let is_old = running.shape != shape && running.detail == Detail::Fine;
             let is_long = now - running.start > LIMIT;
             if is_long {
                 self.hopeless = Some(running.shape);
-                self.slow = Some(elements(session));
             }
             if is_old || is_long {
                 self.running = None;
             }
         }
-        let is_slow = self.slow == Some(elements(session));
-        if !self.is_wanted || self.running.is_some() || is_slow || self.hopeless == Some(shape) {
+        if self.running.is_some() || self.hopeless == Some(shape) {
             return;
         }
         let known = self.made.as_ref().filter(|made| made.shape == shape);
         let detail = match known.map(|made| made.detail) {
-            None if is_drawn => Detail::Coarse,
-            Some(Detail::Coarse) if rests && now - self.seen.1 >= STILL => Detail::Fine,
+            None if is_drawn && self.is_wanted => Detail::Quick,
+            known if rests && now - self.seen.1 >= STILL => match known {
+                None => Detail::Quick,
+                Some(Detail::Quick) => Detail::Fine,
+                Some(_) => return,
+            },
             _ => return,
         };
-        let whole = session.scene();
-        let Some((whole, soft)) = whole.and_then(|scene| Some((scene, soft_part(scene)?))) else {
+        let Some(scene) = session.scene().filter(|scene| scene.elements.len() <= MOST) else {
             self.hopeless = Some(shape);
             return;
         };
-        let job = ViewScene {
-            scene: Arc::new(soft),
-            looks: preview::looks(whole),
+        let job = PackScene {
+            scene: scene.clone(),
             detail,
         };
         self.running = Some(Running {
+            scene: job.scene.clone(),
             ticket: self.tools.submit(job),
             shape,
             detail,
@@ -169,70 +144,46 @@ impl LiveMesh {
         });
     }
 
-    /// Takes in the mesh that was being made.
-    fn take(&mut self, result: Result<ViewMesh, String>, now: f64) {
+    /// Takes in what was being made.
+    fn take(&mut self, result: Result<Packed, String>) {
         let Some(running) = self.running.take() else {
             return;
         };
-        let Ok(mesh) = result else {
+        let Ok(packed) = result else {
             self.hopeless = Some(running.shape);
             return;
         };
-        if running.detail == Detail::Coarse {
-            self.seconds = now - running.start;
-        }
+        // More care would change nothing.
+        let detail = if packed.is_cut {
+            running.detail
+        } else {
+            Detail::Fine
+        };
         self.count += 1;
         self.made = Some(Made {
             number: self.count,
-            mesh,
+            packed,
+            scene: running.scene,
             shape: running.shape,
-            detail: running.detail,
-            current: running.start,
+            detail,
         });
     }
 
-    /// Returns the mesh to draw: that of the present scene or, while the user drags and meshes are
-    /// quick, the one before.
+    /// Returns what is to be drawn: the present scene or, until it is there, the one before.
     #[must_use]
-    pub fn mesh(&self, session: &Session, now: f64) -> Option<&Made> {
-        let follows = self.seconds <= QUICK && self.hopeless != Some(session.shape());
-        self.made
-            .as_ref()
-            .filter(|made| made.shape == session.shape() || (follows && now - made.current <= LATE))
+    pub fn made(&self) -> Option<&Made> {
+        self.made.as_ref()
     }
 
-    /// Returns the seconds until [`LiveMesh::tick`] begins a fine mesh; `None` if it will not.
+    /// Returns the seconds until [`LiveCells::tick`] begins with care; `None` if it will not.
     #[must_use]
     pub fn wait(&self, session: &Session, now: f64) -> Option<f64> {
-        let made = self.made.as_ref().filter(|_| self.is_wanted)?;
-        let is_next = made.shape == session.shape() && made.detail == Detail::Coarse;
-        let is_possible = self.running.is_none() && self.hopeless != Some(made.shape);
-        (is_next && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
+        let shape = session.shape();
+        let made = self.made.as_ref().filter(|made| made.shape == shape);
+        let is_fine = made.is_some_and(|made| made.detail != Detail::Quick);
+        let is_possible = self.running.is_none() && self.hopeless != Some(shape);
+        (!is_fine && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
     }
-}
-
-fn elements(session: &Session) -> usize {
-    session.compilation().scene.elements.len()
-}
-
-/// Returns a scene of the soft elements and everything that their surfaces depend on; `None` if
-/// there are none, too many, or one that has no end.
-fn soft_part(scene: &Scene) -> Option<Scene> {
-    let soft: Vec<&Element> = scene.elements.iter().filter(|e| scene.is_soft(e)).collect();
-    let mut shapes = soft.iter().map(|element| &element.shape);
-    if !(1..=MOST).contains(&soft.len()) || shapes.any(|s| s.bounds(0.0).is_none()) {
-        return None;
-    }
-    Some(Scene {
-        elements: soft.into_iter().cloned().collect(),
-        bodies: scene.bodies.clone(),
-        contacts: scene.contacts.clone(),
-        flesh: scene.flesh.clone(),
-        finishes: scene.finishes.clone(),
-        frames: scene.frames.clone(),
-        settings: scene.settings,
-        ..Scene::default()
-    })
 }
 
 #[cfg(test)]
@@ -244,7 +195,7 @@ mod tests {
         "surface a, diffuse Red, blobbiness -2\nsphere a 1, 0 0 0\nsphere a 1, 1.5 0 0\n";
 
     /// Ticks at a moment of the app's clock until nothing is being made.
-    fn settle(live: &mut LiveMesh, session: &Session, now: f64, rests: bool) {
+    fn settle(live: &mut LiveCells, session: &Session, now: f64, rests: bool) {
         let deadline = Instant::now() + Duration::from_secs(120);
         loop {
             live.tick(session, now, true, rests);
@@ -257,33 +208,51 @@ mod tests {
     }
 
     #[test]
-    fn mesh_is_made_once_the_user_drags_and_becomes_finer_afterwards() {
+    fn cells_are_made_once_the_user_drags() {
         let session = Session::of_text(BALLS);
-        let mut live = LiveMesh::new(Tools::new(|| {}));
-        settle(&mut live, &session, 0.0, true);
-        assert!(live.mesh(&session, 0.0).is_none());
+        let mut live = LiveCells::new(Tools::new(|| {}));
+        settle(&mut live, &session, 0.0, false);
+        assert!(live.made().is_none());
         live.want();
         settle(&mut live, &session, 1.0, false);
-        let coarse = live.mesh(&session, 1.0).unwrap();
-        assert_eq!((coarse.number, coarse.detail), (1, Detail::Coarse));
-        assert!(coarse.mesh().triangles.len() > 100);
-        // Not while a picture is traced, nor at once.
-        settle(&mut live, &session, 9.0, false);
-        assert_eq!(live.count, 1);
-        assert!(live.wait(&session, 1.2).is_some());
-        settle(&mut live, &session, 9.0, true);
-        let fine = live.mesh(&session, 9.0).unwrap();
-        assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
+        let made = live.made().unwrap();
+        // So little that it was done with care.
+        assert_eq!((made.number, made.detail), (1, Detail::Fine));
+        assert!(made.packed.leaves > 50);
         settle(&mut live, &session, 99.0, true);
-        assert_eq!((live.count, live.wait(&session, 99.0)), (2, None));
+        assert_eq!((live.count, live.wait(&session, 99.0)), (1, None));
         live.forget();
-        assert!(live.mesh(&session, 99.0).is_none());
+        assert!(live.made().is_none());
     }
 
     #[test]
-    fn quick_mesh_stands_in_for_the_next_one_but_not_for_long() {
+    fn many_elements_are_meshed_and_divided_into_cells_later() {
+        let mut text = String::from("surface a, diffuse Red, blobbiness -2\n");
+        for i in 0..300 {
+            text += &format!("sphere a 1, {} {} 0\n", i % 20, i / 20);
+        }
+        let session = Session::of_text(&text);
+        let mut live = LiveCells::new(Tools::new(|| {}));
+        // They are there before the first drag, once the picture is traced.
+        settle(&mut live, &session, 0.0, true);
+        assert!(live.made().is_none() && live.wait(&session, 0.0).is_some());
+        settle(&mut live, &session, 1.0, true);
+        let quick = live.made().unwrap();
+        assert_eq!((quick.number, quick.detail), (1, Detail::Quick));
+        assert_eq!(quick.packed.meshed.len(), 1);
+        // Not while a picture is traced.
+        settle(&mut live, &session, 9.0, false);
+        assert_eq!(live.count, 1);
+        settle(&mut live, &session, 9.0, true);
+        let fine = live.made().unwrap();
+        assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
+        assert!(fine.packed.meshed.is_empty() && fine.packed.leaves > 50);
+    }
+
+    #[test]
+    fn the_last_ones_stay_until_the_next_are_there() {
         let mut session = Session::of_text(BALLS);
-        let mut live = LiveMesh::new(Tools::new(|| {}));
+        let mut live = LiveCells::new(Tools::new(|| {}));
         live.want();
         settle(&mut live, &session, 1.0, false);
         let moved = BALLS.replace("1.5", "1.6");
@@ -291,29 +260,10 @@ mod tests {
             .edit(&[rats::TextEdit::whole(0, moved)], 1.0)
             .unwrap();
         session.compile();
-        assert!(live.seconds <= QUICK && live.mesh(&session, 1.1).is_some());
-        assert!(live.mesh(&session, 1.1 + LATE).is_none());
-        // One that takes long never does.
-        live.seconds = 2.0 * QUICK;
-        assert!(live.mesh(&session, 1.1).is_none());
+        live.tick(&session, 1.1, true, false);
+        assert_eq!(live.made().map(|made| made.number), Some(1));
         settle(&mut live, &session, 1.2, false);
-        let followed = live.mesh(&session, 1.2).unwrap();
+        let followed = live.made().unwrap();
         assert_eq!((followed.number, followed.shape), (2, session.shape()));
-    }
-
-    #[test]
-    fn scenes_without_a_finite_surface_are_left_to_the_draft() {
-        for text in [
-            "surface a, diffuse Red\nsphere a 1, 0 0 0\n",
-            "surface a, diffuse Red, blobbiness -2, radius 0.3\nsphere a 1, 0 0 0\n\
-                plane a, <0 -2 0>, <0 1 0>\n",
-        ] {
-            let session = Session::of_text(text);
-            assert_eq!(session.errors(), 0);
-            let mut live = LiveMesh::new(Tools::new(|| {}));
-            live.want();
-            settle(&mut live, &session, 1.0, true);
-            assert!(live.mesh(&session, 1.0).is_none() && live.hopeless.is_some());
-        }
     }
 }

@@ -1,7 +1,6 @@
 //! The picture's place: the traced picture and what stands in for it, the camera, and the hands and
 //! the pencil that work on it.
 
-pub mod apart;
 pub mod draft;
 mod handles;
 pub mod hands;
@@ -18,14 +17,13 @@ use crate::settings::Show;
 use crate::thumbnail::Thumbnail;
 use crate::wish::{TextWish, ViewWish, Wishes, WorkWish};
 use crate::{places, screen};
-use apart::Apart;
 use document::{examples, picture, work};
 use draft::Draft;
 use egui::{Color32, Context, Painter, Rect, TextureId, Ui, Vec2};
 use egui_wgpu::RenderState;
 use glam::DVec3;
 use hands::Hands;
-use live::LiveMesh;
+use live::LiveCells;
 use pencil::{Pencil, tool::Tool};
 use pool::Tools;
 use rats::TextEdit;
@@ -35,10 +33,14 @@ use view::{Grasp, Scenery};
 /// The stand-in for a traced picture that is not there yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StandIn {
-    /// The elements before they melt together.
-    Draft,
-    /// A mesh of their surface.
-    Mesh,
+    /// The surface as the card traces it: frames a second, where something moved, and the number of
+    /// bodies that it has a mesh of instead.
+    Draft {
+        /// Frames a second.
+        fps: Option<u32>,
+        /// Number of bodies.
+        meshed: usize,
+    },
     /// The picture as it was traced when the example was made.
     Kept,
 }
@@ -80,8 +82,7 @@ impl StandIn {
     #[must_use]
     pub fn id(self) -> &'static str {
         match self {
-            Self::Draft => "draft",
-            Self::Mesh => "mesh",
+            Self::Draft { .. } => "draft",
             Self::Kept => "made before",
         }
     }
@@ -90,12 +91,10 @@ impl StandIn {
 /// The picture and everything on it.
 pub struct Stage {
     draft: Option<Draft>,
-    /// The draft where there is none on the window's device.
-    apart: Apart,
     /// The picture of an example that takes long.
     kept: Option<Kept>,
-    /// The true surface for the draft.
-    live: LiveMesh,
+    /// The surface as the draft takes it.
+    live: LiveCells,
     /// The stand-in for the traced picture on the screen.
     pub stand_in: Option<StandIn>,
     /// Handles of the chosen shape.
@@ -117,9 +116,8 @@ impl Stage {
     pub fn new(state: Option<RenderState>, tools: Tools) -> Self {
         Self {
             draft: state.map(Draft::new),
-            apart: Apart::default(),
             kept: None,
-            live: LiveMesh::new(tools),
+            live: LiveCells::new(tools),
             stand_in: None,
             hands: Hands::default(),
             pencil: Pencil::default(),
@@ -172,6 +170,9 @@ impl Stage {
     /// work is an example or a link without a skeleton.
     fn take_tool(&mut self, tool: Option<Tool>, page: &mut Page, ctx: &Context) {
         let begins = tool.is_some() && self.pencil.tool().is_none();
+        if tool.is_some() {
+            self.live.want();
+        }
         self.pencil.take(tool);
         self.hands.let_go();
         let session = &mut page.work.session;
@@ -198,22 +199,22 @@ impl Stage {
             // If it does not come by then, the draft is drawn.
             ctx.request_repaint_after_secs(view::SOON as f32);
         }
-        let mut stand_in = StandIn::Draft;
+        let mut stand_in = StandIn::Kept;
         let kept = self.kept.as_mut().and_then(|kept| kept.texture(page, ui));
         let texture = if kept.is_some() {
-            stand_in = StandIn::Kept;
             kept
         } else if page.is_refused && slow {
             None
         } else if view::needs_draft(page.settings.show, session, &page.renderer, slow, now) {
-            match &mut self.draft {
-                Some(draft) => {
-                    let mesh = self.live.mesh(session, now);
-                    stand_in = mesh.map_or(StandIn::Draft, |_| StandIn::Mesh);
-                    draft.texture(session, self.place, mesh)
-                }
-                None => self.apart.texture(ctx, session, self.place),
-            }
+            self.draft.as_mut().and_then(|draft| {
+                let made = self.live.made()?;
+                let texture = draft.texture(ctx, made, session.camera(), self.place);
+                stand_in = StandIn::Draft {
+                    fps: draft.fps,
+                    meshed: made.packed.meshed.len(),
+                };
+                texture
+            })
         } else {
             None
         };
@@ -314,14 +315,21 @@ impl Panel for Stage {
         if page.is_reading() {
             self.live.give_way();
         }
-        let is_drawn = self.draft.is_some() && self.stand_in.is_some() && !page.is_refused;
-        let rests = rests(page);
-        self.live.tick(&page.work.session, at.now, is_drawn, rests);
+        let has_draft = self.draft.is_some() && !page.is_refused;
+        let session = &page.work.session;
+        let is_drawn =
+            view::needs_draft(page.settings.show, session, &page.renderer, false, at.now);
+        if page.settings.show == Show::Draft {
+            self.live.want();
+        }
+        if has_draft {
+            self.live.tick(session, at.now, is_drawn, rests(page));
+        }
     }
 
     fn wait(&self, page: &Page, now: f64) -> Option<f64> {
         let wait = self.live.wait(&page.work.session, now);
-        wait.filter(|_| rests(page))
+        wait.filter(|_| self.draft.is_some() && rests(page))
     }
 
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {

@@ -1,5 +1,6 @@
 //! The tests of `studio`, as one program: a module for each subject.
 
+mod card;
 mod draw;
 mod driver;
 mod editor;

@@ -10,9 +10,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Files that take longest: begun first, so that no core is idle at the end.
-const LONGEST: [&str; 10] = [
-    "preview shapes",
-    "preview sheet",
+const LONGEST: [&str; 9] = [
+    "preview traced",
     "worker pins",
     "mesher sculpted",
     "mesher scenes",

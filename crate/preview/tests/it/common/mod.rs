@@ -1,7 +1,4 @@
-//! Helpers of the draft's tests: devices, read-back of pictures, and independent definitions of
-//! shapes.
+//! Helpers of the draft's tests: devices, and pictures read back.
 
-pub mod gpu;
-pub mod reference;
 pub mod scenes;
 pub mod traced;

@@ -1,7 +1,7 @@
 //! Tracing a scene on an adapter, reading it back, and holding it to the tracer's picture.
 
-use preview::Bounds;
-use preview::trace::{Detail, Pixel, Shown, Stage, Target, Tracer};
+use cells::{Bounds, Chart, Cubics, Detail, Formulas, Packed};
+use preview::{Code, Pixel, Stage, Target, Tracer};
 use scene::{Camera, Scene};
 
 /// A device that computes.
@@ -24,30 +24,84 @@ pub struct Differs {
 
 /// Returns a device that computes, if this machine has one. On a CI machine none is an error.
 pub fn open() -> Option<Card> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::VULKAN;
-    let instance = wgpu::Instance::new(descriptor);
-    let options = wgpu::RequestAdapterOptions::default();
-    let adapter = pollster::block_on(instance.request_adapter(&options)).ok();
-    let Some(adapter) = adapter else {
+    let card = device(wgpu::Backends::VULKAN, wgpu::Limits::default());
+    if card.is_none() {
         assert!(
             std::env::var_os("CI").is_none(),
             "no graphics adapter: install mesa-vulkan-drivers"
         );
         eprintln!("skipped: no graphics adapter here; install mesa-vulkan-drivers");
-        return None;
+    }
+    card
+}
+
+/// Returns a device for each backend that this machine has, with no more than WebGL2's limits.
+#[allow(dead_code, reason = "for tests")]
+pub fn cards() -> Vec<Card> {
+    let cards: Vec<Card> = [wgpu::Backends::VULKAN, wgpu::Backends::GL]
+        .into_iter()
+        .filter_map(|backend| device(backend, wgpu::Limits::downlevel_webgl2_defaults()))
+        .collect();
+    assert!(
+        !cards.is_empty() || std::env::var_os("CI").is_none(),
+        "no graphics adapter: install mesa-vulkan-drivers"
+    );
+    cards
+}
+
+fn device(backends: wgpu::Backends, required_limits: wgpu::Limits) -> Option<Card> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = backends;
+    let instance = wgpu::Instance::new(descriptor);
+    let options = wgpu::RequestAdapterOptions::default();
+    let adapter = pollster::block_on(instance.request_adapter(&options)).ok()?;
+    let descriptor = wgpu::DeviceDescriptor {
+        required_limits,
+        ..wgpu::DeviceDescriptor::default()
     };
-    let descriptor = wgpu::DeviceDescriptor::default();
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
     Some(Card { device, queue })
 }
 
 impl Card {
-    /// Prepares a scene.
-    pub fn prepare(&self, scene: &Scene, detail: Detail, stage: Stage) -> (Tracer, Shown) {
-        let mut tracer = Tracer::new(&self.device, stage);
-        let shown = tracer.set_scene(&self.device, &self.queue, scene, detail);
-        (tracer, shown)
+    /// Prepares a scene: with all formulas for compute shaders, with none for a fragment shader, as
+    /// the page has it.
+    pub fn prepare(&self, scene: &Scene, detail: Detail, stage: Stage) -> (Tracer, Packed) {
+        self.prepare_with(scene, detail, stage, stage == Stage::Compute)
+    }
+
+    /// Prepares a scene with all formulas or none.
+    pub fn prepare_with(
+        &self,
+        scene: &Scene,
+        detail: Detail,
+        stage: Stage,
+        has_formulas: bool,
+    ) -> (Tracer, Packed) {
+        let (chart, code): (&dyn Chart, Code) = if has_formulas {
+            (&Formulas, cells::formulas::code)
+        } else {
+            (&Cubics, cells::formulas::none)
+        };
+        let packed = Packed::new(scene, detail, chart, &mut |_| true).expect("wanted");
+        let mut tracer = Tracer::new(&self.device, stage, code);
+        let shown = tracer.set_scene(&self.device, &self.queue, scene, &packed);
+        assert!(shown.is_some(), "no room");
+        (tracer, packed)
+    }
+
+    /// Draws a scene from its own camera by a fragment shader.
+    #[allow(dead_code, reason = "for tests")]
+    pub fn draw(&self, scene: &Scene, size: [u32; 2]) -> Vec<[u8; 4]> {
+        let (mut tracer, _) = self.prepare(scene, Detail::Fine, Stage::Fragment);
+        self.colours(&mut tracer, &scene.camera, size)
+    }
+
+    /// Returns the adapter's name.
+    #[allow(dead_code, reason = "for tests")]
+    pub fn name(&self) -> String {
+        let info = self.device.adapter_info();
+        format!("{} ({})", info.name, info.backend)
     }
 
     /// Draws a frame of compute shaders and reads its pixels back.

@@ -5,6 +5,7 @@
 use browser::Backend;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, vec2};
 use egui_kittest::Harness;
+use egui_wgpu::RenderState;
 use rats::{File, Project};
 use studio::app::App;
 use studio::page::Parts;
@@ -23,6 +24,21 @@ impl Window {
     }
 
     pub fn open_with(width: f32, height: f32, parts: Parts) -> Self {
+        Self::start(width, height, parts, None, Backend::None)
+    }
+
+    /// Opens a window on a graphics card.
+    pub fn open_on_card(width: f32, height: f32, card: RenderState) -> Self {
+        Self::start(width, height, Parts::new(), Some(card), Backend::WebGl2)
+    }
+
+    fn start(
+        width: f32,
+        height: f32,
+        parts: Parts,
+        card: Option<RenderState>,
+        backend: Backend,
+    ) -> Self {
         browser::set_stopped(false);
         let inner = parts.clone();
         let harness = Harness::builder()
@@ -31,7 +47,7 @@ impl Window {
             .build_ui_state(
                 move |ui, app: &mut Option<App>| {
                     let app = app.get_or_insert_with(|| {
-                        App::new(ui.ctx(), None, Backend::None, inner.clone())
+                        App::new(ui.ctx(), card.clone(), backend, inner.clone())
                     });
                     app.tick(ui.ctx());
                     app.show(ui);

@@ -1,24 +1,13 @@
-//! The true surface, traced on the card.
+//! Traces the true surface on the card.
 //!
-//! The functions of all bodies ([`scene::Scene::surfaces`]) are divided into cells ([`octree`]),
-//! those that the surface passes with a cubic each ([`cubic`]) and, where that is not enough, with
-//! the chart's formulas ([`formulas`]); hard shapes have a hierarchy of boxes ([`hierarchy`]).
-//! [`pack`] lays them out, and `shaders/scene.wgsl` sends a ray from the eye through each pixel,
-//! and one from what it meets to each light. Nothing of it depends on the camera: while one turns,
-//! only the view changes.
+//! A scene comes as [`cells::Packed`], and `shaders/scene.wgsl` sends a ray from the eye through
+//! each pixel, and one from what it meets to each light.
 
-mod cubic;
-mod formulas;
-mod hierarchy;
-mod octree;
-mod pack;
-
-use crate::bounds::Bounds;
+use crate::bindings::{COLOUR, layout, shader, texture, uniform, uniform_buffer};
 use crate::materials;
-use crate::pipelines::{COLOUR, layout, shader, texture, uniform, uniform_buffer};
-use crate::view::{Air, Lights, Tone, View};
+use crate::view::{self, Air, Lights, View};
 use bytemuck::{Pod, Zeroable};
-use pack::{Frame, Packed};
+use cells::{Bounds, Packed};
 use scene::{Camera, Scene, Unit};
 use std::collections::BTreeSet;
 
@@ -51,39 +40,18 @@ pub struct Pixel {
     pub evaluations: [u32; 4],
 }
 
-/// Care with which the space around a scene is divided before it is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Detail {
-    /// Large cells, in which rays add up the terms near them: made in an instant, for scenes that
-    /// change with every frame. Functions that are no sums are drawn roughly.
-    Quick,
-    /// Small cells, in most of which rays need not add up anything.
-    #[default]
-    Fine,
+/// The uniform `frame` of `shaders/scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+struct Frame {
+    middle: [f32; 4],
+    counts: [u32; 4],
+    places: [u32; 4],
 }
 
-impl Detail {
-    /// Most leaves of all bodies together.
-    fn most_leaves(self) -> usize {
-        match self {
-            Self::Quick => 3000,
-            Self::Fine => 600_000,
-        }
-    }
-}
-
-/// Numbers of what a scene is made of for the card.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Shown {
-    /// Elements that are drawn.
-    pub elements: usize,
-    /// Cells that a surface passes.
-    pub leaves: usize,
-    /// Number of such cells in which the cubic is not close to the function.
-    pub rough: usize,
-    /// Lights left out: at most [`crate::MAX_LIGHTS`] count.
-    pub lights_left_out: usize,
-}
+/// Returns the text of the functions that choose among some formulas: [`cells::formulas::code`], or
+/// [`cells::formulas::none`] in a program that only draws cubics, and then has none of the others.
+pub type Code = fn(&BTreeSet<u32>) -> String;
 
 /// The stage of the card that traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,6 +68,7 @@ const ROW: usize = 2048;
 /// Draws the true surface of a scene.
 pub struct Tracer {
     stage: Stage,
+    code: Code,
     /// The formulas that it has, and the program.
     program: Option<(BTreeSet<u32>, Program)>,
     bindings: wgpu::BindGroupLayout,
@@ -137,7 +106,7 @@ struct Prepared {
     frame: Frame,
     bounds: Bounds,
     lights: Lights,
-    tone: Tone,
+    gamma: f32,
     air: Air,
 }
 
@@ -165,23 +134,24 @@ impl Stage {
     }
 
     /// Hands over the data of a scene.
-    fn upload(self, device: &wgpu::Device, queue: &wgpu::Queue, data: &mut Vec<[u32; 4]>) -> Data {
+    fn upload(self, device: &wgpu::Device, queue: &wgpu::Queue, data: &[u8]) -> Data {
         match self {
             Self::Compute => {
                 let buffer = device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("tracer's data"),
-                    size: size_of_val(&data[..]) as u64,
+                    size: data.len() as u64,
                     usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
                     mapped_at_creation: false,
                 });
-                queue.write_buffer(&buffer, 0, bytemuck::cast_slice(data));
+                queue.write_buffer(&buffer, 0, data);
                 Data::Buffer(buffer)
             }
             Self::Fragment => {
-                data.resize(data.len().next_multiple_of(ROW), [0; 4]);
+                let row = 16 * ROW;
+                let whole = data.len() / row;
                 let size = wgpu::Extent3d {
                     width: ROW as u32,
-                    height: (data.len() / ROW) as u32,
+                    height: data.len().div_ceil(row) as u32,
                     depth_or_array_layers: 1,
                 };
                 let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -195,16 +165,28 @@ impl Stage {
                     usage,
                     view_formats: &[],
                 });
-                queue.write_texture(
-                    texture.as_image_copy(),
-                    bytemuck::cast_slice(data),
-                    wgpu::TexelCopyBufferLayout {
-                        offset: 0,
-                        bytes_per_row: Some(size.width * 16),
-                        rows_per_image: None,
-                    },
-                    size,
-                );
+                let (rows, rest) = data.split_at(whole * row);
+                for (bytes, at) in [(rows, 0), (rest, whole as u32)] {
+                    if bytes.is_empty() {
+                        continue;
+                    }
+                    let mut place = texture.as_image_copy();
+                    place.origin.y = at;
+                    queue.write_texture(
+                        place,
+                        bytes,
+                        wgpu::TexelCopyBufferLayout {
+                            offset: 0,
+                            bytes_per_row: Some(row as u32),
+                            rows_per_image: None,
+                        },
+                        wgpu::Extent3d {
+                            width: (bytes.len().min(row) / 16) as u32,
+                            height: bytes.len().div_ceil(row) as u32,
+                            depth_or_array_layers: 1,
+                        },
+                    );
+                }
                 Data::Texture(texture.create_view(&wgpu::TextureViewDescriptor::default()))
             }
         }
@@ -278,12 +260,12 @@ impl Stage {
     }
 
     /// Returns the text of the program with some formulas.
-    fn code(self, formulas: &BTreeSet<u32>) -> String {
+    fn code(self, formulas: &str) -> String {
         let entry = match self {
             Self::Compute => shader!("compute"),
             Self::Fragment => shader!("fragment"),
         };
-        [COMMON, &formulas::code(formulas.iter().copied()), entry].concat()
+        [COMMON, formulas, entry].concat()
     }
 
     /// Compiles the program with some formulas.
@@ -291,7 +273,7 @@ impl Stage {
         self,
         device: &wgpu::Device,
         bindings: &wgpu::BindGroupLayout,
-        formulas: &BTreeSet<u32>,
+        formulas: &str,
     ) -> Program {
         let label = Some("tracer");
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -346,9 +328,10 @@ impl Stage {
 impl Tracer {
     /// Prepares a device for a stage, which it must have: [`Stage::of`] tells one.
     #[must_use]
-    pub fn new(device: &wgpu::Device, stage: Stage) -> Self {
+    pub fn new(device: &wgpu::Device, stage: Stage, code: Code) -> Self {
         Self {
             stage,
+            code,
             program: None,
             bindings: stage.layout(device),
             view: uniform_buffer(device, "tracer's view", size_of::<View>()),
@@ -358,47 +341,45 @@ impl Tracer {
         }
     }
 
-    /// Replaces the scene. Its own camera is not used. Returns the numbers of what is drawn.
+    /// Replaces the scene by one and what was packed of it. Its own camera is not used. Returns the
+    /// number of lights left out: at most [`crate::MAX_LIGHTS`] count. `None` if the device has no
+    /// room for it; then the last scene stays.
     pub fn set_scene(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         scene: &Scene,
-        detail: Detail,
-    ) -> Shown {
-        let bounds = Bounds::of(scene);
-        let units = bounds.units();
-        let table = materials::upload(device, queue, scene);
-        let mapped = Unit::of_ball(bounds.center, bounds.radius).map_scene(scene);
-        let mut most = detail.most_leaves();
-        let mut packed = Packed::new(&mapped, &table, most);
-        while packed.data.len() > self.stage.room(device) && most > 1 {
-            most = most.min(packed.leaves) / 2;
-            packed = Packed::new(&mapped, &table, most);
+        packed: &Packed,
+    ) -> Option<usize> {
+        let is_sound = !packed.data.is_empty() && packed.data.len().is_multiple_of(16);
+        if !is_sound || packed.data.len() / 16 > self.stage.room(device) {
+            return None;
         }
         let known = (self.program.take()).filter(|(formulas, _)| *formulas == packed.formulas);
         self.program = Some(known.unwrap_or_else(|| {
-            let program = self.stage.compile(device, &self.bindings, &packed.formulas);
+            let code = (self.code)(&packed.formulas);
+            let program = self.stage.compile(device, &self.bindings, &code);
             (packed.formulas.clone(), program)
         }));
+        let bounds = Bounds::of(scene);
+        let units = bounds.units();
         let (lights, lights_left_out) = Lights::new(&scene.lights, units);
-        let mut frame = packed.frame;
+        let mut frame = Frame {
+            middle: [0.0; 4],
+            counts: packed.frame.counts,
+            places: packed.frame.places,
+        };
         frame.counts[3] = lights.shadows;
         self.scene = Some(Prepared {
-            data: self.stage.upload(device, queue, &mut packed.data),
-            materials: table.view,
+            data: self.stage.upload(device, queue, &packed.data),
+            materials: materials::upload(device, queue, scene),
             frame,
             bounds,
             lights,
-            tone: Tone::of(scene),
+            gamma: view::gamma(scene),
             air: Air::of(scene, units),
         });
-        Shown {
-            elements: packed.elements,
-            leaves: packed.leaves,
-            rough: packed.rough,
-            lights_left_out,
-        }
+        Some(lights_left_out)
     }
 
     /// Traces the scene from a camera into a picture of `size` pixels, and gives it; `None` before
@@ -481,7 +462,7 @@ impl Prepared {
         size: [u32; 2],
     ) {
         let units = self.bounds.units();
-        let seen = View::new(camera, size, size, units, self.tone, &self.lights, self.air);
+        let seen = View::new(camera, size, units, self.gamma, &self.lights, self.air);
         queue.write_buffer(view, 0, bytemuck::bytes_of(&seen));
         let projection = camera.projection(size[0], size[1]);
         let forward = -projection.world_from_view.z_axis;
@@ -504,7 +485,7 @@ mod tests {
 
     #[test]
     fn all_formulas_fit_both_stages() {
-        let all: BTreeSet<u32> = formulas::all().collect();
+        let all = cells::formulas::code(&cells::formulas::all().collect());
         for stage in [Stage::Compute, Stage::Fragment] {
             let code = stage.code(&all);
             let module = naga::front::wgsl::parse_str(&code)

@@ -1,9 +1,9 @@
 //! The draft's form of a shape's offset surface: an oriented box, and a few numbers that describe
-//! the shape inside it. Everything is computed in `f64`; [`crate::instance`] packs it for the GPU.
+//! the shape inside it. Everything is computed in `f64`; [`crate::pack`] packs it for the GPU.
 
 use crate::facets;
 use field::Skeleton;
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3, Vec2Swizzles as _, Vec3};
 use scene::{Element, Ends, Rgb, Scene, Shape};
 
 /// The kind of a solid, which decides the shader that draws it.
@@ -15,18 +15,6 @@ pub(crate) enum Kind {
     Triangle,
     Plane,
     Patch,
-}
-
-impl Kind {
-    pub(crate) const COUNT: usize = 6;
-    pub(crate) const ALL: [Self; Self::COUNT] = [
-        Self::Sphere,
-        Self::Cylinder,
-        Self::Arc,
-        Self::Triangle,
-        Self::Plane,
-        Self::Patch,
-    ];
 }
 
 /// An element's offset surface in coordinates of its own, where its size is about 1.
@@ -192,7 +180,11 @@ impl Solid {
 
     /// A flat triangle with colours at its corners, whose normals there may have any length; 0
     /// stands for the face's.
-    fn patch(corners: [DVec3; 3], normals: [DVec3; 3], colors: [Rgb; 3]) -> Option<Self> {
+    pub(crate) fn patch(
+        corners: [DVec3; 3],
+        normals: [DVec3; 3],
+        colors: [Rgb; 3],
+    ) -> Option<Self> {
         let flat = Self::triangle(corners, 0.0)?;
         let [p, q, r] = [
             [flat.a[0], flat.a[1]],
@@ -307,6 +299,28 @@ impl Solid {
             normals: [DVec3::ZERO; 3],
         })
     }
+}
+
+impl Solid {
+    /// Returns the numbers `low` and `high` of the shaders: the corners of the box. A patch is
+    /// covered by itself and needs no box, but has normals.
+    pub(crate) fn corners(&self) -> [Vec3; 2] {
+        if self.kind == Kind::Patch {
+            let [[a, b], [c, d], [e, f]] = self.normals.map(fold);
+            [Vec3::new(a, b, c), Vec3::new(d, e, f)]
+        } else {
+            [self.low, self.high].map(|corner| corner.as_vec3())
+        }
+    }
+}
+
+/// A unit vector as a point of the square onto which the octahedron |x| + |y| + |z| = 1 unfolds;
+/// the lower half is folded outwards.
+fn fold(v: DVec3) -> [f32; 2] {
+    let flat = v.truncate() / v.abs().element_sum();
+    let folded = (1.0 - flat.abs().yx()) * flat.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
+    let place = if v.z < 0.0 { folded } else { flat };
+    place.as_vec2().to_array()
 }
 
 /// A rotation that takes the z-axis to a direction; none for a direction without length.

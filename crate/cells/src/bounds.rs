@@ -1,7 +1,7 @@
 //! The ball around a scene.
 
-use crate::instance::Units;
 use crate::solid::Solid;
+use crate::units::Units;
 use glam::DVec3;
 use scene::{Element, Scene, Shape};
 
@@ -45,7 +45,8 @@ impl Bounds {
 
     /// The least height of a scene's elements along a direction; of a scene without any that have
     /// an end, that of the middle of what its camera looks at.
-    pub(crate) fn lowest(scene: &Scene, up: DVec3) -> f64 {
+    #[must_use]
+    pub fn lowest(scene: &Scene, up: DVec3) -> f64 {
         let lows = scene
             .elements
             .iter()
@@ -63,7 +64,9 @@ impl Bounds {
         self.center.is_finite() && self.radius.is_normal() && self.radius < 1e150
     }
 
-    pub(crate) fn units(self) -> Units {
+    /// Returns the map to draft units.
+    #[must_use]
+    pub fn units(self) -> Units {
         Units {
             center: self.center,
             radius: self.radius,

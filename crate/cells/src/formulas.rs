@@ -2,7 +2,7 @@
 
 use field::{Primitive, Term};
 use shader::Layout;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::sync::OnceLock;
 
@@ -37,7 +37,59 @@ const CELLS: [(&str, &str); 70] = cells![
 ];
 
 /// Functions that formulas call.
-const MATHEMATICS: &str = include_str!("../../../../shaders/field/math.wgsl");
+const MATHEMATICS: &str = include_str!("../../../shaders/field/math.wgsl");
+
+/// The formulas that a card has beside cubics.
+pub trait Chart: Sync {
+    /// Whether it has that of a primitive.
+    fn has(&self, primitive: &Primitive) -> bool;
+
+    /// Appends the constants of a primitive to some data, and returns its record as `term` in the
+    /// program of [`code`] reads it.
+    fn pack(&self, primitive: &Primitive, data: &mut Vec<[u32; 4]>) -> [u32; 4];
+}
+
+/// No formulas: cubics are all.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cubics;
+
+/// All formulas of the chart.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Formulas;
+
+impl Chart for Cubics {
+    fn has(&self, _: &Primitive) -> bool {
+        false
+    }
+
+    fn pack(&self, _: &Primitive, _: &mut Vec<[u32; 4]>) -> [u32; 4] {
+        [u32::MAX, 0, 0, 0]
+    }
+}
+
+impl Chart for Formulas {
+    fn has(&self, primitive: &Primitive) -> bool {
+        find(primitive.term()).is_some()
+    }
+
+    // The record: the number of the formula with that of the profile's factor plus 1 times 2¹⁶,
+    // where the constants of both begin, and the number of records.
+    fn pack(&self, primitive: &Primitive, data: &mut Vec<[u32; 4]>) -> [u32; 4] {
+        let term = primitive.term();
+        let Some((plain, profile)) = find(term) else {
+            return [u32::MAX, 0, 0, 0];
+        };
+        let (start, records) = append(plain, term, data);
+        let (kind, of_profile) = match profile {
+            Some(profile) => (
+                plain.number | (profile.number + 1) << 16,
+                append(profile, term, data).0,
+            ),
+            None => (plain.number, 0),
+        };
+        [kind, start, of_profile, records]
+    }
+}
 
 /// A cell of the chart: its number, the layout of its constants, its function.
 struct Formula {
@@ -74,39 +126,14 @@ fn find(term: &Term<f32>) -> Option<(&'static Formula, Option<&'static Formula>)
     Some((plain, profile))
 }
 
-/// Whether the card has the formula of a primitive.
-pub(crate) fn has(primitive: &Primitive) -> bool {
-    find(primitive.term()).is_some()
-}
-
 /// Returns the records of all formulas, for [`code`].
-#[cfg(test)]
-pub(crate) fn all() -> impl Iterator<Item = u32> {
+pub fn all() -> impl Iterator<Item = u32> {
     formulas()
         .iter()
         .map(|(name, formula)| match name.starts_with("profile") {
             true => (formula.number + 1) << 16,
             false => formula.number,
         })
-}
-
-/// Appends the constants of a primitive to some data, and returns its record as `term` in the
-/// program of [`code`] reads it: the number of the formula with that of the profile's factor plus
-/// 1 times 2¹⁶, where the constants of both begin, and the number of records.
-pub(crate) fn pack(primitive: &Primitive, data: &mut Vec<[u32; 4]>) -> [u32; 4] {
-    let term = primitive.term();
-    let Some((plain, profile)) = find(term) else {
-        return [u32::MAX, 0, 0, 0];
-    };
-    let (start, records) = append(plain, term, data);
-    let (kind, of_profile) = match profile {
-        Some(profile) => (
-            plain.number | (profile.number + 1) << 16,
-            append(profile, term, data).0,
-        ),
-        None => (plain.number, 0),
-    };
-    [kind, start, of_profile, records]
 }
 
 /// Appends the constants that a formula loads, and returns where they begin and the number of
@@ -118,9 +145,9 @@ fn append(formula: &Formula, term: &Term<f32>, data: &mut Vec<[u32; 4]>) -> (u32
     (start, records)
 }
 
-/// Returns the functions of formulas of some records, and the function `term` that chooses among
-/// them.
-pub(crate) fn code(records: impl IntoIterator<Item = u32>) -> String {
+/// Returns the functions of formulas of some records, and the function that chooses among them.
+#[must_use]
+pub fn code(records: &BTreeSet<u32>) -> String {
     let mut used: Vec<(u32, bool)> = Vec::new();
     for kind in records {
         used.push((kind & 0xffff, false));
@@ -145,6 +172,18 @@ pub(crate) fn code(records: impl IntoIterator<Item = u32>) -> String {
             "        case {case}u: {{\n            return {name}(at, count, p);\n        }}"
         );
     }
+    text + &choose(choices)
+}
+
+/// Returns the functions that choose among no formulas.
+#[must_use]
+pub fn none(_: &BTreeSet<u32>) -> String {
+    choose(Default::default())
+}
+
+/// Returns the functions that choose among formulas, and among profiles.
+fn choose(choices: [String; 2]) -> String {
+    let mut text = String::new();
     for (name, choices) in ["plain_term", "profile_of_term"].into_iter().zip(choices) {
         let _ = write!(
             text,

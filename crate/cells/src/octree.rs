@@ -7,7 +7,7 @@
 //! somewhat before if they are few, the terms that matter are listed, if their formulas are on the
 //! card: then the cubic stands for what is far only.
 
-use super::cubic::{Cubic, SAMPLES, places};
+use crate::cubic::{Cubic, SAMPLES, places};
 use field::{Ball, Implicit, Part, Slack, THRESHOLD};
 use glam::DVec3;
 use std::collections::VecDeque;
@@ -36,8 +36,10 @@ const FINEST: f64 = 0.003;
 const LISTED: f64 = 4.0 * FINEST;
 /// Most terms of a cell that are listed before it is as small as may be.
 const SHORT: usize = 20;
+/// Most share of leaves that are drawn by cubics which are not close, in a tree that is.
+const CRUDE: f64 = 0.02;
 /// Number of cells that are looked at together.
-const BATCH: usize = 4096;
+const BATCH: usize = 1024;
 /// Fewest cells that are worth a thread.
 #[cfg(not(target_arch = "wasm32"))]
 const FEW: usize = 64;
@@ -91,7 +93,36 @@ pub(crate) struct Octree {
     /// Number of cells that were as small as may be, or for which there was no room, before their
     /// cubic was close.
     pub(crate) rough: usize,
+    /// Number of those that are larger than a pixel, and list no terms.
+    pub(crate) crude: usize,
+    /// The work done, as [`Limits::work`].
+    pub(crate) work: u64,
 }
+
+/// Bounds on the work for an octree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    /// About the most leaves.
+    pub(crate) leaves: usize,
+    /// The most work, in looks at cells that one term matters in.
+    pub(crate) work: u64,
+    /// The work of a look at a cell in which all terms may matter.
+    pub(crate) whole: u64,
+    /// Whether more leaves than these are too much work. Else leaves are rough from there on.
+    pub(crate) is_strict: bool,
+}
+
+/// A reason for which an octree is not made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Halt {
+    /// It takes more work than allowed.
+    Limit,
+    /// Nobody waits for it.
+    Cancelled,
+}
+
+/// Hears the share of work done, 0 to 1; returns whether to go on.
+pub type Told<'a> = dyn FnMut(f32) -> bool + 'a;
 
 /// Cell that is to be looked at.
 struct Open {
@@ -102,10 +133,18 @@ struct Open {
 }
 
 impl Octree {
-    /// Divides the space of a function in draft units into cells, of which at most about `most` are
-    /// leaves. `list` returns the terms to be listed of some that matter, or of all; none if the
-    /// card has not all formulas. `None` if there is no surface.
-    pub(crate) fn new(function: &dyn Implicit, most: usize, list: &List<'_>) -> Option<Self> {
+    /// Divides the space of a function in draft units into cells. `list` returns the terms to be
+    /// listed of some that matter, or of all; none if the card has not all formulas. `None` if
+    /// there is no surface.
+    ///
+    /// # Errors
+    /// If it takes too much work, or is not wanted any more.
+    pub(crate) fn new(
+        function: &dyn Implicit,
+        limits: Limits,
+        list: &List<'_>,
+        told: &mut Told<'_>,
+    ) -> Result<Option<Self>, Halt> {
         let (center, half) = match function.support() {
             Some(ball) if ball.radius.is_finite() && ball.center.is_finite() => {
                 (ball.center, ball.radius * 1.001)
@@ -113,7 +152,7 @@ impl Octree {
             _ => (DVec3::ZERO, ENDLESS),
         };
         if half <= 0.0 {
-            return None;
+            return Ok(None);
         }
         let mut tree = Self {
             center,
@@ -121,6 +160,8 @@ impl Octree {
             cells: vec![Cell::Outside],
             leaves: Vec::new(),
             rough: 0,
+            crude: 0,
+            work: 0,
         };
         let nodes = places();
         let mut open = VecDeque::from([Open {
@@ -130,14 +171,32 @@ impl Octree {
             part: None,
         }]);
         while !open.is_empty() {
-            let room = tree.leaves.len() + open.len() < most;
+            if tree.work > limits.work && limits.is_strict {
+                return Err(Halt::Limit);
+            }
+            if !told((tree.work as f64 / limits.work as f64) as f32) {
+                return Err(Halt::Cancelled);
+            }
+            let room = tree.leaves.len() + open.len() < limits.leaves;
+            if !room && limits.is_strict {
+                return Err(Halt::Limit);
+            }
             let batch: Vec<Open> = open.drain(..open.len().min(BATCH)).collect();
             let looks = map(&batch, |cell| look(function, cell, &nodes, room, list));
             for (cell, look) in batch.into_iter().zip(looks) {
+                tree.work += match &cell.part {
+                    Some(part) => 1 + part.terms.len() as u64,
+                    None => limits.whole,
+                };
                 tree.add(cell, look, &mut open);
             }
         }
-        (!tree.leaves.is_empty()).then_some(tree)
+        Ok((!tree.leaves.is_empty()).then_some(tree))
+    }
+
+    /// Whether few leaves are drawn by cubics that are not close.
+    pub(crate) fn is_close(&self) -> bool {
+        self.crude as f64 <= CRUDE * self.leaves.len() as f64
     }
 
     /// Adds what was found in a cell, and the parts that it is to be divided into.
@@ -151,6 +210,8 @@ impl Octree {
                 listed,
             } => {
                 self.rough += usize::from(is_rough);
+                let is_large = cell.half > FINEST * (1.0 + cell.center.length());
+                self.crude += usize::from(is_rough && is_large && listed.is_empty());
                 self.cells[cell.place] = Cell::Leaf(self.leaves.len() as u32);
                 self.leaves.push(Leaf {
                     cubic: *cubic,
@@ -378,7 +439,14 @@ mod tests {
 
     #[test]
     fn thin_shells_between_the_samples_are_found() {
-        let tree = Octree::new(&Shell, 100_000, &|_| Vec::new()).expect("a surface");
+        let limits = Limits {
+            leaves: 100_000,
+            work: u64::MAX,
+            whole: 1,
+            is_strict: false,
+        };
+        let tree = Octree::new(&Shell, limits, &|_| Vec::new(), &mut |_| true);
+        let tree = tree.ok().flatten().expect("a surface");
         for n in 0..1000 {
             let turn = f64::from(n) * 2.4;
             let z = f64::from(n) / 500.0 - 0.999;

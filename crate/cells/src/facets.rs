@@ -11,8 +11,8 @@ use scene::{Quadric, Scene, Shape};
 const FINEST: usize = 24;
 /// The fewest cells across a quadric.
 const COARSEST: usize = 3;
-/// The number of patches from which on no further quadric is drawn.
-pub(crate) const MOST: usize = 1_000_000;
+/// The number of solids from which on no further quadric is drawn.
+pub(crate) const MOST: usize = 300_000;
 /// Corners of cells in all quadrics of a scene together.
 const CORNERS: usize = 2_000_000;
 

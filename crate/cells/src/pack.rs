@@ -1,0 +1,453 @@
+//! A scene as the numbers that `shaders/scene.wgsl` reads, four by four.
+
+use crate::bounds::Bounds;
+use crate::facade;
+use crate::facets;
+use crate::formulas::Chart;
+use crate::hierarchy;
+use crate::look::{draft_colours, finite, with};
+use crate::octree::{Cell, ENDLESS, Halt, Leaf, Limits, Octree, Told, corners};
+use crate::solid::{Kind, Solid};
+use bytemuck::{Pod, Zeroable};
+use field::{Primitive, Skeleton};
+use glam::{DVec3, Vec3};
+use mesh::TriangleMesh;
+use scene::{Finish, Rgb, Scene, Shape, Surface, Unit};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Words of cells, as in `shaders/march.wgsl`.
+const OUTSIDE: u32 = 0x4000_0000;
+const INSIDE: u32 = 0x8000_0000;
+const LEAF: u32 = 0xc000_0000;
+/// Mark of a mixture of materials, as in `shaders/scene.wgsl`.
+const MIXED: u32 = 0x8000_0000;
+/// Most terms that a leaf lists.
+const MOST_TERMS: usize = 128;
+/// Share of an element in a field below which its material is not mixed in.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Longest span of a ray in a leaf that lists terms, in widths of the narrowest kernel.
+const SPAN: f64 = 0.35;
+/// Work of a look at a cell for each element of a function that is no sum, in looks at a term.
+const COMPOSED: u64 = 24;
+/// Most triangles of meshes.
+const MOST_TRIANGLES: usize = 150_000;
+
+/// Care with which the space around a scene is divided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Detail {
+    /// As much as can be made while a hand moves something.
+    Quick,
+    /// As close as a picture shows.
+    #[default]
+    Fine,
+    /// Without bounds on the work, however long it takes.
+    Full,
+}
+
+impl Detail {
+    /// Returns the most leaves of all bodies together, and the most work.
+    fn limits(self) -> (usize, u64) {
+        match self {
+            Self::Quick => (8_000, 400_000),
+            Self::Fine => (200_000, 6_000_000),
+            Self::Full => (600_000, u64::MAX),
+        }
+    }
+
+    /// Returns the most elements of a body that cells are tried for.
+    fn most_elements(self) -> usize {
+        match self {
+            Self::Quick => 200,
+            Self::Fine | Self::Full => usize::MAX,
+        }
+    }
+}
+
+/// The uniform `frame` of `shaders/scene.wgsl`, but for what comes from a camera and lights.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable, Serialize, Deserialize)]
+pub struct Frame {
+    /// Numbers of bodies, of planes, of nodes of the hierarchy, and 0.
+    pub counts: [u32; 4],
+    /// Where bodies, hard shapes and the hierarchy begin in the data, and 0.
+    pub places: [u32; 4],
+}
+
+/// A scene, packed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Packed {
+    /// Vectors of four numbers of 32 bits, little-endian.
+    #[serde(with = "serde_bytes")]
+    pub data: Vec<u8>,
+    /// What is where in the data.
+    pub frame: Frame,
+    /// Number of elements drawn.
+    pub elements: usize,
+    /// Number of cells that a surface passes.
+    pub leaves: usize,
+    /// Number of such cells in which the cubic is not close to the function.
+    pub rough: usize,
+    /// The formulas that cells list, as [`crate::formulas::code`] reads them.
+    pub formulas: BTreeSet<u32>,
+    /// The bodies drawn as meshes: indices in [`Scene::bodies`].
+    pub meshed: Vec<u32>,
+    /// The work done, in looks at cells that one term matters in.
+    pub work: u64,
+    /// Whether bounds on the work left something rough: more care would show.
+    pub is_cut: bool,
+}
+
+impl Packed {
+    /// Packs a scene; `None` if `told` says that it is not wanted any more.
+    pub fn new(
+        scene: &Scene,
+        detail: Detail,
+        chart: &dyn Chart,
+        told: &mut Told<'_>,
+    ) -> Option<Self> {
+        let bounds = Bounds::of(scene);
+        let scene = &Unit::of_ball(bounds.center, bounds.radius).map_scene(scene);
+        let mut packer = Packer {
+            scene,
+            chart,
+            data: Vec::new(),
+            out: Self::default(),
+        };
+        let meshes = packer.add_bodies(detail, told)?;
+        packer.add_solids(&meshes);
+        // There is always something to bind.
+        packer.data.push([0; 4]);
+        packer.out.data = bytemuck::cast_slice(&packer.data).to_vec();
+        Some(packer.out)
+    }
+}
+
+/// A scene in draft units on its way to numbers.
+struct Packer<'a> {
+    scene: &'a Scene,
+    chart: &'a dyn Chart,
+    data: Vec<[u32; 4]>,
+    out: Packed,
+}
+
+/// Triangle that stands for a piece of a body, with its material.
+type Facet = (Solid, u32);
+
+impl Packer<'_> {
+    fn push(&mut self, numbers: [f32; 4]) {
+        self.data.push(numbers.map(f32::to_bits));
+    }
+
+    fn push_with(&mut self, place: Vec3, word: u32) {
+        let [x, y, z] = place.to_array().map(f32::to_bits);
+        self.data.push([x, y, z, word]);
+    }
+
+    /// Returns a finish's place in the table of materials, or that of the fallback behind all.
+    fn slot(&self, finish: u32) -> u32 {
+        finish.min(self.scene.finishes.len() as u32)
+    }
+
+    /// Adds hard shapes and triangles of meshes, planes first, and their hierarchy. Soft planes are
+    /// among them for what is beyond the octree of their body.
+    fn add_solids(&mut self, facets: &[Facet]) {
+        let scene = self.scene;
+        let detail = facets::detail(scene);
+        let mut solids = Vec::new();
+        for element in &scene.elements {
+            let is_soft = scene.is_soft(element);
+            let is_plane = matches!(&element.shape, Shape::Bone(bone)
+                if matches!(bone.skeleton, Skeleton::Plane { .. }));
+            if element.finish as usize >= scene.finishes.len() || is_soft && !is_plane {
+                continue;
+            }
+            // Others have few parts.
+            let is_quadric = matches!(element.shape, Shape::Quadric(_));
+            if is_quadric && solids.len() >= facets::MOST {
+                continue;
+            }
+            let own = Solid::of(scene, element, detail);
+            self.out.elements += usize::from(!own.is_empty() && !is_soft);
+            for mut solid in own {
+                if is_soft {
+                    solid.a[1] = ENDLESS;
+                }
+                let paint = element.paint.as_ref().filter(|_| solid.kind == Kind::Patch);
+                let finish = paint.map_or(element.finish, |paint| paint.finish);
+                solids.push((solid.move_origin_near(DVec3::ZERO), self.slot(finish)));
+            }
+        }
+        solids.extend_from_slice(facets);
+        let (planes, others): (Vec<_>, Vec<_>) =
+            (solids.into_iter()).partition(|(solid, _)| solid.kind == Kind::Plane);
+        self.out.frame.counts[1] = planes.len() as u32;
+        self.out.frame.places[1] = self.data.len() as u32;
+        for (solid, material) in planes.iter().chain(&others) {
+            let unit = (solid.unit as f32).clamp(1e-30, 1e15);
+            self.push(solid.origin.as_vec3().extend(unit).to_array());
+            self.push(solid.rotation.as_quat().normalize().to_array());
+            self.push(solid.a.map(|x| x as f32));
+            self.push(solid.b.map(|x| x as f32));
+            let [low, high] = solid.corners();
+            self.push_with(low, *material);
+            self.push_with(high, solid.kind as u32);
+        }
+        let boxes: Vec<_> = (others.iter())
+            .filter_map(|(solid, _)| solid.bounds())
+            .map(|(low, high)| {
+                let room = DVec3::splat(1e-5 + 1e-5 * low.distance(high));
+                (low - room, high + room)
+            })
+            .collect();
+        let nodes = hierarchy::nodes(&boxes);
+        self.out.frame.counts[2] = nodes.len() as u32;
+        self.out.frame.places[2] = self.data.len() as u32;
+        for node in nodes {
+            let item = node.item.map_or(u32::MAX, |i| i + planes.len() as u32);
+            self.push_with(node.low.as_vec3(), node.next);
+            self.push_with(node.high.as_vec3(), item);
+        }
+    }
+
+    /// Adds the bodies' octrees, and returns the triangles of those that have none; `None` if it
+    /// is not wanted any more.
+    fn add_bodies(&mut self, detail: Detail, told: &mut Told<'_>) -> Option<Vec<Facet>> {
+        let scene = self.scene;
+        let surfaces = scene.surfaces();
+        let count = surfaces.len().max(1);
+        let (leaves, work) = detail.limits();
+        let mut roots = Vec::new();
+        let mut facets = Vec::new();
+        for (i, surface) in surfaces.iter().enumerate() {
+            let mut told = |share: f32| told((i as f32 + share.min(1.0)) / count as f32);
+            let own: BTreeSet<u32> = surface.element().iter().copied().collect();
+            self.out.elements += own.len();
+            // What others left is for those that follow.
+            let left = (count - i) as u64;
+            let whole = surface.element().len() as u64;
+            let mut limits = Limits {
+                leaves: leaves.saturating_sub(self.out.leaves) / left as usize,
+                work: work.saturating_sub(self.out.work) / left,
+                whole: match surface {
+                    Surface::Sum(_) => 1 + whole,
+                    Surface::Composed(_) => COMPOSED * (1 + whole),
+                },
+                is_strict: detail != Detail::Full,
+            };
+            let chart = self.chart;
+            let list = |terms: Option<&[u32]>| match surface {
+                Surface::Sum(sum) => list(chart, &sum.sum.primitives, terms),
+                Surface::Composed(_) => Vec::new(),
+            };
+            let tree = if surface.element().len() > detail.most_elements() {
+                Err(Halt::Limit)
+            } else {
+                Octree::new(surface.function(), limits, &list, &mut told)
+            };
+            let tree = match tree {
+                Ok(None) => continue,
+                Ok(Some(tree)) if !limits.is_strict || tree.is_close() => tree,
+                Err(Halt::Cancelled) => return None,
+                _ => {
+                    self.out.is_cut = true;
+                    self.out.work += limits.work;
+                    let mesh = facade::mesh(scene, surface, detail, &mut told);
+                    if let Some(mesh) = mesh.filter(|mesh| mesh.triangles.len() <= MOST_TRIANGLES) {
+                        self.out.meshed.push(surface.body());
+                        self.add_facets(surface, &mesh, &mut facets);
+                        continue;
+                    }
+                    // Roughly, but at all.
+                    limits.is_strict = false;
+                    limits.leaves = limits.leaves.min(1 + (limits.work / limits.whole) as usize);
+                    match Octree::new(surface.function(), limits, &list, &mut told) {
+                        Ok(Some(tree)) => tree,
+                        Ok(None) | Err(Halt::Limit) => continue,
+                        Err(Halt::Cancelled) => return None,
+                    }
+                }
+            };
+            self.out.work += tree.work;
+            self.out.leaves += tree.leaves.len();
+            self.out.rough += tree.rough;
+            let places = self.add_leaves(surface, &tree);
+            let first = self.data.len() as u32;
+            let words = tree.cells.iter().map(|cell| match cell {
+                Cell::Parted(at) => first + (at - 1) / 4,
+                Cell::Outside => OUTSIDE,
+                Cell::Inside => INSIDE,
+                Cell::Leaf(number) => LEAF | places[*number as usize],
+            });
+            let words: Vec<u32> = words.collect();
+            self.data.extend(words[1..].as_chunks::<4>().0);
+            roots.push((tree.center, tree.half, words[0]));
+        }
+        self.out.frame.counts[0] = roots.len() as u32;
+        self.out.frame.places[0] = self.data.len() as u32;
+        for (center, half, word) in roots {
+            self.push(center.as_vec3().extend(half as f32).to_array());
+            self.data.push([word, 0, 0, 0]);
+        }
+        Some(facets)
+    }
+
+    /// Appends the triangles of a body's mesh. Each has the material of the element that is
+    /// strongest in its middle.
+    fn add_facets(&self, surface: &Surface, mesh: &TriangleMesh, facets: &mut Vec<Facet>) {
+        let elements = surface.element().iter();
+        let finishes: BTreeSet<u32> = elements
+            .map(|element| self.scene.elements[*element as usize].finish)
+            .collect();
+        let only = finishes.first().copied().filter(|_| finishes.len() == 1);
+        let normals = mesh.normals.as_deref().unwrap_or_default();
+        for triangle in &mesh.triangles {
+            let places = triangle.map(|corner| mesh.positions[corner as usize]);
+            let outward = triangle.map(|corner| {
+                let normal = normals.get(corner as usize);
+                normal.copied().unwrap_or_default()
+            });
+            let Some(solid) = Solid::patch(places, outward, [[1.0; 3]; 3]) else {
+                continue;
+            };
+            let finish = only.unwrap_or_else(|| {
+                let middle = places.iter().sum::<DVec3>() / 3.0;
+                let own = scene::strongest(surface.function(), surface.element(), middle);
+                own.map_or(0, |element| self.scene.elements[element as usize].finish)
+            });
+            facets.push((solid, self.slot(finish)));
+        }
+    }
+
+    /// Adds the leaves of a body, and returns their places.
+    fn add_leaves(&mut self, surface: &Surface, tree: &Octree) -> Vec<u32> {
+        let (scene, chart) = (self.scene, self.chart);
+        let elements = surface.element().iter();
+        let finishes: BTreeSet<u32> = elements
+            .map(|element| scene.elements[*element as usize].finish)
+            .collect();
+        let around = scene.background.mean();
+        let mut records: BTreeMap<u32, [u32; 4]> = BTreeMap::new();
+        let mut places = Vec::with_capacity(tree.leaves.len());
+        for leaf in &tree.leaves {
+            let mixture = if finishes.len() > 1 {
+                mixture(scene, surface, leaf)
+            } else {
+                Vec::new()
+            };
+            let mut list = Vec::new();
+            let mut span = f64::INFINITY;
+            if let Surface::Sum(sum) = surface {
+                for term in &leaf.listed {
+                    let primitive = &sum.sum.primitives[*term as usize];
+                    span = span.min(SPAN / primitive.width);
+                    let record = records
+                        .entry(*term)
+                        .or_insert_with(|| chart.pack(primitive, &mut self.data));
+                    self.out.formulas.insert(record[0]);
+                    list.push(*record);
+                }
+            }
+            let terms = self.data.len() as u32;
+            self.data.extend(&list);
+            places.push(self.data.len() as u32);
+            let shown = mixture.first().map(|(finish, _)| *finish);
+            let finish = shown.or(finishes.first().copied()).unwrap_or(0);
+            let word = if mixture.len() > 1 {
+                MIXED
+            } else {
+                self.slot(finish)
+            };
+            let span = (span as f32).min(1e30).to_bits();
+            self.data.push([word, list.len() as u32, span, terms]);
+            for four in leaf.cubic.coefficients.as_chunks::<4>().0 {
+                self.push(four.map(|x| x as f32));
+            }
+            if mixture.len() > 1 {
+                for line in looks(scene, &mixture, around).as_flattened() {
+                    self.push(*line);
+                }
+            }
+        }
+        places
+    }
+}
+
+/// Returns some primitives of a body, or all, if the card has their formulas and they are not many.
+fn list(chart: &dyn Chart, primitives: &[Primitive], terms: Option<&[u32]>) -> Vec<u32> {
+    let count = terms.map_or(primitives.len(), <[u32]>::len);
+    if count > MOST_TERMS {
+        return Vec::new();
+    }
+    let terms = terms.map_or_else(|| (0..count as u32).collect(), <[u32]>::to_vec);
+    let known = terms.iter().all(|i| chart.has(&primitives[*i as usize]));
+    if known { terms } else { Vec::new() }
+}
+
+/// Returns the share of each finish at a leaf's corners: all those that count at one of them.
+fn mixture(scene: &Scene, surface: &Surface, leaf: &Leaf) -> Vec<(u32, [f64; 8])> {
+    let mut shares: BTreeMap<u32, [f64; 8]> = BTreeMap::new();
+    for (corner, place) in corners().into_iter().enumerate() {
+        let point = leaf.center + leaf.half * place;
+        let mut own = Vec::new();
+        match (surface, &leaf.terms) {
+            (Surface::Sum(sum), Some(terms)) => {
+                for &term in terms {
+                    let value = sum.sum.primitives[term as usize].value(point.to_array());
+                    own.push((term, f64::max(value, 0.0)));
+                }
+            }
+            _ => surface.function().shares(point, &mut own),
+        }
+        // At a pole one element is all.
+        let all: f64 = own.iter().map(|(_, share)| share.min(1e30)).sum();
+        for (number, share) in own {
+            let Some(element) = surface.element().get(number as usize) else {
+                continue;
+            };
+            let finish = scene.elements[*element as usize].finish;
+            let sum = &mut shares.entry(finish).or_insert([0.0; 8])[corner];
+            *sum += if all > 0.0 {
+                share.min(1e30) / all
+            } else {
+                0.0
+            };
+        }
+    }
+    shares.retain(|_, own| own.iter().any(|share| *share > NEGLIGIBLE));
+    shares.into_iter().collect()
+}
+
+/// Returns three channels of four – ambient and shine, diffuse, specular – as linear functions in a
+/// leaf: the mean, and the growth along x, y and z.
+fn looks(scene: &Scene, mixture: &[(u32, [f64; 8])], around: Rgb) -> [[[f32; 4]; 4]; 3] {
+    let fallback = Finish::default();
+    let mut lines = [[[0.0; 4]; 4]; 3];
+    for (corner, place) in corners().into_iter().enumerate() {
+        let all: f64 = mixture.iter().map(|(_, shares)| shares[corner]).sum();
+        for (finish, shares) in mixture {
+            let weight = if all > 0.0 {
+                shares[corner] / all
+            } else {
+                1.0 / mixture.len() as f64
+            };
+            let finish = scene.finishes.get(*finish as usize).unwrap_or(&fallback);
+            let [ambient, diffuse] = draft_colours(finish, around);
+            let channels = [
+                with(ambient, finite(finish.shine).max(0.0)),
+                with(diffuse, 0.0),
+                with(finish.specular, 0.0),
+            ];
+            for (line, channel) in lines.iter_mut().zip(&channels) {
+                let factors = [1.0, place.x, place.y, place.z].map(|x| (x * weight / 8.0) as f32);
+                for (to, factor) in line.iter_mut().zip(factors) {
+                    for (sum, own) in to.iter_mut().zip(channel) {
+                        *sum += factor * own;
+                    }
+                }
+            }
+        }
+    }
+    lines
+}
