@@ -356,6 +356,19 @@ pub fn fetch(path: &'static str, done: impl FnOnce(Option<Vec<u8>>) + 'static) {
     });
 }
 
+/// Fetches files of the page.
+///
+/// # Errors
+/// A sentence, if one cannot be had.
+pub async fn fetch_all<const N: usize>(paths: [&str; N]) -> Result<[Vec<u8>; N], String> {
+    let mut files = [const { Vec::new() }; N];
+    for (path, file) in paths.into_iter().zip(&mut files) {
+        let bytes = bytes_of(path).await;
+        *file = bytes.map_err(|_| format!("{path} could not be loaded. Reload the page."))?;
+    }
+    Ok(files)
+}
+
 async fn bytes_of(path: &str) -> Result<Vec<u8>, JsValue> {
     let response = JsFuture::from(window().fetch_with_str(path)).await?;
     let response: web_sys::Response = response.unchecked_into();

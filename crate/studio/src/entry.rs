@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::crash;
+use crate::fonts;
 use crate::page::Parts;
 use crate::scripts::handle;
 use crate::scripts::request::{Request, Told};
@@ -26,15 +27,21 @@ pub fn start() -> Result<(), JsValue> {
     wasm_bindgen_futures::spawn_local(async move {
         emulation::mend(CANVAS).await;
         let again = Cell::new(false);
-        let started = boot::start(CANVAS, move |context, backend| {
+        let create = move |context: &eframe::CreationContext<'_>, backend| {
             if again.replace(true) {
                 // The GPU was lost, not because of the text: go on drawing it.
                 browser::set_stopped(false);
             }
             let state = context.wgpu_render_state.clone();
             App::new(&context.egui_ctx, state, backend, parts.clone())
-        })
-        .await;
+        };
+        let started = match browser::fetch_all(fonts::FILES).await {
+            Ok(files) => {
+                fonts::set(files);
+                boot::start(CANVAS, create).await.map(|_| ())
+            }
+            Err(reason) => Err(reason),
+        };
         if let Err(reason) = started {
             let error = js_sys::Error::new(&reason);
             // The function of a promise never throws.

@@ -2,7 +2,7 @@
 
 use crate::offline;
 use crate::packages::{MODULES, Module};
-use crate::shell::{artifacts, at_once, cargo, command, in_lane, root, run, target, tell};
+use crate::shell::{at_once, cargo, command, in_lane, messages, root, run, target, tell};
 use crate::tools;
 use anyhow::{Context, Result};
 use std::fs;
@@ -41,6 +41,9 @@ pub fn build(build: Build, folder: &Path) -> Result<()> {
     for module in MODULES {
         copy_module(&module, &modules, folder)?;
     }
+    for font in FONTS {
+        copy(&modules.join(font), &folder.join(font))?;
+    }
     if build == Build::Release {
         offline::list(folder)?;
     }
@@ -55,11 +58,12 @@ pub fn modules() -> PathBuf {
 /// Makes NAME.js and NAME_bg.wasm.
 pub fn make(module: &Module, build: Build, folder: &Path) -> Result<()> {
     let begun = Instant::now();
+    fs::create_dir_all(folder)?;
     let profile = match build {
         Build::Development => "serve",
         Build::Release => module.profile,
     };
-    let wasm = compile(module, profile)?;
+    let wasm = compile(module, profile, folder)?;
     tell(&format!("compiled ({} s)", begun.elapsed().as_secs()));
     Bindgen::new()
         .input_path(&wasm)
@@ -103,8 +107,12 @@ pub fn optimise(wasm_opt: &Path, from: &Path, to: &Path) -> Result<()> {
     run(command("node", &[&wasm_opt, &from, LEVEL, "-o", &to]).args(stripped))
 }
 
-/// Compiles a package to wasm and returns the file.
-fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
+/// The fonts, which the build script of `widgets` makes and the page fetches.
+const FONTS: [&str; 2] = ["sans.ttf", "mono.ttf"];
+
+/// Compiles a package to wasm and returns the file. The fonts, if it has some, are copied to a
+/// folder.
+fn compile(module: &Module, profile: &str, folder: &Path) -> Result<PathBuf> {
     // Only a cdylib: with an rlib beside it, link-time optimisation is silently left out.
     let Module {
         package, features, ..
@@ -117,8 +125,21 @@ fn compile(module: &Module, profile: &str) -> Result<PathBuf> {
     ]);
     command.args(["--target", tools::WASM, "--profile", profile]);
     command.args(["--package", package, "--features", features]);
-    artifacts(&mut command)?
-        .iter()
+    let messages = messages(&mut command)?;
+    for message in &messages {
+        let package = message["package_id"].as_str();
+        if message["reason"] == "build-script-executed"
+            && package.is_some_and(|id| id.contains("/widgets#"))
+            && let Some(made) = message["out_dir"].as_str()
+        {
+            for font in FONTS {
+                copy(&Path::new(made).join(font), &folder.join(font))?;
+            }
+        }
+    }
+    let artifacts = messages.iter();
+    artifacts
+        .filter(|message| message["reason"] == "compiler-artifact")
         .filter(|artifact| artifact["target"]["name"] == *package)
         .filter_map(|artifact| Some(PathBuf::from(artifact["filenames"][0].as_str()?)))
         .rfind(|file| {

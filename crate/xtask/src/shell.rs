@@ -205,16 +205,21 @@ pub fn read(command: &mut Command) -> Option<String> {
     output.status.success().then(|| text.trim().to_owned())
 }
 
-/// Returns the artifacts that a cargo command with `--message-format json-render-diagnostics`
-/// reports.
-pub fn artifacts(command: &mut Command) -> Result<Vec<serde_json::Value>> {
+/// Returns the messages that a cargo command with `--message-format json-render-diagnostics`
+/// writes.
+pub fn messages(command: &mut Command) -> Result<Vec<serde_json::Value>> {
     let output = pass_on(command, false)?;
-    let messages = output
-        .lines()
-        .filter_map(|line| serde_json::from_str(line).ok());
+    let messages = output.lines();
     Ok(messages
-        .filter(|message: &serde_json::Value| message["reason"] == "compiler-artifact")
+        .filter_map(|line| serde_json::from_str(line).ok())
         .collect())
+}
+
+/// Returns the artifacts among the [`messages`] of a cargo command.
+pub fn artifacts(command: &mut Command) -> Result<Vec<serde_json::Value>> {
+    let mut artifacts = messages(command)?;
+    artifacts.retain(|message| message["reason"] == "compiler-artifact");
+    Ok(artifacts)
 }
 
 /// Returns the program or test of a name among cargo's artifacts.

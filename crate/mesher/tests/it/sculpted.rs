@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 
 /// A ball with a horn.
 const STROKES: &str =
-    "strokes 1\nstart sphere 4\npull sphere 0.4 0.4 0.4 bell 0.9 : 0 0 0.9, 0.2 0 1.7\n";
+    "strokes 1\nstart sphere 3\npull sphere 0.4 0.4 0.4 bell 0.9 : 0 0 0.9, 0.2 0 1.7\n";
 
 /// A mesh whose corners at the same place are one vertex, as a printer's program makes of a file
 /// that names each corner.
