@@ -52,7 +52,7 @@ fn commands_and_options() {
     );
     says(
         "cur|ve",
-        "curve sn b P1 P2 P3 P4 [P …] [ends round | flat | open]",
+        "curve sn b P1 P2 P3 P4 [P …] [ends round | flat | open] [depth d]",
         &["ours: RATS did not have it"],
     );
 }
