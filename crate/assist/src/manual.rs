@@ -34,7 +34,7 @@ pub fn commands_of(group: Group) -> &'static [&'static CommandSpec] {
 ///
 /// ```
 /// let page = assist::manual::page("sphere").unwrap();
-/// assert!(page.starts_with("sphere sn r POS: "));
+/// assert!(page.starts_with("sphere sn r POS [depth d]: "));
 /// ```
 #[must_use]
 pub fn page(command: &str) -> Option<String> {

@@ -81,7 +81,7 @@ pub fn run<'a>(
     let mut shots = state.run_all();
     state.note_unused_materials();
     if let Some(last) = shots.last() {
-        state.lint(&last.scene);
+        state.lint(&last.scene, &last.placements);
     }
     let open = shots.iter().filter(|shot| shot.shutter > 0.0).count();
     if (state.animated || state.moving.is_any()) && open > 0 && !state.report.has_errors() {

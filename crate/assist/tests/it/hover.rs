@@ -27,7 +27,7 @@ fn says(text: &str, title: &str, lines: &[&str]) {
 fn commands_and_options() {
     says(
         "sph|ere s 1 0 0 0",
-        "sphere sn r POS",
+        "sphere sn r POS [depth d]",
         &[
             "sphere; a point when soft",
             "r: the radius, model units",
@@ -52,7 +52,7 @@ fn commands_and_options() {
     );
     says(
         "cur|ve",
-        "curve sn b P1 P2 P3 P4 [P …] [ends round | flat | open]",
+        "curve sn b P1 P2 P3 P4 [P …] [ends round | flat | open] [depth d]",
         &["ours: RATS did not have it"],
     );
 }

@@ -24,18 +24,18 @@ fn shows(text: &str, wanted: &str) {
 
 #[test]
 fn whose_turn_it_is() {
-    shows("sphere|", "sphere sn r POS");
-    shows("sphere |", "sphere «sn» r POS");
-    shows("sphere s|", "sphere «sn» r POS");
-    shows("sphere s |", "sphere sn «r» POS");
-    shows("sphere s 1| 2 3 4", "sphere sn «r» POS");
-    shows("sphere s 1 |", "sphere sn r «POS»");
-    shows("sphere s 1 0 0 |", "sphere sn r «POS»");
-    shows("sphere s 1 0 0 0 |", "sphere sn r POS");
-    shows("sphere s 1 <0 0| 0>", "sphere sn r «POS»");
-    shows("sphere s 1+|", "sphere sn «r» POS");
-    shows("sphere s 1 + |", "sphere sn «r» POS");
-    shows("chain s, C\nsphere |", "sphere «r» POS");
+    shows("sphere|", "sphere sn r POS [option …]");
+    shows("sphere |", "sphere «sn» r POS [option …]");
+    shows("sphere s|", "sphere «sn» r POS [option …]");
+    shows("sphere s |", "sphere sn «r» POS [option …]");
+    shows("sphere s 1| 2 3 4", "sphere sn «r» POS [option …]");
+    shows("sphere s 1 |", "sphere sn r «POS» [option …]");
+    shows("sphere s 1 0 0 |", "sphere sn r «POS» [option …]");
+    shows("sphere s 1 0 0 0 |", "sphere sn r POS «[option …]»");
+    shows("sphere s 1 <0 0| 0>", "sphere sn r «POS» [option …]");
+    shows("sphere s 1+|", "sphere sn «r» POS [option …]");
+    shows("sphere s 1 + |", "sphere sn «r» POS [option …]");
+    shows("chain s, C\nsphere |", "sphere «r» POS [option …]");
     shows("surface |", "surface «alias» [= old] [option …]");
     shows("surface s diff Red |", "surface alias [= old] «[option …]»");
     shows("surface s rad |", "surface … radius «r» [end]");

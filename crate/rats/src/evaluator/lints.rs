@@ -6,6 +6,7 @@
 
 use super::state::Evaluator;
 use super::{exact, later};
+use crate::compiled::Placement;
 use crate::problem::Problem;
 use crate::{Severity, TextEdit};
 use field::{Primitive, THRESHOLD};
@@ -27,14 +28,14 @@ const MOST_OFF: f64 = 0.1;
 
 impl Evaluator<'_> {
     /// Looks at the finished scene.
-    pub(super) fn lint(&mut self, scene: &Scene) {
+    pub(super) fn lint(&mut self, scene: &Scene, placements: &[Placement]) {
         if self.report.has_errors() || self.report.no_warnings {
             return;
         }
         self.lint_view(scene);
         self.lint_blob_scale(scene);
         if self.model.weight() <= MOST_WEIGHT && scene.settings.soft {
-            self.lint_field(scene);
+            self.lint_field(scene, placements);
             self.lint_contacts(scene);
         }
     }
@@ -149,7 +150,7 @@ impl Evaluator<'_> {
     }
 
     /// Warns of an eye inside the surface and of flesh that never reaches the threshold.
-    fn lint_field(&mut self, scene: &Scene) {
+    fn lint_field(&mut self, scene: &Scene, placements: &[Placement]) {
         let surfaces = scene.surfaces();
         if surfaces
             .iter()
@@ -165,7 +166,7 @@ impl Evaluator<'_> {
             );
         }
         let mut left = MOST_EVALUATIONS;
-        self.lint_radii(scene, &surfaces, &mut left);
+        self.lint_radii(scene, placements, &surfaces, &mut left);
         for surface in &surfaces {
             // Functions that are no sums make flesh visible, or hide it, in ways of their own.
             if let Surface::Sum(surface) = surface
@@ -176,10 +177,19 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Notes bones by themselves whose flesh does not stand at its radius, once a material.
-    fn lint_radii(&mut self, scene: &Scene, surfaces: &[Surface], left: &mut usize) {
-        let elements = scene.elements.iter().enumerate();
-        let plain = elements.filter(|(_, element)| {
+    /// Notes bones by themselves whose flesh does not stand at its radius, once a material. What
+    /// loops, the library and `instance` make has radii that nobody wrote down.
+    fn lint_radii(
+        &mut self,
+        scene: &Scene,
+        placements: &[Placement],
+        surfaces: &[Surface],
+        left: &mut usize,
+    ) {
+        let elements = scene.elements.iter().zip(placements).enumerate();
+        let written = elements.filter(|(_, (_, placement))| !placement.repeated);
+        let written = written.map(|(index, (element, _))| (index, element));
+        let plain = written.filter(|(_, element)| {
             let flesh = element
                 .flesh
                 .and_then(|index| scene.flesh.get(index as usize));

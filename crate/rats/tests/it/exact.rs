@@ -124,6 +124,11 @@ fn a_note_names_the_radius_that_comes_out() {
         format!("surface S radius 0.5 blobbiness -0.5 strength 2\n{bone}"),
         // Exact.
         format!("surface S radius 0.5 blobbiness -0.5 exact\n{bone}"),
+        // Made by a loop.
+        format!(
+            "surface S radius 0.5 blobbiness -0.5\nfor i = 1 to 1 {{ {} }}\n",
+            bone.trim()
+        ),
         // Not by itself.
         format!(
             "surface S radius 0.5 blobbiness -0.5\n{bone}cylinder S 0.5 <0 -3 0.2> <0 3 0.2>\n"
