@@ -550,11 +550,8 @@ impl<'a> Run<'a> {
             )));
         }
         let noise = noise(&self.problem.observations.points);
-        let limit = if noise.is_finite() {
-            (ROUGHLY * noise).max(0.01 * size)
-        } else {
-            0.03 * size
-        };
+        // Points that are of no surface tell a noise of any size.
+        let limit = (ROUGHLY * noise).max(0.01 * size).min(0.02 * size);
         if spread > limit {
             return Ok(Some(format!(
                 "the nearer measurements are {spread:.3e} away from the surface, {:.1} % of the \

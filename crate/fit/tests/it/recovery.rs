@@ -122,7 +122,7 @@ fn fits_that_fail_say_so_and_keep_the_best() {
         };
         let trial = measure(&model, points, disturbance);
         let (fitted, found) = run(&trial, &model, SHELLS, POINTS);
-        assert!(found.failed);
+        assert!(found.failed, "{outliers} {found:?}");
         let failure = fitted.failure.unwrap();
         assert!(failure.contains(said), "{failure}");
     }
