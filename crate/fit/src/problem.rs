@@ -161,8 +161,8 @@ impl Problem {
             }
             Controls::Vertices => {
                 let deformation = Deformation::direct(positions);
-                let first = |i: u32| deformation.weights(i as usize)[0].0;
-                let between = self.triangles.iter().map(|t| t.map(first));
+                let triangles = self.triangles.iter();
+                let between = triangles.map(|t| t.map(|i| deformation.weights(i as usize)[0].0));
                 (positions.clone(), between.collect(), deformation)
             }
         };
