@@ -2,7 +2,7 @@
 
 use crate::{Outcome, files, whole};
 use clap::{ArgGroup, Args, ValueEnum};
-use fit::{Fitted, Kind, Observations, Options, Problem};
+use fit::{Controls, Fitted, Kind, Observations, Options, Problem};
 use glam::DVec3;
 use mesh::{Aabb, Export, Format, Part, TriangleMesh};
 use serde_json::json;
@@ -31,8 +31,15 @@ pub struct Fit {
     #[arg(help = format!("The mesh: {}", Format::ENDINGS))]
     mesh: PathBuf,
     /// A mesh around it whose vertices are the control points
-    #[arg(long, value_name = "CAGE")]
-    control: PathBuf,
+    #[arg(long, value_name = "CAGE", required_unless_present_any = ["lattice", "vertices"])]
+    control: Option<PathBuf>,
+    /// Move it by a lattice in its box instead, with these numbers of nodes along x, y and z
+    #[arg(long, value_name = "X,Y,Z", value_parser = three)]
+    #[arg(conflicts_with_all = ["control", "vertices"])]
+    lattice: Option<[usize; 3]>,
+    /// Move each of its vertices by itself instead
+    #[arg(long, conflicts_with = "control")]
+    vertices: bool,
     /// Measured points: .ply or .xyz
     #[arg(long, value_name = "CLOUD", group = "measured")]
     points: Option<PathBuf>,
@@ -82,7 +89,11 @@ impl Fit {
             .map(|path| Target::of(path))
             .collect::<Result<_, _>>()?;
         let mesh = read_mesh(&self.mesh)?;
-        let cage = read_mesh(&self.control)?;
+        let by = match (&self.control, self.lattice) {
+            (Some(cage), _) => Controls::Cage(read_mesh(cage)?),
+            (None, Some(counts)) => Controls::Lattice(counts),
+            (None, None) => Controls::Vertices,
+        };
         let mut observations = Observations::default();
         if let Some(path) = &self.points {
             let name = path.display().to_string();
@@ -117,7 +128,7 @@ impl Fit {
         };
         let counts = [observations.points.len(), observations.sights.len()];
         let problem =
-            Problem::new(&mesh, &cage, observations, options).map_err(|e| e.to_string())?;
+            Problem::with(&mesh, by.clone(), observations, options).map_err(|e| e.to_string())?;
         let start = Instant::now();
         let fitted = fit::fit(&problem, &mut |progress| {
             if !self.json {
@@ -134,7 +145,18 @@ impl Fit {
             match output {
                 Target::Mesh(path, format) => write_mesh(path, *format, &mesh, &fitted)?,
                 Target::Dataset(path) => {
-                    let text = self.dataset(path, &cage, &fitted, &views, [slope, thickness])?;
+                    let (name, lines) = if let Controls::Cage(cage) = &by {
+                        let places = &cage.positions;
+                        let lines = fit::deform_lines(None, &fitted.rigid, places, &fitted.moves);
+                        (beside(path, &self.mesh)?, lines)
+                    } else {
+                        // The language has no such deformations: the mesh itself is written.
+                        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                        let name = named(&format!("{stem}-fitted.obj"));
+                        write_mesh(&path.with_file_name(&name), Format::Obj, &mesh, &fitted)?;
+                        (name, String::new())
+                    };
+                    let text = self.dataset(&name, &fitted, &views, [slope, thickness]) + &lines;
                     whole::write(path, |out| {
                         out.write_all(text.as_bytes()).map_err(|e| e.to_string())
                     })?;
@@ -149,7 +171,7 @@ impl Fit {
                     "triangles": mesh.triangles.len(),
                     "mean_edge": edge,
                 },
-                "controls": cage.positions.len(),
+                "controls": fitted.moves.len(),
                 "points": counts[0],
                 "sights": counts[1],
                 "remarks": remarks,
@@ -181,16 +203,14 @@ impl Fit {
         Ok(fitted.failure.is_none())
     }
 
-    /// The dataset: a camera, the mesh, and the lines that deform it.
+    /// The dataset: a camera and the mesh, as far as the lines that deform it.
     fn dataset(
         &self,
-        path: &Path,
-        cage: &TriangleMesh,
+        name: &str,
         fitted: &Fitted,
         views: &[fit::Outline],
         [slope, thickness]: [f64; 2],
-    ) -> Result<String, String> {
-        let name = beside(path, &self.mesh)?;
+    ) -> String {
         let mut text = format!(
             "# {} fitted by `sinew fit`: residual {:.4e} after {} iterations\n\n",
             name, fitted.last.residual, fitted.last.iteration
@@ -205,9 +225,17 @@ impl Fit {
                 text += &format!("   # metaballs triangular {thickness:.6} {slope:.4}\n");
             }
         }
-        text += &fit::deform_lines(None, &fitted.rigid, &cage.positions, &fitted.moves);
-        Ok(text)
+        text
     }
+}
+
+/// Reads three numbers with commas between them.
+fn three(text: &str) -> Result<[usize; 3], String> {
+    let numbers: Result<Vec<usize>, _> = text.split(',').map(|word| word.trim().parse()).collect();
+    numbers
+        .ok()
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(|| String::from("three whole numbers are expected, such as 4,4,5"))
 }
 
 /// A file to write.
@@ -247,6 +275,11 @@ fn read_mesh(path: &Path) -> Result<TriangleMesh, String> {
     mesh::read(&name, &bytes).map_err(|error| format!("{name}: {error}"))
 }
 
+/// Returns a file's name as datasets write it.
+fn named(name: &str) -> String {
+    name.replace(|c: char| !c.is_alphanumeric() && !"._-+".contains(c), "_")
+}
+
 /// Returns the name of the mesh for a dataset, which takes files from its own folder only and names
 /// of letters, digits and `._-+`: a mesh of elsewhere or of another name is copied there.
 fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
@@ -254,8 +287,7 @@ fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    let name = mesh.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.replace(|c: char| !c.is_alphanumeric() && !"._-+".contains(c), "_");
+    let name = named(&mesh.file_name().unwrap_or_default().to_string_lossy());
     let place = folder.join(&name);
     if let (Ok(a), Ok(b)) = (place.canonicalize(), mesh.canonicalize())
         && a == b

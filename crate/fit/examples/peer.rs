@@ -5,7 +5,7 @@
 //! took; the comparison is `tests/bench/fit_scipy.py`.
 
 use fit::recovery::{Trial, Way};
-use fit::{Deformation, Kind, trial};
+use fit::{Deformation, Kind, Loss, trial};
 use serde_json::json;
 use std::time::Instant;
 
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let way = Way {
         kind: Kind::Explicit,
         sharpness: 20.0,
-        saturates: false,
+        loss: Loss::Squares,
         outlines: false,
     };
     let problem = truth.problem(&head, way)?;

@@ -4,7 +4,7 @@
 //! `cargo run --release -p fit --example recovery`; with `json` as JSON.
 
 use fit::recovery::{NOISE, Trial, Way, coarse};
-use fit::{Deformation, Disturbance, Kind, Options, Rigid, cage, shapes, trial};
+use fit::{Deformation, Disturbance, Kind, Loss, Options, Rigid, cage, shapes, trial};
 use glam::{DMat3, DVec3};
 use mesh::TriangleMesh;
 use serde_json::{Value, json};
@@ -16,22 +16,15 @@ fn main() -> Result<(), fit::Error> {
         ("2,000 facets, those of the truth", trial::head(2000)),
         ("420 uneven facets", coarse(420)?),
     ];
+    const SHELLS: Kind = Kind::Triangular { thickness: 0.0 };
     let ways = [
-        ("explicit, squares", Kind::Explicit, 20.0, false),
-        ("explicit", Kind::Explicit, 20.0, true),
-        ("spherical", Kind::Spherical, 20.0, true),
-        (
-            "triangular",
-            Kind::Triangular { thickness: 0.0 },
-            20.0,
-            true,
-        ),
-        (
-            "triangular, k three times",
-            Kind::Triangular { thickness: 0.0 },
-            60.0,
-            true,
-        ),
+        ("explicit, squares", Kind::Explicit, 20.0, Loss::Squares),
+        ("spherical, 1 − F", Kind::Spherical, 20.0, Loss::Algebraic),
+        ("triangular, 1 − F", SHELLS, 20.0, Loss::Algebraic),
+        ("explicit", Kind::Explicit, 20.0, Loss::Saturating),
+        ("spherical", Kind::Spherical, 20.0, Loss::Saturating),
+        ("triangular", SHELLS, 20.0, Loss::Saturating),
+        ("triangular, k three times", SHELLS, 60.0, Loss::Saturating),
     ];
     let mut rows: Vec<Value> = Vec::new();
     for (name, model) in models {
@@ -40,11 +33,11 @@ fn main() -> Result<(), fit::Error> {
             "mesh": name, "kind": "before the fit", "error": near, "gap": gap,
         }));
         for outlines in [true, false] {
-            for (kind, seen, sharpness, saturates) in ways {
+            for (kind, seen, sharpness, loss) in ways {
                 let way = Way {
                     kind: seen,
                     sharpness,
-                    saturates,
+                    loss,
                     outlines,
                 };
                 let found = truth.run(&model, way)?;

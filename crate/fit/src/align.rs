@@ -254,7 +254,7 @@ struct Pair {
 fn onto_planes(pairs: &[Pair]) -> Option<Rigid> {
     let count = pairs.len().max(1) as f64;
     let middle = pairs.iter().map(|pair| pair.moved).sum::<DVec3>() / count;
-    let mut normal = Normal::new(6);
+    let mut normal = Normal::dense(6);
     for pair in pairs {
         // n·(p + ω × p + t − q)
         let arm = pair.moved - middle;

@@ -51,14 +51,15 @@ pub mod trial;
 pub use align::Rigid;
 pub use cage::{cage, web};
 pub use cloud::cloud;
-pub use deformation::Deformation;
+pub use deformation::{Deformation, MAX_NODES, lattice};
 pub use disturb::{Disturbance, Numbers};
 pub use error::Error;
 pub use field::Kind;
 pub use lines::deform_lines;
 pub use outlines::{Outline, outlines, sights};
 pub use problem::{
-    MAX_FITTED_CONTROLS, MAX_OBSERVATIONS, Observations, Options, Problem, mean_edge,
+    Controls, Loss, MAX_FITTED_CONTROLS, MAX_FITTED_VERTICES, MAX_OBSERVATIONS, Observations,
+    Options, Problem, mean_edge,
 };
 pub use remarks::remarks;
 pub use sibson::{MAX_CONTROLS, Sibson};

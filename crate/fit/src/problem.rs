@@ -1,6 +1,6 @@
 //! Input of a fit: a mesh, its control mesh, the observations.
 
-use crate::deformation::Deformation;
+use crate::deformation::{Deformation, lattice};
 use crate::error::{Error, fail};
 use crate::field::Kind;
 use crate::sight::Sight;
@@ -9,8 +9,10 @@ use glam::DVec3;
 use mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
 
-/// Most control points of a fit: its equations take time in proportion to their cube.
+/// Most control points of a cage in a fit: its equations take time in proportion to their cube.
 pub const MAX_FITTED_CONTROLS: usize = 500;
+/// Most vertices of a mesh that are fitted one by one.
+pub const MAX_FITTED_VERTICES: usize = 50_000;
 /// Most points, and most lines of sight.
 pub const MAX_OBSERVATIONS: usize = 200_000;
 
@@ -21,6 +23,19 @@ pub struct Observations {
     pub points: Vec<DVec3>,
     /// Lines that graze the surface.
     pub sights: Vec<Sight>,
+}
+
+/// The way in which distances h from the surface count in a fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Loss {
+    /// As (s·tanh(h/s))², with a scale s that falls: no more beyond s.
+    #[default]
+    Saturating,
+    /// As h², as if there were no outliers.
+    Squares,
+    /// As ((1 − F)/k)² with the field F = e^−kh, as Ilić and Fua have it, and with a slope k that
+    /// rises; as h² where there is no field, of facets themselves.
+    Algebraic,
 }
 
 /// Options of a fit.
@@ -35,13 +50,12 @@ pub struct Options {
     pub smooth: f64,
     /// Weight of the outlines beside the points, ≥ 0; at 1 they count alike.
     pub outlines: f64,
-    /// Whether distances count no more beyond the scale of the fit; otherwise squares of distances
-    /// are summed, as if there were no outliers.
-    pub saturates: bool,
+    /// The way in which distances count.
+    pub loss: Loss,
     /// Whether the mesh is first turned and moved as a whole; if not, it still is where the fit
     /// fails otherwise, or comes much nearer so.
     pub align: bool,
-    /// Most iterations in all.
+    /// Most iterations in all; of a fit of single vertices, in each of its two parts.
     pub iterations: usize,
 }
 
@@ -52,16 +66,29 @@ impl Default for Options {
             slope: None,
             smooth: 0.02,
             outlines: 1.0,
-            saturates: true,
+            loss: Loss::Saturating,
             align: false,
             iterations: 100,
         }
     }
 }
 
+/// The way in which a fit moves the vertices of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Controls {
+    /// By Sibson's coordinates in the vertices of a mesh, whose triangles say which of them are
+    /// neighbours.
+    Cage(TriangleMesh),
+    /// By a lattice in the mesh's box, with these numbers of nodes along the axes.
+    Lattice([usize; 3]),
+    /// Each by itself, after a fit by a cage of the mesh's own.
+    Vertices,
+}
+
 /// Mesh to fit with its control points.
 #[derive(Clone, Debug)]
 pub struct Problem {
+    pub(crate) by: Controls,
     pub(crate) positions: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) controls: Vec<DVec3>,
@@ -86,21 +113,60 @@ impl Problem {
         observations: Observations,
         options: Options,
     ) -> Result<Self, Error> {
-        check(mesh, cage, &observations, &options)?;
-        let problem = Self {
+        Self::with(mesh, Controls::Cage(cage.clone()), observations, options)
+    }
+
+    /// Prepares a fit that moves the vertices in any of the ways.
+    ///
+    /// # Errors
+    /// Fails as [`Self::new`] does, and if a lattice has too few or too many nodes.
+    pub fn with(
+        mesh: &TriangleMesh,
+        by: Controls,
+        observations: Observations,
+        options: Options,
+    ) -> Result<Self, Error> {
+        check(mesh, &by, &observations, &options)?;
+        let mut problem = Self {
+            by,
             positions: mesh.positions.clone(),
             triangles: mesh.triangles.clone(),
-            controls: cage.positions.clone(),
-            cage: cage.triangles.clone(),
-            deformation: Deformation::new(&mesh.positions, &cage.positions)?,
+            controls: Vec::new(),
+            cage: Vec::new(),
+            deformation: Deformation::direct(&[]),
             observations,
             options,
-            start: vec![DVec3::ZERO; cage.positions.len()],
+            start: Vec::new(),
         };
         if problem.mean_edge() <= 0.0 {
             return fail("the mesh has no extent");
         }
+        problem.control()?;
+        problem.start = vec![DVec3::ZERO; problem.controls.len()];
         Ok(problem)
+    }
+
+    /// Sets the control points, their triangles and the deformation to those of the vertices.
+    pub(crate) fn control(&mut self) -> Result<(), Error> {
+        let positions = &self.positions;
+        (self.controls, self.cage, self.deformation) = match &self.by {
+            Controls::Cage(cage) => {
+                let deformation = Deformation::new(positions, &cage.positions)?;
+                (cage.positions.clone(), cage.triangles.clone(), deformation)
+            }
+            Controls::Lattice(counts) => {
+                let nodes = lattice(positions, *counts)?;
+                let deformation = Deformation::lattice(positions, *counts)?;
+                (nodes.positions, nodes.triangles, deformation)
+            }
+            Controls::Vertices => {
+                let deformation = Deformation::direct(positions);
+                let triangles = self.triangles.iter();
+                let between = triangles.map(|t| t.map(|i| deformation.weights(i as usize)[0].0));
+                (positions.clone(), between.collect(), deformation)
+            }
+        };
+        Ok(())
     }
 
     /// Lets the fit begin with moves of the control points, such as those of an earlier one.
@@ -154,18 +220,29 @@ pub fn mean_edge(positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
 
 fn check(
     mesh: &TriangleMesh,
-    cage: &TriangleMesh,
+    by: &Controls,
     observations: &Observations,
     options: &Options,
 ) -> Result<(), Error> {
     if mesh.triangles.is_empty() {
         return fail("the mesh has no triangles");
     }
-    if cage.positions.len() > MAX_FITTED_CONTROLS {
+    let (count, most, what) = match by {
+        Controls::Cage(cage) => (
+            cage.positions.len(),
+            MAX_FITTED_CONTROLS,
+            "control mesh has",
+        ),
+        Controls::Vertices => (
+            mesh.positions.len(),
+            MAX_FITTED_VERTICES,
+            "mesh to be fitted vertex by vertex has",
+        ),
+        Controls::Lattice(_) => (0, 0, ""),
+    };
+    if count > most {
         return fail(format!(
-            "the control mesh has {} vertices, more than the {MAX_FITTED_CONTROLS} that a fit \
-             takes",
-            cage.positions.len()
+            "the {what} {count} vertices, more than the {most} that a fit takes"
         ));
     }
     let Observations { points, sights } = observations;

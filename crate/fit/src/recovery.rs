@@ -6,7 +6,7 @@ use crate::disturb::Disturbance;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
 use crate::outlines::{Outline, sights};
-use crate::problem::{Observations, Options, Problem, mean_edge};
+use crate::problem::{Controls, Loss, Observations, Options, Problem, mean_edge};
 use crate::trial;
 use crate::{Deformation, Fitted, fit};
 use glam::DVec3;
@@ -22,8 +22,8 @@ pub struct Way {
     pub kind: Kind,
     /// k times the mean edge.
     pub sharpness: f64,
-    /// Value of [`Options::saturates`].
-    pub saturates: bool,
+    /// The way in which distances count.
+    pub loss: Loss,
     /// Whether outlines are used beside the points.
     pub outlines: bool,
 }
@@ -157,7 +157,7 @@ impl Trial {
         let options = Options {
             kind: way.kind,
             slope: Some(way.sharpness / edge),
-            saturates: way.saturates,
+            loss: way.loss,
             ..Options::default()
         };
         let observations = self.observe(true, way.outlines);
@@ -195,10 +195,24 @@ impl Trial {
         &self,
         model: &TriangleMesh,
         options: Options,
+        data: [bool; 2],
+    ) -> Result<(Fitted, Outcome), Error> {
+        self.run_by(model, Controls::Cage(self.cage.clone()), options, data)
+    }
+
+    /// Fits a mesh as [`Self::run_with`] does, with its vertices moved in any of the ways.
+    ///
+    /// # Errors
+    /// Fails as [`Problem::with`] and [`fit()`] do.
+    pub fn run_by(
+        &self,
+        model: &TriangleMesh,
+        by: Controls,
+        options: Options,
         [points, outlines]: [bool; 2],
     ) -> Result<(Fitted, Outcome), Error> {
         let observations = self.observe(points, outlines);
-        let problem = Problem::new(model, &self.cage, observations, options)?;
+        let problem = Problem::with(model, by, observations, options)?;
         let fitted = fit(&problem, &mut |_| true)?;
         let slope = options.slope.unwrap_or(20.0 / problem.mean_edge());
         let outcome = self.measure(&fitted, &model.triangles, options.kind, slope)?;

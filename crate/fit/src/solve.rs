@@ -1,6 +1,6 @@
 //! Levenberg and Marquardt's method on the control points' moves.
 //!
-//! The residual of an observation is `w·s·tanh(h/s)` with the distance h of [`Field::distance`]: a
+//! The residual of an observation, if nothing else is asked for, is `w·s·tanh(h/s)` with the distance h of [`Field::distance`]: a
 //! length that does not grow beyond s, so that outliers pull little. s falls in steps from the
 //! mesh's distance at the start to three times the spread of the nearer observations ([`spread`]),
 //! of which up to nearly half may be wrong: graduated non-convexity.
@@ -13,17 +13,18 @@
 //! is fitted to points that are moved outwards by its mean height.
 
 use crate::align::{Rigid, align, nudge};
-use crate::deformation::Deformation;
+use crate::cage::cage;
 use crate::error::Error;
 use crate::field::{Field, Gradient, Kind};
 use crate::noise::noise;
 use crate::normal::Normal;
-use crate::problem::{Options, Problem};
+use crate::problem::{Controls, Loss, Options, Problem};
 use crate::stiffness::energy;
 use core::cell::Cell;
 use glam::DVec3;
 use mesh::{Aabb, Bvh};
 use metaballs::nearest;
+use std::collections::BTreeSet;
 
 /// Most iterations of a level, the last one or one on the way.
 const PER_LEVEL: usize = 12;
@@ -43,6 +44,10 @@ const MOST_TRIES: usize = 8;
 /// The damping at the start of a level, and the least.
 const DAMPING: f64 = 1e-3;
 const LEAST_DAMPING: f64 = 1e-7;
+/// k times the spread of the observations at the start of a fit by the field.
+const REACH: f64 = 2.0;
+/// Control points of the cage by which a mesh is fitted before its single vertices are.
+const COARSE: usize = 60;
 /// Steps to a height of the surface.
 const RISING: usize = 12;
 /// Share of left-out measurements above which a fit has failed: others may be the right ones.
@@ -100,6 +105,9 @@ pub struct Fitted {
 /// # Errors
 /// If the implicit surface cannot be made.
 pub fn fit(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
+    if problem.by == Controls::Vertices {
+        return fit_vertices(problem, tell);
+    }
     let (points, options) = (&problem.observations.points, problem.options);
     let (positions, triangles) = (&problem.positions, &problem.triangles);
     if options.align {
@@ -110,7 +118,7 @@ pub fn fit(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
     let size = Aabb::of_points(positions.iter().copied()).size().length();
     let has_failed = fitted.failure.is_some();
     let is_near = !has_failed && fitted.last.residual < 1e-3 * size;
-    if fitted.stopped || !options.saturates || begins_moved || is_near {
+    if fitted.stopped || options.loss != Loss::Saturating || begins_moved || is_near {
         return Ok(fitted);
     }
     let rigid = if has_failed {
@@ -127,33 +135,55 @@ pub fn fit(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
     Ok(if is_better { again } else { fitted })
 }
 
+/// Fits a mesh by a cage of its own, then its vertices one by one. So many unknowns come so near
+/// the points that the spread of these is no measure any more: it is held at the cage's.
+fn fit_vertices(problem: &Problem, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
+    let mut coarse = problem.clone();
+    for (place, way) in coarse.positions.iter_mut().zip(&problem.start) {
+        *place += *way;
+    }
+    coarse.by = Controls::Cage(cage(&coarse.positions, &coarse.triangles, COARSE));
+    coarse.control()?;
+    coarse.start = vec![DVec3::ZERO; coarse.controls.len()];
+    let mut fitted = fit(&coarse, tell)?;
+    if !fitted.stopped && fitted.failure.is_none() {
+        let mut fine = problem.clone();
+        fine.positions.clone_from(&fitted.positions);
+        fine.start.fill(DVec3::ZERO);
+        fine.control()?;
+        let mut run = Run::new(&fine, fitted.rigid);
+        run.iteration = fitted.last.iteration;
+        run.options.iterations += fitted.last.iteration;
+        run.least_spread = fitted.last.residual;
+        // Moves are smoothed over as wide a part of the surface as those of the cage were.
+        let moved = fine.cage.iter().flatten().collect::<BTreeSet<_>>().len();
+        run.options.smooth *= moved as f64 / coarse.controls.len() as f64;
+        fitted = run.end(tell)?;
+    }
+    let own = problem.positions.iter();
+    let ways = fitted.positions.iter().zip(own);
+    fitted.moves = ways
+        .map(|(end, own)| *end - fitted.rigid.apply(*own))
+        .collect();
+    fitted.last.moves.clone_from(&fitted.moves);
+    Ok(fitted)
+}
+
 /// Fits a mesh that is turned and moved as a whole first.
 fn fit_from(problem: &Problem, rigid: Rigid, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
     let mut problem = problem.clone();
     if rigid != Rigid::IDENTITY {
-        for place in problem.positions.iter_mut().chain(&mut problem.controls) {
+        let cage = match &mut problem.by {
+            Controls::Cage(cage) => &mut cage.positions[..],
+            Controls::Lattice(_) | Controls::Vertices => &mut [],
+        };
+        for place in problem.positions.iter_mut().chain(cage) {
             *place = rigid.apply(*place);
         }
         // The far corners are those of the turned mesh, as where the moves are carried out.
-        problem.deformation = Deformation::new(&problem.positions, &problem.controls)?;
+        problem.control()?;
     }
-    let mut run = Run::new(&problem, rigid);
-    let stopped = !run.all(tell)?;
-    let failure = if stopped { None } else { run.judge()? };
-    let last = run.progress()?;
-    let points = problem.observations.points.len();
-    let numbered = run.apart()?.iter().take(points).zip(0..);
-    let left_out = numbered.filter(|(d, _)| **d > 3.0 * last.residual);
-    Ok(Fitted {
-        rigid,
-        left_out: left_out.map(|(_, i)| i).collect(),
-        positions: run.positions,
-        last,
-        smooth: run.smooth,
-        moves: run.moves,
-        stopped,
-        failure,
-    })
+    Run::new(&problem, rigid).end(tell)
 }
 
 /// Listener that is told the state after each iteration, and says whether to go on.
@@ -184,7 +214,7 @@ struct Run<'a> {
     positions: Vec<DVec3>,
     /// Facet that was last found nearest to each point.
     facets: Vec<Cell<u32>>,
-    /// Distance of each observation at the present positions, once it is known: see
+    /// Distance of each point at the present positions, once it is known: see
     /// [`Self::apart`].
     apart: Option<Vec<f64>>,
     /// k of the implicit surface.
@@ -194,6 +224,8 @@ struct Run<'a> {
     iteration: usize,
     /// Whether there were too few iterations.
     is_cut: bool,
+    /// The least spread of the observations that is believed.
+    least_spread: f64,
     /// Weights of points, outlines and what is left out.
     weights: [f64; 3],
     /// Weight of the smoothness.
@@ -225,6 +257,7 @@ impl<'a> Run<'a> {
             damping: DAMPING,
             iteration: 0,
             is_cut: false,
+            least_spread: 0.0,
             weights: [1.0, 1.0, 0.0],
             smooth: 0.0,
         }
@@ -237,9 +270,33 @@ impl<'a> Run<'a> {
         Field::new(positions, &self.problem.triangles, kind, self.slope)
     }
 
+    /// Fits and judges the result.
+    fn end(mut self, tell: &mut Tell<'_>) -> Result<Fitted, Error> {
+        let stopped = !self.all(tell)?;
+        let failure = if stopped { None } else { self.judge()? };
+        let last = self.progress()?;
+        let points = self.problem.observations.points.len();
+        let numbered = self.apart()?.iter().take(points).zip(0..);
+        let left_out = numbered.filter(|(d, _)| **d > 3.0 * last.residual);
+        let left_out = left_out.map(|(_, i)| i).collect();
+        Ok(Fitted {
+            rigid: self.rigid,
+            left_out,
+            positions: self.positions,
+            last,
+            smooth: self.smooth,
+            moves: self.moves,
+            stopped,
+            failure,
+        })
+    }
+
     /// Fits the facets, then the surface that stands for them. Returns whether it came to the end.
     fn all(&mut self, tell: &mut Tell<'_>) -> Result<bool, Error> {
         let kind = self.options.kind;
+        if self.options.loss == Loss::Algebraic && kind != Kind::Explicit {
+            return self.rise(tell);
+        }
         if !self.stage(Kind::Explicit, 0.0, WIDE, tell)? {
             return Ok(false);
         }
@@ -247,11 +304,10 @@ impl<'a> Run<'a> {
             return Ok(true);
         }
         self.heights = self.heights()?;
-        let distances = self.apart()?;
-        let mut sorted = distances.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let spread = spread(&sorted);
-        let left_out = distances.iter().map(|d| *d > NARROW * spread).collect();
+        let distances = self.distances()?;
+        let spread = self.spread(&distances);
+        let distances = self.apart()?.iter();
+        let left_out = distances.map(|d| *d > NARROW * spread).collect();
         if kind == Kind::Spherical {
             self.left_out = left_out;
             return self.stage(kind, 1.0, NARROW, tell);
@@ -268,6 +324,28 @@ impl<'a> Run<'a> {
         self.stage(kind, 0.0, NARROW, tell)
     }
 
+    /// Fits the implicit surface by its field, with a slope that rises from where the field reaches
+    /// the observations. Returns whether it came to the end.
+    fn rise(&mut self, tell: &mut Tell<'_>) -> Result<bool, Error> {
+        let last = self.slope;
+        let start = self.distances()?;
+        self.kind = self.options.kind;
+        self.slope = (REACH / self.spread(&start)).min(last);
+        for _ in 0..MOST_LEVELS {
+            // Where no facet acts the residual is that of F = 0.
+            self.scale = 1.0 / self.slope;
+            let is_coarse = self.slope < last;
+            if !self.level(is_coarse, tell)? {
+                return Ok(false);
+            }
+            if !is_coarse {
+                break;
+            }
+            self.slope = (2.0 * self.slope).min(last);
+        }
+        Ok(true)
+    }
+
     /// Fits one surface, coarse to fine. Returns whether to go on.
     fn stage(
         &mut self,
@@ -282,15 +360,17 @@ impl<'a> Run<'a> {
         let size = Aabb::of_points(self.positions.iter().copied())
             .size()
             .length();
-        self.scale = (spreads * spread(&start)).clamp(LEAST_SCALE * size, size);
+        self.scale = (spreads * self.spread(&start)).clamp(LEAST_SCALE * size, size);
         for level in 0..MOST_LEVELS {
-            let least = (NARROW * spread(&self.distances()?)).max(LEAST_SCALE * size);
+            let distances = self.distances()?;
+            let least = (NARROW * self.spread(&distances)).max(LEAST_SCALE * size);
             let is_coarse = level == 0 || self.scale > 1.01 * least;
             if !self.level(is_coarse, tell)? {
                 return Ok(false);
             }
-            let least = (NARROW * spread(&self.distances()?)).max(LEAST_SCALE * size);
-            if !self.options.saturates || (!is_coarse && self.scale <= 1.01 * least) {
+            let distances = self.distances()?;
+            let least = (NARROW * self.spread(&distances)).max(LEAST_SCALE * size);
+            if self.options.loss != Loss::Saturating || (!is_coarse && self.scale <= 1.01 * least) {
                 break;
             }
             self.scale = (0.5 * self.scale).max(least).min(self.scale);
@@ -353,14 +433,14 @@ impl<'a> Run<'a> {
     }
 
     /// The places of the observations: where lines of sight should touch the surface is found anew.
-    fn places(&self, field: &Field<'_>, shift: f64) -> Result<Vec<Place>, Error> {
+    fn places(&self, field: &Field<'_>, shift: f64, has_sights: bool) -> Result<Vec<Place>, Error> {
         let observations = &self.problem.observations;
         let left_out = self.left_out.iter().chain(core::iter::repeat(&false));
         let points = observations.points.iter().zip(left_out);
         let mut places: Vec<Place> = points
             .map(|(p, out)| (*p, if *out { LEFT_OUT } else { 0 }))
             .collect();
-        if self.options.outlines > 0.0 && !observations.sights.is_empty() {
+        if has_sights && self.options.outlines > 0.0 && !observations.sights.is_empty() {
             let corners = (0..self.problem.triangles.len() as u32).map(|i| field.corners(i));
             let boxes: Vec<Aabb> = corners.map(Aabb::of_points).collect();
             let bvh = Bvh::new(&boxes);
@@ -393,8 +473,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Distances of all observations from where they are to be, the points first: from the surface
-    /// of balls, else from the height over the facets at which the surface's outer sheet lies. Of a
+    /// Distances of the points, or of the outlines if there are none, from where they are to be: from
+    /// the surface of balls, else from the height over the facets at which the surface's outer sheet lies. Of a
     /// thin shell the distance from its surface would be that of the nearer of two sheets.
     fn apart(&mut self) -> Result<&[f64], Error> {
         if self.apart.is_none() {
@@ -407,7 +487,9 @@ impl<'a> Run<'a> {
         let is_round = self.kind == Kind::Spherical;
         let kind = if is_round { self.kind } else { Kind::Explicit };
         let field = self.field(&self.positions, kind)?;
-        let places = self.places(&field, if is_round { self.shift } else { 0.0 })?;
+        let shift = if is_round { self.shift } else { 0.0 };
+        let has_points = !self.facets.is_empty();
+        let places = self.places(&field, shift, !has_points)?;
         let mut gradient = Gradient::new();
         let none = Cell::new(u32::MAX);
         let mut distances = Vec::with_capacity(places.len());
@@ -452,7 +534,7 @@ impl<'a> Run<'a> {
             )));
         }
         self.exchange(&mut other);
-        let spread = spread(&end);
+        let spread = self.spread(&end);
         let near = end.partition_point(|d| *d <= NARROW * spread);
         let share = 1.0 - near as f64 / end.len().max(1) as f64;
         if share > MOST_LEFT_OUT {
@@ -468,11 +550,8 @@ impl<'a> Run<'a> {
             )));
         }
         let noise = noise(&self.problem.observations.points);
-        let limit = if noise.is_finite() {
-            (ROUGHLY * noise).max(0.01 * size)
-        } else {
-            0.03 * size
-        };
+        // Points that are of no surface tell a noise of any size.
+        let limit = (ROUGHLY * noise).max(0.01 * size).min(0.02 * size);
         if spread > limit {
             return Ok(Some(format!(
                 "the nearer measurements are {spread:.3e} away from the surface, {:.1} % of the \
@@ -484,6 +563,11 @@ impl<'a> Run<'a> {
         Ok(None)
     }
 
+    /// Returns the spread of sorted distances, as far as it is believed.
+    fn spread(&self, sorted: &[f64]) -> f64 {
+        spread(sorted).max(self.least_spread)
+    }
+
     /// Exchanges the positions and moves for others.
     fn exchange(&mut self, other: &mut (Vec<DVec3>, Vec<DVec3>)) {
         core::mem::swap(&mut self.positions, &mut other.0);
@@ -493,7 +577,7 @@ impl<'a> Run<'a> {
 
     fn progress(&mut self) -> Result<Progress, Error> {
         let distances = self.distances()?;
-        let limit = NARROW * spread(&distances);
+        let limit = NARROW * self.spread(&distances);
         let near = distances.partition_point(|d| *d <= limit);
         let squares: f64 = distances[..near].iter().map(|d| d * d).sum();
         let residual = (squares / near.max(1) as f64).sqrt();
@@ -511,18 +595,18 @@ impl<'a> Run<'a> {
     /// Iterates with one scale, the last one or one on the way. Returns whether to go on.
     fn level(&mut self, is_coarse: bool, tell: &mut Tell<'_>) -> Result<bool, Error> {
         self.damping = DAMPING;
-        let (most, settled) = match (self.options.saturates, is_coarse) {
-            (false, _) => (self.options.iterations, SETTLED),
-            (true, false) => (PER_LEVEL, SETTLED),
-            (true, true) => (PER_COARSE_LEVEL, SETTLED_COARSE),
+        let (most, settled) = match (self.options.loss, is_coarse) {
+            (Loss::Squares, _) => (self.options.iterations, SETTLED),
+            (_, false) => (PER_LEVEL, SETTLED),
+            (_, true) => (PER_COARSE_LEVEL, SETTLED_COARSE),
         };
         for turn in 0..most {
             if self.iteration >= self.options.iterations {
-                self.is_cut = self.options.saturates;
+                self.is_cut = self.options.loss == Loss::Saturating;
                 return Ok(true);
             }
             let field = self.field(&self.positions, self.kind)?;
-            let places = self.places(&field, self.shift)?;
+            let places = self.places(&field, self.shift, true)?;
             if turn == 0 {
                 (self.weights, self.smooth) = self.balance(&field, &places);
             }
@@ -588,21 +672,31 @@ impl<'a> Run<'a> {
             return None;
         }
         row.chain(self.problem);
-        Some(self.saturate(distance))
+        Some(self.weigh(distance))
     }
 
-    /// Returns the residual s·tanh(h/s) of a distance h, and its derivative.
-    fn saturate(&self, distance: f64) -> (f64, f64) {
-        if !self.options.saturates {
-            return (distance, 1.0);
+    /// Returns the residual of a distance h, a length, and its derivative: see [`Loss`].
+    fn weigh(&self, distance: f64) -> (f64, f64) {
+        match self.options.loss {
+            Loss::Saturating => {
+                let share = libm::tanh(distance / self.scale);
+                (self.scale * share, 1.0 - share * share)
+            }
+            Loss::Algebraic if self.kind != Kind::Explicit => {
+                let field = libm::exp(-self.slope * distance);
+                ((1.0 - field) / self.slope, field)
+            }
+            Loss::Squares | Loss::Algebraic => (distance, 1.0),
         }
-        let share = libm::tanh(distance / self.scale);
-        (self.scale * share, 1.0 - share * share)
     }
 
     /// The equations at the present moves, and the sum that is to fall.
     fn equations(&self, field: &Field<'_>, places: &[Place]) -> (Normal, f64) {
-        let mut normal = Normal::new(3 * self.moves.len());
+        let size = 3 * self.moves.len();
+        let mut normal = match self.problem.by {
+            Controls::Vertices => Normal::sparse(size),
+            Controls::Cage(_) | Controls::Lattice(_) => Normal::dense(size),
+        };
         let mut row = Row::new(self.moves.len());
         let mut sum = 0.0;
         for (i, (place, class)) in places.iter().enumerate() {
@@ -653,7 +747,7 @@ impl<'a> Run<'a> {
             .map(|((_, class), distance)| {
                 let distance = *distance;
                 let residual = if distance.is_finite() {
-                    self.saturate(distance).0
+                    self.weigh(distance).0
                 } else {
                     self.scale
                 };
@@ -681,13 +775,13 @@ impl<'a> Run<'a> {
                     .problem
                     .deformation
                     .apply(&self.problem.positions, &moves);
-                let (after, distances) = self.sum(&moves, &positions, places)?;
+                let (after, mut distances) = self.sum(&moves, &positions, places)?;
                 if after < before {
                     (self.moves, self.positions) = (moves, positions);
                     // Lines of sight touch elsewhere now.
-                    let is_told = self.kind == Kind::Explicit
-                        && self.shift == 0.0
-                        && distances.len() == self.facets.len();
+                    let is_told =
+                        self.kind == Kind::Explicit && self.shift == 0.0 && !self.facets.is_empty();
+                    distances.truncate(self.facets.len());
                     self.apart = is_told.then_some(distances);
                     let foretold = normal.decrease(&way);
                     let miss = 2.0 * (before - after) / foretold - 1.0;

@@ -190,6 +190,34 @@ fn a_turned_cloud_is_met_by_an_alignment() {
 }
 
 #[test]
+fn lattices_and_single_vertices_write_a_mesh_beside_the_dataset() {
+    let folder = prepare("ways");
+    let [mesh, cloud, out] = ["head.obj", "cloud.ply", "out.rat"].map(|name| folder.path(name));
+    for (way, count) in [(&["--lattice", "3,3,4"][..], 36), (&["--vertices"], 212)] {
+        let mut arguments = vec!["fit", &mesh, "--points", &cloud, "--kind", "explicit"];
+        arguments.extend(["-o", &out, "--json"].iter().chain(way));
+        let output = sinew(&arguments, "");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        let told: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
+        assert_eq!(told["controls"], count);
+        let residual = told["residual"].as_f64().expect("a number");
+        assert!(residual < 0.02, "{told}");
+        let text = std::fs::read_to_string(&out).expect("written");
+        assert!(text.contains("\nmesh Skin out-fitted.obj\n"), "{text}");
+        assert_eq!(sinew(&["scene", &out], "").status.code(), Some(0));
+    }
+    let both = ["fit", &mesh, "--points", &cloud, "-o", &out, "--vertices"];
+    let said = refusal(&[&both[..], &["--lattice", "3,3,4"]].concat());
+    assert_says(&said, "cannot be used with");
+    assert_says(&refusal(&both[..6]), "--control <CAGE>");
+    let said = refusal(&[&both[..6], &["--lattice", "3,4"]].concat());
+    assert_says(&said, "three whole numbers");
+    let said = refusal(&[&both[..6], &["--lattice", "1,3,4"]].concat());
+    assert_says(&said, "at least two nodes");
+}
+
+#[test]
 fn fit_that_fails_is_told_and_its_best_is_written() {
     let folder = prepare("failed");
     // Points anywhere around the head.
