@@ -52,6 +52,8 @@ pub struct LiveCells {
     count: u64,
     /// [`Session::shape`] of a scene that cannot be packed, or not with care.
     hopeless: Option<u64>,
+    /// Number of elements of a scene that took too long: another try waits until it changes.
+    slow: Option<usize>,
     /// [`Session::shape`] of the scene seen last, and the time at which it changed.
     seen: (u64, f64),
 }
@@ -67,6 +69,7 @@ impl LiveCells {
             made: None,
             count: 0,
             hopeless: None,
+            slow: None,
             seen: (0, 0.0),
         }
     }
@@ -82,6 +85,7 @@ impl LiveCells {
         self.is_wanted = false;
         self.made = None;
         self.hopeless = None;
+        self.slow = None;
     }
 
     /// Gives up what is made with care, and made later, so that the worker is free for other jobs.
@@ -109,12 +113,14 @@ impl LiveCells {
             let is_long = now - running.start > LIMIT;
             if is_long {
                 self.hopeless = Some(running.shape);
+                self.slow = Some(elements(session)).filter(|_| running.detail == Detail::Quick);
             }
             if is_old || is_long {
                 self.running = None;
             }
         }
-        if self.running.is_some() || self.hopeless == Some(shape) {
+        let is_slow = self.slow == Some(elements(session));
+        if self.running.is_some() || self.hopeless == Some(shape) || is_slow {
             return;
         }
         let known = self.made.as_ref().filter(|made| made.shape == shape);
@@ -181,9 +187,14 @@ impl LiveCells {
         let shape = session.shape();
         let made = self.made.as_ref().filter(|made| made.shape == shape);
         let is_fine = made.is_some_and(|made| made.detail != Detail::Quick);
-        let is_possible = self.running.is_none() && self.hopeless != Some(shape);
+        let is_hopeless = self.hopeless == Some(shape) || self.slow == Some(elements(session));
+        let is_possible = self.running.is_none() && !is_hopeless;
         (!is_fine && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
     }
+}
+
+fn elements(session: &Session) -> usize {
+    session.compilation().scene.elements.len()
 }
 
 #[cfg(test)]
@@ -233,10 +244,8 @@ mod tests {
         }
         let session = Session::of_text(&text);
         let mut live = LiveCells::new(Tools::new(|| {}));
-        // They are there before the first drag, once the picture is traced.
-        settle(&mut live, &session, 0.0, true);
-        assert!(live.made().is_none() && live.wait(&session, 0.0).is_some());
-        settle(&mut live, &session, 1.0, true);
+        live.want();
+        settle(&mut live, &session, 1.0, false);
         let quick = live.made().unwrap();
         assert_eq!((quick.number, quick.detail), (1, Detail::Quick));
         assert_eq!(quick.packed.meshed.len(), 1);
