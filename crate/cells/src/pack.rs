@@ -35,7 +35,7 @@ const COMPOSED: u64 = 24;
 /// time.
 const MANY_TRIANGLES: usize = 500;
 /// Most triangles of meshes.
-const MOST_TRIANGLES: usize = 150_000;
+const MOST_TRIANGLES: usize = 300_000;
 
 /// Care with which the space around a scene is divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ impl Detail {
     fn limits(self) -> (usize, u64) {
         match self {
             Self::Quick => (8_000, 400_000),
-            Self::Fine => (200_000, 6_000_000),
+            Self::Fine => (200_000, 12_000_000),
             Self::Full => (600_000, u64::MAX),
         }
     }
@@ -84,7 +84,7 @@ pub struct Packed {
     /// Vectors of four numbers of 32 bits, little-endian.
     #[serde(with = "serde_bytes")]
     pub data: Vec<u8>,
-    /// What is where in the data.
+    /// Numbers of parts, and their places in the data.
     pub frame: Frame,
     /// Number of elements drawn.
     pub elements: usize,

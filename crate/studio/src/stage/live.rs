@@ -3,8 +3,8 @@
 //!
 //! A tools worker makes them, apart from the page's thread: quickly while the text changes, and with
 //! care once nothing changes and no picture is traced. Until those of the present scene are there,
-//! the last ones stay. No worker is fetched before the user turns or drags for the first time, or
-//! the first picture is there.
+//! the last ones stay. No worker is fetched before the pointer comes to the picture for the first
+//! time, or something moves.
 
 use cells::{Detail, Packed};
 use document::session::Session;
@@ -74,7 +74,7 @@ impl LiveCells {
         }
     }
 
-    /// Packs scenes from now on, as the user turns or drags.
+    /// Packs scenes from now on, as the user turns or drags, or may do so.
     pub fn want(&mut self) {
         self.is_wanted = true;
     }
@@ -120,17 +120,15 @@ impl LiveCells {
             }
         }
         let is_slow = self.slow == Some(elements(session));
-        if self.running.is_some() || self.hopeless == Some(shape) || is_slow {
+        let is_hopeless = self.hopeless == Some(shape) || is_slow;
+        if !self.is_wanted || self.running.is_some() || is_hopeless {
             return;
         }
         let known = self.made.as_ref().filter(|made| made.shape == shape);
+        let is_still = rests && now - self.seen.1 >= STILL;
         let detail = match known.map(|made| made.detail) {
-            None if is_drawn && self.is_wanted => Detail::Quick,
-            known if rests && now - self.seen.1 >= STILL => match known {
-                None => Detail::Quick,
-                Some(Detail::Quick) => Detail::Fine,
-                Some(_) => return,
-            },
+            None if is_drawn || is_still => Detail::Quick,
+            Some(Detail::Quick) if is_still => Detail::Fine,
             _ => return,
         };
         let Some(scene) = session.scene().filter(|scene| scene.elements.len() <= MOST) else {
@@ -189,7 +187,7 @@ impl LiveCells {
         let is_fine = made.is_some_and(|made| made.detail != Detail::Quick);
         let is_hopeless = self.hopeless == Some(shape) || self.slow == Some(elements(session));
         let is_possible = self.running.is_none() && !is_hopeless;
-        (!is_fine && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
+        (self.is_wanted && !is_fine && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
     }
 }
 
@@ -222,7 +220,7 @@ mod tests {
     fn cells_are_made_once_the_user_drags() {
         let session = Session::of_text(BALLS);
         let mut live = LiveCells::new(Tools::new(|| {}));
-        settle(&mut live, &session, 0.0, false);
+        settle(&mut live, &session, 0.0, true);
         assert!(live.made().is_none());
         live.want();
         settle(&mut live, &session, 1.0, false);
@@ -237,10 +235,10 @@ mod tests {
     }
 
     #[test]
-    fn many_elements_are_meshed_and_divided_into_cells_later() {
+    fn many_elements_are_meshed_and_once_more_with_care() {
         let mut text = String::from("surface a, diffuse Red, blobbiness -2\n");
         for i in 0..300 {
-            text += &format!("sphere a 1, {} {} 0\n", i % 20, i / 20);
+            text += &format!("sphere a 1, {} {} 0\n", 3 * (i % 20), 3 * (i / 20));
         }
         let session = Session::of_text(&text);
         let mut live = LiveCells::new(Tools::new(|| {}));
@@ -249,13 +247,14 @@ mod tests {
         let quick = live.made().unwrap();
         assert_eq!((quick.number, quick.detail), (1, Detail::Quick));
         assert_eq!(quick.packed.meshed.len(), 1);
+        let size = quick.packed.data.len();
         // Not while a picture is traced.
         settle(&mut live, &session, 9.0, false);
         assert_eq!(live.count, 1);
         settle(&mut live, &session, 9.0, true);
         let fine = live.made().unwrap();
         assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
-        assert!(fine.packed.meshed.is_empty() && fine.packed.leaves > 50);
+        assert!(fine.packed.data.len() > 2 * size);
     }
 
     #[test]
