@@ -7,8 +7,7 @@ pub enum Backend {
     WebGpu,
     /// WebGL2: window and draft.
     WebGl2,
-    /// Neither, or an emulation: the processor draws the window, and a draft only where the traced
-    /// picture takes long.
+    /// Neither, or an emulation: the processor draws the window, and there is no draft.
     None,
 }
 

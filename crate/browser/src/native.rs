@@ -4,7 +4,6 @@ use crate::recording::{EncodedVideo, Kind, VideoFormat};
 use ::picture::{Format, Picture, file};
 use document::intake::Incoming;
 use document::storage::Store;
-use egui_wgpu::wgpu;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use video::{Codec, Colours, Packet};
@@ -216,9 +215,6 @@ pub fn is_wanted(_query: &str) -> bool {
 
 /// Sets the title of the browser's tab.
 pub fn set_title(_name: &str) {}
-
-/// Asks for an emulated graphics card, which tests do not have.
-pub fn ask_emulated_card(_done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {}
 
 /// Reads a file of the page.
 #[must_use]

@@ -2,8 +2,6 @@
 
 use document::intake::{self, Incoming};
 use document::storage::Store;
-use egui_wgpu::wgpu;
-use std::sync::Arc;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsCast, JsValue, closure::Closure};
 use wasm_bindgen_futures::JsFuture;
@@ -377,44 +375,4 @@ async fn bytes_of(path: &str) -> Result<Vec<u8>, JsValue> {
     }
     let buffer = JsFuture::from(response.array_buffer()?).await?;
     Ok(js_sys::Uint8Array::new(&buffer).to_vec())
-}
-
-/// Asks for a graphics card apart from the window's, which the browser may emulate.
-pub fn ask_emulated_card(done: impl FnOnce(wgpu::Device, wgpu::Queue) + 'static) {
-    wasm_bindgen_futures::spawn_local(async move {
-        if let Some((device, queue)) = card().await {
-            done(device, queue);
-        }
-    });
-}
-
-async fn card() -> Option<(wgpu::Device, wgpu::Queue)> {
-    let element = window().document()?.create_element("canvas").ok()?;
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: wgpu::Backends::GL,
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
-    // WebGL has no adapter without a canvas, though nothing is shown on it.
-    let canvas = wgpu::SurfaceTarget::Canvas(element.dyn_into().ok()?);
-    let surface = instance.create_surface(canvas).ok()?;
-    let adapter = instance
-        .request_adapter(&wgpu::RequestAdapterOptions {
-            compatible_surface: Some(&surface),
-            ..Default::default()
-        })
-        .await
-        .ok()?;
-    let limits = wgpu::Limits::downlevel_webgl2_defaults();
-    let (device, queue) = adapter
-        .request_device(&wgpu::DeviceDescriptor {
-            label: Some("draft"),
-            required_limits: limits.using_resolution(adapter.limits()),
-            ..Default::default()
-        })
-        .await
-        .ok()?;
-    device.on_uncaptured_error(Arc::new(|error| {
-        web_sys::console::error_1(&error.to_string().into());
-    }));
-    Some((device, queue))
 }

@@ -2,20 +2,20 @@
 
 use crate::octree::Told;
 use crate::pack::Detail;
+use core::ops::ControlFlow;
 use mesh::{Aabb, TriangleMesh};
 use mesher::{Cage, Spoke, look};
 use scene::{Scene, Surface};
 
 /// Most side of cells where a surface bends, in diagonals of its skeleton's box.
 const MOST: f64 = 1.0 / 50.0;
-/// Side of those cells in radii of the thinnest part, between [`MOST`] and those of [`sizes`].
-const OF_RADIUS: f64 = 1.0;
-/// Returns the least side of cells, in diagonals of the skeleton's box, and the tolerance in sides
-/// of cells.
-fn sizes(detail: Detail) -> [f64; 2] {
+
+/// Returns the least side of cells, in diagonals of the skeleton's box, their side in radii of the
+/// thinnest part, and the tolerance in sides of cells.
+fn sizes(detail: Detail) -> [f64; 3] {
     match detail {
-        Detail::Quick => [1.0 / 75.0, 0.06],
-        Detail::Fine | Detail::Full => [1.0 / 150.0, 0.02],
+        Detail::Quick => [1.0 / 75.0, 1.0, 0.06],
+        Detail::Fine | Detail::Full => [1.0 / 150.0, 0.5, 0.03],
     }
 }
 
@@ -39,18 +39,16 @@ pub(crate) fn mesh(
     if !is_sound {
         return None;
     }
-    let [least, off] = sizes(detail);
-    let step = (OF_RADIUS * thinnest).clamp(least * size, MOST * size);
-    let mut told = |step: mesher::Step| match told(step.fraction) {
-        true => core::ops::ControlFlow::Continue(()),
-        false => core::ops::ControlFlow::Break(()),
-    };
-    let mut progress = mesher::Progress::new(&mut told);
+    let [least, of_radius, off] = sizes(detail);
+    let step = (of_radius * thinnest).clamp(least * size, MOST * size);
     let mesh = look(
         surface.function(),
         &cages,
         [off * step, step],
-        &mut progress,
+        &mut mesher::Progress::new(&mut |step| match told(step.fraction) {
+            true => ControlFlow::Continue(()),
+            false => ControlFlow::Break(()),
+        }),
     );
     mesh.ok()
 }

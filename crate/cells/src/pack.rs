@@ -31,8 +31,11 @@ const NEGLIGIBLE: f64 = 1e-3;
 const SPAN: f64 = 0.35;
 /// Work of a look at a cell for each element of a function that is no sum, in looks at a term.
 const COMPOSED: u64 = 24;
+/// Number of a body's triangles above which their thickened shapes stand for it, if there is little
+/// time.
+const MANY_TRIANGLES: usize = 500;
 /// Most triangles of meshes.
-const MOST_TRIANGLES: usize = 150_000;
+const MOST_TRIANGLES: usize = 300_000;
 
 /// Care with which the space around a scene is divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -51,7 +54,7 @@ impl Detail {
     fn limits(self) -> (usize, u64) {
         match self {
             Self::Quick => (8_000, 400_000),
-            Self::Fine => (200_000, 6_000_000),
+            Self::Fine => (200_000, 12_000_000),
             Self::Full => (600_000, u64::MAX),
         }
     }
@@ -81,7 +84,7 @@ pub struct Packed {
     /// Vectors of four numbers of 32 bits, little-endian.
     #[serde(with = "serde_bytes")]
     pub data: Vec<u8>,
-    /// What is where in the data.
+    /// Numbers of parts, and their places in the data.
     pub frame: Frame,
     /// Number of elements drawn.
     pub elements: usize,
@@ -91,7 +94,7 @@ pub struct Packed {
     pub rough: usize,
     /// The formulas that cells list, as [`crate::formulas::code`] reads them.
     pub formulas: BTreeSet<u32>,
-    /// The bodies drawn as meshes: indices in [`Scene::bodies`].
+    /// The bodies drawn as meshes, or as thickened triangles: indices in [`Scene::bodies`].
     pub meshed: Vec<u32>,
     /// The work done, in looks at cells that one term matters in.
     pub work: u64,
@@ -132,7 +135,7 @@ struct Packer<'a> {
     out: Packed,
 }
 
-/// Triangle that stands for a piece of a body, with its material.
+/// Shape that stands for a piece of a body, with its material.
 type Facet = (Solid, u32);
 
 impl Packer<'_> {
@@ -236,6 +239,12 @@ impl Packer<'_> {
                 },
                 is_strict: detail != Detail::Full,
             };
+            if detail == Detail::Quick && self.is_skin(surface) {
+                self.out.is_cut = true;
+                self.out.meshed.push(surface.body());
+                self.add_skin(&own, &mut facets);
+                continue;
+            }
             let chart = self.chart;
             let list = |terms: Option<&[u32]>| match surface {
                 Surface::Sum(sum) => list(chart, &sum.sum.primitives, terms),
@@ -291,6 +300,26 @@ impl Packer<'_> {
             self.data.push([word, 0, 0, 0]);
         }
         Some(facets)
+    }
+
+    /// Whether a body is the skin of a mesh: many triangles, which take long.
+    fn is_skin(&self, surface: &Surface) -> bool {
+        let elements = surface.element().iter();
+        let triangles = elements.filter(|element| {
+            matches!(&self.scene.elements[**element as usize].shape, Shape::Bone(bone)
+                if matches!(bone.skeleton, Skeleton::Triangle { .. }))
+        });
+        triangles.count() > MANY_TRIANGLES
+    }
+
+    /// Appends the shapes of elements that a skin covers evenly.
+    fn add_skin(&self, elements: &BTreeSet<u32>, facets: &mut Vec<Facet>) {
+        for element in elements {
+            let element = &self.scene.elements[*element as usize];
+            for solid in Solid::of(self.scene, element, 0) {
+                facets.push((solid, self.slot(element.finish)));
+            }
+        }
     }
 
     /// Appends the triangles of a body's mesh. Each has the material of the element that is

@@ -9,7 +9,8 @@ use scene::{Finish, Scene};
 const MATERIALS_A_ROW: usize = 512;
 const TEXELS: usize = 3;
 
-/// Makes the texture. Materials beyond the last row that the device can do are left out; elements made of them are black.
+/// Makes the texture. Materials beyond the last row that the device can do are left out; elements
+/// made of them are black.
 pub(crate) fn upload(
     device: &wgpu::Device,
     queue: &wgpu::Queue,

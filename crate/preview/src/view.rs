@@ -8,7 +8,8 @@ use scene::{Background, Camera, Ground, Light, LightKind, Scene, Tone};
 /// Lights that the draft can take. Of more, the strongest count.
 pub const MAX_LIGHTS: usize = 8;
 
-/// Returns the gamma of a scene. One that makes no sense is 1; within the range, powers stay finite.
+/// Returns the gamma of a scene. One that makes no sense is 1; within the range, powers stay
+/// finite.
 pub(crate) fn gamma(scene: &Scene) -> f32 {
     let gamma = scene.settings.gamma;
     if gamma.is_finite() && gamma > 0.0 {

@@ -20,8 +20,9 @@ impl Job for PackScene {
     const PACE: Pace = Pace::Quick;
 
     fn run(self, progress: &mut Progress<'_, Packed>) -> Result<Packed, String> {
-        let mut told = |share| progress.report(share).is_continue();
-        let packed = Packed::new(&self.scene, self.detail, &Cubics, &mut told);
+        let packed = Packed::new(&self.scene, self.detail, &Cubics, &mut |share| {
+            progress.report(share).is_continue()
+        });
         packed.ok_or_else(|| "not wanted any more".into())
     }
 }
@@ -72,7 +73,9 @@ mod tests {
             scene: Arc::new(scene()),
             detail: Detail::Fine,
         };
-        let mut tell = |_: News<Packed>| ControlFlow::Break(());
-        assert!(job.run(&mut Progress::new(&mut tell)).is_err());
+        let result = job.run(&mut Progress::new(&mut |_: News<Packed>| {
+            ControlFlow::Break(())
+        }));
+        assert!(result.is_err());
     }
 }

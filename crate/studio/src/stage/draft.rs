@@ -32,8 +32,8 @@ pub struct Draft {
     tracer: Tracer,
     /// Number of the packed scene on the card, and whether there was room for it.
     scene: Option<(u64, bool)>,
-    /// What is to be seen, and when it changed.
-    subject: Option<(u64, Camera)>,
+    /// The scene, the camera and the place, and when they changed.
+    subject: Option<(u64, Camera, [f32; 2])>,
     moved: f64,
     /// Whether the subject was drawn with all pixels.
     is_settled: bool,
@@ -92,7 +92,7 @@ impl Draft {
         if !self.scene?.1 {
             return None;
         }
-        let subject = (made.number, camera);
+        let subject = (made.number, camera, size);
         if self.subject != Some(subject) {
             self.subject = Some(subject);
             self.moved = now;
@@ -109,9 +109,11 @@ impl Draft {
         let scale = scale.min(largest / longest);
         let pixels = size.map(|side| (f64::from(side) * scale).round().clamp(1.0, largest) as u32);
         let wanted = (made.number, camera, pixels);
-        if self.drawn != Some(wanted) && self.running.is_none() && !self.is_settled {
+        if self.running.is_none() && !self.is_settled {
             self.is_settled = rests;
-            self.draw(wanted, scale, now);
+            if self.drawn != Some(wanted) {
+                self.draw(wanted, scale, now);
+            }
         }
         if self.running.is_some() {
             ctx.request_repaint();

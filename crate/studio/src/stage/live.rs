@@ -3,8 +3,8 @@
 //!
 //! A tools worker makes them, apart from the page's thread: quickly while the text changes, and with
 //! care once nothing changes and no picture is traced. Until those of the present scene are there,
-//! the last ones stay. No worker is fetched before the user turns or drags for the first time, or
-//! the first picture is there.
+//! the last ones stay. No worker is fetched before the pointer comes to the picture for the first
+//! time, or something moves.
 
 use cells::{Detail, Packed};
 use document::session::Session;
@@ -52,6 +52,8 @@ pub struct LiveCells {
     count: u64,
     /// [`Session::shape`] of a scene that cannot be packed, or not with care.
     hopeless: Option<u64>,
+    /// Number of elements of a scene that took too long: another try waits until it changes.
+    slow: Option<usize>,
     /// [`Session::shape`] of the scene seen last, and the time at which it changed.
     seen: (u64, f64),
 }
@@ -67,11 +69,12 @@ impl LiveCells {
             made: None,
             count: 0,
             hopeless: None,
+            slow: None,
             seen: (0, 0.0),
         }
     }
 
-    /// Packs scenes from now on, as the user turns or drags.
+    /// Packs scenes from now on, as the user turns or drags, or may do so.
     pub fn want(&mut self) {
         self.is_wanted = true;
     }
@@ -82,6 +85,7 @@ impl LiveCells {
         self.is_wanted = false;
         self.made = None;
         self.hopeless = None;
+        self.slow = None;
     }
 
     /// Gives up what is made with care, and made later, so that the worker is free for other jobs.
@@ -109,22 +113,22 @@ impl LiveCells {
             let is_long = now - running.start > LIMIT;
             if is_long {
                 self.hopeless = Some(running.shape);
+                self.slow = Some(elements(session)).filter(|_| running.detail == Detail::Quick);
             }
             if is_old || is_long {
                 self.running = None;
             }
         }
-        if self.running.is_some() || self.hopeless == Some(shape) {
+        let is_slow = self.slow == Some(elements(session));
+        let is_hopeless = self.hopeless == Some(shape) || is_slow;
+        if !self.is_wanted || self.running.is_some() || is_hopeless {
             return;
         }
         let known = self.made.as_ref().filter(|made| made.shape == shape);
+        let is_still = rests && now - self.seen.1 >= STILL;
         let detail = match known.map(|made| made.detail) {
-            None if is_drawn && self.is_wanted => Detail::Quick,
-            known if rests && now - self.seen.1 >= STILL => match known {
-                None => Detail::Quick,
-                Some(Detail::Quick) => Detail::Fine,
-                Some(_) => return,
-            },
+            None if is_drawn || is_still => Detail::Quick,
+            Some(Detail::Quick) if is_still => Detail::Fine,
             _ => return,
         };
         let Some(scene) = session.scene().filter(|scene| scene.elements.len() <= MOST) else {
@@ -181,9 +185,14 @@ impl LiveCells {
         let shape = session.shape();
         let made = self.made.as_ref().filter(|made| made.shape == shape);
         let is_fine = made.is_some_and(|made| made.detail != Detail::Quick);
-        let is_possible = self.running.is_none() && self.hopeless != Some(shape);
-        (!is_fine && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
+        let is_hopeless = self.hopeless == Some(shape) || self.slow == Some(elements(session));
+        let is_possible = self.running.is_none() && !is_hopeless;
+        (self.is_wanted && !is_fine && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
     }
+}
+
+fn elements(session: &Session) -> usize {
+    session.compilation().scene.elements.len()
 }
 
 #[cfg(test)]
@@ -211,7 +220,7 @@ mod tests {
     fn cells_are_made_once_the_user_drags() {
         let session = Session::of_text(BALLS);
         let mut live = LiveCells::new(Tools::new(|| {}));
-        settle(&mut live, &session, 0.0, false);
+        settle(&mut live, &session, 0.0, true);
         assert!(live.made().is_none());
         live.want();
         settle(&mut live, &session, 1.0, false);
@@ -226,27 +235,26 @@ mod tests {
     }
 
     #[test]
-    fn many_elements_are_meshed_and_divided_into_cells_later() {
+    fn many_elements_are_meshed_and_once_more_with_care() {
         let mut text = String::from("surface a, diffuse Red, blobbiness -2\n");
         for i in 0..300 {
-            text += &format!("sphere a 1, {} {} 0\n", i % 20, i / 20);
+            text += &format!("sphere a 1, {} {} 0\n", 3 * (i % 20), 3 * (i / 20));
         }
         let session = Session::of_text(&text);
         let mut live = LiveCells::new(Tools::new(|| {}));
-        // They are there before the first drag, once the picture is traced.
-        settle(&mut live, &session, 0.0, true);
-        assert!(live.made().is_none() && live.wait(&session, 0.0).is_some());
-        settle(&mut live, &session, 1.0, true);
+        live.want();
+        settle(&mut live, &session, 1.0, false);
         let quick = live.made().unwrap();
         assert_eq!((quick.number, quick.detail), (1, Detail::Quick));
         assert_eq!(quick.packed.meshed.len(), 1);
+        let size = quick.packed.data.len();
         // Not while a picture is traced.
         settle(&mut live, &session, 9.0, false);
         assert_eq!(live.count, 1);
         settle(&mut live, &session, 9.0, true);
         let fine = live.made().unwrap();
         assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
-        assert!(fine.packed.meshed.is_empty() && fine.packed.leaves > 50);
+        assert!(fine.packed.data.len() > 2 * size);
     }
 
     #[test]

@@ -269,6 +269,10 @@ impl Panel for Stage {
             },
         };
         let picture = view::show(ui, rect, &scenery, wishes);
+        if picture.contains_pointer() {
+            // So that the draft is there when it is taken hold of.
+            self.live.want();
+        }
         let sight = Sight::new(&session.camera(), rect);
         points(
             &self.points,
