@@ -49,11 +49,11 @@ pub trait Chart: Sync {
     fn pack(&self, primitive: &Primitive, data: &mut Vec<[u32; 4]>) -> [u32; 4];
 }
 
-/// No formulas: cubics are all.
+/// A chart without formulas: cubics are all.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cubics;
 
-/// All formulas of the chart.
+/// The formulas of the chart.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Formulas;
 

@@ -115,7 +115,7 @@ pub(crate) struct Limits {
 /// A reason for which an octree is not made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Halt {
-    /// It takes more work than allowed.
+    /// More work is needed than allowed.
     Limit,
     /// Nobody waits for it.
     Cancelled,

@@ -40,9 +40,9 @@ const MOST_TRIANGLES: usize = 300_000;
 /// Care with which the space around a scene is divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Detail {
-    /// As much as can be made while a hand moves something.
+    /// Cells that can be made while a hand moves something.
     Quick,
-    /// As close as a picture shows.
+    /// Cells as fine as a picture shows.
     #[default]
     Fine,
     /// Without bounds on the work, however long it takes.
@@ -74,7 +74,7 @@ impl Detail {
 pub struct Frame {
     /// Numbers of bodies, of planes, of nodes of the hierarchy, and 0.
     pub counts: [u32; 4],
-    /// Where bodies, hard shapes and the hierarchy begin in the data, and 0.
+    /// Places in the data at which bodies, hard shapes and the hierarchy begin, and 0.
     pub places: [u32; 4],
 }
 

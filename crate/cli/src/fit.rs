@@ -152,7 +152,7 @@ impl Fit {
                     } else {
                         // The language has no such deformations: the mesh itself is written.
                         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                        let name = named(&format!("{stem}-fitted.obj"));
+                        let name = plain_name(&format!("{stem}-fitted.obj"));
                         write_mesh(&path.with_file_name(&name), Format::Obj, &mesh, &fitted)?;
                         (name, String::new())
                     };
@@ -276,7 +276,7 @@ fn read_mesh(path: &Path) -> Result<TriangleMesh, String> {
 }
 
 /// Returns a file's name as datasets write it.
-fn named(name: &str) -> String {
+fn plain_name(name: &str) -> String {
     name.replace(|c: char| !c.is_alphanumeric() && !"._-+".contains(c), "_")
 }
 
@@ -287,7 +287,7 @@ fn beside(dataset: &Path, mesh: &Path) -> Result<String, String> {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    let name = named(&mesh.file_name().unwrap_or_default().to_string_lossy());
+    let name = plain_name(&mesh.file_name().unwrap_or_default().to_string_lossy());
     let place = folder.join(&name);
     if let (Ok(a), Ok(b)) = (place.canonicalize(), mesh.canonicalize())
         && a == b

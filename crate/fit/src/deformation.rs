@@ -220,13 +220,15 @@ mod tests {
 
     #[test]
     fn lattice_moves_vertices_as_its_nodes_move() {
+        fn linear(p: DVec3) -> DVec3 {
+            DVec3::new(0.3 - p.z, 2.0 * p.x + p.y, 0.5 * p.y - 1.0)
+        }
         let head = trial::head(300);
         let counts = [3, 4, 5];
         let nodes = lattice(&head.positions, counts).unwrap();
         let deformation = Deformation::lattice(&head.positions, counts).unwrap();
         assert_eq!((deformation.controls(), nodes.positions.len()), (60, 60));
         // A linear move of the nodes is one of the vertices: Σ u = 1 and Σ u·c = v.
-        let linear = |p: DVec3| DVec3::new(0.3 - p.z, 2.0 * p.x + p.y, 0.5 * p.y - 1.0);
         let moves: Vec<DVec3> = nodes.positions.iter().map(|p| linear(*p)).collect();
         let moved = deformation.apply(&head.positions, &moves);
         for (i, (moved, p)) in moved.iter().zip(&head.positions).enumerate() {

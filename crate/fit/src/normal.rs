@@ -16,7 +16,7 @@ enum Matrix {
     /// The summands: residuals' derivatives by control points, and entries of all three axes.
     Sparse {
         rows: Vec<(u32, DVec3)>,
-        /// Each residual's end in `rows`, and its weight.
+        /// Ends of the residuals in `rows`, and their weights.
         ends: Vec<(usize, f64)>,
         alike: Vec<(u32, u32, f64)>,
     },
@@ -249,7 +249,7 @@ fn cholesky(mut factor: Vec<f64>, added: &[f64], gradient: &[f64]) -> Option<Vec
     Some(x)
 }
 
-/// The three numbers of a control point.
+/// Returns the three numbers of a control point.
 fn three(x: &[f64], i: u32) -> DVec3 {
     DVec3::from_slice(&x[3 * i as usize..])
 }

@@ -28,13 +28,13 @@ pub struct Observations {
 /// The way in which distances h from the surface count in a fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Loss {
-    /// As (s·tanh(h/s))², with a scale s that falls: no more beyond s.
+    /// `(s·tanh(h/s))²`, with a scale s that falls: no more beyond s.
     #[default]
     Saturating,
-    /// As h², as if there were no outliers.
+    /// `h²`, as if there were no outliers.
     Squares,
-    /// As ((1 − F)/k)² with the field F = e^−kh, as Ilić and Fua have it, and with a slope k that
-    /// rises; as h² where there is no field, of facets themselves.
+    /// `((1 − F)/k)²` with the field `F = e^−kh`, as Ilić and Fua have it, and with a slope k that
+    /// rises; `h²` where there is no field, of facets themselves.
     Algebraic,
 }
 
@@ -76,12 +76,12 @@ impl Default for Options {
 /// The way in which a fit moves the vertices of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Controls {
-    /// By Sibson's coordinates in the vertices of a mesh, whose triangles say which of them are
+    /// Sibson's coordinates in the vertices of a mesh, whose triangles say which of them are
     /// neighbours.
     Cage(TriangleMesh),
-    /// By a lattice in the mesh's box, with these numbers of nodes along the axes.
+    /// A lattice in the mesh's box, with these numbers of nodes along the axes.
     Lattice([usize; 3]),
-    /// Each by itself, after a fit by a cage of the mesh's own.
+    /// Vertices moved one by one, after a fit by a cage of the mesh's own.
     Vertices,
 }
 

@@ -1,9 +1,10 @@
 //! Levenberg and Marquardt's method on the control points' moves.
 //!
-//! The residual of an observation, if nothing else is asked for, is `w·s·tanh(h/s)` with the distance h of [`Field::distance`]: a
-//! length that does not grow beyond s, so that outliers pull little. s falls in steps from the
-//! mesh's distance at the start to three times the spread of the nearer observations ([`spread`]),
-//! of which up to nearly half may be wrong: graduated non-convexity.
+//! The residual of an observation, if nothing else is asked for, is `w·s·tanh(h/s)` with the
+//! distance h of [`Field::distance`]: a length that does not grow beyond s, so that outliers pull
+//! little. s falls in steps from the mesh's distance at the start to three times the spread of the
+//! nearer observations ([`spread`]), of which up to nearly half may be wrong: graduated
+//! non-convexity.
 //!
 //! An implicit surface has two sheets, and where it is wide its field says little about which of
 //! them a point is on. So the facets themselves are fitted first. Then they are drawn back from the
@@ -473,9 +474,10 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Distances of the points, or of the outlines if there are none, from where they are to be: from
-    /// the surface of balls, else from the height over the facets at which the surface's outer sheet lies. Of a
-    /// thin shell the distance from its surface would be that of the nearer of two sheets.
+    /// Computes the distances of the points, or of the outlines if there are none, from where they
+    /// are to be: from the surface of balls, else from the height over the facets at which the
+    /// surface's outer sheet lies. Of a thin shell the distance from its surface would be that of
+    /// the nearer of two sheets.
     fn apart(&mut self) -> Result<&[f64], Error> {
         if self.apart.is_none() {
             self.apart = Some(self.measure()?);

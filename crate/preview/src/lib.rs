@@ -1,9 +1,9 @@
 //! The draft: the true surface of a scene, drawn on the GPU.
 //!
-//! [`Tracer`] draws what [`cells::Packed`] holds – bodies as they melt together, hard shapes, meshes
-//! of what has neither – by a ray for each pixel, with shadows. The tracer on the processor has the
-//! same projection ([`scene::Camera::projection`]) and Phong's model, so that its picture falls
-//! into place over the draft. Spots, sky, fog, gradients, ground and filmic tone are drawn, a
+//! [`Tracer`] draws what [`cells::Packed`] holds – bodies as they melt together, hard shapes,
+//! meshes of what has neither – by a ray for each pixel, with shadows. The tracer on the processor
+//! has the same projection ([`scene::Camera::projection`]) and Phong's model, so that its picture
+//! falls into place over the draft. Spots, sky, fog, gradients, ground and filmic tone are drawn, a
 //! texture as its mean colour; no mirrors and glass.
 //!
 //! [`Pace`] finds the resolution at which frames keep up with a hand; [`orbit`] moves a camera with

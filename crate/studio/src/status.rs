@@ -111,7 +111,7 @@ pub fn show(
             ui.add_space(12.0);
             let on_screen = stand_in.map(|stand_in| {
                 let (text, tip) = match stand_in {
-                    StandIn::Draft { fps, meshed } => drawn(fps, meshed),
+                    StandIn::Draft { fps, meshed } => describe_draft(fps, meshed),
                     StandIn::Kept => (
                         stand_in.id().to_owned(),
                         "This picture was traced when the example was made; yours is on its way"
@@ -179,7 +179,7 @@ fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, St
     facts
 }
 /// Returns words on what the card draws, and how often a second.
-fn drawn(fps: Option<u32>, meshed: usize) -> (String, String) {
+fn describe_draft(fps: Option<u32>, meshed: usize) -> (String, String) {
     let tip = "The graphics card draws the surface itself, until the traced picture is there";
     let tip = match meshed {
         0 => tip.to_owned(),

@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn packed_scenes_travel_as_they_are() {
+    fn scenes_travel_as_they_are() {
         for detail in [Detail::Quick, Detail::Fine] {
             let scene = Arc::new(scene());
             let packed = PackScene { scene, detail }

@@ -1,7 +1,8 @@
 //! The draft on its way to the screen: a texture of egui's that is drawn anew when the scene, the
 //! camera or the size changes.
 //!
-//! While something moves it has as few pixels as it takes to keep up ([`Pace`]); once it rests, all.
+//! While something moves it has as few pixels as it takes to keep up ([`Pace`]); once it rests,
+//! all.
 
 use crate::stage::live::Made;
 use egui::{Context, TextureId};
@@ -22,7 +23,7 @@ const LONGEST: f64 = 3.0;
 struct Running {
     is_done: Arc<AtomicBool>,
     start: f64,
-    /// Its sides in those of the picture.
+    /// Length of its sides over those of the picture.
     scale: f64,
 }
 

@@ -1,10 +1,10 @@
 //! The numbers by which the card draws the model's true surface ([`cells::Packed`]), while the user
 //! turns the model or drags a part of it.
 //!
-//! A tools worker makes them, apart from the page's thread: quickly while the text changes, and with
-//! care once nothing changes and no picture is traced. Until those of the present scene are there,
-//! the last ones stay. No worker is fetched before the pointer comes to the picture for the first
-//! time, or something moves.
+//! A tools worker makes them, apart from the page's thread: quickly while the text changes, and
+//! with care once nothing changes and no picture is traced. Until those of the present scene are
+//! there, the last ones stay. No worker is fetched before the pointer comes to the picture for the
+//! first time, or something moves.
 
 use cells::{Detail, Packed};
 use document::session::Session;
@@ -175,7 +175,7 @@ impl LiveCells {
 
     /// Returns what is to be drawn: the present scene or, until it is there, the one before.
     #[must_use]
-    pub fn made(&self) -> Option<&Made> {
+    pub fn latest(&self) -> Option<&Made> {
         self.made.as_ref()
     }
 
@@ -221,17 +221,17 @@ mod tests {
         let session = Session::of_text(BALLS);
         let mut live = LiveCells::new(Tools::new(|| {}));
         settle(&mut live, &session, 0.0, true);
-        assert!(live.made().is_none());
+        assert!(live.latest().is_none());
         live.want();
         settle(&mut live, &session, 1.0, false);
-        let made = live.made().unwrap();
+        let made = live.latest().unwrap();
         // So little that it was done with care.
         assert_eq!((made.number, made.detail), (1, Detail::Fine));
         assert!(made.packed.leaves > 50);
         settle(&mut live, &session, 99.0, true);
         assert_eq!((live.count, live.wait(&session, 99.0)), (1, None));
         live.forget();
-        assert!(live.made().is_none());
+        assert!(live.latest().is_none());
     }
 
     #[test]
@@ -244,7 +244,7 @@ mod tests {
         let mut live = LiveCells::new(Tools::new(|| {}));
         live.want();
         settle(&mut live, &session, 1.0, false);
-        let quick = live.made().unwrap();
+        let quick = live.latest().unwrap();
         assert_eq!((quick.number, quick.detail), (1, Detail::Quick));
         assert_eq!(quick.packed.meshed.len(), 1);
         let size = quick.packed.data.len();
@@ -252,7 +252,7 @@ mod tests {
         settle(&mut live, &session, 9.0, false);
         assert_eq!(live.count, 1);
         settle(&mut live, &session, 9.0, true);
-        let fine = live.made().unwrap();
+        let fine = live.latest().unwrap();
         assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
         assert!(fine.packed.data.len() > 2 * size);
     }
@@ -269,9 +269,9 @@ mod tests {
             .unwrap();
         session.compile();
         live.tick(&session, 1.1, true, false);
-        assert_eq!(live.made().map(|made| made.number), Some(1));
+        assert_eq!(live.latest().map(|made| made.number), Some(1));
         settle(&mut live, &session, 1.2, false);
-        let followed = live.made().unwrap();
+        let followed = live.latest().unwrap();
         assert_eq!((followed.number, followed.shape), (2, session.shape()));
     }
 }

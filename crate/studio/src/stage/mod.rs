@@ -56,8 +56,8 @@ struct Kept {
 }
 
 impl Kept {
-    /// Returns the picture while no true one as fine is there; `None` if it has not come or does not
-    /// fit.
+    /// Returns the picture while no true one as fine is there; `None` if it has not come or does
+    /// not fit.
     fn texture(&mut self, page: &Page, ui: &Ui) -> Option<TextureId> {
         let session = &page.work.session;
         let fits = self.revision == session.revision() && session.user_camera().is_none();
@@ -207,7 +207,7 @@ impl Stage {
             None
         } else if view::needs_draft(page.settings.show, session, &page.renderer, slow, now) {
             self.draft.as_mut().and_then(|draft| {
-                let made = self.live.made()?;
+                let made = self.live.latest()?;
                 let texture = draft.texture(ctx, made, session.camera(), self.place);
                 stand_in = StandIn::Draft {
                     fps: draft.fps,
