@@ -58,10 +58,12 @@ for (const [size, options] of Object.entries(SIZES)) {
   test(`a turn shows the true surface on a ${size}`, async () => {
     // A narrow page has no buttons for it.
     const drafted = () => localStorage.setItem('sinew/settings', JSON.stringify({ show: 'draft' }));
-    const before = size === 'phone' ? (page) => page.addInitScript(drafted) : undefined;
-    const sinew = await browser.open({ ...options, before, size: [240, 180] });
     const fetched = [];
-    sinew.page.on('request', (request) => fetched.push(new URL(request.url()).pathname.split('/').pop()));
+    const before = async (page) => {
+      page.on('request', (request) => fetched.push(new URL(request.url()).pathname.split('/').pop()));
+      if (size === 'phone') await page.addInitScript(drafted);
+    };
+    const sinew = await browser.open({ ...options, before, size: [240, 180] });
     await sinew.load(MELTED);
     await sinew.finished();
     if (size === 'desk') await sinew.click('show draft');

@@ -22,7 +22,7 @@ sphere Flesh 0.9, <0 0.9 0>
 let browser;
 let server;
 before(async () => {
-  browser = await launch();
+  browser = await launch('webgl2');
   server = await serve(process.env.SINEW_PACKAGE);
 });
 after(async () => {
@@ -39,6 +39,7 @@ async function open(file, options) {
     const body = await readFile(route.request().url().endsWith('three.core.js') ? CORE : THREE);
     await route.fulfill({ contentType: 'text/javascript', body });
   });
+  await tab.route('**/blank.html', (route) => route.fulfill({ contentType: 'text/html', body: '<!doctype html>' }));
   await tab.goto(server.address + file);
   return { tab, troubles };
 }
@@ -79,7 +80,7 @@ test('the example shows a model as a picture, which turns, and as a mesh in thre
 });
 
 test('pictures are those of the program, meshes are closed, and the field is the threshold on them', async () => {
-  const { tab, troubles } = await open('package.json');
+  const { tab, troubles } = await open('blank.html');
   const got = await tab.evaluate(async (text) => {
     const { compile, isoValue } = await import(new URL('./sinew.js', location.href));
     const model = await compile(text);
@@ -133,7 +134,7 @@ test('pictures are those of the program, meshes are closed, and the field is the
 });
 
 test('mistakes are told, work that is given up ends, and pictures follow each other', async () => {
-  const { tab, troubles } = await open('package.json');
+  const { tab, troubles } = await open('blank.html');
   const got = await tab.evaluate(async (text) => {
     const { compile } = await import(new URL('./sinew.js', location.href));
     const said = async (work) => {

@@ -2,7 +2,7 @@
 
 use super::files::Watch;
 use super::{Chosen, english};
-use crate::packages::MODULES;
+use crate::packages::{EMBED, MODULES};
 use crate::shell::{cargo, root, run};
 use crate::tools;
 use anyhow::{Context, Result, bail};
@@ -20,7 +20,8 @@ pub fn check(watch: &mut Watch, chosen: &Chosen) -> Result<String> {
     watch.step("wasm", || {
         // The tests of these packages are for this machine only.
         let mut options = vec![String::from("--target"), tools::WASM.into()];
-        for module in MODULES.iter().filter(|module| chosen.has(module.package)) {
+        let all = MODULES.iter().chain([&EMBED]);
+        for module in all.filter(|module| chosen.has(module.package)) {
             options.extend(["--package".into(), module.package.into()]);
             if !module.features.is_empty() {
                 options.push(format!("--features={}/{}", module.package, module.features));
