@@ -98,7 +98,8 @@ test('pictures are those of the program, meshes are closed, and the field is the
       parts: parts.length,
       positions: Array.from(positions),
       indices: Array.from(indices),
-      lengths: [positions, normals ?? positions, colors ?? positions].map(({ length }) => length),
+      lengths: [positions, normals ?? positions, colors].map(({ length }) => length),
+      color: Array.from(colors.slice(0, 3)),
       values: Array.from(model.values(positions)),
       iso: await isoValue(),
       glb: Array.from(glb.slice(0, 12)),
@@ -115,6 +116,8 @@ test('pictures are those of the program, meshes are closed, and the field is the
   assert.deepEqual(Buffer.from(got.pixels), Buffer.from(data));
   assert.ok(got.fractions.every((fraction) => fraction >= 0 && fraction <= 1));
   assert.equal(new Set(got.lengths).size, 1);
+  const [red, green, blue] = got.color;
+  assert.ok(red > green && green > blue, `coral: ${got.color}`);
   const sides = new Set();
   for (let i = 0; i < got.indices.length; i += 3) {
     for (let k = 0; k < 3; k += 1) {

@@ -280,9 +280,26 @@ impl Meshing {
         Some(floats(self.part(part)?.normals.as_ref()?))
     }
 
-    /// Returns the colours at the vertices, linear RGB; none if the part has none.
+    /// Returns the colours at the vertices, linear RGB: where materials do not blend, that of a
+    /// triangle there; none if the part has none.
     pub fn colors(&self, part: usize) -> Option<Vec<f32>> {
-        Some(self.part(part)?.colors.as_ref()?.as_flattened().to_vec())
+        let mesh = self.part(part)?;
+        if let Some(colors) = &mesh.colors {
+            return Some(colors.as_flattened().to_vec());
+        }
+        let mut colors = vec![mesh::Material::default().color; mesh.positions.len()];
+        let mut any = false;
+        for group in &mesh.groups {
+            let Some(material) = &group.material else {
+                continue;
+            };
+            any = true;
+            let triangles = group.triangles.start as usize..group.triangles.end as usize;
+            for vertex in mesh.triangles.get(triangles)?.as_flattened() {
+                colors[*vertex as usize] = material.color;
+            }
+        }
+        any.then(|| colors.as_flattened().to_vec())
     }
 
     /// Returns the vertices of the triangles, three each, counter-clockwise seen from outside.
