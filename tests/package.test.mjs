@@ -73,7 +73,7 @@ test('the example shows a model as a picture, which turns, and as a mesh in thre
     await tab.mouse.up();
     const moved = ([x]) => document.querySelector('sinew-view').camera.eye[0] !== x;
     await tab.waitForFunction(moved, eye, { timeout: PATIENCE });
-    assert.equal(await view.getAttribute('aria-label'), 'A ball that grows out of a bent limb');
+    await tab.getByRole('img', { name: 'A ball that grows out of a bent limb' }).waitFor();
     assert.deepEqual(troubles, []);
     await tab.context().close();
   }

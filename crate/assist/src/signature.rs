@@ -34,7 +34,7 @@ pub struct Part {
 /// let text = "sphere Clay 2, ";
 /// let signature = assist::signature(&rats::Project::single(text), 0, text.len()).unwrap();
 /// let names: Vec<_> = signature.parameters.iter().map(|part| part.text.as_str()).collect();
-/// assert_eq!(names, ["sn", "r", "POS"]);
+/// assert_eq!(names, ["sn", "r", "POS", "[option …]"]);
 /// // It is the turn of the position.
 /// assert_eq!(signature.active, Some(2));
 /// ```

@@ -134,8 +134,8 @@ pub struct Session {
     good: Option<Arc<Scene>>,
     /// Whether it is of a text before.
     is_old: bool,
-    /// Pickers of that scene and of its draft.
-    pickers: [OnceCell<Picker>; 2],
+    /// The picker of that scene.
+    picker: OnceCell<Picker>,
     camera: Option<Camera>,
     revision: u64,
     generation: u64,
@@ -165,7 +165,7 @@ impl Session {
             compiled: Compiled::default(),
             good: None,
             is_old: false,
-            pickers: Default::default(),
+            picker: OnceCell::new(),
             camera: None,
             revision: 0,
             generation: 0,
@@ -209,7 +209,7 @@ impl Session {
         self.camera = kept.camera;
         self.film_frame = 0;
         self.good = None;
-        self.pickers = Default::default();
+        self.picker = OnceCell::new();
         self.note_change();
     }
 
@@ -562,20 +562,11 @@ impl Session {
         self.is_old
     }
 
-    /// Returns the picker of the scene to draw, or of its draft, in which shapes have not melted
-    /// together.
+    /// Returns the picker of the scene to draw.
     #[must_use]
-    pub fn picker(&self, of_draft: bool) -> Option<&Picker> {
+    pub fn picker(&self) -> Option<&Picker> {
         let scene = self.good.as_ref()?;
-        Some(self.pickers[usize::from(of_draft)].get_or_init(|| {
-            if of_draft {
-                let mut hard = Scene::clone(scene);
-                hard.settings.soft = false;
-                Picker::new(&hard)
-            } else {
-                Picker::new(scene)
-            }
-        }))
+        Some(self.picker.get_or_init(|| Picker::new(scene)))
     }
 
     /// Returns the frame of the scene to draw, pixels.
@@ -757,7 +748,7 @@ impl Session {
             if !good.is_some_and(|good| good.is_same_but_written(scene)) {
                 self.generation += 1;
                 self.shape += 1;
-                self.pickers = Default::default();
+                self.picker = OnceCell::new();
             }
         }
     }
@@ -920,9 +911,9 @@ mod tests {
     }
 
     fn pick(session: &Session) -> Option<f64> {
-        let picker = session.picker(true).unwrap();
+        let picker = session.picker().unwrap();
         let hit = picker.pick(glam::DVec3::new(0.0, 0.0, 5.0), glam::DVec3::NEG_Z);
-        hit.map(|hit| hit.t)
+        hit.map(|hit| (1e3 * hit.t).round() / 1e3)
     }
 
     #[test]

@@ -6,11 +6,13 @@ import { compile, turned, zoomed } from './sinew.js';
 
 /** Share of the sides of a picture while it is being turned. */
 const COARSE = 0.25;
+/** Milliseconds without a key after which the picture is traced in full. */
+const REST = 200;
 /** Share of the view by which an arrow key turns. */
 const STEP = 0.05;
 
 const STYLE = `:host { display: block; position: relative; aspect-ratio: 4 / 3; overflow: hidden; touch-action: pan-y }
-  :host(:focus-visible) { outline: 3px solid Highlight; outline-offset: 2px }
+  canvas:focus-visible { outline: 3px solid Highlight; outline-offset: -3px }
   canvas { position: absolute; inset: 0; width: 100%; height: 100%; object-fit: contain; cursor: grab }
   p { position: absolute; inset: auto 0 0 0; margin: 0; padding: 0.4em 0.7em; font: 13px/1.4 system-ui, sans-serif;
     white-space: pre-wrap; color: #fff; background: #a3231fe0 }
@@ -24,6 +26,15 @@ class SinewView extends HTMLElement {
   #model = null;
   #camera = null;
   #running = null;
+  #dragging = null;
+  /** Whether it is connected, and has begun to load. */
+  #begun = false;
+  /** Words about the text. */
+  #mistake = '';
+  /** Whether coarse pictures are being traced, and whether the camera has moved since the last was begun. */
+  #following = false;
+  #moved = false;
+  #rest = undefined;
   #loading = null;
   #watch = new ResizeObserver(() => this.#draw());
 
@@ -32,22 +43,26 @@ class SinewView extends HTMLElement {
     const style = document.createElement('style');
     style.textContent = STYLE;
     this.#words.setAttribute('role', 'status');
-    this.attachShadow({ mode: 'open' }).append(style, this.#canvas, this.#words);
+    this.#canvas.setAttribute('role', 'img');
+    this.#canvas.tabIndex = 0;
+    this.attachShadow({ mode: 'open', delegatesFocus: true }).append(style, this.#canvas, this.#words);
     this.#canvas.addEventListener('pointerdown', (event) => this.#drag(event));
     this.addEventListener('keydown', (event) => this.#key(event));
     this.addEventListener('wheel', (event) => this.#wheel(event), { passive: false });
   }
 
   connectedCallback() {
-    if (!this.hasAttribute('tabindex')) this.tabIndex = 0;
-    this.setAttribute('role', 'img');
+    this.#begun = true;
     this.#watch.observe(this);
     this.#name();
     this.#load();
   }
 
   disconnectedCallback() {
+    this.#begun = false;
     this.#watch.disconnect();
+    clearTimeout(this.#rest);
+    this.#dragging?.abort();
     this.#loading?.abort();
     this.#running?.abort();
     this.#model?.free();
@@ -55,7 +70,7 @@ class SinewView extends HTMLElement {
   }
 
   attributeChangedCallback(name) {
-    if (!this.isConnected) return;
+    if (!this.#begun) return;
     if (name === 'alt') this.#name();
     else this.#load();
   }
@@ -76,7 +91,7 @@ class SinewView extends HTMLElement {
   }
 
   #name() {
-    this.setAttribute('aria-label', this.getAttribute('alt') ?? this.getAttribute('src') ?? 'Model');
+    this.#canvas.setAttribute('aria-label', this.getAttribute('alt') ?? this.getAttribute('src') ?? 'Model');
   }
 
   #say(words) {
@@ -93,11 +108,13 @@ class SinewView extends HTMLElement {
         return;
       }
       this.#running?.abort();
+      if (this.#model) this.#camera = null;
       this.#model?.free();
       this.#model = model;
-      this.#camera = null;
+      if (this.#camera) this.#camera = { ...model.camera, ...this.#camera };
       const mistake = model.diagnostics.find(({ severity }) => severity === 'error');
-      this.#say(mistake ? `${mistake.file}:${mistake.line}:${mistake.column}: ${mistake.message}` : '');
+      this.#mistake = mistake ? `${mistake.file}:${mistake.line}:${mistake.column}: ${mistake.message}` : '';
+      this.#say(this.#mistake);
       this.dispatchEvent(new Event('load'));
       this.#draw();
     } catch (reason) {
@@ -148,33 +165,55 @@ class SinewView extends HTMLElement {
     try {
       const camera = this.#camera ?? undefined;
       show(await model.trace({ width: w, height: h, camera, signal, onPicture: show }));
-      if (share === 1) this.dispatchEvent(new Event('picture'));
+      if (!signal.aborted) this.#say(this.#mistake);
+      if (share === 1 && !signal.aborted) this.dispatchEvent(new Event('picture'));
     } catch (reason) {
       if (!signal.aborted) this.#fail(reason);
     }
   }
 
-  async #move(move, share) {
+  /** Moves the camera, and draws what it sees: coarsely, and in full once it rests. */
+  async #move(move) {
     if (!this.#model) return;
-    this.#camera = await move(this.#camera ?? this.#model.camera);
-    this.#draw(share);
+    const camera = await move(this.#camera ?? this.#model.camera);
+    this.#camera = camera;
+    this.#moved = true;
+    clearTimeout(this.#rest);
+    if (!this.#dragging) this.#rest = setTimeout(() => this.#settle(), REST);
+    if (this.#following) return;
+    this.#following = true;
+    // One coarse picture is finished before the next is begun, or a slow one would never be seen.
+    while (this.#moved && this.#begun) {
+      this.#moved = false;
+      await this.#draw(COARSE);
+    }
+    this.#following = false;
+  }
+
+  #settle() {
+    this.#moved = false;
+    this.#draw();
   }
 
   #drag(down) {
-    if (down.button !== 0) return;
+    if (down.button !== 0 || this.#dragging) return;
     this.#canvas.setPointerCapture(down.pointerId);
     let { clientX: x, clientY: y } = down;
-    const ends = new AbortController();
-    const on = (name, act) => this.#canvas.addEventListener(name, act, { signal: ends.signal });
+    const ends = (this.#dragging = new AbortController());
+    const on = (name, act) => {
+      const own = (event) => event.pointerId === down.pointerId && act(event);
+      this.#canvas.addEventListener(name, own, { signal: ends.signal });
+    };
+    ends.signal.addEventListener('abort', () => (this.#dragging = null));
     on('pointermove', ({ clientX, clientY }) => {
       const [across, along] = [(clientX - x) / this.clientWidth, (clientY - y) / this.clientHeight];
       [x, y] = [clientX, clientY];
-      this.#move((camera) => turned(camera, across, along), COARSE);
+      this.#move((camera) => turned(camera, across, along));
     });
     for (const name of ['pointerup', 'pointercancel']) {
       on(name, () => {
         ends.abort();
-        this.#draw();
+        this.#settle();
       });
     }
   }
@@ -185,14 +224,14 @@ class SinewView extends HTMLElement {
     const { key } = event;
     if (event.ctrlKey || event.metaKey || event.altKey || !(key in turns || key in zooms)) return;
     event.preventDefault();
-    this.#move((camera) => (key in turns ? turned(camera, ...turns[key]) : zoomed(camera, zooms[key])), 1);
+    this.#move((camera) => (key in turns ? turned(camera, ...turns[key]) : zoomed(camera, zooms[key])));
   }
 
   #wheel(event) {
     // Without Ctrl the page scrolls.
     if (!event.ctrlKey) return;
     event.preventDefault();
-    this.#move((camera) => zoomed(camera, Math.exp(event.deltaY / 400)), 1);
+    this.#move((camera) => zoomed(camera, Math.exp(event.deltaY / 400)));
   }
 }
 

@@ -41,6 +41,10 @@ export function load({ folder = new URL('.', import.meta.url) } = {}) {
     await init({ module_or_path: new URL('embed_bg.wasm', place) });
     return new Engine(place.href, wake);
   })();
+  starting.catch(() => {
+    // The next call tries again.
+    starting = undefined;
+  });
   return starting;
 }
 
@@ -78,6 +82,17 @@ export async function compile(files, { signal } = {}) {
     throw reason;
   }
   return model;
+}
+
+/** The result of a promise, unless a signal comes first. */
+function unless(signal, promise) {
+  if (!signal) return promise;
+  return new Promise((yes, no) => {
+    const give = () => no(signal.reason);
+    promise.then(yes, no).finally(() => signal.removeEventListener('abort', give));
+    if (signal.aborted) give();
+    else signal.addEventListener('abort', give);
+  });
 }
 
 /** Pictures are traced one after the other. */
@@ -145,7 +160,7 @@ class Model {
     };
     const traced = last.then(trace);
     last = traced.catch(() => {});
-    return traced;
+    return unless(signal, traced);
   }
 
   async #mesh(order, file, { signal, onProgress } = {}) {

@@ -140,6 +140,7 @@ impl App {
                 reading: MeshReading::new(tools.clone()),
                 to_frame: None,
                 renderer: Renderer::new(pool),
+                drafted: None,
                 settings,
                 parts,
                 screen: Screen {

@@ -114,6 +114,8 @@ pub struct Page {
     pub to_frame: Option<u64>,
     /// The traced picture.
     pub renderer: Renderer,
+    /// [`document::session::Session::shape`] of the scene whose draft is on the screen.
+    pub drafted: Option<u64>,
     /// The user's choices.
     pub settings: Settings,
     /// Storage, requests and reports.

@@ -301,11 +301,12 @@ impl Renderer {
         Some((self.texture.as_ref()?, self.shown?))
     }
 
-    /// Whether the picture has a ray for every pixel.
+    /// Whether the picture on the screen has a ray for every pixel.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let progress = &self.progress;
-        progress.generation == Some(self.number) && progress.pass_seconds[1].is_some()
+        let is_shown = self.texture.is_some() && self.shown == Some(self.running.0);
+        is_shown && progress.generation == Some(self.number) && progress.pass_seconds[1].is_some()
     }
 
     /// Returns the opacity of the picture over the draft, 0 … 1.

@@ -168,7 +168,7 @@ fn render_refuses_what_it_cannot_do() {
     let folder = Folder::new("refuse");
     let file = folder.write("ball.rat", BALL);
     for arguments in [
-        ["-o", "x.jpeg", "-r", "4", "4"],
+        ["-o", "x.webp", "-r", "4", "4"],
         ["-o", "x.png", "-r", "0", "4"],
         ["-o", "x.png", "-r", "4", "100000"],
     ] {

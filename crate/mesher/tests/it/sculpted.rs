@@ -38,7 +38,7 @@ fn sculpture_with_flesh_on_it_is_printed() {
             "soft on\n\
              surface Flesh, diffuse Coral, kernel quartic, blobbiness -2, radius 0.25\n\
              mesh Flesh clay.strokes\n",
-            6.5..11.0,
+            6.0..11.0,
         ),
         (
             "metaballs",

@@ -7,7 +7,7 @@ use crate::page::{Moment, Page};
 use crate::panel::Panel;
 use crate::render::Phase;
 use crate::scripts::request::Request;
-use crate::settings::Show;
+use crate::wish::ViewWish;
 use crate::wish::{FilmWish, Wishes};
 use browser::recording::{Kind, Recording, VideoFormat};
 use document::player::Player;
@@ -184,8 +184,11 @@ impl Panel for FilmPanel {
             count => self.player.count = count as u32,
         }
         page.film = self.length();
-        let has_draft = page.screen.has_draft && page.settings.show != Show::Traced;
-        let ready = has_draft || page.is_finished();
+        if self.player.is_playing() {
+            page.wish(ViewWish::Follow);
+        }
+        let is_drafted = page.drafted == Some(page.work.session.shape());
+        let ready = is_drafted || page.is_finished();
         let frame = page.work.session.film_frame();
         if let Some(next) = self.player.next(frame, ready, at.now) {
             page.go_to_frame(next);

@@ -134,7 +134,11 @@ impl Draft {
         let Some(done) = done else {
             return;
         };
-        self.pace.note(now - done.start, done.scale);
+        let seconds = now - done.start;
+        if seconds <= LONGEST {
+            // Else nobody looked at it meanwhile.
+            self.pace.note(seconds, done.scale);
+        }
         self.counted.0 += 1;
         let seconds = now - self.counted.1;
         if seconds >= COUNTED {

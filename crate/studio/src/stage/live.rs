@@ -88,10 +88,9 @@ impl LiveCells {
         self.slow = None;
     }
 
-    /// Gives up what is made with care, and made later, so that the worker is free for other jobs.
+    /// Gives up what is being made, and is made later, so that the worker is free for other jobs.
     pub fn give_way(&mut self) {
-        self.running
-            .take_if(|running| running.detail == Detail::Fine);
+        self.running = None;
     }
 
     /// Takes in what the worker made, and begins the next. `is_drawn`: a draft is needed on the
@@ -113,7 +112,8 @@ impl LiveCells {
             let is_long = now - running.start > LIMIT;
             if is_long {
                 self.hopeless = Some(running.shape);
-                self.slow = Some(elements(session)).filter(|_| running.detail == Detail::Quick);
+                let is_quick = running.detail == Detail::Quick;
+                self.slow = is_quick.then_some(running.scene.elements.len());
             }
             if is_old || is_long {
                 self.running = None;
@@ -173,10 +173,13 @@ impl LiveCells {
         });
     }
 
-    /// Returns what is to be drawn: the present scene or, until it is there, the one before.
+    /// Returns the packed scene of a shape or, if `or_before`, while it is being packed the one
+    /// before.
     #[must_use]
-    pub fn latest(&self) -> Option<&Made> {
-        self.made.as_ref()
+    pub fn latest(&self, shape: u64, or_before: bool) -> Option<&Made> {
+        let made = self.made.as_ref()?;
+        let is_coming = or_before && self.running.is_some();
+        (made.shape == shape || is_coming).then_some(made)
     }
 
     /// Returns the seconds until [`LiveCells::tick`] begins with care; `None` if it will not.
@@ -221,17 +224,17 @@ mod tests {
         let session = Session::of_text(BALLS);
         let mut live = LiveCells::new(Tools::new(|| {}));
         settle(&mut live, &session, 0.0, true);
-        assert!(live.latest().is_none());
+        assert!(live.latest(session.shape(), true).is_none());
         live.want();
         settle(&mut live, &session, 1.0, false);
-        let made = live.latest().unwrap();
+        let made = live.latest(session.shape(), true).unwrap();
         // So little that it was done with care.
         assert_eq!((made.number, made.detail), (1, Detail::Fine));
         assert!(made.packed.leaves > 50);
         settle(&mut live, &session, 99.0, true);
         assert_eq!((live.count, live.wait(&session, 99.0)), (1, None));
         live.forget();
-        assert!(live.latest().is_none());
+        assert!(live.latest(session.shape(), true).is_none());
     }
 
     #[test]
@@ -244,7 +247,7 @@ mod tests {
         let mut live = LiveCells::new(Tools::new(|| {}));
         live.want();
         settle(&mut live, &session, 1.0, false);
-        let quick = live.latest().unwrap();
+        let quick = live.latest(session.shape(), true).unwrap();
         assert_eq!((quick.number, quick.detail), (1, Detail::Quick));
         assert_eq!(quick.packed.meshed.len(), 1);
         let size = quick.packed.data.len();
@@ -252,7 +255,7 @@ mod tests {
         settle(&mut live, &session, 9.0, false);
         assert_eq!(live.count, 1);
         settle(&mut live, &session, 9.0, true);
-        let fine = live.latest().unwrap();
+        let fine = live.latest(session.shape(), true).unwrap();
         assert_eq!((fine.number, fine.detail), (2, Detail::Fine));
         assert!(fine.packed.data.len() > 2 * size);
     }
@@ -269,9 +272,12 @@ mod tests {
             .unwrap();
         session.compile();
         live.tick(&session, 1.1, true, false);
-        assert_eq!(live.latest().map(|made| made.number), Some(1));
+        assert_eq!(
+            live.latest(session.shape(), true).map(|made| made.number),
+            Some(1)
+        );
         settle(&mut live, &session, 1.2, false);
-        let followed = live.latest().unwrap();
+        let followed = live.latest(session.shape(), true).unwrap();
         assert_eq!((followed.number, followed.shape), (2, session.shape()));
     }
 }

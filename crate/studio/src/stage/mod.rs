@@ -56,12 +56,11 @@ struct Kept {
 }
 
 impl Kept {
-    /// Returns the picture while no true one as fine is there; `None` if it has not come or does
-    /// not fit.
+    /// Returns the picture; `None` if it has not come or does not fit.
     fn texture(&mut self, page: &Page, ui: &Ui) -> Option<TextureId> {
         let session = &page.work.session;
         let fits = self.revision == session.revision() && session.user_camera().is_none();
-        let is_wanted = page.settings.show != Show::Draft && !page.renderer.is_whole();
+        let is_wanted = page.settings.show != Show::Draft;
         if !fits || !is_wanted {
             return None;
         }
@@ -91,6 +90,8 @@ impl StandIn {
 /// The picture and everything on it.
 pub struct Stage {
     draft: Option<Draft>,
+    /// [`document::session::Session::shape`] of the scene whose picture was traced last.
+    traced: Option<u64>,
     /// The picture of an example that takes long.
     kept: Option<Kept>,
     /// The surface as the draft takes it.
@@ -117,6 +118,7 @@ impl Stage {
         Self {
             draft: state.map(Draft::new),
             kept: None,
+            traced: None,
             live: LiveCells::new(tools),
             stand_in: None,
             hands: Hands::default(),
@@ -191,6 +193,12 @@ impl Stage {
         }
     }
 
+    /// Whether scenes are packed for the card.
+    fn packs(&self, page: &Page) -> bool {
+        let shows = page.settings.show != Show::Traced;
+        self.draft.is_some() && shows && !page.is_refused && !page.is_reading()
+    }
+
     /// Returns the texture of the stand-in for the traced picture, if one is needed.
     fn stand_in(&mut self, page: &Page, ui: &Ui, now: f64) -> Option<TextureId> {
         let ctx = ui.ctx();
@@ -200,14 +208,23 @@ impl Stage {
             ctx.request_repaint_after_secs(view::SOON as f32);
         }
         let mut stand_in = StandIn::Kept;
+        // From then on there is a true picture as fine, or it is not wanted.
+        if page.renderer.is_whole() || page.renderer.phase() == Phase::Cancelled {
+            self.kept = None;
+        }
+        if page.is_fresh() {
+            self.traced = Some(session.shape());
+        }
+        let shows = needs(page, now, slow, ui.style().animation_time > 0.0);
         let kept = self.kept.as_mut().and_then(|kept| kept.texture(page, ui));
         let texture = if kept.is_some() {
             kept
         } else if page.is_refused && slow {
             None
-        } else if view::needs_draft(page.settings.show, session, &page.renderer, slow, now) {
+        } else if shows {
             self.draft.as_mut().and_then(|draft| {
-                let made = self.live.latest()?;
+                let shape = session.shape();
+                let made = self.live.latest(shape, self.traced != Some(shape))?;
                 let texture = draft.texture(ctx, made, session.camera(), self.place);
                 stand_in = StandIn::Draft {
                     fps: draft.fps,
@@ -226,6 +243,19 @@ impl Stage {
         }
         texture
     }
+}
+
+/// Whether the draft is to be seen.
+fn needs(page: &Page, now: f64, slow: bool, fades: bool) -> bool {
+    let session = &page.work.session;
+    view::needs_draft(
+        page.settings.show,
+        session,
+        &page.renderer,
+        slow,
+        fades,
+        now,
+    )
 }
 
 impl Panel for Stage {
@@ -301,7 +331,6 @@ impl Panel for Stage {
             session,
             caret: self.caret,
             covered,
-            draft: draft.is_some() && !is_kept,
             touch,
         };
         self.hands.show(ui, rect, &picture, &around, wishes);
@@ -319,25 +348,27 @@ impl Panel for Stage {
         if page.is_reading() {
             self.live.give_way();
         }
-        let has_draft = self.draft.is_some() && !page.is_refused;
-        let session = &page.work.session;
-        let is_drawn =
-            view::needs_draft(page.settings.show, session, &page.renderer, false, at.now);
+        let is_drawn = needs(page, at.now, false, true);
         if page.settings.show == Show::Draft {
             self.live.want();
         }
-        if has_draft {
+        let session = &page.work.session;
+        if self.packs(page) {
             self.live.tick(session, at.now, is_drawn, rests(page));
         }
+        let is_draft = matches!(self.stand_in, Some(StandIn::Draft { .. }));
+        let is_present = self.live.latest(session.shape(), false).is_some();
+        page.drafted = (is_draft && is_present).then(|| session.shape());
     }
 
     fn wait(&self, page: &Page, now: f64) -> Option<f64> {
         let wait = self.live.wait(&page.work.session, now);
-        wait.filter(|_| self.draft.is_some() && rests(page))
+        wait.filter(|_| self.packs(page) && rests(page))
     }
 
     fn forget(&mut self, _page: &mut Page, _ctx: &Context) {
         self.kept = None;
+        self.traced = None;
         self.live.forget();
         self.hands.clear();
         self.pencil.clear();

@@ -84,15 +84,16 @@ pub fn fit(place: Rect, frame: [u32; 2], pixels_per_point: f32) -> Rect {
     Rect::from_min_size(min.round_to_pixels(pixels_per_point), size)
 }
 
-/// Whether the draft must be drawn. `slow`: the processor draws it, which keeps the workers
-/// waiting. Then the last picture stands in for it if a coarse one comes [`SOON`], and the draft is
-/// not faded out.
+/// Whether the draft must be drawn. `slow`: the processor draws the window, which keeps the workers
+/// waiting. Then the last picture stands in for it if a coarse one comes [`SOON`]. `fades`: the
+/// picture fades in over it.
 #[must_use]
 pub fn needs_draft(
     show: Show,
     session: &Session,
     renderer: &Renderer,
     slow: bool,
+    fades: bool,
     now: f64,
 ) -> bool {
     match show {
@@ -105,7 +106,7 @@ pub fn needs_draft(
             if slow {
                 !fresh && !renderer.is_near(SOON, now)
             } else {
-                !fresh || renderer.opacity(now) < 1.0
+                !fresh || fades && renderer.opacity(now) < 1.0
             }
         }
     }

@@ -10,8 +10,6 @@ pub struct Around<'a> {
     pub caret: Option<(usize, usize)>,
     /// Whether something lies over the page.
     pub covered: bool,
-    /// Whether the draft is on show, in which shapes have not melted together.
-    pub draft: bool,
     /// Whether fingers are likely.
     pub touch: bool,
 }

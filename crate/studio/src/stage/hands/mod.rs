@@ -162,7 +162,7 @@ impl Hands {
     fn click(&mut self, around: &Around<'_>, sight: &Sight, at: egui::Pos2, wishes: &mut Wishes) {
         let session = around.session;
         let scene = &session.compilation().scene;
-        let Some(picker) = session.picker(around.draft) else {
+        let Some(picker) = session.picker() else {
             return;
         };
         let eye = sight.projection.eye;

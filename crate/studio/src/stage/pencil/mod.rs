@@ -1014,7 +1014,7 @@ fn mark(at: Pos2) -> Mark {
 
 /// Returns the hit that is seen at a place of the screen, or at most `around` points beside it.
 fn hit(session: &Session, sight: &Sight, at: Pos2, around: f32) -> Option<tracer::Hit> {
-    let picker = session.picker(false)?;
+    let picker = session.picker()?;
     let rings = [0.0, 0.5, 1.0].map(|share| share * around);
     let places = rings.into_iter().flat_map(|out| {
         let turns = if out > 0.0 { 8 } else { 1 };
