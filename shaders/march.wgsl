@@ -1,4 +1,4 @@
-// Rays through the octree of a body: crate/preview/src/trace/octree.rs says what its cells are. A program's last files read its
+// Rays through the octree of a body: crate/cells/src/octree.rs says what its cells are. A program's last files read its
 // data and have the formulas of terms that leaves list, and those of their profiles:
 //     fn four(i: u32) -> vec4<u32>
 //     fn plain_term(kind: u32, at: u32, count: u32, p: vec3f) -> vec4f

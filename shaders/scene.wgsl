@@ -1,12 +1,12 @@
 // Rays through a whole scene: its bodies (march.wgsl), its hard shapes, its ground; light and colour where they meet something.
-// crate/preview/src/trace/pack.rs lays out the data. Follows view.wgsl, sky.wgsl, solid.wgsl, the shapes' files and march.wgsl.
+// crate/cells/src/pack.rs lays out the data. Follows view.wgsl, sky.wgsl, solid.wgsl, the shapes' files and march.wgsl.
 
 struct Frame {
     // A point straight ahead of the eye, near the scene; w: how far ahead.
     middle: vec4f,
     // Numbers of bodies, of planes, of nodes of the hierarchy of other hard shapes; a bit for each light that casts shadows.
     counts: vec4u,
-    // Where bodies, hard shapes and the hierarchy begin in the data; w: 1 if hard shapes are seen from inside, too.
+    // Where bodies, hard shapes and the hierarchy begin in the data.
     places: vec4u,
 }
 
@@ -30,7 +30,7 @@ const MIXED: u32 = 0x80000000u;
 const LIFT: f32 = 2e-4;
 const LIFT_OF_PATCH: f32 = 4e-3;
 
-// That of the surface which is seen.
+// The lift of the surface that is seen.
 var<private> lift: f32;
 
 // Whether the plane of a patch is met within it.
@@ -234,7 +234,7 @@ fn see(position: vec2f) -> Seen {
     var shade = 1.0;
     lift = LIFT;
     if ground.y > 0.0 {
-        let place = view.eye_high.xyz + ground.x * gaze;
+        let place = view.eye.xyz + ground.x * gaze;
         shade = sun(place);
     }
     out.colour = written(behind(gaze, ground, shade));

@@ -12,7 +12,7 @@ fn background(gaze: vec3f) -> vec3f {
 
 // The ground along a ray from the eye: its distance, and how much of it covers the background; 0 where there is none.
 fn ground_along(gaze: vec3f) -> vec2f {
-    let eye = view.eye_high.xyz;
+    let eye = view.eye.xyz;
     let above = dot(eye, view.zenith.xyz) - view.levels.x;
     let fall = -dot(gaze, view.zenith.xyz);
     if view.ground.w < 0.5 || above <= 0.0 || fall <= 1e-6 {

@@ -17,12 +17,9 @@ struct View {
     right: vec4f,
     // Unit vector up in the picture; w: tangent of half the vertical angle of view.
     up: vec4f,
-    // Unit vector into the picture.
+    // Unit vector into the picture; w, and that of the eye: where the middle of the picture lies, as tangents up and to the right.
     forward: vec4f,
-    // The eye as a sum of two numbers: its f32 value, and what that leaves out; their w: where the
-    // middle of the picture lies, as tangents to the right and up.
-    eye_high: vec4f,
-    eye_low: vec4f,
+    eye: vec4f,
     // x, y: one over the number of samples across and down; z: gamma; w: how many lights count.
     picture: vec4f,
     lights: array<Light, 8>,
@@ -81,7 +78,7 @@ fn thick(from_height: f32, slope: f32, distance: f32) -> f32 {
 
 // What is left of light that comes from a distance, and the fog's own.
 fn foggy(light: vec3f, gaze: vec3f, distance: f32) -> vec3f {
-    let way = thick(dot(view.eye_high.xyz, view.zenith.xyz), dot(gaze, view.zenith.xyz), distance);
+    let way = thick(dot(view.eye.xyz, view.zenith.xyz), dot(gaze, view.zenith.xyz), distance);
     return mix(view.fog.rgb, light, exp(-way * view.fog.w));
 }
 
@@ -98,8 +95,8 @@ fn written(light: vec3f) -> vec4f {
 fn way_at(position: vec2f) -> vec3f {
     let across = vec2f(2.0, -2.0) * (position * view.picture.xy) + vec2f(-1.0, 1.0);
     return view.forward.xyz
-        + (across.x * view.right.w + view.eye_high.w) * view.right.xyz
-        + (across.y * view.up.w + view.eye_low.w) * view.up.xyz;
+        + (across.x * view.right.w + view.eye.w) * view.right.xyz
+        + (across.y * view.up.w + view.forward.w) * view.up.xyz;
 }
 
 // The parameters of Phong's model at a point.

@@ -177,7 +177,7 @@ impl Octree {
             if !told((tree.work as f64 / limits.work as f64) as f32) {
                 return Err(Halt::Cancelled);
             }
-            // Where no more may be, each open cell may become a leaf.
+            // At the limit each open cell may become a leaf.
             let others = if limits.is_strict { 0 } else { open.len() };
             let room = tree.leaves.len() + others < limits.leaves;
             if !room && limits.is_strict {

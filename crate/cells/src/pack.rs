@@ -34,7 +34,7 @@ const COMPOSED: u64 = 24;
 /// Number of a body's triangles above which their thickened shapes stand for it, if there is little
 /// time.
 const MANY_TRIANGLES: usize = 500;
-/// Most triangles of meshes.
+/// Most triangles of all meshes together.
 const MOST_TRIANGLES: usize = 300_000;
 
 /// Care with which the space around a scene is divided.
@@ -227,7 +227,7 @@ impl Packer<'_> {
             let mut told = |share: f32| told((i as f32 + share.min(1.0)) / count as f32);
             let own: BTreeSet<u32> = surface.element().iter().copied().collect();
             self.out.elements += own.len();
-            // What others left is for those that follow.
+            // Bodies that need little leave more to the others.
             let left = (count - i) as u64;
             let whole = surface.element().len() as u64;
             let mut limits = Limits {
@@ -263,7 +263,8 @@ impl Packer<'_> {
                     self.out.is_cut = true;
                     self.out.work += limits.work;
                     let mesh = facade::mesh(scene, surface, detail, &mut told);
-                    if let Some(mesh) = mesh.filter(|mesh| mesh.triangles.len() <= MOST_TRIANGLES) {
+                    let room = MOST_TRIANGLES.saturating_sub(facets.len());
+                    if let Some(mesh) = mesh.filter(|mesh| mesh.triangles.len() <= room) {
                         self.out.meshed.push(surface.body());
                         self.add_facets(surface, &mesh, &mut facets);
                         continue;

@@ -1,6 +1,6 @@
 //! Draft units, in which a scene's middle is the origin and its radius 1.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// The map from world coordinates to draft units: the scene's middle is the origin, its radius 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,13 +16,11 @@ impl Units {
     /// distances are still `f32`s.
     const FARTHEST: f64 = 1e15;
 
-    /// A world position in draft units, as an `f32` and the rest that it leaves out.
+    /// Returns a world position in draft units.
     #[must_use]
-    pub fn place(self, world: DVec3) -> ([f32; 3], [f32; 3]) {
+    pub fn place(self, world: DVec3) -> [f32; 3] {
         let place = ((world - self.center) / self.radius)
             .clamp(DVec3::splat(-Self::FARTHEST), DVec3::splat(Self::FARTHEST));
-        let high: Vec3 = place.as_vec3();
-        let low = (place - high.as_dvec3()).as_vec3();
-        (high.to_array(), low.to_array())
+        place.as_vec3().to_array()
     }
 }

@@ -153,7 +153,16 @@ impl Fit {
                         // The language has no such deformations: the mesh itself is written.
                         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
                         let name = plain_name(&format!("{stem}-fitted.obj"));
-                        write_mesh(&path.with_file_name(&name), Format::Obj, &mesh, &fitted)?;
+                        let place = path.with_file_name(&name);
+                        if let (Ok(a), Ok(b)) = (place.canonicalize(), self.mesh.canonicalize())
+                            && a == b
+                        {
+                            return Err(format!(
+                                "{} would be written over: write the dataset elsewhere",
+                                place.display()
+                            ));
+                        }
+                        write_mesh(&place, Format::Obj, &mesh, &fitted)?;
                         (name, String::new())
                     };
                     let text = self.dataset(&name, &fitted, &views, [slope, thickness]) + &lines;

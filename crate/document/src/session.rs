@@ -145,7 +145,8 @@ pub struct Session {
     /// Skeletons that the present text waits for.
     unread: Vec<Unread>,
     compile_seconds: f64,
-    film_frame: u32,
+    /// The frame that was chosen, if one was.
+    film_frame: Option<u32>,
     /// The file and byte at which a word is being typed.
     typing: Option<(usize, usize)>,
     /// The messages that are not about that word.
@@ -174,7 +175,7 @@ impl Session {
             stale: false,
             unread: Vec::new(),
             compile_seconds: 0.0,
-            film_frame: 0,
+            film_frame: None,
             typing: None,
             shown: Vec::new(),
             messages_number: 0,
@@ -207,7 +208,7 @@ impl Session {
         self.history = kept.history;
         self.assets = kept.assets;
         self.camera = kept.camera;
-        self.film_frame = 0;
+        self.film_frame = None;
         self.good = None;
         self.picker = OnceCell::new();
         self.note_change();
@@ -643,16 +644,17 @@ impl Session {
         self.is_animated() || self.pictures() > 1
     }
 
-    /// Returns the frame of the film on show, from 0.
+    /// Returns the frame on show, from 0: at first a film's first one, and the last of several
+    /// pictures.
     #[must_use]
     pub fn film_frame(&self) -> u32 {
-        self.film_frame
+        self.film_frame.unwrap_or(self.pictures() as u32 - 1)
     }
 
     /// Shows a frame of the film, from the next [`Session::compile`] on.
     pub fn set_film_frame(&mut self, frame: u32) {
-        if self.film_frame != frame {
-            self.film_frame = frame;
+        if self.film_frame() != frame {
+            self.film_frame = Some(frame);
             self.stale = true;
         }
     }
@@ -728,15 +730,15 @@ impl Session {
             return;
         }
         let start = pool::clock::stopwatch();
-        let mut compiled =
-            rats::compile_at(&self.project, &self.assets, f64::from(self.film_frame));
+        let frame = self.film_frame.unwrap_or_default();
+        let mut compiled = rats::compile_at(&self.project, &self.assets, f64::from(frame));
         self.unread = std::mem::take(&mut compiled.unread);
         if !self.unread.is_empty() {
             return;
         }
         self.stale = false;
-        if !compiled.animated {
-            compiled.choose(self.film_frame as usize);
+        if let Some(frame) = self.film_frame.filter(|_| !compiled.animated) {
+            compiled.choose(frame as usize);
         }
         self.compiled = compiled;
         self.choose_shown();
@@ -807,6 +809,9 @@ mod tests {
             filename second\nshoot\nsphere a 1, 6 0 0\nfilename third\nshoot\n";
         edit(&mut session, text, 0.0);
         assert!(session.has_frames() && !session.is_animated());
+        // At first the last one, which a shape that is added behind it is in.
+        assert_eq!(session.film_frame(), 2);
+        assert_eq!(session.scene().unwrap().elements.len(), 3);
         for (frame, count, name) in [(0, 1, "scene"), (1, 2, "second"), (2, 3, "third")] {
             session.set_film_frame(frame);
             session.compile();

@@ -333,7 +333,7 @@ impl<'a> Run<'a> {
         self.kind = self.options.kind;
         self.slope = (REACH / self.spread(&start)).min(last);
         for _ in 0..MOST_LEVELS {
-            // Where no facet acts the residual is that of F = 0.
+            // Far from all facets the residual is that of F = 0.
             self.scale = 1.0 / self.slope;
             let is_coarse = self.slope < last;
             if !self.level(is_coarse, tell)? {

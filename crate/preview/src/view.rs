@@ -34,8 +34,7 @@ pub(crate) struct View {
     right: [f32; 4],
     up: [f32; 4],
     forward: [f32; 4],
-    eye_high: [f32; 4],
-    eye_low: [f32; 4],
+    eye: [f32; 4],
     picture: [f32; 4],
     lights: [PackedLight; MAX_LIGHTS],
     air: Air,
@@ -54,18 +53,17 @@ impl View {
         let projection = camera.projection(size[0], size[1]);
         let axes = projection.world_from_view;
         let [right, up, forward] = [
-            (axes.x_axis, projection.half_width as f32),
-            (axes.y_axis, projection.half_height as f32),
-            (-axes.z_axis, 0.0),
+            (axes.x_axis, projection.half_width),
+            (axes.y_axis, projection.half_height),
+            (-axes.z_axis, projection.shift[1]),
         ]
-        .map(|(axis, w)| axis.as_vec3().extend(w).to_array());
-        let (high, low) = units.place(projection.eye);
+        .map(|(axis, w)| axis.as_vec3().extend(w as f32).to_array());
+        let [x, y, z] = units.place(projection.eye);
         Self {
             right,
             up,
             forward,
-            eye_high: [high[0], high[1], high[2], projection.shift[0] as f32],
-            eye_low: [low[0], low[1], low[2], projection.shift[1] as f32],
+            eye: [x, y, z, projection.shift[0] as f32],
             picture: [
                 1.0 / size[0] as f32,
                 1.0 / size[1] as f32,
@@ -103,7 +101,7 @@ impl Lights {
         for (slot, light) in packed.iter_mut().zip(&order) {
             let (place, w) = match light.kind {
                 LightKind::Point { position } | LightKind::Spot { position, .. } => {
-                    (units.place(position).0, 1.0)
+                    (units.place(position), 1.0)
                 }
                 LightKind::Distant { towards } => {
                     (towards.normalize_or_zero().as_vec3().to_array(), 0.0)

@@ -144,7 +144,7 @@ fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, St
             Backend::WebGpu => "The window and the draft are drawn with WebGPU",
             Backend::WebGl2 => "The window and the draft are drawn with WebGL2",
             Backend::None => {
-                "No graphics card here: the processor draws the window, with few drafts or none"
+                "No graphics card here: the processor draws the window, without drafts"
             }
         }),
     )];

@@ -72,6 +72,30 @@ fn prepare(name: &str) -> Folder {
     folder
 }
 
+/// The mesh beside a dataset is never the one that is fitted.
+#[test]
+fn a_fit_does_not_write_over_its_mesh() {
+    let folder = prepare("over");
+    let mesh = folder.path("out-fitted.obj");
+    std::fs::copy(folder.path("head.obj"), &mesh).expect("written");
+    let before = std::fs::read(&mesh).expect("there");
+    let arguments = [
+        "fit",
+        &mesh,
+        "--lattice",
+        "2,2,2",
+        "--points",
+        &folder.path("cloud.ply"),
+        "-o",
+        &folder.path("out.rat"),
+    ];
+    let output = sinew(&arguments, "");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("would be written over"), "{said}");
+    assert_ne!(output.status.code(), Some(0));
+    assert!(std::fs::read(&mesh).expect("there") == before);
+}
+
 #[test]
 fn a_bent_head_is_found_again_and_written_as_text_and_mesh() {
     let folder = prepare("fit");

@@ -481,7 +481,7 @@ mod tests {
                 text: text((Kernel::Cauchy, bone)),
             };
             let compiled = rats::compile(&rats::Project { files: vec![file] });
-            // That a short bone's surface is nearer than its radius is said.
+            // A note says that a short bone's surface is nearer than its radius.
             let mut said = compiled.diagnostics.iter();
             assert!(
                 said.all(|said| said.severity == rats::Severity::Note),

@@ -59,21 +59,22 @@ impl Evaluator<'_> {
         let Some(depth) = options.last(&DEPTH) else {
             return;
         };
-        let mut is_kept = true;
+        let (mut is_kept, mut is_soft) = (true, true);
         for part in &mut self.model.parts[first..] {
             let bone = part.element.shape.bone();
             let fits =
                 part.element.flesh.is_some() && bone.is_some_and(|bone| bone.end_radius.is_none());
             part.depth = fits.then_some(depth);
             is_kept &= fits;
+            is_soft &= part.element.flesh.is_some();
         }
         if !is_kept {
             let message = "a `depth` is for soft shapes of one radius: this one keeps its own";
-            self.warn(
-                &command.word_span,
-                message,
-                "give its material a `blobbiness`",
-            );
+            let hint = match is_soft {
+                true => "give it one radius",
+                false => "give its material a `blobbiness`",
+            };
+            self.warn(&command.word_span, message, hint);
         }
     }
 }

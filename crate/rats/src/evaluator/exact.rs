@@ -48,7 +48,8 @@ struct Tip {
 }
 
 /// Factor on the field, and the lengths by which the tips are extended.
-struct Solution {
+#[derive(Clone, Debug)]
+pub struct Solution {
     factor: f64,
     extensions: Vec<f64>,
 }
@@ -344,8 +345,20 @@ impl Joined {
 
     /// Makes the flesh of these bones exact; returns the elements that are to be added, each with
     /// the index of the one that it extends. `None` if that cannot be done, or takes too long.
-    pub fn settle(&self, scene: &mut Scene, left: &mut usize) -> Option<Vec<(usize, Element)>> {
-        let Solution { factor, extensions } = self.solve(left)?;
+    /// `known` holds solutions for other pictures of the text.
+    pub fn settle(
+        &self,
+        scene: &mut Scene,
+        left: &mut usize,
+        known: &mut HashMap<String, Solution>,
+    ) -> Option<Vec<(usize, Element)>> {
+        let bones = self.primitives.iter().map(|primitive| &primitive.skeleton);
+        let key = format!("{:?} {:?}", self.shaping, bones.collect::<Vec<_>>());
+        let solution = match known.get(&key) {
+            Some(solution) => solution.clone(),
+            None => known.entry(key).or_insert(self.solve(left)?).clone(),
+        };
+        let Solution { factor, extensions } = solution;
         let flesh = scene.elements[self.elements[0]].flesh?;
         let mut flesh = scene.flesh.get(flesh as usize)?.clone();
         flesh.strength *= factor;
@@ -459,11 +472,12 @@ fn middle_of_lines(
                 run.push((bone, end));
                 length += bones[bone].measure();
                 let node = nodes[bone][1 - end];
-                let next = at_node[&node].iter().find(|(next, _)| !seen[*next]);
-                match next {
-                    Some(&next) if degrees[&node] == 2 => (bone, end) = next,
-                    _ => break,
-                }
+                // A fork may have very many bones.
+                let mut others = at_node[&node].iter().filter(|_| degrees[&node] == 2);
+                let Some(&next) = others.find(|(next, _)| !seen[*next]) else {
+                    break;
+                };
+                (bone, end) = next;
             }
             if length > longest.0 {
                 longest = (length, run);

@@ -223,11 +223,19 @@ impl Evaluator<'_> {
             if (radius / joined.radius - 1.0).abs() > MOST_OFF {
                 told.insert(element.finish);
                 let [is, wanted] = [radius, joined.radius].map(round_off);
+                let (why, hint) = match radius < joined.radius {
+                    true => (
+                        "it is short for its blobbiness",
+                        "add `exact` to its material, or join it to others",
+                    ),
+                    false => (
+                        "more of its limb is near",
+                        "add `exact` to its material, or make it crisper",
+                    ),
+                };
                 let message = format_args!(
-                    "the surface stands {is} from the middle of this bone, not {wanted}: it is \
-                     short for its blobbiness"
+                    "the surface stands {is} from the middle of this bone, not {wanted}: {why}"
                 );
-                let hint = "add `exact` to its material, or join it to others";
                 self.say_of(element.origin, Severity::Note, message, hint);
             }
         }

@@ -2,7 +2,7 @@
 
 use field::Skeleton;
 use glam::{DVec2, DVec3};
-use scene::{Element, Frame, Shape};
+use scene::{Element, Ends, Frame, Shape};
 use texture::{Image, Method, Site, Solid, Texture, Uv};
 
 /// Most pieces of a bone.
@@ -20,7 +20,21 @@ pub struct Piece {
     pub factor: f64,
 }
 
-/// Cuts an element into pieces; `None` if its shape has none.
+/// Returns the number of pieces of an element; `None` if it stays whole: it is no bone of one
+/// radius with round ends, or a plane, a polygon or a curve.
+pub fn count(element: &Element) -> Option<usize> {
+    let bone = element.shape.bone()?;
+    let is_even = bone.end_radius.is_none() && bone.soft_ends == [Ends::Round; 2];
+    match bone.skeleton {
+        Skeleton::Point { .. } => is_even.then_some(1),
+        Skeleton::Segment { .. } | Skeleton::Arc { .. } | Skeleton::Triangle { .. } => {
+            is_even.then_some(MOST_PIECES)
+        }
+        _ => None,
+    }
+}
+
+/// Cuts an element into pieces ([`count`]); `None` if its shape has none.
 pub fn cut(
     element: &Element,
     frame: Frame,
@@ -44,7 +58,7 @@ pub fn cut(
             pattern.method,
             Method::Image(..) | Method::Solid(Solid::Paint)
         );
-        // Where the texture says nothing the strength stays.
+        // The strength stays beside an image and in gaps of a texture.
         let factor = value.map_or(1.0, |value| match is_coloured {
             true => value.dot(DVec3::new(0.2126, 0.7152, 0.0722)),
             false => value.x,

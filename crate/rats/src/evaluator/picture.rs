@@ -137,7 +137,7 @@ impl Evaluator<'_> {
     }
 
     /// Returns the solid or image that says the strength of a soft shape, if any.
-    fn pattern_of(&self, element: &Element) -> Option<&texture::Texture> {
+    pub(super) fn pattern_of(&self, element: &Element) -> Option<&texture::Texture> {
         let surface = self.palette.surfaces.get(element.finish as usize)?;
         surface.pattern.as_ref().filter(|_| element.flesh.is_some())
     }
@@ -168,8 +168,12 @@ impl Evaluator<'_> {
                            stays as it is";
             self.say_of(origin, Severity::Note, message, "");
         }
-        for joined in exact::join(scene, &fit) {
-            match joined.settle(scene, &mut self.exact_left) {
+        let mut groups = exact::join(scene, &fit);
+        // Those that are dear must not keep cheap ones from being settled.
+        groups.sort_by_key(exact::Joined::len);
+        let mut is_told = false;
+        for joined in groups {
+            match joined.settle(scene, &mut self.exact_left, &mut self.exact_known) {
                 Some(added) => {
                     for (index, element) in added {
                         let placement = placements[index];
@@ -177,12 +181,13 @@ impl Evaluator<'_> {
                         placements.push(placement);
                     }
                 }
+                None if is_told => {}
                 None => {
+                    is_told = true;
                     let origin = scene.elements[joined.elements[0]].origin;
                     let message = "this cannot be made `exact`, or takes too long: it stays as it \
-                                   is";
+                                   is, and perhaps others do";
                     self.warn_of(origin, message, "make fewer shapes of this material");
-                    break;
                 }
             }
         }
@@ -211,10 +216,10 @@ impl Evaluator<'_> {
         let mut whole = None;
         for (element, placement) in elements.into_iter().zip(places) {
             let frame = scene.frame(&element);
-            let pieces = self
-                .pattern_of(&element)
-                .and_then(|pattern| pattern::cut(&element, frame, pattern, &images));
-            let pieces = pieces.filter(|pieces| pieces.len() <= left);
+            let pattern = self.pattern_of(&element);
+            let pattern = pattern.filter(|_| pattern::count(&element).is_some_and(|n| n <= left));
+            let pieces =
+                pattern.and_then(|pattern| pattern::cut(&element, frame, pattern, &images));
             let (Some(pieces), Some(own)) = (pieces, element.flesh) else {
                 if self.pattern_of(&element).is_some() {
                     whole = whole.or(Some(element.origin));
@@ -243,7 +248,8 @@ impl Evaluator<'_> {
         }
         if let Some(origin) = whole {
             let message = "a solid or an image says no strength here: this shape stays as it is";
-            let hint = "it is for points, segments, arcs and triangles, 20,000 pieces in all";
+            let hint = "it is for points, segments, arcs and triangles of one radius with round ends, \
+                        20,000 pieces in all";
             self.say_of(origin, Severity::Note, message, hint);
         }
     }

@@ -4,9 +4,9 @@
 //! picture, too, so that a shape that is added at the end of a text is seen; behind a `reset` it
 //! is not, as a text that clears up after its picture would lose it.
 
-use super::messages;
 use super::model::Part;
 use super::state::Evaluator;
+use super::{messages, pattern};
 use crate::Severity;
 use crate::compiled::{Output, Placement};
 use crate::limits::{MAX_SHOT_WEIGHT, MAX_SHOTS};
@@ -91,7 +91,12 @@ impl<'a> Evaluator<'a> {
         let model = &self.model;
         let air = self.lights.len() + self.air.clouds.len();
         let objects = model.bodies.len() + model.contacts.len();
-        model.parts.len() + self.palette.surfaces.len() + objects + air
+        // Bones are cut when the picture is made.
+        let patterned = model.parts.iter().map(|part| &part.element);
+        let patterned = patterned.filter(|element| self.pattern_of(element).is_some());
+        let pieces: usize = patterned.filter_map(pattern::count).sum();
+        let pieces = pieces.min(pattern::MOST_OF_ALL);
+        model.parts.len() + pieces + self.palette.surfaces.len() + objects + air
     }
 
     /// Says how several pictures are seen in the page, and that one is written over.

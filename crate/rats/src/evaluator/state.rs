@@ -70,6 +70,8 @@ pub struct Evaluator<'a> {
     pub(super) scaled: bool,
     /// Evaluations that flesh which is `exact` may still cost.
     pub(super) exact_left: usize,
+    /// Solutions for exact flesh.
+    pub(super) exact_known: HashMap<String, super::exact::Solution>,
     pub(super) definitions: HashMap<Symbol, (usize, &'a Define)>,
     pub(super) hot: Vec<HotVariable>,
     pub(super) presets: Vec<Preset>,
@@ -139,6 +141,7 @@ impl<'a> Evaluator<'a> {
             sampled: false,
             scaled: false,
             exact_left: super::exact::MOST_EVALUATIONS,
+            exact_known: HashMap::new(),
             definitions: HashMap::new(),
             hot: Vec::new(),
             presets: Vec::new(),

@@ -22,17 +22,18 @@ impl Evaluator<'_> {
         let mut facets: Vec<(Element, Placement, [DVec3; 3])> = Vec::new();
         for (element, placement) in elements.into_iter().zip(places) {
             let origin = element.origin;
-            if known.is_none_or(|(own, _)| own != origin) {
-                known = Some((origin, self.is_mesh(origin)));
-            }
             let corners = match element.shape.skeleton() {
-                Some(Skeleton::Triangle { corners }) => Some(*corners),
+                Some(Skeleton::Triangle { corners }) if element.flesh.is_some() => Some(*corners),
                 _ => None,
             };
+            // Finding a command takes time.
+            if corners.is_some() && known.is_none_or(|(own, _)| own != origin) {
+                known = Some((origin, self.is_mesh(origin)));
+            }
             let is_first = facets.first().is_some_and(|(first, ..)| {
                 (first.origin, first.flesh, first.frame) != (origin, element.flesh, element.frame)
             });
-            let is_facet = matches!(known, Some((_, true))) && element.flesh.is_some();
+            let is_facet = matches!(known, Some((_, true)));
             let corners = corners.filter(|_| is_facet && scene.radius(&element) > 0.0);
             if is_first || corners.is_none() {
                 add_sheets(scene, placements, &mut facets);

@@ -1,24 +1,10 @@
 //! Materials that are `exact`, and the note on those that would have to be.
 
+use crate::softened::{read, scene, value};
 use field::{Kernel, THRESHOLD};
 use glam::DVec3;
-use rats::{Compiled, Project, Severity, compile};
+use rats::Severity;
 use scene::Scene;
-
-fn read(text: &str) -> Compiled {
-    compile(&Project::single(format!("verbose on\neyep 0 0 90\n{text}")))
-}
-
-/// The scene of a text that says nothing.
-fn scene(text: &str) -> Scene {
-    let compiled = read(text);
-    assert_eq!(compiled.diagnostics, [], "{text}");
-    std::sync::Arc::unwrap_or_clone(compiled.scene)
-}
-
-fn value(scene: &Scene, place: DVec3) -> f64 {
-    scene.surfaces()[0].function().jet(place).value
-}
 
 /// Asserts that a surface goes through places.
 fn assert_through(text: &str, places: &[DVec3]) {
@@ -114,7 +100,7 @@ fn a_note_names_the_radius_that_comes_out() {
     let message = "the surface stands 0.100 from the middle of this bone, not 0.500: it is short \
         for its blobbiness";
     assert_eq!(note.message, message);
-    // As far as it is told.
+    // The field is the threshold there.
     let value = value(&told.scene, DVec3::Y * 0.1);
     assert!((value - THRESHOLD).abs() < 0.01, "{value}");
     for text in [
@@ -170,6 +156,67 @@ fn exact_flesh_has_a_limit() {
         .any(|told| told.message.contains("takes too long"));
     assert!(said, "{:?}", told.diagnostics.first());
     assert_eq!(told.scene.elements.len(), 4001);
+}
+
+/// Bones that were settled for one picture are settled for all.
+#[test]
+fn exact_flesh_is_the_same_in_all_pictures() {
+    let mut text = String::from("surface S radius 0.1 blobbiness -0.5 exact\n");
+    for i in 0..5 {
+        text += &format!("cylinder S 0.1 <{i} 0 0> <{i}.5 0.{i} 0>\n");
+    }
+    text += &"shoot\n".repeat(60);
+    let told = read(&text);
+    let said = told.diagnostics.iter().map(|told| &told.message[..]);
+    assert!(
+        said.clone().all(|said| !said.contains("too long")),
+        "{said:?}"
+    );
+    let strengths = |scene: &Scene| -> Vec<u64> {
+        let own = scene.elements.iter().filter_map(|element| element.flesh);
+        own.map(|flesh| scene.flesh[flesh as usize].strength.to_bits())
+            .collect()
+    };
+    let last = strengths(&told.scene);
+    assert!(last.iter().all(|strength| *strength != 1.0_f64.to_bits()));
+    for picture in &told.earlier {
+        assert_eq!(strengths(&picture.scene), last);
+    }
+}
+
+/// Bones that are too dear leave others as they should be, and are told of once.
+#[test]
+fn dear_bones_keep_no_others_from_being_exact() {
+    let text = "surface S radius 0.1 blobbiness -0.5 exact\nsurface T radius 0.5 blobbiness -1\n\
+        for i = 0 to 4000 { cylinder S 0.1 <i 50 0> <i+0.5 50+rand 0> }\n\
+        triad T <-2 -2 0> <2 -2 0> <0 4 0>\n";
+    let told = read(text);
+    let said = told
+        .diagnostics
+        .iter()
+        .filter(|told| told.message.contains("takes too long"));
+    assert_eq!(said.count(), 1);
+    let triad = told
+        .scene
+        .elements
+        .last()
+        .and_then(|element| element.flesh)
+        .unwrap();
+    assert!(told.scene.flesh[triad as usize].strength > 1.0);
+}
+
+/// A note says why a surface is not where its radius says.
+#[test]
+fn a_note_knows_thin_flesh_from_thick() {
+    let torus = read("surface S radius 0.5 blobbiness -0.3\ntorus S 1 0.5 <0 0 0> <0 0 1>\n");
+    let [note] = &torus.diagnostics[..] else {
+        panic!("{:?}", torus.diagnostics);
+    };
+    assert!(
+        note.message.contains("more of its limb is near"),
+        "{}",
+        note.message
+    );
 }
 
 /// A triad is seen without a strength of its own.

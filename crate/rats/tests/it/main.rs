@@ -29,4 +29,6 @@ mod skeleton_files;
 #[cfg(not(target_arch = "wasm32"))]
 mod soft_shapes;
 #[cfg(not(target_arch = "wasm32"))]
+mod softened;
+#[cfg(not(target_arch = "wasm32"))]
 mod strokes;

@@ -1,24 +1,10 @@
 //! Soft shapes of a depth of their own, stretched, and of strengths that textures say.
 
+use crate::softened::{read, scene, value};
 use field::THRESHOLD;
 use glam::DVec3;
-use rats::{Compiled, Project, Severity, compile};
-use scene::{Scene, Shape};
-
-fn read(text: &str) -> Compiled {
-    compile(&Project::single(format!("verbose on\neyep 0 0 90\n{text}")))
-}
-
-/// The scene of a text that says nothing.
-fn scene(text: &str) -> Scene {
-    let compiled = read(text);
-    assert_eq!(compiled.diagnostics, [], "{text}");
-    std::sync::Arc::unwrap_or_clone(compiled.scene)
-}
-
-fn value(scene: &Scene, place: DVec3) -> f64 {
-    scene.surfaces()[0].function().jet(place).value
-}
+use rats::Severity;
+use scene::Shape;
 
 /// An element's depth is read as its material's would be.
 #[test]
@@ -86,7 +72,7 @@ fn balls_can_be_stretched() {
     let even =
         scene("surface S diffuse Red\nsphere S 0.5 <1 0 0>\nscale 2 -2 2\nrotate 1 2 3 40\n");
     assert_eq!(even.elements[0].shape.radius(), 1.0);
-    // What fades as its kernel did at the surface.
+    // It fades at its surface as its kernel does.
     let ball = scene("surface S radius 0.5 blobbiness -1\nsphere S 0.5 <0 0 0>\n");
     let flat =
         scene("surface S radius 0.5 blobbiness -1\nsphere S 0.5 <0 0 0>\nscale 1 1 0.999999\n");
@@ -149,6 +135,39 @@ fn solids_and_images_say_strengths() {
          curve S 0.3 <0 0 0> <1 1 0> <2 -1 0> <3 0 0>\n",
     );
     assert_eq!(curve.diagnostics.len(), 1, "{:?}", curve.diagnostics);
+}
+
+/// Bones whose pieces would not be like the whole stay whole.
+#[test]
+fn tapers_and_flat_ends_have_no_patterns() {
+    for shape in [
+        "cone S 0.5 <-4 0 0> 0.2 <4 0 0>",
+        "cylinder S 0.3 <-4 0 0> <4 0 0> ends flat",
+    ] {
+        let told = read(&format!(
+            "texture T strength marble\nsurface S radius 0.3 blobbiness -2 texture T\n{shape}\n"
+        ));
+        assert_eq!(told.scene.elements.len(), 1, "{shape}");
+        let [note] = &told.diagnostics[..] else {
+            panic!("{shape}: {:?}", told.diagnostics);
+        };
+        assert!(note.message.contains("stays as it is"), "{}", note.message);
+    }
+}
+
+/// Pieces of patterns count where pictures hold too much together.
+#[test]
+fn many_pictures_of_patterns_are_refused() {
+    let text = "texture T strength granite\nsurface S radius 0.3 blobbiness -2 texture T\n\
+        for i = 1 to 320 { cylinder S 0.3 <i 0 0> <i 1 0> }\n"
+        .to_owned()
+        + &"shoot\n".repeat(25);
+    let many = read(&text);
+    let said = many
+        .diagnostics
+        .iter()
+        .any(|told| told.message.starts_with("the pictures hold"));
+    assert!(said, "{:?}", many.diagnostics);
 }
 
 /// A soft mesh with `soft off` is two sheets at its radius, closed along the rim, in place of a

@@ -31,7 +31,7 @@ pub struct Report {
     pub fresh: bool,
     /// Number of diagnostics that are errors.
     pub errors: usize,
-    /// The stand-in for the picture on the screen: `draft` or `mesh`.
+    /// The stand-in for the picture on the screen: `draft` or `made before`.
     pub stand_in: Option<&'static str>,
     /// Number of elements of the scene that the text makes.
     pub elements: usize,

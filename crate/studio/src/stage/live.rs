@@ -228,7 +228,7 @@ mod tests {
         live.want();
         settle(&mut live, &session, 1.0, false);
         let made = live.latest(session.shape(), true).unwrap();
-        // So little that it was done with care.
+        // It is so little that it was made with care at once.
         assert_eq!((made.number, made.detail), (1, Detail::Fine));
         assert!(made.packed.leaves > 50);
         settle(&mut live, &session, 99.0, true);
