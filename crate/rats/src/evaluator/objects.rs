@@ -236,7 +236,10 @@ pub static SCALE: CommandSpec = row("scale", "scale an object")
         triple("x y z", "the scale").with_place(),
         TARGET
     ))
-    .details("Radii grow by the mean of the three factors: round shapes stay round, but for balls, which become ellipsoids.")
+    .details(
+        "Radii grow by the mean of the three factors: round shapes stay round, but for balls, \
+         which become ellipsoids.",
+    )
     .example(clay!("sphere Clay 1, 0 0 0\nscale 2 2 2"));
 
 fn scale<'a>(

@@ -248,8 +248,8 @@ impl Evaluator<'_> {
         }
         if let Some(origin) = whole {
             let message = "a solid or an image says no strength here: this shape stays as it is";
-            let hint = "it is for points, segments, arcs and triangles of one radius with round ends, \
-                        20,000 pieces in all";
+            let hint = "it is for points, segments, arcs and triangles of one radius with round \
+                        ends, 20,000 pieces in all";
             self.say_of(origin, Severity::Note, message, hint);
         }
     }

@@ -172,16 +172,18 @@ fn exact_flesh_is_the_same_in_all_pictures() {
         said.clone().all(|said| !said.contains("too long")),
         "{said:?}"
     );
-    let strengths = |scene: &Scene| -> Vec<u64> {
-        let own = scene.elements.iter().filter_map(|element| element.flesh);
-        own.map(|flesh| scene.flesh[flesh as usize].strength.to_bits())
-            .collect()
-    };
     let last = strengths(&told.scene);
     assert!(last.iter().all(|strength| *strength != 1.0_f64.to_bits()));
     for picture in &told.earlier {
         assert_eq!(strengths(&picture.scene), last);
     }
+}
+
+/// Returns the bits of the strengths of all flesh of a scene.
+fn strengths(scene: &Scene) -> Vec<u64> {
+    let own = scene.elements.iter().filter_map(|element| element.flesh);
+    own.map(|flesh| scene.flesh[flesh as usize].strength.to_bits())
+        .collect()
 }
 
 /// Bones that are too dear leave others as they should be, and are told of once.
