@@ -386,8 +386,8 @@ fn next(result: &Result<Vec<u8>, String>, attempt: &Attempt) -> Option<Attempt> 
         return None;
     }
     Some(Attempt {
-        // There are about as many faces as the tolerance goes into one.
-        tolerance: (attempt.tolerance * off).clamp(2e-5, 5e-2),
+        // There are about as many faces as the tolerance goes into one; at most half a percent.
+        tolerance: (attempt.tolerance * off).clamp(2e-5, 5e-3),
         left: attempt.left - 1,
         before: Some(file.clone()),
         ..*attempt
