@@ -25,7 +25,7 @@ struct Paper {
 
 impl Paper {
     fn new(width: f32, height: f32) -> Self {
-        let project = Project::single(&page::fresh(f64::from(height / width)));
+        let project = Project::single(page::fresh(f64::from(height / width)));
         Self {
             compiled: compile(&project),
             project,
