@@ -43,13 +43,13 @@ test('mouse and keys pull, push, smooth and undo, and the picture shows it', asy
   const sinew = await browser.open({ viewport: { width: 1200, height: 760 } });
   const { page } = sinew;
   const { at, side } = await begin(sinew);
-  assert.deepEqual((await sculpture(sinew)).counts, [578, 1152]);
+  assert.deepEqual((await sculpture(sinew)).counts, [10_002, 20_000]);
   const whole = await sinew.screen('sculpture');
   assert.ok(colours(whole) > 200, 'the ball is shaded');
 
   await drag(sinew, [at[0] + 0.1 * side, at[1] - 0.1 * side], [0.25 * side, -0.2 * side]);
   await until(sinew, ({ depth }) => depth[0] === 1);
-  assert.match(await strokes(sinew), /^strokes 1\nstart sphere 12\npull sphere [\d. ]+ bell [\d.]+ : [-\d., ]+\n$/);
+  assert.match(await strokes(sinew), /^strokes 1\nstart sphere 50\npull sphere [\d. ]+ bell [\d.]+ : [-\d., ]+\n$/);
   await sinew.keep('sculpt pulled');
 
   await page.keyboard.press('p');
@@ -85,7 +85,7 @@ test('mouse and keys pull, push, smooth and undo, and the picture shows it', asy
   await page.mouse.wheel(0, -200);
   await page.keyboard.press('w');
   await page.keyboard.press('d');
-  await until(sinew, ({ counts }) => counts[1] === 4608);
+  await until(sinew, ({ counts }) => counts[1] === 80_000);
   await sinew.still();
   await sinew.keep('sculpt refined');
   assert.equal((await sculpture(sinew)).depth[0], 4);
@@ -94,7 +94,7 @@ test('mouse and keys pull, push, smooth and undo, and the picture shows it', asy
   await sinew.click('sculpt back');
   await until(sinew, (now) => now === null);
   const status = await sinew.finished();
-  assert.deepEqual([status.errors, status.elements], [0, 4608]);
+  assert.deepEqual([status.errors, status.elements], [0, 80_000]);
   assert.ok(colours(await sinew.image()) > 200, 'the sculpture is traced');
   await sinew.keep('sculpt traced');
   // The link carries the strokes.
@@ -171,7 +171,7 @@ test('a finger sculpts and two fingers turn, on a phone', async () => {
   await sinew.click('sculpt back');
   await until(sinew, (now) => now === null);
   const status = await sinew.finished();
-  assert.deepEqual([status.errors, status.elements], [0, 1152]);
+  assert.deepEqual([status.errors, status.elements], [0, 20_000]);
   assert.ok(colours(await sinew.image()) > 200, 'the sculpture is traced');
   await sinew.keep('sculpt phone traced');
   assert.deepEqual(sinew.troubles, []);
@@ -195,9 +195,12 @@ sphere flesh 0.6, 0.9 0.3 0
   await sinew.finished();
   const { name } = await sinew.status();
   await sinew.click('sculpt');
+  await sinew.click('begin coarse');
   await sinew.click('begin this');
   const { counts } = await until(sinew, (now) => now?.name === 'sculpture.strokes');
-  assert.ok(counts[1] > 200, `${counts}`);
+  assert.ok(counts[1] > 7000 && counts[1] < 16_000, `${counts}`);
+  const seen = await sinew.page.evaluate(() => sinew.files()['main.rat']);
+  assert.match(seen, /^framesize 320 240\neyep 0 0 9\nvrp 0 0 0\nvup 0 1 0\nfov 34\n/m, 'seen as the model was');
   assert.match(await strokes(sinew), /^strokes 1\nstart file model\.ply\n$/);
   const { x, y, w, h } = await sinew.place('sculpture');
   const [at, side] = [[x + w / 2, y + h / 2], Math.min(w, h)];

@@ -62,6 +62,32 @@ for (const colorScheme of ['dark', 'light']) {
   });
 }
 
+test('a menu that is higher than the window is reached to its end, and sliders keep to their place', async () => {
+  const sinew = await browser.open({ viewport: { width: 390, height: 844 } });
+  await sinew.load('light White point, position 4 3 5\nsurface s diffuse Gold\nvar C = 0 0 0 hot\nvar a_rather_long_name = 1 hot\nsphere s a_rather_long_name, C\n');
+  await sinew.finished();
+  for (const [width, height] of [[720, 450], [320, 568]]) {
+    await sinew.page.setViewportSize({ width, height });
+    await sinew.click('more');
+    const { x, y, w, h } = await sinew.place('work draw');
+    await sinew.page.mouse.move(x + w / 2, y + h / 2);
+    await sinew.page.mouse.wheel(0, 2000);
+    await sinew.still();
+    await sinew.keep(`menu ${width}x${height}`);
+    const { 'download project': last, more } = await sinew.places();
+    assert.ok(last.y >= more.y + more.h - 1 && last.y + last.h <= height, `${width}×${height}: ${JSON.stringify([last, more])}`);
+    await sinew.page.keyboard.press('Escape');
+    await sinew.click('tab sliders');
+    await sinew.still();
+    await sinew.keep(`pad ${width}x${height}`);
+    const { 'pad C': pad, 'slider C z': rail, sliders } = await sinew.places();
+    assert.ok(pad.x + pad.w <= rail.x && rail.x + rail.w + 40 <= sliders.x + sliders.w + 1, JSON.stringify([pad, rail, sliders]));
+    await sinew.click('tab text');
+  }
+  assert.deepEqual(sinew.troubles, []);
+  await sinew.close();
+});
+
 test('the split keeps its share, and the way back leads to the same', async () => {
   const sinew = await browser.open({ viewport: { width: 1440, height: 900 } });
   const share = async (width, height) => {

@@ -101,7 +101,7 @@ pub fn reference() -> String {
         page += "</p>\n";
     }
     page += "<p><a href=\"#functions\">Functions</a> <a href=\"#textures\">Textures</a> \
-        <a href=\"#waves\">Waves</a> \
+        <a href=\"#waves\">Waves</a> <a href=\"#strokes\">Strokes of sculptures</a> \
         <a href=\"#lights\">Light and air</a> <a href=\"#colours\">Colours</a></p>\n</nav>\n";
     first(&mut page);
     page += RULES;
@@ -116,6 +116,7 @@ pub fn reference() -> String {
         }
     }
     functions(&mut page);
+    strokes(&mut page);
     swatches::section(&mut page, |swatch| {
         fragment(&swatch.name, swatch.text.clone())
     });
@@ -278,6 +279,40 @@ fn command(page: &mut String, spec: &'static CommandSpec, is_ours: bool) {
         }
     }
     page.push_str("</section>\n");
+}
+
+/// Describes texts of strokes.
+fn strokes(page: &mut String) {
+    *page += "<h2 id=\"strokes\">Strokes of sculptures</h2>\n\
+        <p>A file whose name ends in <code>.strokes</code> makes a mesh, which the command \
+        <a href=\"#mesh\"><code>mesh</code></a> shows. Sculpt, in Sinew, writes a line for each \
+        stroke; written by hand they do the same. From the same lines comes the same mesh, bit for \
+        bit.</p>\n<table>\n";
+    for (word, form) in [
+        ("TOOL", sculpt::TOOL),
+        ("DECAY", sculpt::DECAY),
+        ("PATH", sculpt::PATH),
+    ] {
+        let form = escape(form);
+        let _ = writeln!(page, "<tr><td>{word}</td><td><code>{form}</code></td></tr>");
+    }
+    *page += "</table>\n\
+        <p>A tool has three semi-axes, two exponents (1 is round, small is square) and turns about \
+        the axes, in degrees. Motions fade over neighbours by a decay function, within its \
+        range.</p>\n";
+    for command in sculpt::COMMANDS {
+        let forms = command.forms.iter().map(|form| escape(form));
+        let forms = forms.collect::<Vec<_>>().join("</code><br><code>");
+        let (name, meaning) = (command.name, sentence(command.meaning));
+        let _ = writeln!(
+            page,
+            "<section id=\"strokes-{name}\">\n<h3><code>{forms}</code></h3>\n<p>{meaning}.</p>"
+        );
+        if !command.details.is_empty() {
+            let _ = writeln!(page, "<p>{}</p>", mark(command.details));
+        }
+        page.push_str("</section>\n");
+    }
 }
 
 /// Returns the fragment that opens a command's example in the page.

@@ -38,7 +38,7 @@ pub struct Order {
     pub format: Format,
     /// Largest distance between mesh and surface, as a part of the longest side.
     pub tolerance: f64,
-    /// Length of the model's longest side, millimetres.
+    /// Length of the model's longest side, millimetres; 0: a unit of the scene is one.
     pub size: f64,
     /// Whether bodies that overlap become one.
     pub union: bool,
@@ -82,9 +82,10 @@ impl Order {
                 "The tolerance must be from {finest} to {coarsest} of the model's length."
             ));
         }
-        if !(1e-3..=1e6).contains(&self.size) {
+        if self.size != 0.0 && !(1e-3..=1e6).contains(&self.size) {
             return Err(String::from(
-                "The size must be a length in millimetres from 0.001 to 1000000.",
+                "The size must be a length in millimetres from 0.001 to 1000000, or 0 for the \
+                 scene's own units.",
             ));
         }
         if self.rig && self.format != Format::Glb {

@@ -78,7 +78,10 @@ fn bar(
         if !narrow {
             icon::mark(ui);
         }
-        ui.label(RichText::new("Sculpt").size(17.0).color(palette.strong));
+        // The narrowest phones need the room for buttons.
+        if ui.available_width() >= 260.0 {
+            ui.label(RichText::new("Sculpt").size(17.0).color(palette.strong));
+        }
         let new = icon::button(ui, Icon::Add, "Begin another sculpture", true);
         places::note(ui.ctx(), "sculpt new", new.rect);
         if new.clicked() {

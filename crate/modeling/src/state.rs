@@ -272,7 +272,7 @@ impl Sculpting {
     }
 
     /// Looks from a direction; the centre stays.
-    pub(crate) fn look_from(&mut self, toward: DVec3, up: DVec3) {
+    pub fn look_from(&mut self, toward: DVec3, up: DVec3) {
         self.view.look_from(toward, up);
     }
 

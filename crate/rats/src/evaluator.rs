@@ -79,7 +79,10 @@ pub fn run<'a>(
     let symbols = scope.symbols.clone();
     let mut state = Evaluator::new(sources, assets, moment, scope);
     let mut shots = state.run_all();
-    state.note_unused_materials();
+    // A text without shapes is one that is begun.
+    if shots.iter().any(|shot| !shot.scene.elements.is_empty()) {
+        state.note_unused_materials();
+    }
     if let Some(last) = shots.last() {
         state.lint(&last.scene, &last.placements);
     }

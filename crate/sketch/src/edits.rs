@@ -26,6 +26,9 @@ const APART: [f64; 2] = [1.2, 0.85];
 const EGG: ([f64; 3], f64) = ([1.5, 6.0, 14.0], 1.8);
 /// Most radius of an end that is a neck or an ankle, in radii of the brush.
 const THIN: f64 = 1.3;
+/// Most distance from the ground at which a leg ends on it, as a share of its root's height above
+/// the ground: in a view from above, feet drawn at one height of the picture are not at one height.
+const STEP: f64 = 0.45;
 /// Radius at no and at full pressure of a pen, as shares of the brush's.
 const PRESSURE: [f64; 2] = [0.3, 1.5];
 /// Least cosine of the angle between the line of sight and the mirror's normal at which strokes are
@@ -438,7 +441,11 @@ pub fn draw(
         .collect();
     let unit = point / growth;
     let shake = if brush.touch { 5.0 } else { 3.0 };
-    let nodes = crate::fit(&own, shake * unit)?;
+    let mut nodes = crate::fit(&own, shake * unit)?;
+    let is_leg = begin.place.is_some() && (begin.pair || !brush.mirror);
+    if let Some(ground) = lowest(all).filter(|_| is_leg && has_ground(project)) {
+        stand(&mut nodes, to_world, growth, ground);
+    }
     let flipped: Vec<Node> = nodes
         .iter()
         .map(|node| Node {
@@ -493,6 +500,29 @@ pub fn draw(
     let name = crate::free_name(page::texts(project), "DRAWING");
     let text = crate::create(&text, &material, &name, &limbs, grain)?;
     Some(TextEdit::whole(0, text))
+}
+
+/// Whether one of the texts has the ground of the page.
+fn has_ground(project: &Project) -> bool {
+    page::texts(project).any(|text| page::ground(text).is_some())
+}
+
+/// Bends a leg so that it ends on the ground, if it goes down to it or nearly so: the farther from
+/// its root, the more. `ground` is the height in the world.
+fn stand(nodes: &mut [Node], to_world: DAffine3, growth: f64, ground: f64) {
+    let high = |node: &Node| to_world.transform_point3(node.position).y;
+    let [first, .., last] = &*nodes else { return };
+    let (root, tip) = (high(first), high(last) - last.radius * growth);
+    let is_lowest = nodes.iter().all(|node| high(node) >= high(last));
+    let off = ground - tip;
+    if !is_lowest || off.abs() > STEP * (root - ground) {
+        return;
+    }
+    let up = to_world.inverse().transform_vector3(DVec3::Y * off);
+    let pieces = (nodes.len() - 1) as f64;
+    for (number, node) in nodes.iter_mut().enumerate() {
+        node.position += up * (number as f64 / pieces);
+    }
 }
 
 /// Returns the start of a curve that grows from a skeleton.
@@ -582,6 +612,14 @@ fn number(x: f64, grain: f64) -> String {
     if short == "-0" { "0" } else { short }.to_owned()
 }
 
+/// Returns the height of the lowest flesh; `None` if there is none.
+fn lowest(all: &[Drawn]) -> Option<f64> {
+    let lows = all.iter().flat_map(Drawn::limbs).flatten();
+    lows.map(|(place, radius)| place.y - radius)
+        .min_by(f64::total_cmp)
+        .filter(|low| low.is_finite())
+}
+
 /// Returns the text with the ground of the page moved to the lowest flesh, so that the creature
 /// stands on it. Unchanged if the text has another ground.
 #[must_use]
@@ -589,14 +627,10 @@ pub fn put_on_ground(text: &str, all: &[Drawn]) -> String {
     let Some(range) = page::ground(text) else {
         return text.to_owned();
     };
-    let lows = all.iter().flat_map(Drawn::limbs).flatten();
-    let low = lows
-        .map(|(place, radius)| place.y - radius)
-        .fold(f64::INFINITY, f64::min);
-    if !low.is_finite() {
+    let Some(low) = lowest(all) else {
         return text.to_owned();
-    }
-    let height = number(low, 0.1);
+    };
+    let height = number(low, 0.01);
     format!("{}{height}{}", &text[..range.start], &text[range.end..])
 }
 

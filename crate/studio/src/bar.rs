@@ -9,7 +9,7 @@ use crate::wish::{
 };
 use crate::{download, places, theme};
 use document::work::{Origin, Work};
-use egui::{Align, Button, Layout, RichText, TextEdit, Ui};
+use egui::{Align, Button, Layout, RichText, ScrollArea, TextEdit, Ui};
 
 /// Shows the bar.
 pub fn show(page: &Page, film: &FilmPanel, ui: &mut Ui, narrow: bool, wishes: &mut Wishes) {
@@ -200,43 +200,51 @@ fn name(ui: &mut Ui, work: &Work, wishes: &mut Wishes) {
 }
 
 fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
-    let choice = page.settings.theme;
     let button = icon::button(ui, Icon::More, "More", true);
     places::note(ui.ctx(), "more", button.rect);
+    // Where the window is lower than the menu, the menu scrolls.
+    let room = ui.ctx().content_rect().bottom() - button.rect.bottom() - 24.0;
     egui::Popup::menu(&button).show(|ui| {
-        ui.set_min_width(190.0);
-        whole_work(ui, wishes);
-        ui.separator();
-        if has_short_bar(ui) {
-            lab(ui, wishes);
-            if ui.button("See the whole model").clicked() {
-                wishes.push(ViewWish::ShowAll);
-            }
-            if ui.button("Camera of the text").clicked() {
-                wishes.push(ViewWish::SetCamera(None));
-            }
-        }
-        let sculpt = ui.button("Sculpt");
-        places::note(ui.ctx(), "sculpt", sculpt.rect);
-        if sculpt.clicked() {
-            wishes.push(SculptWish::Show);
-        }
-        if ui.button("How it works").clicked() {
-            wishes.push(Wish::Open(Dialog::Help));
-        }
-        ui.separator();
-        download::label(ui, "Download");
-        download::menu(page, film.formats(), ui, wishes);
-        ui.separator();
-        for theme in [
-            theme::Choice::System,
-            theme::Choice::Dark,
-            theme::Choice::Light,
-        ] {
-            let label = format!("Colours: {}", theme::label(theme));
-            if ui.selectable_label(choice == theme, label).clicked() {
-                wishes.push(Setting::Theme(theme));
-            }
-        }
+        let rows = ScrollArea::vertical().max_height(room);
+        rows.show(ui, |ui| rest(page, film, ui, wishes));
     });
+}
+
+/// Shows the menu of a narrow page: all that its bar has no room for.
+fn rest(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
+    let choice = page.settings.theme;
+    ui.set_min_width(190.0);
+    whole_work(ui, wishes);
+    ui.separator();
+    if has_short_bar(ui) {
+        lab(ui, wishes);
+        if ui.button("See the whole model").clicked() {
+            wishes.push(ViewWish::ShowAll);
+        }
+        if ui.button("Camera of the text").clicked() {
+            wishes.push(ViewWish::SetCamera(None));
+        }
+    }
+    let sculpt = ui.button("Sculpt");
+    places::note(ui.ctx(), "sculpt", sculpt.rect);
+    if sculpt.clicked() {
+        wishes.push(SculptWish::Show);
+    }
+    if ui.button("How it works").clicked() {
+        wishes.push(Wish::Open(Dialog::Help));
+    }
+    ui.separator();
+    download::label(ui, "Download");
+    download::menu(page, film.formats(), ui, wishes);
+    ui.separator();
+    for theme in [
+        theme::Choice::System,
+        theme::Choice::Dark,
+        theme::Choice::Light,
+    ] {
+        let label = format!("Colours: {}", theme::label(theme));
+        if ui.selectable_label(choice == theme, label).clicked() {
+            wishes.push(Setting::Theme(theme));
+        }
+    }
 }

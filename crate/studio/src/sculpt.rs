@@ -17,17 +17,23 @@ use document::mesh_export::Order;
 use document::project_file::Project;
 use document::session::Session;
 use egui::{Button, Context, RichText, Ui};
+use glam::DVec3;
 use modeling::{Flesh, Outside, Sculpting};
 use rats::{Asset, File, TextEdit, is_strokes};
+use scene::Camera;
+use wish::Attempt;
 
-/// Shapes to begin with: name, and the line of the text.
+/// Shapes to begin with, each of some 20,000 faces: name, and the line of the text.
 const SHAPES: [(&str, &str); 5] = [
-    ("Ball", "start sphere 12"),
-    ("Box", "start box 8"),
-    ("Cylinder", "start cylinder 8"),
-    ("Tetrahedron", "start tetrahedron 16"),
-    ("Plane", "start plane 24"),
+    ("Ball", "start sphere 50"),
+    ("Box", "start box 40"),
+    ("Cylinder", "start cylinder 40"),
+    ("Tetrahedron", "start tetrahedron 70"),
+    ("Plane", "start plane 100"),
 ];
+
+/// Details of the model's mesh: name, and number of faces.
+const DETAILS: [(&str, usize); 3] = [("Coarse", 10_000), ("Medium", 30_000), ("Fine", 100_000)];
 
 /// Camera and lights of a new work.
 const STUDIO: &str = "\
@@ -165,8 +171,25 @@ impl SculptPanel {
             SculptWish::New => page.dialog = Some(Dialog::Sculpt),
             SculptWish::Open(name) => self.open(&name, page),
             SculptWish::Begin { start, is_new } => begin(page, &start, is_new, at.now),
-            SculptWish::Model => mesh_model(page, at.now),
-            SculptWish::Mesh(result) => sculpt_mesh(page, result, at.now),
+            SculptWish::Model(faces) => {
+                page.dialog = None;
+                page.tell("The model is being meshed; then you can sculpt it.", at.now);
+                let first = Attempt {
+                    faces,
+                    tolerance: Order::default().tolerance,
+                    left: 2,
+                    before: None,
+                };
+                mesh_model(page, first);
+            }
+            SculptWish::Mesh(result, attempt) => match next(&result, &attempt) {
+                Some(next) => mesh_model(page, next),
+                None => sculpt_mesh(
+                    page,
+                    result.or_else(|why| attempt.before.ok_or(why)),
+                    at.now,
+                ),
+            },
             SculptWish::SetStrokes { name, text, mesh } => {
                 set_strokes(page, &name, text, mesh.map(|mesh| *mesh), at.now);
             }
@@ -197,7 +220,10 @@ impl SculptPanel {
         }
         let start = start_of(session, name, &file.text);
         match Sculpting::open(name, &file.text, &mut |name| load(start.as_ref(), name)) {
-            Ok(place) => {
+            Ok(mut place) => {
+                // From where the model is seen.
+                let camera = session.camera();
+                place.look_from(camera.eye - camera.target, camera.up);
                 page.notice = None;
                 self.open = Some(Box::new(place));
             }
@@ -330,13 +356,12 @@ fn begin(page: &mut Page, start: &str, is_new: bool, now: f64) {
 }
 
 /// Begins to mesh the model, which is sculpted when the mesh is there.
-fn mesh_model(page: &mut Page, now: f64) {
-    page.dialog = None;
+fn mesh_model(page: &mut Page, attempt: Attempt) {
     let order = Order {
         format: mesh::Format::Ply,
-        tolerance: 1.2e-2,
-        // As large as the shapes to begin with.
-        size: 2.0,
+        tolerance: attempt.tolerance,
+        // In the model's own units, so that its camera sees the clay.
+        size: 0.0,
         union: true,
         ..Order::default()
     };
@@ -345,16 +370,90 @@ fn mesh_model(page: &mut Page, now: f64) {
         requests.ask(Request::Late {
             of,
             what: String::from("The mesh to be sculpted"),
-            wish: SculptWish::Mesh(result).into(),
+            wish: SculptWish::Mesh(result, attempt).into(),
         });
     });
-    page.tell("The model is being meshed; then you can sculpt it.", now);
     page.parts.requests.ask(Request::Mesh(order, taker));
+}
+
+/// Returns the attempt that follows one whose mesh has far too many or too few faces; `None` if
+/// the mesh will do, or there is no better one.
+fn next(result: &Result<Vec<u8>, String>, attempt: &Attempt) -> Option<Attempt> {
+    let file = result.as_ref().ok()?;
+    let (count, wanted) = (face_count(file)? as f64, attempt.faces as f64);
+    let off = count / wanted;
+    if attempt.left == 0 || (0.7..1.6).contains(&off) {
+        return None;
+    }
+    Some(Attempt {
+        // There are about as many faces as the tolerance goes into one; at most half a percent.
+        tolerance: (attempt.tolerance * off).clamp(2e-5, 5e-3),
+        left: attempt.left - 1,
+        before: Some(file.clone()),
+        ..*attempt
+    })
+}
+
+/// Returns the number of faces that the head of a PLY file tells.
+fn face_count(file: &[u8]) -> Option<usize> {
+    let head = String::from_utf8_lossy(&file[..file.len().min(1000)]);
+    let line = head
+        .lines()
+        .find_map(|line| line.strip_prefix("element face "));
+    line?.trim().parse().ok()
+}
+
+/// Returns the lines of a camera, and of two lights beside it.
+fn studio_of(camera: &Camera, frame: [u32; 2]) -> String {
+    let [width, height] = frame;
+    let axes = camera.projection(width, height).world_from_view;
+    let far = camera.eye.distance(camera.target).max(f64::MIN_POSITIVE);
+    let decimals = libm::floor(4.0 - libm::log10(far)).clamp(0.0, 12.0) as usize;
+    let write = |place: DVec3| place.to_array().map(|x| short(x, decimals)).join(" ");
+    let light = |x, y, z| write(camera.target + axes * (DVec3::new(x, y, z) * far));
+    format!(
+        "\
+# The mesh is made by strokes of tools: Sculpt, above, goes on with it.
+framesize {width} {height}
+eyep {}
+vrp {}
+vup {}
+fov {}
+sample 2
+background 0.86 0.88 0.9
+light White point, position {}
+light <0.35 0.35 0.42> point, position {}
+",
+        write(camera.eye),
+        write(camera.target),
+        camera
+            .up
+            .normalize_or(DVec3::Y)
+            .to_array()
+            .map(|x| short(x, 4))
+            .join(" "),
+        short(camera.fov, 3),
+        light(-0.2, 0.75, 1.45),
+        light(-1.0, 0.5, 0.0),
+    )
+}
+
+/// Writes a number with so many decimals, or fewer where the last ones are 0.
+fn short(x: f64, decimals: usize) -> String {
+    let text = format!("{x:.decimals$}");
+    let text = match text.split_once('.') {
+        Some(_) => text.trim_end_matches('0').trim_end_matches('.'),
+        None => &text,
+    };
+    String::from(if text == "-0" { "0" } else { text })
 }
 
 /// Replaces the texts by the mesh of the model, as one undo step, and opens it.
 fn sculpt_mesh(page: &mut Page, result: Result<Vec<u8>, String>, now: f64) {
     let session = &mut page.work.session;
+    let camera = session.camera();
+    let frame = session.scene().map(|scene| scene.settings.frame);
+    let studio = studio_of(&camera, frame.unwrap_or([640, 480]));
     let result = result.and_then(|bytes| {
         let asset = document::intake::asset(&session.free_name("model.ply"), bytes)?;
         let strokes = File {
@@ -367,7 +466,7 @@ fn sculpt_mesh(page: &mut Page, result: Result<Vec<u8>, String>, now: f64) {
         let diffuse = if is_coloured { "White" } else { CLAY };
         let main = File {
             name: session.project().files[0].name.clone(),
-            text: format!("{STUDIO}\n{}", lines("", FIRST, diffuse)),
+            text: format!("{studio}\n{}", lines("", FIRST, diffuse)),
         };
         session
             .put_assets(vec![asset])
@@ -375,7 +474,7 @@ fn sculpt_mesh(page: &mut Page, result: Result<Vec<u8>, String>, now: f64) {
             .map_err(|refused| refused.to_string())
     });
     if page.accept(result).is_some() {
-        // The clay has a size and a place of its own, which the old camera may not see.
+        // The text has the camera that was looked from.
         page.work.session.set_camera(None);
         page.wish(TextWish::ShowFile(0));
         page.wish(ViewWish::LetGo);
@@ -456,13 +555,24 @@ pub fn ask(page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
     ui.data_mut(|data| data.insert_temp(id, here));
     heading(ui, "This model");
     ui.horizontal_wrapped(|ui| {
+        let id = egui::Id::unique("sculpt detail");
+        let mut faces = ui.data(|data| data.get_temp(id)).unwrap_or(DETAILS[1].1);
+        for (name, count) in DETAILS {
+            let tip = format!("About {} faces", document::numerals::count(count as u64));
+            let row = ui.selectable_label(faces == count, name).on_hover_text(tip);
+            places::note(ui.ctx(), format!("begin {}", name.to_lowercase()), row.rect);
+            if row.clicked() {
+                faces = count;
+            }
+        }
+        ui.data_mut(|data| data.insert_temp(id, faces));
         let label = Button::new(RichText::new("Sculpt this").size(14.5));
         let button = ui
             .add(label)
             .on_hover_text("The model is meshed first; undo brings its text back");
         places::note(ui.ctx(), "begin this", button.rect);
         if button.clicked() {
-            wishes.push(SculptWish::Model);
+            wishes.push(SculptWish::Model(faces));
         }
     });
     let session = &page.work.session;
@@ -542,6 +652,26 @@ mod tests {
     }
 
     #[test]
+    fn a_mesh_of_too_few_or_too_many_faces_is_made_anew() {
+        let file = |faces| format!("ply\nformat ascii 1.0\nelement face {faces}\nend_header\n");
+        let attempt = |left| Attempt {
+            faces: 30_000,
+            tolerance: 1e-3,
+            left,
+            before: None,
+        };
+        let after = |faces, left| next(&Ok(file(faces).into_bytes()), &attempt(left));
+        assert_eq!(after(30_000, 2), None);
+        assert_eq!(after(3_000, 0), None);
+        let finer = after(3_000, 2).unwrap();
+        assert!((finer.tolerance - 1e-4).abs() < 1e-12 && finer.left == 1);
+        assert_eq!(finer.before, Some(file(3_000).into_bytes()));
+        assert!(after(90_000, 1).unwrap().tolerance > 2e-3);
+        assert_eq!(next(&Ok(b"none".to_vec()), &attempt(1)), None);
+        assert_eq!(next(&Err(String::from("no")), &finer), None);
+    }
+
+    #[test]
     fn a_new_work_compiles_cleanly_with_each_shape() {
         for (name, start) in SHAPES {
             let main = format!("{STUDIO}{}", lines("", "a.strokes", CLAY));
@@ -555,8 +685,21 @@ mod tests {
                 );
             }
             let faces = compiled.scene.elements.len();
-            assert!((700..1300).contains(&faces), "{name}: {faces}");
+            assert!((19_000..=20_000).contains(&faces), "{name}: {faces}");
         }
+        // The studio of a model is seen as the model was.
+        let camera = Camera {
+            eye: DVec3::new(1.0, 0.25, 30.0),
+            target: DVec3::new(0.0, 0.5, -1.0),
+            up: DVec3::Z,
+            fov: 12.5,
+            ..Camera::default()
+        };
+        let main = studio_of(&camera, [300, 200]) + &lines("", "a.strokes", CLAY);
+        let compiled = compile(&main, "strokes 1\nstart sphere 3\n");
+        assert_eq!(compiled.diagnostics, []);
+        assert_eq!(compiled.scene.camera, camera);
+        assert_eq!(compiled.scene.settings.frame, [300, 200]);
         let text = "surface Clay, diffuse Red\nmesh Clay, a.strokes\n";
         let strokes = "strokes 1\nstart sphere 3\n";
         let soft = grow(text, "a.strokes", Flesh::Convolved, 0.4).unwrap();

@@ -124,10 +124,19 @@ pub fn show(
                 .into_iter()
                 .chain(on_screen)
             {
-                let fact = ui.add(
-                    egui::Label::new(RichText::new(text).color(palette.weak).size(12.5))
-                        .sense(Sense::hover()),
+                let text = RichText::new(text).color(palette.weak).size(12.5);
+                let text = egui::WidgetText::from(text);
+                let galley = text.into_galley(
+                    ui,
+                    Some(egui::TextWrapMode::Extend),
+                    f32::INFINITY,
+                    egui::TextStyle::Body,
                 );
+                // What has no room beside the state is left out.
+                if galley.size().x > ui.available_width() {
+                    break;
+                }
+                let fact = ui.add(egui::Label::new(galley).sense(Sense::hover()));
                 fact.on_hover_text(tip);
                 ui.add_space(4.0);
             }

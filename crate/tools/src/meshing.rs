@@ -22,7 +22,7 @@ pub struct MeshScene {
     pub format: Option<Format>,
     /// Name of the file without its ending.
     pub name: String,
-    /// Length of the model's longest side in the file, millimetres.
+    /// Length of the model's longest side in the file, millimetres; 0: a unit of the scene is one.
     pub size: f64,
     /// Joints for the file, if it is GLB.
     pub rig: Option<Poses>,
@@ -47,7 +47,8 @@ pub struct WriteMesh {
     pub format: Format,
     /// Name of the file without its ending.
     pub name: String,
-    /// Length of the longest side of all parts' box in the file, millimetres.
+    /// Length of the longest side of all parts' box in the file, millimetres; 0: a unit of the
+    /// scene is one.
     pub size: f64,
     /// Joints for the file, if it is GLB.
     pub rig: Option<Poses>,
@@ -164,7 +165,7 @@ impl Job for MeshScene {
             &mut mesher::Progress::new(&mut |step| progress.report(MESHING * step.fraction)),
         )
         .map_err(|error| error.to_string())?;
-        let millimetres = size / model.bounds().size().max_element();
+        let millimetres = unit(size, &model.bounds());
         let facts = MeshFacts::of(&model, millimetres);
         if progress.report(MESHING).is_break() {
             return Err(mesher::MeshError::Cancelled.to_string());
@@ -210,15 +211,24 @@ impl Job for WriteMesh {
         let export = Export {
             name,
             parts: file_parts(parts),
-            millimetres: size / bounds.size().max_element(),
+            millimetres: unit(size, &bounds),
         };
         write_export(&export, format, rig.as_ref())
     }
 }
 
+/// Returns the millimetres of a scene's unit where its longest side has so many, or 0 for one each.
+fn unit(size: f64, bounds: &Aabb) -> f64 {
+    if size > 0.0 {
+        size / bounds.size().max_element()
+    } else {
+        1.0
+    }
+}
+
 /// Checks the wishes for a file.
 fn check(size: f64, format: Option<Format>, rig: Option<&Poses>) -> Result<(), String> {
-    let is_sound = MILLIMETRES.contains(&size);
+    let is_sound = size == 0.0 || MILLIMETRES.contains(&size);
     if !is_sound {
         return Err(format!(
             "the size must be a number of millimetres from {:e} to {:e}",

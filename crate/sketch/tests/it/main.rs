@@ -1,4 +1,5 @@
 //! The tests of `sketch`, as one program: a module for each subject.
 
 mod cuts;
+mod feet;
 mod texts;

@@ -2,6 +2,19 @@
 
 use modeling::Flesh;
 
+/// A mesh of the model that was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// The number of faces that it should have.
+    pub faces: usize,
+    /// Its tolerance, as a part of the model's longest side.
+    pub tolerance: f64,
+    /// The number of attempts that may follow.
+    pub left: u32,
+    /// The mesh of the attempt before.
+    pub before: Option<Vec<u8>>,
+}
+
 /// Wishes about sculptures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SculptWish {
@@ -18,10 +31,10 @@ pub enum SculptWish {
         /// Whether it is a work of its own.
         is_new: bool,
     },
-    /// Mesh the model, and sculpt the mesh.
-    Model,
+    /// Mesh the model by about so many faces, and sculpt the mesh.
+    Model(usize),
     /// Sculpt the mesh of the model, a PLY file, or say why there is none.
-    Mesh(Result<Vec<u8>, String>),
+    Mesh(Result<Vec<u8>, String>, Attempt),
     /// Replace a text of strokes.
     SetStrokes {
         /// The file's name.

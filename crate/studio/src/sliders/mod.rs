@@ -41,7 +41,9 @@ impl Sliders {
             .map(|variable| variable.name.chars().count())
             .max()
             .unwrap_or(0);
-        let name_width = (widest as f32 * 8.3 + 2.0).clamp(32.0, 130.0);
+        // In a narrow place most of a row is left for the values.
+        let most = (0.3 * ui.available_width()).clamp(32.0, 130.0);
+        let name_width = (widest as f32 * 8.3 + 2.0).clamp(32.0, most);
         for variable in hot {
             ui.push_id((variable.file, &variable.name), |ui| {
                 ui.horizontal(|ui| {

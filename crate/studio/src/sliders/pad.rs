@@ -4,8 +4,8 @@
 
 use crate::{places, slider, theme};
 use egui::{
-    DragValue, EventFilter, Key, Pos2, Rect, Response, Role, Sense, Slider, Stroke, Ui, WidgetInfo,
-    pos2, vec2,
+    DragValue, EventFilter, Key, Pos2, Rect, Response, Role, Sense, Slider, Stroke, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
 };
 use rats::{HotValue, hot};
 
@@ -29,6 +29,12 @@ impl Bounds {
 
 /// Space between the three fields.
 const GAP: f32 = 3.0;
+/// Width of the slider for z.
+const RAIL: f32 = 18.0;
+/// Width of an axis's letter and the space behind it.
+const AXIS: f32 = 16.0;
+/// Width of a field.
+const FIELD: f32 = 68.0;
 
 /// Returns the height of the controls.
 #[must_use]
@@ -45,12 +51,15 @@ pub fn show(
 ) -> (bool, Option<[f64; 3]>) {
     let before = vector;
     let side = height(ui);
-    let square = square(ui, name, &mut vector, bounds, side);
+    // The square gives way to the fields where the row is narrow.
+    let beside = RAIL + AXIS + FIELD + 3.0 * ui.spacing().item_spacing.x;
+    let width = (ui.available_width() - beside).clamp(48.0, side);
+    let square = square(ui, name, &mut vector, bounds, vec2(width, side));
     let (low, high) = bounds.range;
     let rail = ui.scope(|ui| {
         slider::colours(ui);
         ui.spacing_mut().slider_width = side;
-        ui.spacing_mut().interact_size.y = 18.0;
+        ui.spacing_mut().interact_size.y = RAIL;
         let mut z = vector[2].clamp(low, high);
         let rail = ui.add(
             Slider::new(&mut z, low..=high)
@@ -75,7 +84,8 @@ pub fn show(
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 6.0;
                 ui.weak(axis);
-                let size = vec2(68.0, ui.spacing().interact_size.y);
+                let width = ui.available_width().clamp(36.0, FIELD);
+                let size = vec2(width, ui.spacing().interact_size.y);
                 let field = DragValue::new(value)
                     .speed((high - low) / 500.0)
                     .max_decimals(4)
@@ -93,8 +103,8 @@ pub fn show(
 }
 
 /// Shows the square with a dot at x and y. Changes the vector by pointer, keys and wheel.
-fn square(ui: &mut Ui, name: &str, vector: &mut [f64; 3], bounds: Bounds, side: f32) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click_and_drag());
+fn square(ui: &mut Ui, name: &str, vector: &mut [f64; 3], bounds: Bounds, size: Vec2) -> Response {
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     places::note(ui.ctx(), format!("pad {name}"), rect);
     if let Some(at) = response.interact_pointer_pos()
         && (response.dragged() || response.clicked())

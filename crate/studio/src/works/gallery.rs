@@ -9,6 +9,7 @@ use crate::thumbnail::Thumbnail;
 use crate::wish::{Wish, Wishes, WorkWish};
 use document::examples;
 use document::storage::Entry;
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align2, Button, Color32, CornerRadius, FontId, Rect, RichText, ScrollArea, Sense, TextEdit, Ui,
     Vec2, pos2, vec2,
@@ -140,13 +141,11 @@ impl Gallery {
             FontId::proportional(14.0),
             palette.strong,
         );
-        painter.text(
-            text + vec2(0.0, 18.0),
-            Align2::LEFT_TOP,
-            example.about,
-            FontId::proportional(11.5),
-            palette.weak,
-        );
+        let about = FontId::proportional(11.5);
+        let mut about = LayoutJob::simple_singleline(example.about.into(), about, palette.weak);
+        about.wrap = TextWrapping::truncate_at_width(width - 20.0);
+        let about = painter.layout_job(about);
+        painter.galley(text + vec2(0.0, 18.0), about, palette.weak);
         theme::ring(ui, &response);
         if response.gained_focus() {
             response.scroll_to_me(None);
@@ -215,6 +214,8 @@ impl Gallery {
                         .size(12.5),
                 );
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    // The scroll bar lies there.
+                    ui.add_space(6.0);
                     if is_open {
                         ui.label(RichText::new("open").color(palette.weak).size(12.5));
                         return;

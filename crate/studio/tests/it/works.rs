@@ -133,7 +133,7 @@ fn files_that_are_read_late_are_left_out() {
 fn mesh_to_be_sculpted_opens_in_its_work_only() {
     let mut window = Window::with_text(TEXT);
     window.steps(3);
-    ask(&mut window, SculptWish::Model);
+    ask(&mut window, SculptWish::Model(10_000));
     window.load(OTHER);
     until(&mut window, "the mesh", |window| {
         is_told(window, "came after another work")
@@ -142,7 +142,7 @@ fn mesh_to_be_sculpted_opens_in_its_work_only() {
     assert!(window.parts.outbox.borrow().sculpture.is_none());
 
     // In its own work it replaces the texts, and is opened as soon as its file is read.
-    ask(&mut window, SculptWish::Model);
+    ask(&mut window, SculptWish::Model(10_000));
     until(&mut window, "the sculpture", |window| {
         window.parts.outbox.borrow().sculpture.is_some()
     });

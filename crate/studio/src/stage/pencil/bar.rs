@@ -16,7 +16,9 @@ pub const HEIGHT: f32 = 60.0;
 /// Shows the button on the picture that begins drawing.
 pub fn start(ui: &mut Ui, picture: Rect, wishes: &mut Wishes) {
     let palette = theme::palette(ui.visuals());
-    let size = vec2(92.0, 40.0);
+    // A small picture is covered by no more than the pencil.
+    let has_word = picture.height() >= 240.0;
+    let size = vec2(if has_word { 92.0 } else { 40.0 }, 40.0);
     if picture.width() < size.x + 40.0 || picture.height() < size.y + 40.0 {
         return;
     }
@@ -41,16 +43,18 @@ pub fn start(ui: &mut Ui, picture: Rect, wishes: &mut Wishes) {
     icon::paint(
         painter,
         Icon::Pencil,
-        place.left_center() + vec2(24.0, 0.0),
+        place.left_center() + vec2(if has_word { 24.0 } else { 20.0 }, 0.0),
         ink,
     );
-    painter.text(
-        place.left_center() + vec2(39.0, 0.0),
-        egui::Align2::LEFT_CENTER,
-        "Draw",
-        FontId::proportional(15.5),
-        palette.on_accent,
-    );
+    if has_word {
+        painter.text(
+            place.left_center() + vec2(39.0, 0.0),
+            egui::Align2::LEFT_CENTER,
+            "Draw",
+            FontId::proportional(15.5),
+            palette.on_accent,
+        );
+    }
     if response
         .on_hover_text("Draw a creature: strokes become limbs (D)")
         .on_hover_cursor(egui::CursorIcon::PointingHand)
