@@ -226,7 +226,7 @@ fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
         }
         ui.separator();
         download::label(ui, "Download");
-        download::menu(page, film.formats(), ui, wishes);
+        download::menu(page, film, ui, wishes);
         ui.separator();
         for theme in [
             theme::Choice::System,
