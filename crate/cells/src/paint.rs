@@ -46,6 +46,12 @@ pub(crate) fn paint(
     painter.found
 }
 
+/// Returns the material that all have, if there is one.
+fn shared(mut finishes: impl Iterator<Item = u32>) -> Option<u32> {
+    let first = finishes.next()?;
+    finishes.all(|finish| finish == first).then_some(first)
+}
+
 impl Painter<'_> {
     /// Finds the materials of triangles that lie together, among the terms of a part.
     fn paint(&mut self, among: Option<&Part>, middles: &mut [(u32, DVec3)]) {
@@ -96,12 +102,10 @@ impl Painter<'_> {
 
     /// Returns the material that all terms of a part have, if there is one.
     fn only(&self, part: Option<&Part>) -> Option<u32> {
-        let all: &mut dyn Iterator<Item = u32> = match part {
-            Some(part) => &mut part.terms.iter().map(|term| self.finishes[*term as usize]),
-            None => &mut self.finishes.iter().copied(),
-        };
-        let first = all.next()?;
-        all.all(|finish| finish == first).then_some(first)
+        match part {
+            Some(part) => shared(part.terms.iter().map(|i| self.finishes[*i as usize])),
+            None => shared(self.finishes.iter().copied()),
+        }
     }
 
     /// Returns the material with the largest share of the function at a place.
