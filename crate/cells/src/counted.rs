@@ -11,7 +11,7 @@ const PLAIN: u64 = 4;
 /// Work of bounds on a term.
 const BOUNDS: u64 = 2;
 /// Work of an evaluation of a function that is no sum, for each of its elements.
-const COMPOSED: u64 = 64;
+const COMPOSED: u64 = 400;
 
 /// A body's function that counts what it is asked for.
 pub(crate) struct Counted<'a> {

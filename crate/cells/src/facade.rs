@@ -11,14 +11,16 @@ use scene::{Scene, Surface};
 /// Most side of cells where a surface bends, in diagonals of its skeleton's box.
 const MOST: f64 = 1.0 / 50.0;
 /// Side of the cells of the first mesh, over the least.
-const COARSE: f64 = 2.0;
+const COARSE: f64 = 8.0;
+/// Factor on the side of cells after a mesh that took too much work.
+const COARSER: f64 = 2.0;
 /// Most meshes that are tried.
 const TRIES: usize = 4;
 /// Factor on the side of cells with which another mesh is worth its time.
 const WORTH: f64 = 0.8;
-/// Factor on the work and the triangles of a mesh, as far as they can be foretold from those of a
-/// coarser one.
-const SPARE: f64 = 1.5;
+/// Factors on the work and the triangles of a mesh with cells of half the side, about.
+const WORK: f64 = 3.0;
+const TRIANGLES: f64 = 4.0;
 
 /// A reason for which there is no mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,15 +94,20 @@ pub(crate) fn mesh(
             Ok(mesh) => {
                 let used = (function.spent() - start).max(1);
                 let count = mesh.triangles.len().max(1);
-                let work = left.saturating_sub(used) as f64 / used as f64;
-                let room = share.triangles as f64 / count as f64;
+                let mut work = left.saturating_sub(used) as f64 / used as f64;
+                let mut room = share.triangles as f64 / count as f64;
                 if count <= share.triangles {
                     best = Some(mesh);
                 }
-                // Both grow by the square.
-                (SPARE / work.min(room)).sqrt().clamp(finest / step, 4.0)
+                // Cells are halved: between two halves there is nothing.
+                let mut factor = if room < 1.0 { COARSER } else { 1.0 };
+                while step * factor > finest && work >= WORK && room >= TRIANGLES {
+                    (work, room) = (work / WORK, room / TRIANGLES);
+                    factor *= 0.5;
+                }
+                factor.max(finest / step)
             }
-            Err(MeshError::Cancelled | MeshError::TooMany { .. }) => COARSE,
+            Err(MeshError::Cancelled | MeshError::TooMany { .. }) => COARSER,
             Err(_) => return best.ok_or(NoMesh::Endless),
         };
         if best.is_some() && factor > WORTH {

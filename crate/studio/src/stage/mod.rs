@@ -374,7 +374,8 @@ impl Panel for Stage {
         }
         let session = &page.work.session;
         if self.packs(page) || is_shot {
-            self.live.tick(session, at.now, is_drawn || is_shot, rests(page));
+            self.live
+                .tick(session, at.now, is_drawn || is_shot, rests(page));
         }
         self.shoot(page);
         let session = &page.work.session;
