@@ -136,3 +136,45 @@ impl Painter<'_> {
         most.map_or(self.found[0], |(finish, _)| finish)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_have_the_strongest_material() {
+        let mut text = String::new();
+        for (name, colour) in [("a", "Red"), ("b", "Green"), ("c", "Blue")] {
+            text += &format!("surface {name}, diffuse {colour}, blobbiness -2\n");
+        }
+        for i in 0..216 {
+            let (x, y, z) = (i % 6, i / 6 % 6, i / 36);
+            let name = ["a", "b", "c"][(x + y / 2 + z / 3) % 3];
+            text += &format!("sphere {name} 0.7, {x} {y} {z}\n");
+        }
+        let project = rats::Project {
+            files: vec![rats::File {
+                name: "main.rat".into(),
+                text,
+            }],
+        };
+        let scene = rats::compile(&project).scene;
+        let surfaces = scene.surfaces();
+        let surface = &surfaces[0];
+        let middles: Vec<DVec3> = (0..3000)
+            .map(|i| {
+                let at = |step: f64| 7.0 * (f64::from(i) * step).fract() - 1.0;
+                DVec3::new(at(0.618_034), at(0.414_214), at(0.732_051))
+            })
+            .collect();
+        let function = Counted::new(surface);
+        let painted = paint(&scene, surface, &function, middles.iter().copied());
+        let right = middles.iter().zip(&painted).filter(|(middle, painted)| {
+            let own = scene::strongest(surface.function(), surface.element(), **middle);
+            own.is_none_or(|own| scene.elements[own as usize].finish == **painted)
+        });
+        // Where two are as strong, either may be taken: a material's elements count together.
+        let share = right.count() as f64 / painted.len() as f64;
+        assert!(share > 0.9, "{share}");
+    }
+}

@@ -67,12 +67,11 @@ fn quick_drafts_of_all_examples_take_bounded_work() {
 fn many_bodies_share_the_work() {
     let mut text = String::from("surface a, diffuse Red, blobbiness -2\n");
     for body in 0..12 {
-        text += &format!("body b{body} {{\n");
+        text += &format!("body b{body}\n");
         for i in 0..250 {
             let (x, y) = (3 * (i % 20), 3 * (i / 20));
             text += &format!("sphere a 1, {x} {y} {}\n", 4 * body);
         }
-        text += "}\n";
     }
     let project = rats::Project {
         files: vec![rats::File {
