@@ -72,6 +72,7 @@ fn many_bodies_share_the_work() {
             let (x, y) = (3 * (i % 20), 3 * (i / 20));
             text += &format!("sphere a 1, {x} {y} {}\n", 4 * body);
         }
+        text += &format!("close b{body}\n");
     }
     let project = rats::Project {
         files: vec![rats::File {
