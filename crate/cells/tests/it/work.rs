@@ -65,7 +65,8 @@ fn quick_drafts_of_all_examples_take_bounded_work() {
 /// Bodies that do not fit share what there is, and all are drawn.
 #[test]
 fn many_bodies_share_the_work() {
-    let mut text = String::from("surface a, diffuse Red, blobbiness -2\n");
+    let mut text =
+        String::from("eyep 30 20 300\nvrp 30 20 22\nsurface a, diffuse Red, blobbiness -2\n");
     for body in 0..12 {
         text += &format!("body b{body}\n");
         for i in 0..250 {
