@@ -31,6 +31,9 @@ struct Running {
     scale: f64,
 }
 
+/// A scene's number, its camera, and a size in pixels.
+type Drawn = (u64, Camera, [u32; 2]);
+
 /// The draft and where it is drawn.
 pub struct Draft {
     state: RenderState,
@@ -42,11 +45,11 @@ pub struct Draft {
     moved: f64,
     /// Whether the subject was drawn with all pixels.
     is_settled: bool,
-    drawn: Option<(u64, Camera, [u32; 2])>,
+    drawn: Option<Drawn>,
     running: Option<Running>,
     /// A picture for a film, on its way back: of which scene, how large, and the factor on its
     /// sides.
-    copy: Option<((u64, Camera, [u32; 2]), u32, Copy)>,
+    copy: Option<(Drawn, u32, Copy)>,
     pace: Pace,
     /// egui's name for the texture, and its size.
     texture: Option<(TextureId, [u32; 2])>,
@@ -298,14 +301,13 @@ fn shrink(pixels: &[u8], size: [u32; 2], factor: u32) -> Vec<u8> {
     let (row, count) = (4 * factor * width, factor * factor);
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     let all = places.flat_map(|(x, y)| {
-        let channels = core::array::from_fn::<u8, 4, _>(|channel| {
+        core::array::from_fn::<u8, 4, _>(|channel| {
             let own = (0..count).map(|i| {
                 let (x, y) = (factor * x + i % factor, factor * y + i / factor);
                 usize::from(pixels[y * row + 4 * x + channel])
             });
             ((own.sum::<usize>() + count / 2) / count) as u8
-        });
-        channels
+        })
     });
     all.collect()
 }
