@@ -4,11 +4,13 @@
 //! The functions of all bodies ([`scene::Scene::surfaces`]) are divided into cells ([`octree`]),
 //! those that the surface passes with a cubic each ([`cubic`]) and, where that is not enough and
 //! the card has them, with the chart's formulas ([`formulas`]). Bodies for which that takes too
-//! long are meshed ([`facade`]). Hard shapes ([`solid`]) and the triangles of meshes have a
-//! hierarchy of boxes ([`hierarchy`]). [`pack`] lays all of it out as `shaders/scene.wgsl` reads
-//! it. Nothing of it depends on the camera: while one turns, only the view changes.
+//! long are meshed ([`facade`]). The work is bounded, and counted ([`counted`]). Hard shapes
+//! ([`solid`]) and the triangles of meshes have a hierarchy of boxes ([`hierarchy`]). [`pack`] lays
+//! all of it out as `shaders/scene.wgsl` reads it. Nothing of it depends on the camera: while one
+//! turns, only the view changes.
 
 mod bounds;
+mod counted;
 mod cubic;
 mod facade;
 mod facets;
@@ -17,6 +19,7 @@ mod hierarchy;
 mod look;
 mod octree;
 mod pack;
+mod paint;
 mod solid;
 mod units;
 

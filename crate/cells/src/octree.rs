@@ -7,6 +7,7 @@
 //! somewhat before if they are few, the terms that matter are listed, if their formulas are on the
 //! card: then the cubic stands for what is far only.
 
+use crate::counted::Counted;
 use crate::cubic::{Cubic, SAMPLES, places};
 use field::{Ball, Implicit, Part, Slack, THRESHOLD};
 use glam::DVec3;
@@ -38,8 +39,11 @@ const LISTED: f64 = 4.0 * FINEST;
 const SHORT: usize = 20;
 /// Most share of leaves that are drawn by cubics which are not close, in a tree that is.
 const CRUDE: f64 = 0.02;
-/// Number of cells that are looked at together.
-const BATCH: usize = 1024;
+/// Most and fewest cells that are looked at together.
+const BATCH: u64 = 1024;
+const FEWEST: u64 = 64;
+/// Evaluations of a look at a cell, about.
+const LOOK: u64 = 12;
 /// Fewest cells that are worth a thread.
 #[cfg(not(target_arch = "wasm32"))]
 const FEW: usize = 64;
@@ -95,8 +99,6 @@ pub(crate) struct Octree {
     pub(crate) rough: usize,
     /// Number of those that are larger than a pixel, and list no terms.
     pub(crate) crude: usize,
-    /// The work done, as [`Limits::work`].
-    pub(crate) work: u64,
 }
 
 /// Bounds on the work for an octree.
@@ -104,11 +106,9 @@ pub(crate) struct Octree {
 pub(crate) struct Limits {
     /// About the most leaves.
     pub(crate) leaves: usize,
-    /// The most work, in looks at cells that one term matters in.
+    /// The most work, as [`Counted`] counts it.
     pub(crate) work: u64,
-    /// The work of a look at a cell in which all terms may matter.
-    pub(crate) whole: u64,
-    /// Whether more leaves than these are too much work. Else leaves are rough from there on.
+    /// Whether it is given up at these limits. Else leaves are rough from there on.
     pub(crate) is_strict: bool,
 }
 
@@ -140,7 +140,7 @@ impl Octree {
     /// # Errors
     /// If it takes too much work, or is not wanted any more.
     pub(crate) fn new(
-        function: &dyn Implicit,
+        function: &Counted<'_>,
         limits: Limits,
         list: &List<'_>,
         told: &mut Told<'_>,
@@ -161,7 +161,6 @@ impl Octree {
             leaves: Vec::new(),
             rough: 0,
             crude: 0,
-            work: 0,
         };
         let nodes = places();
         let mut open = VecDeque::from([Open {
@@ -170,26 +169,23 @@ impl Octree {
             half,
             part: None,
         }]);
+        let start = function.spent();
+        // Little is done beyond a limit.
+        let most = (limits.work / (LOOK * function.whole())).clamp(FEWEST, BATCH);
         while !open.is_empty() {
-            if tree.work > limits.work && limits.is_strict {
-                return Err(Halt::Limit);
-            }
-            if !told((tree.work as f64 / limits.work as f64) as f32) {
+            let work = function.spent() - start;
+            if !told((work as f64 / limits.work as f64) as f32) {
                 return Err(Halt::Cancelled);
             }
             // At the limit each open cell may become a leaf.
             let others = if limits.is_strict { 0 } else { open.len() };
-            let room = tree.leaves.len() + others < limits.leaves;
+            let room = tree.leaves.len() + others < limits.leaves && work <= limits.work;
             if !room && limits.is_strict {
                 return Err(Halt::Limit);
             }
-            let batch: Vec<Open> = open.drain(..open.len().min(BATCH)).collect();
+            let batch: Vec<Open> = open.drain(..open.len().min(most as usize)).collect();
             let looks = map(&batch, |cell| look(function, cell, &nodes, room, list));
             for (cell, look) in batch.into_iter().zip(looks) {
-                tree.work += match &cell.part {
-                    Some(part) => 1 + part.terms.len() as u64,
-                    None => limits.whole,
-                };
                 tree.add(cell, look, &mut open);
             }
         }
@@ -444,10 +440,10 @@ mod tests {
         let limits = Limits {
             leaves: 100_000,
             work: u64::MAX,
-            whole: 1,
             is_strict: false,
         };
-        let tree = Octree::new(&Shell, limits, &|_| Vec::new(), &mut |_| true);
+        let shell = Counted::with(&Shell, 1, 1);
+        let tree = Octree::new(&shell, limits, &|_| Vec::new(), &mut |_| true);
         let tree = tree.ok().flatten().expect("a surface");
         for n in 0..1000 {
             let turn = f64::from(n) * 2.4;

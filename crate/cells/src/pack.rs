@@ -1,15 +1,17 @@
 //! A scene as the numbers that `shaders/scene.wgsl` reads, four by four.
 
 use crate::bounds::Bounds;
-use crate::facade;
+use crate::counted::Counted;
+use crate::facade::{self, NoMesh};
 use crate::facets;
 use crate::formulas::Chart;
 use crate::hierarchy;
 use crate::look::{draft_colours, finite, with};
 use crate::octree::{Cell, ENDLESS, Halt, Leaf, Limits, Octree, Told, corners};
+use crate::paint::paint;
 use crate::solid::{Kind, Solid};
 use bytemuck::{Pod, Zeroable};
-use field::{Primitive, Skeleton};
+use field::{Implicit, Primitive, Skeleton};
 use glam::{DVec3, Vec3};
 use mesh::TriangleMesh;
 use scene::{Finish, Rgb, Scene, Shape, Surface, Unit};
@@ -29,13 +31,15 @@ const NEGLIGIBLE: f64 = 1e-3;
 
 /// Longest span of a ray in a leaf that lists terms, in widths of the narrowest kernel.
 const SPAN: f64 = 0.35;
-/// Work of a look at a cell for each element of a function that is no sum, in looks at a term.
-const COMPOSED: u64 = 24;
+/// Parts of the work for a body of which one is for its cells.
+const CELLS: u64 = 3;
+/// Evaluations of a function that is no sum, for the colours of a leaf.
+const COLOURS: u64 = 8;
+/// Bodies among which what is left is shared out, at most: most models have few large ones.
+const LARGE: usize = 4;
 /// Number of a body's triangles above which their thickened shapes stand for it, if there is little
 /// time.
 const MANY_TRIANGLES: usize = 500;
-/// Most triangles of all meshes together.
-const MOST_TRIANGLES: usize = 300_000;
 
 /// Care with which the space around a scene is divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,12 +54,17 @@ pub enum Detail {
 }
 
 impl Detail {
-    /// Returns the most leaves of all bodies together, and the most work.
-    fn limits(self) -> (usize, u64) {
-        match self {
-            Self::Quick => (8_000, 400_000),
-            Self::Fine => (200_000, 12_000_000),
-            Self::Full => (600_000, u64::MAX),
+    /// Returns the bounds for all bodies together.
+    fn limits(self) -> Share {
+        let [leaves, triangles, work] = match self {
+            Self::Quick => [8_000, 100_000, 20_000_000],
+            Self::Fine => [200_000, 300_000, 150_000_000],
+            Self::Full => [600_000, 300_000, u64::MAX],
+        };
+        Share {
+            leaves: leaves as usize,
+            triangles: triangles as usize,
+            work,
         }
     }
 
@@ -67,6 +76,20 @@ impl Detail {
         }
     }
 }
+
+/// Bounds on what is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Share {
+    /// The most leaves.
+    pub(crate) leaves: usize,
+    /// The most triangles.
+    pub(crate) triangles: usize,
+    /// The most work, in evaluations of terms.
+    pub(crate) work: u64,
+}
+
+/// Nobody waits for it any more.
+struct Cancelled;
 
 /// The uniform `frame` of `shaders/scene.wgsl`, but for what comes from a camera and lights.
 #[repr(C)]
@@ -96,7 +119,7 @@ pub struct Packed {
     pub formulas: BTreeSet<u32>,
     /// The bodies drawn as meshes, or as thickened triangles: indices in [`Scene::bodies`].
     pub meshed: Vec<u32>,
-    /// The work done, in looks at cells that one term matters in.
+    /// The work done, in evaluations of terms.
     pub work: u64,
     /// Whether bounds on the work left something rough: more care would show.
     pub is_cut: bool,
@@ -217,82 +240,26 @@ impl Packer<'_> {
     /// Adds the bodies' octrees, and returns the triangles of those that have none; `None` if it
     /// is not wanted any more.
     fn add_bodies(&mut self, detail: Detail, told: &mut Told<'_>) -> Option<Vec<Facet>> {
-        let scene = self.scene;
-        let surfaces = scene.surfaces();
+        let surfaces = self.scene.surfaces();
         let count = surfaces.len().max(1);
-        let (leaves, work) = detail.limits();
+        let most = detail.limits();
         let mut roots = Vec::new();
         let mut facets = Vec::new();
         for (i, surface) in surfaces.iter().enumerate() {
             let mut told = |share: f32| told((i as f32 + share.min(1.0)) / count as f32);
-            let own: BTreeSet<u32> = surface.element().iter().copied().collect();
-            self.out.elements += own.len();
+            let function = Counted::new(surface);
             // Bodies that need little leave more to the others.
-            let left = (count - i) as u64;
-            let whole = surface.element().len() as u64;
-            let mut limits = Limits {
-                leaves: leaves.saturating_sub(self.out.leaves) / left as usize,
-                work: work.saturating_sub(self.out.work) / left,
-                whole: match surface {
-                    Surface::Sum(_) => 1 + whole,
-                    Surface::Composed(_) => COMPOSED * (1 + whole),
-                },
-                is_strict: detail != Detail::Full,
+            let others = (count - i).min(LARGE);
+            let share = Share {
+                leaves: most.leaves.saturating_sub(self.out.leaves) / (count - i),
+                triangles: most.triangles.saturating_sub(facets.len()) / others,
+                work: most.work.saturating_sub(self.out.work) / others as u64,
             };
-            if detail == Detail::Quick && self.is_skin(surface) {
-                self.out.is_cut = true;
-                self.out.meshed.push(surface.body());
-                self.add_skin(&own, &mut facets);
-                continue;
+            let tree = self.look_at(surface, &function, share, detail, &mut facets, &mut told);
+            if let Some(tree) = tree.ok()? {
+                roots.push(self.add_tree(surface, &function, &tree));
             }
-            let chart = self.chart;
-            let list = |terms: Option<&[u32]>| match surface {
-                Surface::Sum(sum) => list(chart, &sum.sum.primitives, terms),
-                Surface::Composed(_) => Vec::new(),
-            };
-            let tree = if surface.element().len() > detail.most_elements() {
-                Err(Halt::Limit)
-            } else {
-                Octree::new(surface.function(), limits, &list, &mut told)
-            };
-            let tree = match tree {
-                Ok(None) => continue,
-                Ok(Some(tree)) if !limits.is_strict || tree.is_close() => tree,
-                Err(Halt::Cancelled) => return None,
-                _ => {
-                    self.out.is_cut = true;
-                    self.out.work += limits.work;
-                    let mesh = facade::mesh(scene, surface, detail, &mut told);
-                    let room = MOST_TRIANGLES.saturating_sub(facets.len());
-                    if let Some(mesh) = mesh.filter(|mesh| mesh.triangles.len() <= room) {
-                        self.out.meshed.push(surface.body());
-                        self.add_facets(surface, &mesh, &mut facets);
-                        continue;
-                    }
-                    // Roughly, but at all.
-                    limits.is_strict = false;
-                    limits.leaves = limits.leaves.min(1 + (limits.work / limits.whole) as usize);
-                    match Octree::new(surface.function(), limits, &list, &mut told) {
-                        Ok(Some(tree)) => tree,
-                        Ok(None) | Err(Halt::Limit) => continue,
-                        Err(Halt::Cancelled) => return None,
-                    }
-                }
-            };
-            self.out.work += tree.work;
-            self.out.leaves += tree.leaves.len();
-            self.out.rough += tree.rough;
-            let places = self.add_leaves(surface, &tree);
-            let first = self.data.len() as u32;
-            let words = tree.cells.iter().map(|cell| match cell {
-                Cell::Parted(at) => first + (at - 1) / 4,
-                Cell::Outside => OUTSIDE,
-                Cell::Inside => INSIDE,
-                Cell::Leaf(number) => LEAF | places[*number as usize],
-            });
-            let words: Vec<u32> = words.collect();
-            self.data.extend(words[1..].as_chunks::<4>().0);
-            roots.push((tree.center, tree.half, words[0]));
+            self.out.work += function.spent();
         }
         self.out.frame.counts[0] = roots.len() as u32;
         self.out.frame.places[0] = self.data.len() as u32;
@@ -301,6 +268,89 @@ impl Packer<'_> {
             self.data.push([word, 0, 0, 0]);
         }
         Some(facets)
+    }
+
+    /// Returns the cells of a body; `None` if there are none, or if it has triangles, which are
+    /// appended.
+    fn look_at(
+        &mut self,
+        surface: &Surface,
+        function: &Counted<'_>,
+        share: Share,
+        detail: Detail,
+        facets: &mut Vec<Facet>,
+        told: &mut Told<'_>,
+    ) -> Result<Option<Octree>, Cancelled> {
+        let own: BTreeSet<u32> = surface.element().iter().copied().collect();
+        self.out.elements += own.len();
+        if detail == Detail::Quick && self.is_skin(surface) {
+            self.out.is_cut = true;
+            self.out.meshed.push(surface.body());
+            self.add_skin(&own, share.triangles, facets);
+            return Ok(None);
+        }
+        let mut limits = Limits {
+            leaves: share.leaves,
+            work: share.work / CELLS,
+            is_strict: detail != Detail::Full,
+        };
+        if matches!(surface, Surface::Composed(_)) && own.len() > 1 && limits.is_strict {
+            let most = limits.work / (COLOURS * function.whole());
+            limits.leaves = limits.leaves.min(most as usize);
+        }
+        let list = |terms: Option<&[u32]>| match surface {
+            Surface::Sum(sum) => list(self.chart, &sum.sum.primitives, terms),
+            Surface::Composed(_) => Vec::new(),
+        };
+        if surface.element().len() <= detail.most_elements() {
+            match Octree::new(function, limits, &list, told) {
+                Ok(Some(tree)) if limits.is_strict && !tree.is_close() => {}
+                Ok(tree) => return Ok(tree),
+                Err(Halt::Cancelled) => return Err(Cancelled),
+                Err(Halt::Limit) => {}
+            }
+        }
+        self.out.is_cut = true;
+        let before = facets.len();
+        match facade::mesh(self.scene, surface, function, share, detail, told) {
+            Ok(mesh) => self.add_facets(surface, function, &mesh, facets),
+            Err(NoMesh::Dear) => self.add_skin(&own, share.triangles, facets),
+            Err(NoMesh::Endless) => {}
+            Err(NoMesh::Cancelled) => return Err(Cancelled),
+        }
+        if facets.len() > before {
+            self.out.meshed.push(surface.body());
+            return Ok(None);
+        }
+        // Roughly, but at all.
+        limits.is_strict = false;
+        match Octree::new(function, limits, &list, told) {
+            Ok(tree) => Ok(tree),
+            Err(Halt::Limit) => Ok(None),
+            Err(Halt::Cancelled) => Err(Cancelled),
+        }
+    }
+
+    /// Adds the cells of a body, and returns the middle, half the side and the word of the first.
+    fn add_tree(
+        &mut self,
+        surface: &Surface,
+        function: &Counted<'_>,
+        tree: &Octree,
+    ) -> (DVec3, f64, u32) {
+        self.out.leaves += tree.leaves.len();
+        self.out.rough += tree.rough;
+        let places = self.add_leaves(surface, function, tree);
+        let first = self.data.len() as u32;
+        let words = tree.cells.iter().map(|cell| match cell {
+            Cell::Parted(at) => first + (at - 1) / 4,
+            Cell::Outside => OUTSIDE,
+            Cell::Inside => INSIDE,
+            Cell::Leaf(number) => LEAF | places[*number as usize],
+        });
+        let words: Vec<u32> = words.collect();
+        self.data.extend(words[1..].as_chunks::<4>().0);
+        (tree.center, tree.half, words[0])
     }
 
     /// Whether a body is the skin of a mesh: many triangles, which take long.
@@ -313,26 +363,38 @@ impl Packer<'_> {
         triangles.count() > MANY_TRIANGLES
     }
 
-    /// Appends the shapes of elements that a skin covers evenly.
-    fn add_skin(&self, elements: &BTreeSet<u32>, facets: &mut Vec<Facet>) {
+    /// Appends the hard shapes of a body's elements, as many as there is room for.
+    fn add_skin(&self, elements: &BTreeSet<u32>, room: usize, facets: &mut Vec<Facet>) {
+        let most = facets.len() + room;
         for element in elements {
             let element = &self.scene.elements[*element as usize];
-            for solid in Solid::of(self.scene, element, 0) {
-                facets.push((solid, self.slot(element.finish)));
+            let solids = Solid::of(self.scene, element, 0).into_iter();
+            // A plane is drawn by itself.
+            let solids = solids.filter(|solid| solid.kind != Kind::Plane);
+            facets.extend(solids.map(|solid| (solid, self.slot(element.finish))));
+            if facets.len() >= most {
+                facets.truncate(most);
+                return;
             }
         }
     }
 
-    /// Appends the triangles of a body's mesh. Each has the material of the element that is
-    /// strongest in its middle.
-    fn add_facets(&self, surface: &Surface, mesh: &TriangleMesh, facets: &mut Vec<Facet>) {
-        let elements = surface.element().iter();
-        let finishes: BTreeSet<u32> = elements
-            .map(|element| self.scene.elements[*element as usize].finish)
-            .collect();
-        let only = finishes.first().copied().filter(|_| finishes.len() == 1);
+    /// Appends the triangles of a body's mesh.
+    fn add_facets(
+        &self,
+        surface: &Surface,
+        function: &Counted<'_>,
+        mesh: &TriangleMesh,
+        facets: &mut Vec<Facet>,
+    ) {
+        let corners = mesh
+            .triangles
+            .iter()
+            .map(|triangle| triangle.map(|corner| mesh.positions[corner as usize]));
+        let middles = corners.map(|places| places.iter().sum::<DVec3>() / 3.0);
+        let finishes = paint(self.scene, surface, function, middles);
         let normals = mesh.normals.as_deref().unwrap_or_default();
-        for triangle in &mesh.triangles {
+        for (triangle, finish) in mesh.triangles.iter().zip(finishes) {
             let places = triangle.map(|corner| mesh.positions[corner as usize]);
             let outward = triangle.map(|corner| {
                 let normal = normals.get(corner as usize);
@@ -341,17 +403,12 @@ impl Packer<'_> {
             let Some(solid) = Solid::patch(places, outward, [[1.0; 3]; 3]) else {
                 continue;
             };
-            let finish = only.unwrap_or_else(|| {
-                let middle = places.iter().sum::<DVec3>() / 3.0;
-                let own = scene::strongest(surface.function(), surface.element(), middle);
-                own.map_or(0, |element| self.scene.elements[element as usize].finish)
-            });
             facets.push((solid, self.slot(finish)));
         }
     }
 
     /// Adds the leaves of a body, and returns their places.
-    fn add_leaves(&mut self, surface: &Surface, tree: &Octree) -> Vec<u32> {
+    fn add_leaves(&mut self, surface: &Surface, function: &Counted<'_>, tree: &Octree) -> Vec<u32> {
         let (scene, chart) = (self.scene, self.chart);
         let elements = surface.element().iter();
         let finishes: BTreeSet<u32> = elements
@@ -362,7 +419,7 @@ impl Packer<'_> {
         let mut places = Vec::with_capacity(tree.leaves.len());
         for leaf in &tree.leaves {
             let mixture = if finishes.len() > 1 {
-                mixture(scene, surface, leaf)
+                mixture(scene, surface, function, leaf)
             } else {
                 Vec::new()
             };
@@ -416,7 +473,12 @@ fn list(chart: &dyn Chart, primitives: &[Primitive], terms: Option<&[u32]>) -> V
 }
 
 /// Returns the share of each finish at a leaf's corners: all those that count at one of them.
-fn mixture(scene: &Scene, surface: &Surface, leaf: &Leaf) -> Vec<(u32, [f64; 8])> {
+fn mixture(
+    scene: &Scene,
+    surface: &Surface,
+    function: &Counted<'_>,
+    leaf: &Leaf,
+) -> Vec<(u32, [f64; 8])> {
     let mut shares: BTreeMap<u32, [f64; 8]> = BTreeMap::new();
     for (corner, place) in corners().into_iter().enumerate() {
         let point = leaf.center + leaf.half * place;
@@ -428,7 +490,7 @@ fn mixture(scene: &Scene, surface: &Surface, leaf: &Leaf) -> Vec<(u32, [f64; 8])
                     own.push((term, f64::max(value, 0.0)));
                 }
             }
-            _ => surface.function().shares(point, &mut own),
+            _ => function.shares(point, &mut own),
         }
         // At a pole one element is all.
         let all: f64 = own.iter().map(|(_, share)| share.min(1e30)).sum();

@@ -54,6 +54,15 @@ pub fn pixels(choice: Choice, frame: [u32; 2], view: [f32; 2], max_side: u32) ->
     frame.map(|side| ((side * scale).round() as u32).clamp(1, max_side.max(1)))
 }
 
+/// Returns the size of a picture whose shorter side has so many pixels, in the frame's proportions.
+#[must_use]
+pub fn of_lines(lines: u32, frame: [u32; 2], max_side: u32) -> [u32; 2] {
+    let frame = frame.map(|side| f64::from(side.max(1)));
+    let scale = (f64::from(lines) / frame[0].min(frame[1]))
+        .min(f64::from(max_side) / frame[0].max(frame[1]));
+    frame.map(|side| ((side * scale).round() as u32).clamp(1, max_side.max(1)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,6 +5,7 @@
 
 use crate::bindings::{COLOUR, layout, shader, texture, uniform, uniform_buffer};
 use crate::materials;
+use crate::verdict::Verdict;
 use crate::view::{self, Air, Lights, View};
 use bytemuck::{Pod, Zeroable};
 use cells::{Bounds, Packed};
@@ -75,6 +76,8 @@ pub struct Tracer {
     view: wgpu::Buffer,
     frame: wgpu::Buffer,
     scene: Option<Prepared>,
+    /// On the scene and its program.
+    verdict: Option<Verdict>,
     target: Option<([u32; 2], Target)>,
 }
 
@@ -337,8 +340,19 @@ impl Tracer {
             view: uniform_buffer(device, "tracer's view", size_of::<View>()),
             frame: uniform_buffer(device, "tracer's frame", size_of::<Frame>()),
             scene: None,
+            verdict: None,
             target: None,
         }
+    }
+
+    /// Whether the device has taken the scene: `false` as long as it does not say so, and before
+    /// the first one.
+    ///
+    /// # Errors
+    /// In the device's words, if it has no room for the scene after all, or its compiler refuses
+    /// the program. Then nothing is drawn before the next scene.
+    pub fn is_ready(&mut self) -> Result<bool, &str> {
+        self.verdict.as_mut().map_or(Ok(false), Verdict::is_good)
     }
 
     /// Replaces the scene by one and what was packed of it. Its own camera is not used. Returns the
@@ -355,12 +369,22 @@ impl Tracer {
         if !is_sound || packed.data.len() / 16 > self.stage.room(device) {
             return None;
         }
+        if self.is_ready().is_err() {
+            (self.program, self.verdict) = (None, None);
+        }
         let known = (self.program.take()).filter(|(formulas, _)| *formulas == packed.formulas);
-        self.program = Some(known.unwrap_or_else(|| {
-            let code = (self.code)(&packed.formulas);
-            let program = self.stage.compile(device, &self.bindings, &code);
-            (packed.formulas.clone(), program)
-        }));
+        let before = self.verdict.take();
+        let ((program, data, materials), verdict) = Verdict::on(device, before, || {
+            let program = known.unwrap_or_else(|| {
+                let code = (self.code)(&packed.formulas);
+                let program = self.stage.compile(device, &self.bindings, &code);
+                (packed.formulas.clone(), program)
+            });
+            let data = self.stage.upload(device, queue, &packed.data);
+            (program, data, materials::upload(device, queue, scene))
+        });
+        self.program = Some(program);
+        self.verdict = Some(verdict);
         let bounds = Bounds::of(scene);
         let units = bounds.units();
         let (lights, lights_left_out) = Lights::new(&scene.lights, units);
@@ -371,8 +395,8 @@ impl Tracer {
         };
         frame.counts[3] = lights.shadows;
         self.scene = Some(Prepared {
-            data: self.stage.upload(device, queue, &packed.data),
-            materials: materials::upload(device, queue, scene),
+            data,
+            materials,
             frame,
             bounds,
             lights,
@@ -382,8 +406,8 @@ impl Tracer {
         Some(lights_left_out)
     }
 
-    /// Traces the scene from a camera into a picture of `size` pixels, and gives it; `None` before
-    /// the first scene.
+    /// Traces the scene from a camera into a picture of `size` pixels, and gives it; `None` where
+    /// [`Tracer::is_ready`] does not say so.
     pub fn render(
         &mut self,
         device: &wgpu::Device,
@@ -392,6 +416,9 @@ impl Tracer {
         camera: &Camera,
         size: [u32; 2],
     ) -> Option<&Target> {
+        if self.is_ready() != Ok(true) {
+            return None;
+        }
         let scene = self.scene.as_ref()?;
         let (_, program) = self.program.as_ref()?;
         scene.look(queue, [&self.view, &self.frame], camera, size);

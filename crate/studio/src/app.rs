@@ -141,11 +141,13 @@ impl App {
                 to_frame: None,
                 renderer: Renderer::new(pool),
                 drafted: None,
+                shot: None,
                 settings,
                 parts,
                 screen: Screen {
                     backend,
                     has_draft: render_state.is_some(),
+                    refusal: None,
                     rest,
                     touch: None,
                     asked: [false; 2],
@@ -350,6 +352,9 @@ impl App {
             page.renderer.cancel();
         }
         let pictures = &mut self.panels.lab.0.pictures;
+        if page.shot.is_some() {
+            return;
+        }
         if page.lends_workers() {
             pictures.tick(at.ctx);
         } else {

@@ -235,7 +235,7 @@ fn rest(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     }
     ui.separator();
     download::label(ui, "Download");
-    download::menu(page, film.formats(), ui, wishes);
+    download::menu(page, film, ui, wishes);
     ui.separator();
     for theme in [
         theme::Choice::System,

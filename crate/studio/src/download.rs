@@ -1,13 +1,14 @@
 //! The menu of everything that the page can save as a file.
 
+use crate::film::FilmPanel;
 use crate::page::Page;
-use crate::wish::{Dialog, FilmWish, ViewWish, Wish, Wishes, WorkWish};
+use crate::wish::{Dialog, FilmWish, Quality, ViewWish, Wish, Wishes, WorkWish};
 use crate::{places, theme};
-use browser::recording::{Kind, VideoFormat};
+use browser::recording::Kind;
 use egui::{Button, RichText, Ui};
 
-/// Lists what there is to download. `formats`: those of films that the browser can write.
-pub fn menu(page: &Page, formats: &[VideoFormat], ui: &mut Ui, wishes: &mut Wishes) {
+/// Lists what there is to download.
+pub fn menu(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     ui.set_width(270.0);
     let size = page.renderer.image().map(|image| image.size);
     let picture = match size {
@@ -35,12 +36,32 @@ pub fn menu(page: &Page, formats: &[VideoFormat], ui: &mut Ui, wishes: &mut Wish
     }
     if page.work.session.has_frames() {
         ui.separator();
-        films(formats, ui, wishes);
+        films(page, film, ui, wishes);
     }
 }
 
-/// Lists the kinds of files that a film can become, of those that need no encoder and of `formats`.
-pub fn films(formats: &[VideoFormat], ui: &mut Ui, wishes: &mut Wishes) {
+/// Lists the kinds of files that a film can become, after the choice of how its frames are made.
+pub fn films(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
+    if page.screen.has_draft {
+        let quality = film.quality(page);
+        ui.horizontal_wrapped(|ui| {
+            label(ui, "Frames");
+            let mut choice = |text: &str, tip: &str, own: Quality| {
+                let choice = ui.selectable_label(quality == own, text);
+                places::note(ui.ctx(), format!("film {text}"), choice.rect);
+                if choice.on_hover_text(tip).clicked() {
+                    wishes.push(FilmWish::SetQuality(own));
+                }
+            };
+            choice("traced", "As fine as the picture", Quality::Traced);
+            for lines in Quality::LINES {
+                let tip = "As the draft shows them, in a fraction of the time; pixels of the \
+                     shorter side";
+                choice(&format!("draft {lines}"), tip, Quality::Draft(lines));
+            }
+        });
+    }
+    let formats = film.formats();
     for kind in Kind::ALL {
         if kind.is_video() && formats.iter().all(|format| format.kind != kind) {
             continue;

@@ -35,11 +35,9 @@ pub fn start() -> Result<(), JsValue> {
             let state = context.wgpu_render_state.clone();
             App::new(&context.egui_ctx, state, backend, parts.clone())
         };
-        let started = match browser::fetch_all(fonts::FILES).await {
-            Ok(files) => {
-                fonts::set(files);
-                boot::start(CANVAS, create).await.map(|_| ())
-            }
+        let files = browser::fetch_all(fonts::FILES).await;
+        let started = match files.and_then(fonts::set) {
+            Ok(()) => boot::start(CANVAS, create).await.map(|_| ()),
             Err(reason) => Err(reason),
         };
         if let Err(reason) = started {

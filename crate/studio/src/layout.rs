@@ -48,7 +48,7 @@ pub fn show(page: &mut Page, panels: &mut Panels, ui: &mut Ui, wishes: &mut Wish
         .exact_size(if small { 40.0 } else { 32.0 })
         .frame(flat)
         .show(ui, |ui| {
-            status::show(page, panels.stage.stand_in, ui, small, wishes);
+            status::show(page, panels.stage.stand_in.as_ref(), ui, small, wishes);
         });
     if small {
         small_page(page, panels, ui, wishes);
@@ -170,7 +170,9 @@ fn picture_head(page: &Page, panels: &Panels, ui: &mut Ui, place: Rect, wishes: 
         let tip = "Download: picture (Ctrl+S), project";
         let save = icon::button(ui, Icon::Save, tip, true);
         places::note(ui.ctx(), "download", save.rect);
-        Popup::menu(&save).show(|ui| download::menu(page, panels.film.formats(), ui, wishes));
+        Popup::menu(&save)
+            .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside)
+            .show(|ui| download::menu(page, &panels.film, ui, wishes));
         if icon::button(ui, Icon::Frame, "See the whole model", true).clicked() {
             wishes.push(ViewWish::ShowAll);
         }

@@ -10,6 +10,7 @@ use crate::wish::{Dialog, Notice, Setting, Wish, Wishes};
 use browser::Backend;
 use browser::voice::Acts;
 use document::mesh_export::Film;
+use document::picture::Image;
 use document::reading::MeshReading;
 use document::size;
 use document::storage::Shelf;
@@ -76,6 +77,8 @@ pub struct Screen {
     pub backend: Backend,
     /// Whether there is a draft on the window's device.
     pub has_draft: bool,
+    /// Why the device does not draw it. The stage keeps it up to date.
+    pub refusal: Option<String>,
     /// Seconds that new tiles wait to be shown; above 0 where the processor that traces them draws
     /// the page, too.
     pub rest: f32,
@@ -94,6 +97,14 @@ pub struct Screen {
 /// Asks egui for one more frame. The delay matters: a repaint without one is drawn twice.
 pub(crate) fn repaint_once(ctx: &Context) {
     ctx.request_repaint_after_secs(1e-3);
+}
+
+/// A picture that the card is to draw for a film.
+pub struct Shot {
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// The picture, or why there is none, once it is there.
+    pub image: Option<Result<Image, String>>,
 }
 
 /// A moment on the app's clock.
@@ -116,6 +127,8 @@ pub struct Page {
     pub renderer: Renderer,
     /// [`document::session::Session::shape`] of the scene whose draft is on the screen.
     pub drafted: Option<u64>,
+    /// A frame of a film that the card draws; meanwhile nothing is traced.
+    pub shot: Option<Shot>,
     /// The user's choices.
     pub settings: Settings,
     /// Storage, requests and reports.

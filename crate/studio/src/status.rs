@@ -45,7 +45,7 @@ pub fn summary(renderer: &Renderer, enabled: bool, reading: Option<(&str, f32)>)
 /// Shows the strip, with the stand-in for the traced picture.
 pub fn show(
     page: &Page,
-    stand_in: Option<StandIn>,
+    stand_in: Option<&StandIn>,
     ui: &mut Ui,
     narrow: bool,
     wishes: &mut Wishes,
@@ -111,7 +111,7 @@ pub fn show(
             ui.add_space(12.0);
             let on_screen = stand_in.map(|stand_in| {
                 let (text, tip) = match stand_in {
-                    StandIn::Draft { fps, meshed } => describe_draft(fps, meshed),
+                    StandIn::Draft { fps, meshed } => describe_draft(*fps, meshed, narrow),
                     StandIn::Kept => (
                         stand_in.id().to_owned(),
                         "This picture was traced when the example was made; yours is on its way"
@@ -120,10 +120,7 @@ pub fn show(
                 };
                 (text, tip)
             });
-            for (text, tip) in facts(renderer, page.screen.backend, narrow)
-                .into_iter()
-                .chain(on_screen)
-            {
+            for (text, tip) in facts(page, narrow).into_iter().chain(on_screen) {
                 let text = RichText::new(text).color(palette.weak).size(12.5);
                 let text = egui::WidgetText::from(text);
                 let galley = text.into_galley(
@@ -145,7 +142,8 @@ pub fn show(
 }
 
 /// Returns facts about the picture with explanations, from right to left.
-fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, String)> {
+fn facts(page: &Page, narrow: bool) -> Vec<(String, String)> {
+    let (renderer, backend) = (&page.renderer, page.screen.backend);
     let progress = renderer.progress();
     let mut facts = vec![(
         backend.label().to_owned(),
@@ -157,6 +155,13 @@ fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, St
             }
         }),
     )];
+    if let Some(refusal) = &page.screen.refusal {
+        let tip = format!(
+            "The graphics card does not draw this model while it is turned ({refusal}); the \
+             traced picture follows by itself"
+        );
+        facts.push((String::from("no draft"), tip));
+    }
     if narrow {
         return facts;
     }
@@ -187,17 +192,43 @@ fn facts(renderer: &Renderer, backend: Backend, narrow: bool) -> Vec<(String, St
     }
     facts
 }
+
+/// Names of bodies that the strip has room for.
+const FEW: usize = 3;
+
 /// Returns words on what the card draws, and how often a second.
-fn describe_draft(fps: Option<u32>, meshed: usize) -> (String, String) {
-    let tip = "The graphics card draws the surface itself, until the traced picture is there";
-    let tip = match meshed {
-        0 => tip.to_owned(),
-        1 => format!("{tip}; of one body it draws a mesh"),
-        _ => format!("{tip}; of {meshed} bodies it draws meshes"),
-    };
-    let text = match fps {
+fn describe_draft(fps: Option<u32>, meshed: &[String], narrow: bool) -> (String, String) {
+    let mut text = match fps {
         Some(fps) => format!("draft, {fps} fps"),
         None => "draft".to_owned(),
     };
+    let mut tip = String::from(
+        "The graphics card draws the surface itself, until the traced picture is there",
+    );
+    if !meshed.is_empty() {
+        if !narrow {
+            text += &format!(" · {}", name_meshed(meshed, FEW));
+        }
+        tip += &format!("; {}", name_meshed(meshed, 10 * FEW));
+    }
     (text, tip)
+}
+
+/// Says which bodies are drawn as meshes; of many only some.
+fn name_meshed(meshed: &[String], most: usize) -> String {
+    let names = meshed.iter().map(|name| match name.as_str() {
+        "" => "the unnamed",
+        name => name,
+    });
+    let mut names: Vec<&str> = names.collect();
+    match names.as_slice() {
+        ["the unnamed"] => return "as a mesh".to_owned(),
+        [name] => return format!("{name} as a mesh"),
+        _ => {}
+    }
+    if names.len() > most {
+        names.truncate(most);
+        names.push("…");
+    }
+    format!("{} bodies as meshes: {}", meshed.len(), names.join(", "))
 }

@@ -2,7 +2,7 @@
 //! list wishes; [`crate::app::App`] has them carried out after the frame.
 
 pub use crate::export::wish::MeshWish;
-pub use crate::film::wish::FilmWish;
+pub use crate::film::wish::{FilmWish, Quality};
 pub use crate::fit::wish::FitWish;
 pub use crate::lessons::wish::LabWish;
 pub use crate::sculpt::wish::SculptWish;

@@ -15,9 +15,34 @@ pub const FILES: [&str; 2] = ["sans.ttf", "mono.ttf"];
 static FETCHED: std::sync::OnceLock<[Vec<u8>; 2]> = std::sync::OnceLock::new();
 
 /// Sets the contents of [`FILES`], once.
+///
+/// # Errors
+/// If neither is a font.
 #[cfg(target_arch = "wasm32")]
-pub fn set(fonts: [Vec<u8>; 2]) {
-    let _ = FETCHED.set(fonts);
+pub fn set(fonts: [Vec<u8>; 2]) -> Result<(), String> {
+    let _ = FETCHED.set(choose(fonts)?);
+    Ok(())
+}
+
+/// Returns the contents of [`FILES`] with the other font where one is none: there are hosts that
+/// answer with a page where a file is missing, and egui ends the program over it.
+#[cfg(any(test, target_arch = "wasm32"))]
+fn choose([words, texts]: [Vec<u8>; 2]) -> Result<[Vec<u8>; 2], String> {
+    // Outlines of TrueType, or of PostScript.
+    fn is_font(bytes: &[u8]) -> bool {
+        bytes.starts_with(&[0, 1, 0, 0]) || bytes.starts_with(b"OTTO")
+    }
+    match (is_font(&words), is_font(&texts)) {
+        (true, true) => Ok([words, texts]),
+        (true, false) => Ok([words.clone(), words]),
+        (false, true) => Ok([texts.clone(), texts]),
+        (false, false) => {
+            let [words, texts] = FILES;
+            Err(format!(
+                "{words} and {texts} are no fonts. Reload the page."
+            ))
+        }
+    }
 }
 
 /// Returns the fonts for words and for texts.
@@ -53,4 +78,22 @@ pub fn definitions() -> FontDefinitions {
         fonts.families.insert(family, names);
     }
     fonts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_in_place_of_fonts_are_not_taken() {
+        let [words, texts] = bytes().map(<[u8]>::to_vec);
+        let page = b"<!doctype html>".to_vec();
+        let both = [words.clone(), texts.clone()];
+        assert_eq!(choose(both.clone()), Ok(both));
+        let one = choose([page.clone(), texts.clone()]);
+        assert_eq!(one, Ok([texts.clone(), texts]));
+        let one = choose([words.clone(), page.clone()]);
+        assert_eq!(one, Ok([words.clone(), words]));
+        assert!(choose([page, Vec::new()]).is_err());
+    }
 }

@@ -2,5 +2,6 @@
 
 mod common;
 mod pictures;
+mod refusals;
 mod shaders;
 mod traced;

@@ -3,15 +3,15 @@
 mod timeline;
 pub mod wish;
 
-use crate::page::{Moment, Page};
+use crate::page::{Moment, Page, Shot};
 use crate::panel::Panel;
 use crate::render::Phase;
 use crate::scripts::request::Request;
 use crate::wish::ViewWish;
-use crate::wish::{FilmWish, Wishes};
+use crate::wish::{FilmWish, Quality, Wishes};
 use browser::recording::{Kind, Recording, VideoFormat};
 use document::player::Player;
-use document::{asset, mesh_export, work};
+use document::{asset, mesh_export, size, work};
 use egui::{Context, Ui};
 
 /// A film that is being saved.
@@ -30,6 +30,8 @@ struct Saving {
 pub struct FilmPanel {
     player: Player,
     saving: Option<Saving>,
+    /// How the frames of a file are made.
+    quality: Quality,
     /// The browser's encoders of videos, once they were asked for.
     pub formats: Option<Vec<VideoFormat>>,
 }
@@ -48,6 +50,16 @@ impl FilmPanel {
     #[must_use]
     pub fn formats(&self) -> &[VideoFormat] {
         self.formats.as_deref().unwrap_or_default()
+    }
+
+    /// Returns how the frames of a file are made.
+    #[must_use]
+    pub fn quality(&self, page: &Page) -> Quality {
+        if page.screen.has_draft {
+            self.quality
+        } else {
+            Quality::Traced
+        }
     }
 
     /// Carries out a wish.
@@ -71,6 +83,7 @@ impl FilmPanel {
                 player.chosen = true;
             }
             FilmWish::SetPlayback(playback) => player.playback = playback,
+            FilmWish::SetQuality(quality) => self.quality = quality,
             FilmWish::Save(kind) => self.begin(kind, page, at),
             FilmWish::Stop => self.stop(page, "You stopped it."),
         }
@@ -79,7 +92,14 @@ impl FilmPanel {
 
     /// Begins to save all frames.
     fn begin(&mut self, kind: Kind, page: &mut Page, at: &Moment<'_>) {
-        let size = kind.size(page.size(at.ctx));
+        let quality = self.quality(page);
+        let size = kind.size(match quality {
+            Quality::Traced => page.size(at.ctx),
+            Quality::Draft(lines) => {
+                let most = at.ctx.input(|input| input.max_texture_side) as u32;
+                size::of_lines(lines, page.work.session.frame(), most)
+            }
+        });
         let formats = self.formats();
         let result = Recording::begin(kind, &self.player, size, formats, at.now);
         if let Some(recording) = page.accept(result) {
@@ -87,17 +107,28 @@ impl FilmPanel {
                 recording,
                 revision: page.work.session.revision(),
                 before: page.work.session.film_frame(),
-                forced: page.screen.forced.replace(size),
+                forced: page.screen.forced,
             });
+            match quality {
+                Quality::Traced => page.screen.forced = Some(size),
+                Quality::Draft(_) => page.shot = Some(Shot { size, image: None }),
+            }
             page.notice = None;
             page.go_to_frame(0);
         }
     }
 
+    /// Ends saving the film, and returns it if one was being saved.
+    fn end(&mut self, page: &mut Page) -> Option<Saving> {
+        let saving = self.saving.take()?;
+        page.screen.forced = saving.forced;
+        page.shot = None;
+        Some(saving)
+    }
+
     /// Gives up saving the film, for a reason that is shown.
     fn stop(&mut self, page: &mut Page, why: &str) {
-        if let Some(saving) = self.saving.take() {
-            page.screen.forced = saving.forced;
+        if let Some(saving) = self.end(page) {
             page.go_to_frame(saving.before);
             page.warn(format!("{why} The film was not saved."));
         }
@@ -112,15 +143,22 @@ impl FilmPanel {
             self.stop(page, "The text changed.");
             return;
         }
-        if page.renderer.phase() == Phase::Cancelled {
+        if page.shot.is_none() && page.renderer.phase() == Phase::Cancelled {
             self.stop(page, "The picture was stopped.");
             return;
         }
         if saving.recording.next_frame().is_some() {
-            let Some(image) = page.renderer.image().filter(|_| page.is_finished()) else {
-                return;
+            let result = match &mut page.shot {
+                Some(shot) => match shot.image.take() {
+                    Some(image) => image.and_then(|image| saving.recording.add(&image)),
+                    None => return,
+                },
+                None => match page.renderer.image().filter(|_| page.is_finished()) {
+                    Some(image) => saving.recording.add(image),
+                    None => return,
+                },
             };
-            match saving.recording.add(image) {
+            match result {
                 Ok(()) => {
                     if let Some(next) = saving.recording.next_frame() {
                         page.go_to_frame(next);
@@ -143,7 +181,7 @@ impl FilmPanel {
 
     /// Saves the file of a film that is complete.
     fn save(&mut self, bytes: &[u8], page: &mut Page, now: f64) {
-        let Some(saving) = self.saving.take() else {
+        let Some(saving) = self.end(page) else {
             return;
         };
         let kind = saving.recording.kind;
@@ -151,7 +189,6 @@ impl FilmPanel {
         let name = format!("{stem}-film.{}", kind.extension());
         browser::download(&name, kind.mime(), bytes);
         let size = asset::size(bytes.len());
-        page.screen.forced = saving.forced;
         page.go_to_frame(saving.before);
         let count = self.player.count;
         page.tell(format!("Saved {name}, {count} frames, {size}."), now);
@@ -197,7 +234,7 @@ impl Panel for FilmPanel {
 
     fn wait(&self, page: &Page, now: f64) -> Option<f64> {
         // A frame that was finished just now is taken into the film at the next tick.
-        if self.saving.is_some() && page.is_finished() {
+        if self.saving.is_some() && page.shot.is_none() && page.is_finished() {
             return Some(0.0);
         }
         self.player.wait(now)
@@ -206,8 +243,6 @@ impl Panel for FilmPanel {
     fn forget(&mut self, page: &mut Page, _ctx: &Context) {
         self.player = Player::default();
         page.film = self.length();
-        if let Some(saving) = self.saving.take() {
-            page.screen.forced = saving.forced;
-        }
+        self.end(page);
     }
 }

@@ -42,10 +42,12 @@ pub fn show(film: &FilmPanel, page: &Page, ui: &mut Ui, wishes: &mut Wishes) {
             ui.add_space(10.0);
             let save = icon::button(ui, Icon::Save, "Save the film", true);
             places::note(ui.ctx(), "save film", save.rect);
-            Popup::menu(&save).show(|ui| {
-                ui.set_width(270.0);
-                download::films(film.formats(), ui, wishes);
-            });
+            Popup::menu(&save)
+                .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+                .show(|ui| {
+                    ui.set_width(270.0);
+                    download::films(page, film, ui, wishes);
+                });
             if wide {
                 playback(ui, player, wishes);
                 rate(ui, player, wishes);

@@ -3,6 +3,21 @@
 use browser::recording::Kind;
 use document::player::Playback;
 
+/// How the frames of a file are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// They are traced, as large as the picture.
+    #[default]
+    Traced,
+    /// The card draws them, with so many pixels along the shorter side.
+    Draft(u32),
+}
+
+impl Quality {
+    /// Pixels of the shorter side that there are to choose from.
+    pub const LINES: [u32; 4] = [240, 480, 720, 1080];
+}
+
 /// Wishes about the film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilmWish {
@@ -16,6 +31,8 @@ pub enum FilmWish {
     SetRate(u16),
     /// Choose what follows the last frame.
     SetPlayback(Playback),
+    /// Choose how the frames of a file are made.
+    SetQuality(Quality),
     /// Write all frames to a file.
     Save(Kind),
     /// Stop writing them.

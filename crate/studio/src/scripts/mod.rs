@@ -77,7 +77,7 @@ impl Scripts {
         state.replaced = progress.restarted;
         state.failure.clone_from(&progress.error);
         state.fresh = session.is_compiled() && session.errors() == 0 && page.is_fresh();
-        state.stand_in = panels.stage.stand_in.map(StandIn::id);
+        state.stand_in = panels.stage.stand_in.as_ref().map(StandIn::id);
         state.timings.coarse = page.renderer.timings().coarse;
         state.timings.done = page.renderer.timings().done;
         state.picture = page.renderer.image().map(|image| report::Size {

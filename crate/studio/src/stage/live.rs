@@ -10,6 +10,7 @@ use cells::{Detail, Packed};
 use document::session::Session;
 use pool::{Ticket, Tools};
 use scene::Scene;
+use std::rc::Rc;
 use std::sync::Arc;
 use tools::PackScene;
 
@@ -38,6 +39,8 @@ pub struct Made {
     pub packed: Packed,
     /// The scene.
     pub scene: Arc<Scene>,
+    /// The names of the bodies that it has meshes of.
+    pub meshed: Rc<[String]>,
     /// [`Session::shape`] of the scene.
     shape: u64,
     detail: Detail,
@@ -119,9 +122,7 @@ impl LiveCells {
                 self.running = None;
             }
         }
-        let is_slow = self.slow == Some(elements(session));
-        let is_hopeless = self.hopeless == Some(shape) || is_slow;
-        if !self.is_wanted || self.running.is_some() || is_hopeless {
+        if !self.is_wanted || self.running.is_some() || self.is_hopeless(session) {
             return;
         }
         let known = self.made.as_ref().filter(|made| made.shape == shape);
@@ -164,8 +165,13 @@ impl LiveCells {
             Detail::Fine
         };
         self.count += 1;
+        let meshed = packed.meshed.iter().map(|body| {
+            let body = running.scene.bodies.get(*body as usize);
+            body.map(|body| body.name.clone()).unwrap_or_default()
+        });
         self.made = Some(Made {
             number: self.count,
+            meshed: meshed.collect(),
             packed,
             scene: running.scene,
             shape: running.shape,
@@ -182,14 +188,19 @@ impl LiveCells {
         (made.shape == shape || is_coming).then_some(made)
     }
 
+    /// Whether the present scene is not packed, as it took too long.
+    #[must_use]
+    pub fn is_hopeless(&self, session: &Session) -> bool {
+        self.hopeless == Some(session.shape()) || self.slow == Some(elements(session))
+    }
+
     /// Returns the seconds until [`LiveCells::tick`] begins with care; `None` if it will not.
     #[must_use]
     pub fn wait(&self, session: &Session, now: f64) -> Option<f64> {
         let shape = session.shape();
         let made = self.made.as_ref().filter(|made| made.shape == shape);
         let is_fine = made.is_some_and(|made| made.detail != Detail::Quick);
-        let is_hopeless = self.hopeless == Some(shape) || self.slow == Some(elements(session));
-        let is_possible = self.running.is_none() && !is_hopeless;
+        let is_possible = self.running.is_none() && !self.is_hopeless(session);
         (self.is_wanted && !is_fine && is_possible).then(|| (self.seen.1 + STILL - now).max(0.05))
     }
 }

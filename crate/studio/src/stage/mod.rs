@@ -28,18 +28,18 @@ use pencil::{Pencil, tool::Tool};
 use pool::Tools;
 use rats::TextEdit;
 use sketch::Sight;
+use std::rc::Rc;
 use view::{Grasp, Scenery};
 
 /// The stand-in for a traced picture that is not there yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StandIn {
-    /// The surface as the card traces it: frames a second, where something moved, and the number of
-    /// bodies that it has a mesh of instead.
+    /// The surface as the card traces it.
     Draft {
-        /// Frames a second.
+        /// Frames a second, where something moved.
         fps: Option<u32>,
-        /// Number of bodies.
-        meshed: usize,
+        /// The names of the bodies that it has meshes of instead.
+        meshed: Rc<[String]>,
     },
     /// The picture as it was traced when the example was made.
     Kept,
@@ -79,7 +79,7 @@ impl Kept {
 impl StandIn {
     /// The name, for the status line and for scripts.
     #[must_use]
-    pub fn id(self) -> &'static str {
+    pub fn id(&self) -> &'static str {
         match self {
             Self::Draft { .. } => "draft",
             Self::Kept => "made before",
@@ -193,6 +193,22 @@ impl Stage {
         }
     }
 
+    /// Draws the frame that a film waits for.
+    fn shoot(&mut self, page: &mut Page) {
+        let Some(shot) = page.shot.as_mut().filter(|shot| shot.image.is_none()) else {
+            return;
+        };
+        let (session, is_finer) = (&page.work.session, page.screen.rest == 0.0);
+        if self.draft.is_none() || self.live.is_hopeless(session) {
+            shot.image = Some(Err(String::from("The draft of a frame takes too long.")));
+            return;
+        }
+        let made = self.live.latest(session.shape(), false);
+        if let (Some(draft), Some(made)) = (&mut self.draft, made) {
+            shot.image = draft.shoot(made, session.camera(), shot.size, is_finer);
+        }
+    }
+
     /// Whether scenes are packed for the card.
     fn packs(&self, page: &Page) -> bool {
         let shows = page.settings.show != Show::Traced;
@@ -228,7 +244,7 @@ impl Stage {
                 let texture = draft.texture(ctx, made, session.camera(), self.place);
                 stand_in = StandIn::Draft {
                     fps: draft.fps,
-                    meshed: made.packed.meshed.len(),
+                    meshed: made.meshed.clone(),
                 };
                 texture
             })
@@ -352,16 +368,27 @@ impl Panel for Stage {
         if page.settings.show == Show::Draft {
             self.live.want();
         }
-        let session = &page.work.session;
-        if self.packs(page) {
-            self.live.tick(session, at.now, is_drawn, rests(page));
+        let is_shot = page.shot.is_some() && self.draft.is_some();
+        if is_shot {
+            self.live.want();
         }
+        let session = &page.work.session;
+        if self.packs(page) || is_shot {
+            self.live
+                .tick(session, at.now, is_drawn || is_shot, rests(page));
+        }
+        self.shoot(page);
+        let session = &page.work.session;
         let is_draft = matches!(self.stand_in, Some(StandIn::Draft { .. }));
         let is_present = self.live.latest(session.shape(), false).is_some();
         page.drafted = (is_draft && is_present).then(|| session.shape());
+        page.screen.refusal = self.draft.as_ref().and_then(|draft| draft.refusal.clone());
     }
 
     fn wait(&self, page: &Page, now: f64) -> Option<f64> {
+        if page.shot.is_some() {
+            return Some(0.01);
+        }
         let wait = self.live.wait(&page.work.session, now);
         wait.filter(|_| self.packs(page) && rests(page))
     }
@@ -370,6 +397,9 @@ impl Panel for Stage {
         self.kept = None;
         self.traced = None;
         self.live.forget();
+        if let Some(draft) = &mut self.draft {
+            draft.forget();
+        }
         self.hands.clear();
         self.pencil.clear();
     }

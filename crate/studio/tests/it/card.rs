@@ -3,6 +3,7 @@
 use crate::driver::Window;
 use egui::mutex::RwLock;
 use egui::vec2;
+use egui_kittest::kittest::Queryable;
 use egui_wgpu::{RenderState, Renderer, RendererOptions, wgpu};
 use std::sync::Arc;
 
@@ -75,4 +76,81 @@ fn the_card_draws_while_a_hand_turns_the_model() {
     window.write("sphere a 0.5, 0 2 0\n");
     assert_eq!(stand_in(&window), Some("draft"));
     wait(&mut window);
+}
+
+const FILM: &str = "framesize 32 24\neyep 0 0 6\nlight White point, position 4 6 8\n\
+    surface flesh, diffuse Coral, blobbiness -2\nvar x = 0\nvar x += 0.5\n\
+    sphere flesh 0.5, x 0 0\n";
+
+#[test]
+fn a_film_is_saved_as_the_card_draws_it() {
+    let Some(state) = card() else {
+        assert!(std::env::var_os("CI").is_none(), "no graphics adapter");
+        eprintln!("skipped: no graphics adapter here; install mesa-vulkan-drivers");
+        return;
+    };
+    let mut window = Window::open_on_card(1000.0, 700.0, state);
+    window.load(FILM);
+    window.finish();
+    let first = window.image();
+    window.harness.get_by_label("Number of frames").click();
+    window.steps(2);
+    for _ in 0..2 {
+        window.key(egui::Modifiers::NONE, egui::Key::Backspace);
+    }
+    window.write("3");
+    window.key(egui::Modifiers::NONE, egui::Key::Enter);
+    for place in ["save film", "film draft 240", "download png"] {
+        let at = window.place(place).center();
+        window.click(at);
+    }
+    let bytes = (0..2000).find_map(|_| {
+        window.steps(1);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        browser::last_download()
+    });
+    let (name, bytes) = bytes.expect("a film");
+    assert_eq!(name, "Main-film.png");
+    let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    let mut reader = decoder.read_info().unwrap();
+    assert_eq!(reader.info().size(), (320, 240));
+    let mut frames = Vec::new();
+    for _ in 0..3 {
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let bytes = reader.info().bytes_per_pixel();
+        let red = pixels
+            .chunks(bytes)
+            .filter(|p| p[0] > p[2].saturating_add(40));
+        frames.push((red.count(), pixels));
+    }
+    // The ball is there, and moves.
+    assert!(frames.iter().all(|(red, _)| *red > 500), "{}", frames[0].0);
+    assert!(frames[0].1 != frames[1].1 && frames[1].1 != frames[2].1);
+    // The picture that was there is traced again.
+    window.finish();
+    assert!(window.image() == first);
+}
+
+#[test]
+fn a_lost_card_ends_nothing() {
+    let Some(state) = card() else {
+        assert!(std::env::var_os("CI").is_none(), "no graphics adapter");
+        eprintln!("skipped: no graphics adapter here; install mesa-vulkan-drivers");
+        return;
+    };
+    let device = state.device.clone();
+    let mut window = Window::open_on_card(1000.0, 700.0, state);
+    window.load(BALLS);
+    window.finish();
+    let button = window.place("show draft").center();
+    window.click(button);
+    wait(&mut window);
+    device.destroy();
+    let picture = window.place("picture");
+    let from = picture.center() - vec2(0.3 * picture.width(), 0.3 * picture.height());
+    window.drag(from, picture.center());
+    // The traced picture needs no card.
+    window.finish();
+    assert!(!window.image().is_empty());
 }

@@ -1,0 +1,3 @@
+//! The tests of `cells`, as one program: a module for each subject.
+
+mod work;
