@@ -235,6 +235,7 @@ impl Mesh {
             (*sum / *count, longest)
         });
         let middles: Vec<(DVec3, f64)> = middles.collect();
+        let anchors = middles.iter().map(|(place, _)| *place).collect();
         let mut vertices = descend(
             space,
             &middles,
@@ -253,6 +254,7 @@ impl Mesh {
         }
         let raw = Raw {
             vertices,
+            anchors,
             ..Raw::default()
         };
         let mut mesh = Self { raw, leaves };

@@ -32,6 +32,8 @@ const FINE_MESHES: [f32; 5] = [0.3, 0.6, 0.75, 0.85, 0.93];
 const SEPARATIONS: usize = 8;
 /// Most times that a coarse mesh is mended.
 const MENDINGS: usize = 6;
+/// Most pairs of triangles that cut each other that are looked for in a fine mesh.
+const MOST_TANGLED: usize = 20_000;
 /// A mesh is mended if it is too far from the surface at no more places than one for so many
 /// triangles.
 const MENDED: usize = 20;
@@ -143,14 +145,26 @@ pub fn approximate(
         if is_flat(&raw, tolerance) {
             break;
         }
-        let fine = Fine {
-            space: &space,
-            raw: &raw,
-            domain,
-            tolerance,
-            threads,
+        let mut raw = raw;
+        let coarsen = |raw: &Raw, progress: &mut Progress<'_>| {
+            let fine = Fine {
+                space: &space,
+                raw,
+                domain,
+                tolerance,
+                threads,
+            };
+            fine.coarsen(progress)
         };
-        match fine.coarsen(&mut progress)? {
+        let mut made = coarsen(&raw, &mut progress.part(0.0, 0.5))?;
+        if let Err(far) = made {
+            made = match untangle(&space, &mut raw, &sizes, &mut progress)? {
+                Untangled::Always => Err(far),
+                Untangled::Now => coarsen(&raw, &mut progress.part(0.5, 1.0))?,
+                Untangled::Not(places) => Err(places),
+            };
+        }
+        match made {
             Ok((mesh, measured)) => {
                 if mesh.triangles.len() > max_triangles {
                     return Err(MeshError::TooMany {
@@ -189,26 +203,84 @@ fn separate(
     progress: &mut Progress<'_>,
 ) -> Result<Option<Raw>, MeshError> {
     for _ in 0..SEPARATIONS {
-        let Some(raw) = dual(space, corners, sizes, progress)? else {
+        let Some(mut raw) = dual(space, corners, sizes, progress)? else {
             return Ok(None);
         };
-        let Some(places) = find_crossings(&raw)? else {
-            return Ok(Some(raw));
-        };
-        refine(space, &places);
+        match untangle(space, &mut raw, sizes, progress)? {
+            Untangled::Not(places) => refine(space, &places),
+            _ => return Ok(Some(raw)),
+        }
     }
     Ok(None)
 }
 
-/// The places where a mesh cuts itself; `None` if it does not.
-fn find_crossings(raw: &Raw) -> Result<Option<Vec<DVec3>>, MeshError> {
+/// How a mesh that may cut itself is.
+enum Untangled {
+    /// It did not cut itself.
+    Always,
+    /// It does no longer.
+    Now,
+    /// It does at these places.
+    Not(Vec<DVec3>),
+}
+
+/// Moves the vertices of triangles that cut others to places in their cells, then those beside
+/// them, until the mesh does not cut itself or that does not help.
+fn untangle(
+    space: &Space<'_>,
+    raw: &mut Raw,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Untangled, MeshError> {
+    let mut is_moved = vec![false; raw.vertices.len()];
+    let mut is_first = true;
+    loop {
+        let faces = find_crossings(raw)?;
+        if faces.is_empty() {
+            return Ok(match is_first {
+                true => Untangled::Always,
+                false => Untangled::Now,
+            });
+        }
+        let corners = faces.iter().flat_map(|i| raw.triangles[*i as usize]);
+        let mut own: Vec<u32> = corners.collect();
+        own.sort_unstable();
+        if !is_first {
+            let all = raw.triangles.iter();
+            let beside = all.filter(|t| t.iter().any(|v| own.binary_search(v).is_ok()));
+            own = beside.flatten().copied().collect();
+            own.sort_unstable();
+        }
+        own.dedup();
+        own.retain(|v| !raw.anchors.is_empty() && !is_moved[*v as usize]);
+        if own.is_empty() {
+            let places = faces.iter().map(|i| {
+                let corners = raw.triangles[*i as usize].map(|v| &raw.vertices[v as usize]);
+                Aabb::of_points(corners.map(|v| v.position)).center()
+            });
+            return Ok(Untangled::Not(places.collect()));
+        }
+        let goals: Vec<(DVec3, f64)> = own
+            .iter()
+            .map(|v| (raw.anchors[*v as usize], 0.0))
+            .collect();
+        let found = descend(space, &goals, 0, sizes.tolerance, sizes.threads, progress)?;
+        for (v, vertex) in own.iter().zip(found) {
+            raw.vertices[*v as usize] = vertex;
+            is_moved[*v as usize] = true;
+        }
+        is_first = false;
+    }
+}
+
+/// Returns the triangles that cut others, or are flat.
+fn find_crossings(raw: &Raw) -> Result<Vec<u32>, MeshError> {
     let positions = raw.vertices.iter().map(|v| v.position).collect();
     let mesh = TriangleMesh::new(positions, raw.triangles.clone());
-    let crossings = self_intersections(&mesh, MOST_CROSSINGS)
+    let crossings = self_intersections(&mesh, MOST_TANGLED)
         .map_err(|error| MeshError::Failed(error.to_string()))?;
     let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
-    let places = faces.map(|i| Aabb::of_points(mesh.corners(*i as usize)).center());
-    Ok((!crossings.is_free()).then(|| places.collect()))
+    Ok(faces.copied().collect())
 }
 
 /// The mesh of the level set of tetrahedra, which may be cut off by the box.
@@ -372,10 +444,8 @@ impl Fine<'_> {
                 .map_err(|error| MeshError::Failed(error.to_string()))?;
             if !crossings.is_free() {
                 left.clear();
-                if attempt == 0
-                    && let Some(places) = find_crossings(self.raw)?
-                {
-                    return Ok(Err(places));
+                if attempt == 0 && !find_crossings(self.raw)?.is_empty() {
+                    return Ok(Err(Vec::new()));
                 }
                 let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
                 for i in faces {
@@ -645,10 +715,8 @@ mod tests {
     use core::ops::ControlFlow;
     use field::{BlobScale, Kernel, Primitive, Shaping, Skeleton, Sum};
 
-    /// A mesh that was decimated for a larger tolerance is mended for this one, and what was
-    /// measured of it then is no less than a new measurement tells.
-    #[test]
-    fn repairs_bring_meshes_near_the_surface() {
+    /// Checks the mesh that is dual to cells of a limb and a ball.
+    fn with_dual(check: impl FnOnce(&Space<'_>, Raw, &Aabb, &Sizes, &mut Progress<'_>)) {
         let shaping = Shaping {
             kernel: Kernel::Gauss,
             radius: 0.3,
@@ -680,11 +748,46 @@ mod tests {
         let mut report = go_on;
         let progress = &mut Progress::new(&mut report);
         let raw = dual(&mut space, &mut Corners::default(), &sizes, progress);
-        let raw = raw.unwrap().unwrap();
+        check(&space, raw.unwrap().unwrap(), &domain, &sizes, progress);
+    }
+
+    /// Vertices that make triangles cut others go back to their cells.
+    #[test]
+    fn tangled_vertices_go_back() {
+        with_dual(|space, mut raw, _, sizes, progress| {
+            let sound = untangle(space, &mut raw, sizes, progress).unwrap();
+            assert!(matches!(sound, Untangled::Always));
+            let far = raw.vertices[raw.vertices.len() / 2].position;
+            for (i, vertex) in raw.vertices.iter_mut().enumerate() {
+                if i % 200 == 0 {
+                    vertex.position = vertex.position.lerp(far, 0.6);
+                }
+            }
+            assert!(!find_crossings(&raw).unwrap().is_empty());
+            let mended = untangle(space, &mut raw, sizes, progress).unwrap();
+            assert!(matches!(mended, Untangled::Now));
+            assert!(find_crossings(&raw).unwrap().is_empty());
+        });
+    }
+
+    /// A mesh that was decimated for a larger tolerance is mended for this one, and what was
+    /// measured of it then is no less than a new measurement tells.
+    #[test]
+    fn repairs_bring_meshes_near_the_surface() {
+        with_dual(check_repairs);
+    }
+
+    fn check_repairs(
+        space: &Space<'_>,
+        raw: Raw,
+        domain: &Aabb,
+        sizes: &Sizes,
+        progress: &mut Progress<'_>,
+    ) {
         let fine = Fine {
-            space: &space,
+            space,
             raw: &raw,
-            domain: &domain,
+            domain,
             tolerance: sizes.tolerance,
             threads: 1,
         };
@@ -693,7 +796,7 @@ mod tests {
             vec![false; raw.vertices.len()],
         );
         let coarse = 1.4 * sizes.tolerance;
-        let decimation = Decimation::new(&space, &raw, 1, coarse, &shares, &free).unwrap();
+        let decimation = Decimation::new(space, &raw, 1, coarse, &shares, &free).unwrap();
         let mesh = decimation.run(progress).unwrap().mesh;
         let places = fine.places(progress).unwrap();
         let mut survey = fine.survey(mesh, &places, progress).unwrap();

@@ -38,8 +38,8 @@ const EVEN: f64 = 0.5;
 pub const FINEST: f64 = 2.0;
 /// Levels below that of the finest cells, for parts that are thinner.
 pub const LEVELS: u32 = 6;
-/// Largest distance of the function from its interpolant in a cell, over that along the edges from
-/// its centre.
+/// Largest dip of the function below its interpolant in a cell, over that along its edges and those
+/// from its centre.
 const BEND: f64 = 3.0;
 /// Change of the function over the tolerance, in thresholds, below which it is flat.
 pub const FLAT: f64 = 1e-10;
@@ -249,6 +249,18 @@ fn is_simple(inside: [bool; 8]) -> bool {
     count <= 2
 }
 
+/// Returns how far the function is from the threshold, and the gradient of that. Inside it is the
+/// logarithm that counts, since a kernel is steep there and its logarithm is not: the surface hides
+/// between samples only where the distance bends downward, and the logarithm mostly does not.
+fn room(vertex: &Vertex) -> (f64, DVec3) {
+    if vertex.value > 0.0 {
+        let share = THRESHOLD / (THRESHOLD + vertex.value);
+        (-THRESHOLD * libm::log(share), vertex.gradient * share)
+    } else {
+        (-vertex.value, -vertex.gradient)
+    }
+}
+
 /// Looks at a cell by samples, where nothing hides between them.
 fn look(
     space: &Space<'_>,
@@ -268,16 +280,22 @@ fn look(
         if is_crossed {
             return Fate::Leaf(Side::Crossing);
         }
-        let (mut least, mut bend) = (middle.value.abs(), 0.0_f64);
-        let mut slope = middle.gradient.length();
-        for corner in corners {
-            let turn = corner.gradient - middle.gradient;
+        let (own_room, own_slope) = room(middle);
+        let rooms = corners.map(room);
+        let (mut least, mut bend) = (own_room, 0.0_f64);
+        let mut slope = own_slope.length();
+        for (corner, (room, end)) in corners.iter().zip(&rooms) {
             let way = corner.position - middle.position;
-            (least, bend) = (least.min(corner.value.abs()), bend.max(turn.dot(way).abs()));
-            slope = slope.min(corner.gradient.length());
+            bend = bend.max((*end - own_slope).dot(way));
+            (least, slope) = (least.min(*room), slope.min(end.length()));
         }
-        // Between samples the function is as far from its interpolant as along their edges. If
-        // that is too far, the surface bulges into the cell, but not much. Not so for NaN.
+        for [low, high] in EDGES {
+            let way = corners[high].position - corners[low].position;
+            bend = bend.max((rooms[high].1 - rooms[low].1).dot(way));
+        }
+        // Between samples the function dips below its interpolant as along the edges between them
+        // and from the centre. If that is too far, the surface bulges into the cell, but not much.
+        // Not so for NaN.
         let is_far = BEND * bend / 8.0 < least + HIDDEN * tolerance * slope;
         if is_far || is_usual {
             return Fate::Leaf(if own { Side::Inside } else { Side::Outside });

@@ -25,6 +25,9 @@ pub struct Raw {
     pub triangles: Vec<[u32; 3]>,
     /// Whether each is a lid on the boundary of the box.
     pub is_lid: Vec<bool>,
+    /// For each vertex of a mesh that is dual to cells a place in its cell near the surface; else
+    /// nothing.
+    pub anchors: Vec<DVec3>,
 }
 
 /// Vertices keep away from the ends of their edges by this share of them.
@@ -228,6 +231,7 @@ pub fn march(
             .map(|(p, _)| p.each_ref().map(index))
             .collect(),
         is_lid: triangles.iter().map(|(_, is_lid)| *is_lid).collect(),
+        anchors: Vec::new(),
     })
 }
 

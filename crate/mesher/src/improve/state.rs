@@ -142,6 +142,7 @@ impl<'a> Improver<'a> {
             vertices,
             triangles,
             is_lid,
+            ..
         } = raw;
         let mut is_fixed = vec![false; vertices.len()];
         for (triangle, is_lid) in triangles.iter().zip(&is_lid) {

@@ -381,6 +381,31 @@ fn small_balls_at_kinks_are_not_missed() {
     assert!(shells == 13, "{shells}");
 }
 
+/// Kernels that fall steeply take no small cells in limbs, and the creases between limbs do not
+/// make the mesh cut itself.
+#[test]
+fn struts_take_few_cells() {
+    let mut text = String::from(
+        "surface S, radius 2.3, kernel compact6, blobbiness -8\nskeleton S, CUBE subdivide 0 {\n\
+         node A <0 0 0> node B <30 2 0> node C <31 30 1> node D <0 28 3>\n\
+         node E <1 0 30> node F <30 1 31> node G <32 30 30> node H <0 30 28> node M <14 16 15>\n",
+    );
+    let struts = "AB BC CD DA EF FG GH HE AE BF CG DH AM BM CM DM EM FM GM HM";
+    for strut in struts.split(' ') {
+        let (from, to) = strut.split_at(1);
+        text += &format!("curve {from} {to}\n");
+    }
+    let model = mesh(&compile(text + "}\n"), Tolerance::Relative(1e-3)).unwrap();
+    let part = &model.parts[0];
+    assert!(part.is_measured && part.error <= model.tolerance);
+    assert_embedded("struts", &part.mesh);
+    // Edges less nodes, plus one.
+    let topology = Topology::of(&part.mesh).unwrap();
+    assert!(topology.is_closed_manifold());
+    assert_eq!(topology.genera, [20 - 9 + 1]);
+    assert!(part.raw_triangles < 100_000, "{}", part.raw_triangles);
+}
+
 /// Bounds on local convolution tell nothing of large cells.
 #[test]
 fn thin_limbs_of_local_convolution_are_not_missed() {
