@@ -44,7 +44,7 @@ impl<'a> Counted<'a> {
     }
 
     /// Returns the work done.
-    pub(crate) fn spent(&self) -> u64 {
+    pub(crate) fn work(&self) -> u64 {
         self.spent.load(Ordering::Relaxed)
     }
 

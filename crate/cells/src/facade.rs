@@ -69,7 +69,7 @@ pub(crate) fn mesh(
     let mut step = COARSE * finest;
     let mut best = None;
     for _ in 0..TRIES {
-        let start = function.spent();
+        let start = function.work();
         let left = share.work.saturating_sub(start);
         // A second try needs as much.
         let most = if best.is_some() { left } else { left / 2 };
@@ -80,7 +80,7 @@ pub(crate) fn mesh(
             [off * step, step],
             &mut Progress::new(&mut |at| {
                 is_wanted = told(at.fraction);
-                if is_wanted && function.spent() - start <= most {
+                if is_wanted && function.work() - start <= most {
                     ControlFlow::Continue(())
                 } else {
                     ControlFlow::Break(())
@@ -92,7 +92,7 @@ pub(crate) fn mesh(
         }
         let factor = match made {
             Ok(mesh) => {
-                let used = (function.spent() - start).max(1);
+                let used = (function.work() - start).max(1);
                 let count = mesh.triangles.len().max(1);
                 let mut work = left.saturating_sub(used) as f64 / used as f64;
                 let mut room = share.triangles as f64 / count as f64;

@@ -169,11 +169,11 @@ impl Octree {
             half,
             part: None,
         }]);
-        let start = function.spent();
+        let start = function.work();
         // Little is done beyond a limit.
         let most = (limits.work / (LOOK * function.whole())).clamp(FEWEST, BATCH);
         while !open.is_empty() {
-            let work = function.spent() - start;
+            let work = function.work() - start;
             if !told((work as f64 / limits.work as f64) as f32) {
                 return Err(Halt::Cancelled);
             }

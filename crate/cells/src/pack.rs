@@ -259,7 +259,7 @@ impl Packer<'_> {
             if let Some(tree) = tree.ok()? {
                 roots.push(self.add_tree(surface, &function, &tree));
             }
-            self.out.work += function.spent();
+            self.out.work += function.work();
         }
         self.out.frame.counts[0] = roots.len() as u32;
         self.out.frame.places[0] = self.data.len() as u32;

@@ -47,7 +47,7 @@ pub(crate) fn paint(
 }
 
 /// Returns the material that all have, if there is one.
-fn shared(mut finishes: impl Iterator<Item = u32>) -> Option<u32> {
+fn same_of(mut finishes: impl Iterator<Item = u32>) -> Option<u32> {
     let first = finishes.next()?;
     finishes.all(|finish| finish == first).then_some(first)
 }
@@ -103,8 +103,8 @@ impl Painter<'_> {
     /// Returns the material that all terms of a part have, if there is one.
     fn only(&self, part: Option<&Part>) -> Option<u32> {
         match part {
-            Some(part) => shared(part.terms.iter().map(|i| self.finishes[*i as usize])),
-            None => shared(self.finishes.iter().copied()),
+            Some(part) => same_of(part.terms.iter().map(|i| self.finishes[*i as usize])),
+            None => same_of(self.finishes.iter().copied()),
         }
     }
 
@@ -163,8 +163,8 @@ mod tests {
         let surface = &surfaces[0];
         let middles: Vec<DVec3> = (0..3000)
             .map(|i| {
-                let at = |step: f64| 7.0 * (f64::from(i) * step).fract() - 1.0;
-                DVec3::new(at(0.618_034), at(0.414_214), at(0.732_051))
+                let steps = [0.618_034, 0.414_214, 0.732_051];
+                DVec3::from_array(steps.map(|step| 7.0 * (f64::from(i) * step).fract() - 1.0))
             })
             .collect();
         let function = Counted::new(surface);

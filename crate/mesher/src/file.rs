@@ -145,22 +145,23 @@ pub fn approximate(
         if is_flat(&raw, tolerance) {
             break;
         }
-        let mut raw = raw;
-        let coarsen = |raw: &Raw, progress: &mut Progress<'_>| {
-            let fine = Fine {
-                space: &space,
-                raw,
-                domain,
-                tolerance,
-                threads,
-            };
-            fine.coarsen(progress)
+        let mut fine = Fine {
+            space: &space,
+            raw: &raw,
+            domain,
+            tolerance,
+            threads,
         };
-        let mut made = coarsen(&raw, &mut progress.part(0.0, 0.5))?;
+        let mut made = fine.coarsen(&mut progress.part(0.0, 0.5))?;
+        let mut moved;
         if let Err(far) = made {
-            made = match untangle(&space, &mut raw, &sizes, &mut progress)? {
+            moved = raw.clone();
+            made = match untangle(&space, &mut moved, &sizes, &mut progress)? {
                 Untangled::Always => Err(far),
-                Untangled::Now => coarsen(&raw, &mut progress.part(0.5, 1.0))?,
+                Untangled::Now => {
+                    fine.raw = &moved;
+                    fine.coarsen(&mut progress.part(0.5, 1.0))?
+                }
                 Untangled::Not(places) => Err(places),
             };
         }
@@ -214,13 +215,13 @@ fn separate(
     Ok(None)
 }
 
-/// How a mesh that may cut itself is.
+/// State of a fine mesh after its vertices were moved.
 enum Untangled {
-    /// It did not cut itself.
+    /// A mesh that did not cut itself before.
     Always,
-    /// It does no longer.
+    /// A mesh that cuts itself no longer.
     Now,
-    /// It does at these places.
+    /// Places where the mesh still cuts itself.
     Not(Vec<DVec3>),
 }
 
@@ -753,7 +754,7 @@ mod tests {
 
     /// Vertices that make triangles cut others go back to their cells.
     #[test]
-    fn tangled_vertices_go_back() {
+    fn vertices_that_tangle_go_back() {
         with_dual(|space, mut raw, _, sizes, progress| {
             let sound = untangle(space, &mut raw, sizes, progress).unwrap();
             assert!(matches!(sound, Untangled::Always));

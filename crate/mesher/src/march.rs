@@ -25,8 +25,7 @@ pub struct Raw {
     pub triangles: Vec<[u32; 3]>,
     /// Whether each is a lid on the boundary of the box.
     pub is_lid: Vec<bool>,
-    /// For each vertex of a mesh that is dual to cells a place in its cell near the surface; else
-    /// nothing.
+    /// Places near the surface in the cells of vertices, if the mesh is dual to cells.
     pub anchors: Vec<DVec3>,
 }
 

@@ -70,14 +70,14 @@ impl Copy {
     /// # Errors
     /// If the device gives none.
     pub fn pixels(&self) -> Option<Result<Vec<u8>, String>> {
-        let refused = || Some(Err(String::from("the card gives no picture back")));
+        const REFUSED: &str = "the card gives no picture back";
         match self.state.load(Ordering::Relaxed) {
             WAITING => return None,
             THERE => {}
-            _ => return refused(),
+            _ => return Some(Err(REFUSED.into())),
         }
         let Ok(bytes) = self.buffer.slice(..).get_mapped_range() else {
-            return refused();
+            return Some(Err(REFUSED.into()));
         };
         let width = 4 * self.size[0] as usize;
         let rows = bytes.chunks(self.row as usize);

@@ -76,7 +76,7 @@ pub struct Tracer {
     view: wgpu::Buffer,
     frame: wgpu::Buffer,
     scene: Option<Prepared>,
-    /// On the scene and its program.
+    /// Verdict on the scene and its program.
     verdict: Option<Verdict>,
     target: Option<([u32; 2], Target)>,
 }

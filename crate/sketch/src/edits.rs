@@ -510,10 +510,15 @@ fn has_ground(project: &Project) -> bool {
 /// Bends a leg so that it ends on the ground, if it goes down to it or nearly so: the farther from
 /// its root, the more. `ground` is the height in the world.
 fn stand(nodes: &mut [Node], to_world: DAffine3, growth: f64, ground: f64) {
-    let high = |node: &Node| to_world.transform_point3(node.position).y;
-    let [first, .., last] = &*nodes else { return };
-    let (root, tip) = (high(first), high(last) - last.radius * growth);
-    let is_lowest = nodes.iter().all(|node| high(node) >= high(last));
+    let heights = nodes.iter();
+    let heights: Vec<f64> = heights
+        .map(|node| to_world.transform_point3(node.position).y)
+        .collect();
+    let ([root, .., end], Some(last)) = (&heights[..], nodes.last()) else {
+        return;
+    };
+    let tip = end - last.radius * growth;
+    let is_lowest = heights.iter().all(|height| height >= end);
     let off = ground - tip;
     if !is_lowest || off.abs() > STEP * (root - ground) {
         return;

@@ -46,18 +46,23 @@ pub fn films(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
         let quality = film.quality(page);
         ui.horizontal_wrapped(|ui| {
             label(ui, "Frames");
-            let mut choice = |text: &str, tip: &str, own: Quality| {
-                let choice = ui.selectable_label(quality == own, text);
+            for own in [Quality::Traced]
+                .into_iter()
+                .chain(Quality::LINES.map(Quality::Draft))
+            {
+                let (text, tip) = match own {
+                    Quality::Traced => ("traced".into(), "As fine as the picture"),
+                    Quality::Draft(lines) => (
+                        format!("draft {lines}"),
+                        "As the draft shows them, in a fraction of the time; pixels of the \
+                         shorter side",
+                    ),
+                };
+                let choice = ui.selectable_label(quality == own, &text);
                 places::note(ui.ctx(), format!("film {text}"), choice.rect);
                 if choice.on_hover_text(tip).clicked() {
                     wishes.push(FilmWish::SetQuality(own));
                 }
-            };
-            choice("traced", "As fine as the picture", Quality::Traced);
-            for lines in Quality::LINES {
-                let tip = "As the draft shows them, in a fraction of the time; pixels of the \
-                     shorter side";
-                choice(&format!("draft {lines}"), tip, Quality::Draft(lines));
             }
         });
     }

@@ -409,23 +409,23 @@ fn studio_of(camera: &Camera, frame: [u32; 2]) -> String {
     let axes = camera.projection(width, height).world_from_view;
     let far = camera.eye.distance(camera.target).max(f64::MIN_POSITIVE);
     let decimals = libm::floor(4.0 - libm::log10(far)).clamp(0.0, 12.0) as usize;
-    let write = |place: DVec3| place.to_array().map(|x| short(x, decimals)).join(" ");
-    let light = |x, y, z| write(camera.target + axes * (DVec3::new(x, y, z) * far));
+    let lights = [DVec3::new(-0.2, 0.75, 1.45), DVec3::new(-1.0, 0.5, 0.0)];
+    let [key, fill] = lights.map(|way| camera.target + axes * (way * far));
+    let [eye, target, key, fill] = [camera.eye, camera.target, key, fill]
+        .map(|place| place.to_array().map(|x| short(x, decimals)).join(" "));
     format!(
         "\
 # The mesh is made by strokes of tools: Sculpt, above, goes on with it.
 framesize {width} {height}
-eyep {}
-vrp {}
+eyep {eye}
+vrp {target}
 vup {}
 fov {}
 sample 2
 background 0.86 0.88 0.9
-light White point, position {}
-light <0.35 0.35 0.42> point, position {}
+light White point, position {key}
+light <0.35 0.35 0.42> point, position {fill}
 ",
-        write(camera.eye),
-        write(camera.target),
         camera
             .up
             .normalize_or(DVec3::Y)
@@ -433,8 +433,6 @@ light <0.35 0.35 0.42> point, position {}
             .map(|x| short(x, 4))
             .join(" "),
         short(camera.fov, 3),
-        light(-0.2, 0.75, 1.45),
-        light(-1.0, 0.5, 0.0),
     )
 }
 
@@ -653,19 +651,25 @@ mod tests {
 
     #[test]
     fn a_mesh_of_too_few_or_too_many_faces_is_made_anew() {
-        let file = |faces| format!("ply\nformat ascii 1.0\nelement face {faces}\nend_header\n");
-        let attempt = |left| Attempt {
-            faces: 30_000,
-            tolerance: 1e-3,
-            left,
-            before: None,
-        };
-        let after = |faces, left| next(&Ok(file(faces).into_bytes()), &attempt(left));
+        fn file(faces: usize) -> Vec<u8> {
+            format!("ply\nformat ascii 1.0\nelement face {faces}\nend_header\n").into_bytes()
+        }
+        fn attempt(left: u32) -> Attempt {
+            Attempt {
+                faces: 30_000,
+                tolerance: 1e-3,
+                left,
+                before: None,
+            }
+        }
+        fn after(faces: usize, left: u32) -> Option<Attempt> {
+            next(&Ok(file(faces)), &attempt(left))
+        }
         assert_eq!(after(30_000, 2), None);
         assert_eq!(after(3_000, 0), None);
         let finer = after(3_000, 2).unwrap();
         assert!((finer.tolerance - 1e-4).abs() < 1e-12 && finer.left == 1);
-        assert_eq!(finer.before, Some(file(3_000).into_bytes()));
+        assert_eq!(finer.before, Some(file(3_000)));
         assert!(after(90_000, 1).unwrap().tolerance > 2e-3);
         assert_eq!(next(&Ok(b"none".to_vec()), &attempt(1)), None);
         assert_eq!(next(&Err(String::from("no")), &finer), None);

@@ -35,7 +35,7 @@ fn draws(card: &Card, tracer: &mut Tracer, scene: &Scene) -> bool {
 }
 
 /// Text that is no program.
-fn broken(_: &BTreeSet<u32>) -> String {
+fn no_program(_: &BTreeSet<u32>) -> String {
     String::from("fn plain_term( {")
 }
 
@@ -44,7 +44,7 @@ fn a_program_that_does_not_compile_is_told_and_draws_nothing() {
     let scene = scene();
     let packed = pack(&scene);
     for card in cards() {
-        let mut tracer = Tracer::new(&card.device, Stage::Fragment, broken);
+        let mut tracer = Tracer::new(&card.device, Stage::Fragment, no_program);
         assert_eq!(tracer.is_ready(), Ok(false));
         for _ in 0..2 {
             let taken = tracer.set_scene(&card.device, &card.queue, &scene, &packed);
@@ -68,7 +68,8 @@ fn a_lost_device_ends_nothing() {
         let mut tracer = Tracer::new(&card.device, Stage::Fragment, cells::formulas::none);
         let taken = tracer.set_scene(&card.device, &card.queue, &scene, &packed);
         assert!(taken.is_some() && draws(&card, &mut tracer, &scene));
-        // A browser writes errors of a lost device to its console; natively they would end the test.
+        // A browser writes errors of a lost device to its console; natively they would end the
+        // test.
         card.device.on_uncaptured_error(Arc::new(|_| {}));
         card.device.destroy();
         // With the old scene, another one, and another tracer.

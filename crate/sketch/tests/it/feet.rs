@@ -88,15 +88,14 @@ impl Paper {
     fn ends(&self) -> Vec<f64> {
         let all = self.all();
         let points: Vec<_> = all.iter().flat_map(Drawn::limbs).flatten().collect();
-        let span = |axis: usize| {
+        let sides = [0, 1, 2].map(|axis| {
             let low = points.iter().map(|(p, r)| p[axis] - r);
             let high = points.iter().map(|(p, r)| p[axis] + r);
             [
                 low.fold(f64::INFINITY, f64::min),
                 high.fold(f64::NEG_INFINITY, f64::max),
             ]
-        };
-        let sides = [0, 1, 2].map(span);
+        });
         let size = sides
             .map(|[low, high]| high - low)
             .into_iter()

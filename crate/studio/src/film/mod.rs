@@ -30,7 +30,7 @@ struct Saving {
 pub struct FilmPanel {
     player: Player,
     saving: Option<Saving>,
-    /// How the frames of a file are made.
+    /// Quality of the frames of a file.
     quality: Quality,
     /// The browser's encoders of videos, once they were asked for.
     pub formats: Option<Vec<VideoFormat>>,

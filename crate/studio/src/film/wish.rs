@@ -3,13 +3,13 @@
 use browser::recording::Kind;
 use document::player::Playback;
 
-/// How the frames of a file are made.
+/// Quality of the frames of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// They are traced, as large as the picture.
+    /// Traced frames, as large as the picture.
     #[default]
     Traced,
-    /// The card draws them, with so many pixels along the shorter side.
+    /// Frames that the card draws, with so many pixels along the shorter side.
     Draft(u32),
 }
 

@@ -7,7 +7,7 @@ use modeling::Flesh;
 pub struct Attempt {
     /// The number of faces that it should have.
     pub faces: usize,
-    /// Its tolerance, as a part of the model's longest side.
+    /// The tolerance, as a part of the model's longest side.
     pub tolerance: f64,
     /// The number of attempts that may follow.
     pub left: u32,

@@ -98,7 +98,7 @@ impl Draft {
         self.note_end(now);
         if !self.takes(made)? {
             ctx.request_repaint();
-            return self.shown();
+            return self.texture_of_work();
         }
         let subject = (made.number, camera, size);
         if self.subject != Some(subject) {
@@ -128,11 +128,11 @@ impl Draft {
         } else if !self.is_settled {
             ctx.request_repaint_after_secs(REST as f32);
         }
-        self.shown()
+        self.texture_of_work()
     }
 
     /// Returns the texture, if something of this work was drawn.
-    fn shown(&self) -> Option<TextureId> {
+    fn texture_of_work(&self) -> Option<TextureId> {
         self.drawn.and(self.texture).map(|(id, _)| id)
     }
 
@@ -326,9 +326,9 @@ mod tests {
 
     #[test]
     fn pictures_shrink_to_the_mean_of_their_pixels() {
-        let pixel = |i: u8| [i, 10 * i, 255, 0];
         // Two rows of four, of which each four become one.
-        let pixels: Vec<u8> = (0..8).flat_map(pixel).collect();
+        let pixels = (0..8).flat_map(|i: u8| [i, 10 * i, 255, 0]);
+        let pixels: Vec<u8> = pixels.collect();
         let small = [[3, 25, 255, 0], [5, 45, 255, 0]];
         assert_eq!(shrink(&pixels, [2, 1], 2), small.as_flattened());
         assert_eq!(shrink(&pixels, [4, 2], 1), pixels);
