@@ -51,7 +51,7 @@ impl Kind {
     #[must_use]
     pub fn facts(self) -> &'static str {
         match self {
-            Self::Png => "exactly the colours that were traced; browsers play it",
+            Self::Png => "exactly the colours of the frames; browsers play it",
             Self::Gif => "everything plays it; 256 colours a frame",
             Self::WebM => "a small video; browsers play it",
             Self::Mp4 => "a small video; phones and televisions play it",
@@ -163,7 +163,7 @@ impl Recording {
             return Err(format!(
                 "{length} frames of {} × {} pixels are too many for one file: \
                     {MAX_FRAMES} frames and {} million pixels are the limits. \
-                    Choose fewer frames or a smaller picture.",
+                    Choose fewer frames or smaller ones.",
                 size[0],
                 size[1],
                 MAX_PIXELS / 1_000_000

@@ -70,7 +70,7 @@ impl Copy {
     /// # Errors
     /// If the device gives none.
     pub fn pixels(&self) -> Option<Result<Vec<u8>, String>> {
-        const REFUSED: &str = "the card gives no picture back";
+        const REFUSED: &str = "The card gives no picture back.";
         match self.state.load(Ordering::Relaxed) {
             WAITING => return None,
             THERE => {}

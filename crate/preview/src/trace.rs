@@ -70,13 +70,13 @@ const ROW: usize = 2048;
 pub struct Tracer {
     stage: Stage,
     code: Code,
-    /// The formulas that it has, and the program.
-    program: Option<(BTreeSet<u32>, Program)>,
+    /// The formulas that it has, the program, and the verdict on it.
+    program: Option<(BTreeSet<u32>, Program, Verdict)>,
     bindings: wgpu::BindGroupLayout,
     view: wgpu::Buffer,
     frame: wgpu::Buffer,
     scene: Option<Prepared>,
-    /// Verdict on the scene and its program.
+    /// Verdict on the scene's data.
     verdict: Option<Verdict>,
     target: Option<([u32; 2], Target)>,
 }
@@ -345,14 +345,21 @@ impl Tracer {
         }
     }
 
-    /// Whether the device has taken the scene: `false` as long as it does not say so, and before
-    /// the first one.
+    /// Whether the device draws: `false` as long as it does not say that its compiler has taken the
+    /// program, and before the first scene. A scene's data are taken for good until it says that
+    /// they are not, else nothing new would be drawn while they change with each frame.
     ///
     /// # Errors
     /// In the device's words, if it has no room for the scene after all, or its compiler refuses
     /// the program. Then nothing is drawn before the next scene.
     pub fn is_ready(&mut self) -> Result<bool, &str> {
-        self.verdict.as_mut().map_or(Ok(false), Verdict::is_good)
+        if let Some(verdict) = &mut self.verdict {
+            verdict.is_good()?;
+        }
+        match &mut self.program {
+            Some((.., verdict)) => verdict.is_good(),
+            None => Ok(false),
+        }
     }
 
     /// Replaces the scene by one and what was packed of it. Its own camera is not used. Returns the
@@ -369,21 +376,21 @@ impl Tracer {
         if !is_sound || packed.data.len() / 16 > self.stage.room(device) {
             return None;
         }
-        if self.is_ready().is_err() {
-            (self.program, self.verdict) = (None, None);
-        }
-        let known = (self.program.take()).filter(|(formulas, _)| *formulas == packed.formulas);
-        let before = self.verdict.take();
-        let ((program, data, materials), verdict) = Verdict::on(device, before, || {
-            let program = known.unwrap_or_else(|| {
-                let code = (self.code)(&packed.formulas);
-                let program = self.stage.compile(device, &self.bindings, &code);
-                (packed.formulas.clone(), program)
-            });
+        let known = self
+            .program
+            .take()
+            .filter(|(formulas, ..)| *formulas == packed.formulas);
+        let known = known.filter(|(.., verdict)| !verdict.is_refusal());
+        self.program = Some(known.unwrap_or_else(|| {
+            let code = (self.code)(&packed.formulas);
+            let compile = || self.stage.compile(device, &self.bindings, &code);
+            let (program, verdict) = Verdict::on(device, compile);
+            (packed.formulas.clone(), program, verdict)
+        }));
+        let ((data, materials), verdict) = Verdict::on(device, || {
             let data = self.stage.upload(device, queue, &packed.data);
-            (program, data, materials::upload(device, queue, scene))
+            (data, materials::upload(device, queue, scene))
         });
-        self.program = Some(program);
         self.verdict = Some(verdict);
         let bounds = Bounds::of(scene);
         let units = bounds.units();
@@ -420,7 +427,7 @@ impl Tracer {
             return None;
         }
         let scene = self.scene.as_ref()?;
-        let (_, program) = self.program.as_ref()?;
+        let (_, program, _) = self.program.as_ref()?;
         scene.look(queue, [&self.view, &self.frame], camera, size);
         let target = (self.target.take()).filter(|(old, _)| *old == size);
         let target = target.unwrap_or_else(|| (size, self.stage.target(device, size)));

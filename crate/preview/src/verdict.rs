@@ -16,13 +16,8 @@ pub(crate) struct Verdict {
 }
 
 impl Verdict {
-    /// Makes some calls, and returns what they return with the verdict on them, and on what was
-    /// called before.
-    pub(crate) fn on<T>(
-        device: &wgpu::Device,
-        before: Option<Self>,
-        calls: impl FnOnce() -> T,
-    ) -> (T, Self) {
+    /// Makes some calls, and returns what they return with the verdict on them.
+    pub(crate) fn on<T>(device: &wgpu::Device, calls: impl FnOnce() -> T) -> (T, Self) {
         let filters = [
             wgpu::ErrorFilter::Validation,
             wgpu::ErrorFilter::OutOfMemory,
@@ -30,11 +25,22 @@ impl Verdict {
         ];
         let scopes = filters.map(|filter| device.push_error_scope(filter));
         let result = calls();
-        let mut verdict = before.unwrap_or_default();
-        for scope in scopes.into_iter().rev() {
-            verdict.parts.push(Box::pin(scope.pop()));
+        let mut verdict = Self::default();
+        // wgpu has no word for internal errors of a browser, and would end the page: what was not
+        // compiled is then told by the draft that stays away.
+        let is_browser = device.adapter_info().backend == wgpu::Backend::BrowserWebGpu;
+        for (scope, filter) in scopes.into_iter().zip(filters).rev() {
+            let part = Box::pin(scope.pop());
+            if !(is_browser && filter == wgpu::ErrorFilter::Internal) {
+                verdict.parts.push(part);
+            }
         }
         (result, verdict)
+    }
+
+    /// Whether the calls are known to be bad.
+    pub(crate) fn is_refusal(&self) -> bool {
+        self.error.is_some()
     }
 
     /// Whether the calls are known to be good; `false` as long as it is not known.

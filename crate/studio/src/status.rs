@@ -214,15 +214,18 @@ fn describe_draft(fps: Option<u32>, meshed: &[String], narrow: bool) -> (String,
     (text, tip)
 }
 
+/// Word for a body without a name.
+const UNNAMED: &str = "an unnamed body";
+
 /// Says which bodies are drawn as meshes; of many only some.
 fn name_meshed(meshed: &[String], most: usize) -> String {
     let names = meshed.iter().map(|name| match name.as_str() {
-        "" => "the unnamed",
+        "" => UNNAMED,
         name => name,
     });
     let mut names: Vec<&str> = names.collect();
     match names.as_slice() {
-        ["the unnamed"] => return "as a mesh".to_owned(),
+        [UNNAMED] => return "as a mesh".to_owned(),
         [name] => return format!("{name} as a mesh"),
         _ => {}
     }

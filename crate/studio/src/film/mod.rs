@@ -92,6 +92,9 @@ impl FilmPanel {
 
     /// Begins to save all frames.
     fn begin(&mut self, kind: Kind, page: &mut Page, at: &Moment<'_>) {
+        if let Some(saving) = self.end(page) {
+            page.go_to_frame(saving.before);
+        }
         let quality = self.quality(page);
         let size = kind.size(match quality {
             Quality::Traced => page.size(at.ctx),

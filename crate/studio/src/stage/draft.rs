@@ -141,6 +141,7 @@ impl Draft {
         self.drawn = None;
         self.running = None;
         self.copy = None;
+        self.refusal = None;
     }
 
     /// Hands a packed scene to the card. Returns whether it may be drawn already; `None` if the
@@ -161,7 +162,9 @@ impl Draft {
         match self.tracer.is_ready() {
             Ok(is_ready) => Some(is_ready),
             Err(words) => {
-                self.refusal = Some(words.lines().next().unwrap_or_default().to_owned());
+                // The last line has the reason of those before it.
+                let mut lines = words.lines().map(str::trim).filter(|line| !line.is_empty());
+                self.refusal = Some(lines.next_back().unwrap_or_default().to_owned());
                 self.scene = Some((made.number, false));
                 None
             }

@@ -199,14 +199,16 @@ impl Stage {
             return;
         };
         let (session, is_finer) = (&page.work.session, page.screen.rest == 0.0);
-        if self.draft.is_none() || self.live.is_hopeless(session) {
-            shot.image = Some(Err(String::from("The draft of a frame takes too long.")));
+        if !session.is_compiled() {
             return;
         }
         let made = self.live.latest(session.shape(), false);
-        if let (Some(draft), Some(made)) = (&mut self.draft, made) {
-            shot.image = draft.shoot(made, session.camera(), shot.size, is_finer);
-        }
+        shot.image = match (&mut self.draft, made) {
+            _ if session.errors() > 0 => Some(Err("The text of a frame has mistakes.".into())),
+            (Some(draft), Some(made)) => draft.shoot(made, session.camera(), shot.size, is_finer),
+            (Some(_), None) if !self.live.is_hopeless(session) => None,
+            _ => Some(Err("The draft of a frame takes too long.".into())),
+        };
     }
 
     /// Whether scenes are packed for the card.
@@ -373,7 +375,7 @@ impl Panel for Stage {
             self.live.want();
         }
         let session = &page.work.session;
-        if self.packs(page) || is_shot {
+        if self.packs(page) || (is_shot && !page.is_reading()) {
             self.live
                 .tick(session, at.now, is_drawn || is_shot, rests(page));
         }
