@@ -32,6 +32,8 @@ const FINE_MESHES: [f32; 5] = [0.3, 0.6, 0.75, 0.85, 0.93];
 const SEPARATIONS: usize = 8;
 /// Most times that a coarse mesh is mended.
 const MENDINGS: usize = 6;
+/// Most times that vertices are moved where a fine mesh cuts itself.
+const UNTANGLINGS: usize = 6;
 /// Most pairs of triangles that cut each other that are looked for in a fine mesh.
 const MOST_TANGLED: usize = 20_000;
 /// A mesh is mended if it is too far from the surface at no more places than one for so many
@@ -79,6 +81,7 @@ pub fn approximate(
         tolerance,
         max_triangles,
         threads,
+        only_adds,
     } = *options;
     check(domain)?;
     // Not so for NaN.
@@ -93,6 +96,7 @@ pub fn approximate(
     for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
         let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
         let mut space = Space::new(function, forest, tolerance / size);
+        space.only_adds = only_adds;
         let mut corners = Corners::default();
         let sizes = Sizes {
             tolerance,
@@ -148,6 +152,7 @@ pub fn approximate(
         let mut fine = Fine {
             space: &space,
             raw: &raw,
+            seen: &raw,
             domain,
             tolerance,
             threads,
@@ -156,7 +161,7 @@ pub fn approximate(
         let mut moved;
         if let Err(far) = made {
             moved = raw.clone();
-            made = match untangle(&space, &mut moved, &sizes, &mut progress)? {
+            made = match untangle(&space, &mut moved, &sizes, &mut progress.part(0.5, 0.5))? {
                 Untangled::Always => Err(far),
                 Untangled::Now => {
                     fine.raw = &moved;
@@ -234,19 +239,18 @@ fn untangle(
     progress: &mut Progress<'_>,
 ) -> Result<Untangled, MeshError> {
     let mut is_moved = vec![false; raw.vertices.len()];
-    let mut is_first = true;
-    loop {
+    for round in 0..=UNTANGLINGS {
         let faces = find_crossings(raw)?;
         if faces.is_empty() {
-            return Ok(match is_first {
-                true => Untangled::Always,
-                false => Untangled::Now,
+            return Ok(match round {
+                0 => Untangled::Always,
+                _ => Untangled::Now,
             });
         }
         let corners = faces.iter().flat_map(|i| raw.triangles[*i as usize]);
         let mut own: Vec<u32> = corners.collect();
         own.sort_unstable();
-        if !is_first {
+        if round > 0 {
             let all = raw.triangles.iter();
             let beside = all.filter(|t| t.iter().any(|v| own.binary_search(v).is_ok()));
             own = beside.flatten().copied().collect();
@@ -254,7 +258,7 @@ fn untangle(
         }
         own.dedup();
         own.retain(|v| !raw.anchors.is_empty() && !is_moved[*v as usize]);
-        if own.is_empty() {
+        if own.is_empty() || round == UNTANGLINGS {
             let places = faces.iter().map(|i| {
                 let corners = raw.triangles[*i as usize].map(|v| &raw.vertices[v as usize]);
                 Aabb::of_points(corners.map(|v| v.position)).center()
@@ -270,8 +274,8 @@ fn untangle(
             raw.vertices[*v as usize] = vertex;
             is_moved[*v as usize] = true;
         }
-        is_first = false;
     }
+    Ok(Untangled::Not(Vec::new()))
 }
 
 /// Returns the triangles that cut others, or are flat.
@@ -344,6 +348,8 @@ fn cube(center: DVec3, half: f64) -> Aabb {
 struct Fine<'a> {
     space: &'a Space<'a>,
     raw: &'a Raw,
+    /// The mesh before vertices were moved off the surface.
+    seen: &'a Raw,
     domain: &'a Aabb,
     tolerance: f64,
     threads: usize,
@@ -499,7 +505,7 @@ impl Fine<'_> {
 
     /// The places of the surface that are looked for on meshes.
     fn places(&self, progress: &mut Progress<'_>) -> Result<Vec<DVec3>, MeshError> {
-        let raw = self.raw;
+        let raw = self.seen;
         let on = raw.vertices.iter().filter(|v| self.is_on(v));
         let mut places: Vec<DVec3> = on.map(|v| v.position).collect();
         let fine = (0..raw.triangles.len()).filter(|i| !raw.is_lid[*i]);
@@ -788,6 +794,7 @@ mod tests {
         let fine = Fine {
             space,
             raw: &raw,
+            seen: &raw,
             domain,
             tolerance: sizes.tolerance,
             threads: 1,

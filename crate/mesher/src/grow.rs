@@ -249,13 +249,15 @@ fn is_simple(inside: [bool; 8]) -> bool {
     count <= 2
 }
 
-/// Returns how far the function is from the threshold, and the gradient of that. Inside it is the
-/// logarithm that counts, since a kernel is steep there and its logarithm is not: the surface hides
-/// between samples only where the distance bends downward, and the logarithm mostly does not.
-fn room(vertex: &Vertex) -> (f64, DVec3) {
-    if vertex.value > 0.0 {
+/// Returns how far a function is from the threshold, and the gradient of that: the surface hides
+/// between samples only where this sags between them. Inside it may be the logarithm's: that of
+/// kernels which add up hardly sags, while they are steep themselves.
+fn margin(vertex: &Vertex, is_logarithmic: bool) -> (f64, DVec3) {
+    if vertex.value > 0.0 && is_logarithmic {
         let share = THRESHOLD / (THRESHOLD + vertex.value);
         (-THRESHOLD * libm::log(share), vertex.gradient * share)
+    } else if vertex.value > 0.0 {
+        (vertex.value, vertex.gradient)
     } else {
         (-vertex.value, -vertex.gradient)
     }
@@ -280,18 +282,18 @@ fn look(
         if is_crossed {
             return Fate::Leaf(Side::Crossing);
         }
-        let (own_room, own_slope) = room(middle);
-        let rooms = corners.map(room);
-        let (mut least, mut bend) = (own_room, 0.0_f64);
-        let mut slope = own_slope.length();
-        for (corner, (room, end)) in corners.iter().zip(&rooms) {
+        let is_logarithmic = space.is_logarithmic_inside();
+        let (mut least, own_slope) = margin(middle, is_logarithmic);
+        let margins = corners.map(|corner| margin(corner, is_logarithmic));
+        let [mut bend, mut slope] = [0.0, own_slope.length()];
+        for (corner, (margin, end)) in corners.iter().zip(&margins) {
             let way = corner.position - middle.position;
             bend = bend.max((*end - own_slope).dot(way));
-            (least, slope) = (least.min(*room), slope.min(end.length()));
+            (least, slope) = (least.min(*margin), slope.min(end.length()));
         }
         for [low, high] in EDGES {
             let way = corners[high].position - corners[low].position;
-            bend = bend.max((rooms[high].1 - rooms[low].1).dot(way));
+            bend = bend.max((margins[high].1 - margins[low].1).dot(way));
         }
         // Between samples the function dips below its interpolant as along the edges between them
         // and from the centre. If that is too far, the surface bulges into the cell, but not much.

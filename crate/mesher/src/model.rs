@@ -15,7 +15,7 @@ use crate::surface::{MOST_CROSSINGS, SurfaceMesh as Mesh, box_of, extent, polygo
 use crate::unite;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh, self_intersections};
-use scene::{Element, Scene, Shape, Surface};
+use scene::{Element, Form, Scene, Shape, Surface};
 use serde::{Deserialize, Serialize};
 
 /// How far the mesh may be from the surface.
@@ -448,6 +448,29 @@ fn describe_holes(name: &str, holes: usize) -> Option<String> {
     }
 }
 
+/// Whether all elements of a surface are bones and skeletons that add their fields to its function:
+/// none carves, has a profile, or is pressed by another body.
+fn only_adds(scene: &Scene, surface: &Surface) -> bool {
+    let mut elements = surface.element().iter();
+    scene.contacts.is_empty()
+        && elements.all(|element| {
+            let element = &scene.elements[*element as usize];
+            let flesh = element.flesh.and_then(|i| scene.flesh.get(i as usize));
+            let is_plain = flesh.is_some_and(|flesh| {
+                flesh.strength >= 0.0 && flesh.profile.is_none() && flesh.restriction == 0.0
+            });
+            is_plain
+                && match &element.shape {
+                    Shape::Bone(_) => true,
+                    Shape::Function(function) => match &function.form {
+                        Form::Skeleton(curves) => curves.local.is_none() && curves.flat.is_empty(),
+                        _ => false,
+                    },
+                    _ => false,
+                }
+        })
+}
+
 fn soft_part(
     scene: &Scene,
     wishes: &Wishes,
@@ -461,6 +484,7 @@ fn soft_part(
         tolerance: plan.tolerance,
         max_triangles: wishes.max_triangles,
         threads: wishes.threads,
+        only_adds: only_adds(scene, surface),
     };
     let name = name_of(scene, surface.body(), "");
     let mut is_measured = !wishes.prove;
@@ -677,6 +701,7 @@ fn quadric_sheet(
         tolerance: tolerance / longest,
         max_triangles: wishes.max_triangles,
         threads: wishes.threads,
+        only_adds: false,
     };
     let function = QuadricFunction::new(quadric);
     let surface = match polygonize(&function, &domain, &options, &mut progress.part(0.0, 0.0)) {

@@ -12,19 +12,23 @@ pub struct Options {
     pub max_triangles: usize,
     /// Threads; the result does not depend on them. 1 in wasm.
     pub threads: usize,
+    /// Whether all terms of the function add to it, so that its logarithm bends little where it is
+    /// steep.
+    pub only_adds: bool,
 }
 
 impl Options {
     /// The largest limit of triangles.
     pub const MOST_TRIANGLES: usize = 2_000_000;
 
-    /// A tolerance, and otherwise defaults: two million triangles, one thread.
+    /// A tolerance, and otherwise defaults: two million triangles, one thread, terms of any sign.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
             max_triangles: Self::MOST_TRIANGLES,
             threads: 1,
+            only_adds: false,
         }
     }
 }

@@ -45,6 +45,8 @@ pub struct Space<'a> {
     logarithm: Option<Logarithm<'a>>,
     /// The cells.
     pub forest: Forest,
+    /// Whether all terms of the function are known to add to it.
+    pub only_adds: bool,
     parts: Vec<Nested>,
     /// Largest error of polynomials that stand for far terms.
     far: f64,
@@ -62,12 +64,18 @@ impl<'a> Space<'a> {
             function,
             logarithm: function.logarithm(),
             forest,
+            only_adds: false,
             parts: Vec::new(),
             far: BORNE * tolerance,
             worst: [0.0; 2],
             evaluations: AtomicU64::new(0),
             patches: Patches::default(),
         }
+    }
+
+    /// Whether the function's logarithm, not itself, tells where it may fall below the threshold.
+    pub fn is_logarithmic_inside(&self) -> bool {
+        self.only_adds && self.logarithm.is_none()
     }
 
     fn part(&self, part: u32) -> Option<&Part> {

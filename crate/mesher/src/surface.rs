@@ -89,6 +89,7 @@ fn guarded(
         tolerance,
         max_triangles,
         threads,
+        ..
     } = *options;
     check(domain)?;
     // Not so for NaN.

@@ -507,7 +507,7 @@ fn has_ground(project: &Project) -> bool {
     page::texts(project).any(|text| page::ground(text).is_some())
 }
 
-/// Bends a leg so that it ends on the ground, if it goes down to it or nearly so: the farther from
+/// Bends a leg so that it ends on the ground, if it goes down to it or nearly so: the farther below
 /// its root, the more. `ground` is the height in the world.
 fn stand(nodes: &mut [Node], to_world: DAffine3, growth: f64, ground: f64) {
     let heights = nodes.iter();
@@ -524,9 +524,8 @@ fn stand(nodes: &mut [Node], to_world: DAffine3, growth: f64, ground: f64) {
         return;
     }
     let up = to_world.inverse().transform_vector3(DVec3::Y * off);
-    let pieces = (nodes.len() - 1) as f64;
-    for (number, node) in nodes.iter_mut().enumerate() {
-        node.position += up * (number as f64 / pieces);
+    for (node, height) in nodes.iter_mut().zip(&heights) {
+        node.position += up * ((root - height) / (root - end)).clamp(0.0, 1.0);
     }
 }
 

@@ -178,9 +178,13 @@ impl SculptPanel {
                     faces,
                     tolerance: Order::default().tolerance,
                     left: 2,
+                    revision: page.work.session.revision(),
                     before: None,
                 };
                 mesh_model(page, first);
+            }
+            SculptWish::Mesh(_, attempt) if attempt.revision != page.work.session.revision() => {
+                page.warn("The text changed while the model was meshed: choose Sculpt this again.");
             }
             SculptWish::Mesh(result, attempt) => match next(&result, &attempt) {
                 Some(next) => mesh_model(page, next),
@@ -385,9 +389,10 @@ fn next(result: &Result<Vec<u8>, String>, attempt: &Attempt) -> Option<Attempt> 
     if attempt.left == 0 || (0.7..1.6).contains(&off) {
         return None;
     }
-    Some(Attempt {
-        // There are about as many faces as the tolerance goes into one; at most half a percent.
-        tolerance: (attempt.tolerance * off).clamp(2e-5, 5e-3),
+    // There are about as many faces as the tolerance goes into one; at most half a percent.
+    let tolerance = (attempt.tolerance * off).clamp(2e-5, 5e-3);
+    (tolerance != attempt.tolerance).then(|| Attempt {
+        tolerance,
         left: attempt.left - 1,
         before: Some(file.clone()),
         ..*attempt
@@ -659,6 +664,7 @@ mod tests {
                 faces: 30_000,
                 tolerance: 1e-3,
                 left,
+                revision: 0,
                 before: None,
             }
         }

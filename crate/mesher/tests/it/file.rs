@@ -406,6 +406,25 @@ fn struts_take_few_cells() {
     assert!(part.raw_triangles < 100_000, "{}", part.raw_triangles);
 }
 
+/// A ball that carves another leaves a cavity far smaller than the cells that its kernel asks for.
+#[test]
+fn small_cavities_are_not_missed() {
+    let mut random = Random::new(31);
+    for _ in 0..count(6) {
+        let center = random.direction() * 0.3;
+        let off = center + random.direction() * random.range(0.03, 0.06);
+        let text = format!(
+            "surface S, radius 1, kernel gauss, blobbiness -8\n\
+             surface C, radius 0.5, kernel gauss, blobbiness -8, strength -1\n\
+             sphere S 1 {} {} {}\nsphere C 0.5 {} {} {}\n",
+            center.x, center.y, center.z, off.x, off.y, off.z
+        );
+        let model = mesh(&compile(text), Tolerance::Absolute(2e-3)).unwrap();
+        let topology = Topology::of(&model.parts[0].mesh).unwrap();
+        assert_eq!(topology.genera.len(), 2, "{center} {off}");
+    }
+}
+
 /// Bounds on local convolution tell nothing of large cells.
 #[test]
 fn thin_limbs_of_local_convolution_are_not_missed() {

@@ -11,6 +11,8 @@ pub struct Attempt {
     pub tolerance: f64,
     /// The number of attempts that may follow.
     pub left: u32,
+    /// Revision of the text that is meshed.
+    pub revision: u64,
     /// The mesh of the attempt before.
     pub before: Option<Vec<u8>>,
 }
