@@ -199,14 +199,21 @@ fn name(ui: &mut Ui, work: &Work, wishes: &mut Wishes) {
     }
 }
 
+/// Room below its button, in points, where the menu of a narrow page does not scroll.
+const LOW: f32 = 700.0;
+
 fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     let button = icon::button(ui, Icon::More, "More", true);
     places::note(ui.ctx(), "more", button.rect);
-    // Where the window is lower than the menu, the menu scrolls.
+    // Where the window is lower than the menu, the menu scrolls: no higher than popups are.
     let room = ui.ctx().content_rect().bottom() - button.rect.bottom() - 24.0;
     egui::Popup::menu(&button).show(|ui| {
-        let rows = ScrollArea::vertical().max_height(room);
-        rows.show(ui, |ui| rest(page, film, ui, wishes));
+        if room < LOW {
+            let rows = ScrollArea::vertical().max_height(room);
+            rows.show(ui, |ui| rest(page, film, ui, wishes));
+        } else {
+            rest(page, film, ui, wishes);
+        }
     });
 }
 
