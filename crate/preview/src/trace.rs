@@ -383,8 +383,8 @@ impl Tracer {
         let known = known.filter(|(.., verdict)| !verdict.is_refusal());
         self.program = Some(known.unwrap_or_else(|| {
             let code = (self.code)(&packed.formulas);
-            let compile = || self.stage.compile(device, &self.bindings, &code);
-            let (program, verdict) = Verdict::on(device, compile);
+            let (program, verdict) =
+                Verdict::on(device, || self.stage.compile(device, &self.bindings, &code));
             (packed.formulas.clone(), program, verdict)
         }));
         let ((data, materials), verdict) = Verdict::on(device, || {
