@@ -173,7 +173,7 @@ mod tests {
             let own = scene::strongest(surface.function(), surface.element(), **middle);
             own.is_none_or(|own| scene.elements[own as usize].finish == **painted)
         });
-        // Where two are as strong, either may be taken: a material's elements count together.
+        // Of two that are as strong either may be taken: a material's elements count together.
         let share = right.count() as f64 / painted.len() as f64;
         assert!(share > 0.9, "{share}");
     }

@@ -66,7 +66,7 @@ export interface MeshOptions extends Waiting {
 export interface FileOptions extends MeshOptions {
   /** `glb` if not given. */
   format?: 'stl' | '3mf' | 'glb' | 'obj' | 'ply';
-  /** Length of the longest side, millimetres: 100. */
+  /** Length of the longest side, millimetres: 100. With 0 a unit of the text is a millimetre. */
   size?: number;
 }
 

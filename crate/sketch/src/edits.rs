@@ -697,3 +697,28 @@ pub fn twice(
         None => Ok(first),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A leg that is too long bends in what falls, and its foot stays level.
+    #[test]
+    fn a_leg_stands_on_its_whole_foot() {
+        let places = [
+            [0.0, 1.0],
+            [0.0, 0.66],
+            [0.0, 0.33],
+            [0.0, 0.02],
+            [0.3, 0.0],
+        ];
+        let mut nodes = places.map(|[x, y]| Node {
+            position: DVec3::new(x, y, 0.0),
+            radius: 0.0,
+        });
+        stand(&mut nodes, DAffine3::IDENTITY, 1.0, 0.3);
+        let [root, .., heel, toe] = nodes.map(|node| node.position.y);
+        assert!(root == 1.0 && (toe - 0.3).abs() < 1e-12);
+        assert!(heel >= toe && heel < toe + 0.02, "{heel}");
+    }
+}

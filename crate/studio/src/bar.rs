@@ -205,7 +205,7 @@ const LOW: f32 = 700.0;
 fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     let button = icon::button(ui, Icon::More, "More", true);
     places::note(ui.ctx(), "more", button.rect);
-    // Where the window is lower than the menu, the menu scrolls: no higher than popups are.
+    // The menu scrolls in a window that is lower than it.
     let room = ui.ctx().content_rect().bottom() - button.rect.bottom() - 24.0;
     egui::Popup::menu(&button).show(|ui| {
         if room < LOW {

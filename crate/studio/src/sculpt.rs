@@ -225,7 +225,7 @@ impl SculptPanel {
         let start = start_of(session, name, &file.text);
         match Sculpting::open(name, &file.text, &mut |name| load(start.as_ref(), name)) {
             Ok(mut place) => {
-                // From where the model is seen.
+                // The camera that the model is seen by.
                 let camera = session.camera();
                 place.look_from(camera.eye - camera.target, camera.up);
                 page.notice = None;

@@ -129,7 +129,7 @@ pub fn show(
                     f32::INFINITY,
                     egui::TextStyle::Body,
                 );
-                // What has no room beside the state is left out.
+                // Facts without room beside the state are left out.
                 if galley.size().x > ui.available_width() {
                     break;
                 }

@@ -72,7 +72,7 @@ fn a_lost_device_ends_nothing() {
         // test.
         card.device.on_uncaptured_error(Arc::new(|_| {}));
         card.device.destroy();
-        // With the old scene, another one, and another tracer.
+        // Draws the old scene, another one, and one by another tracer.
         draws(&card, &mut tracer, &scene);
         tracer.set_scene(&card.device, &card.queue, &scene, &packed);
         draws(&card, &mut tracer, &scene);

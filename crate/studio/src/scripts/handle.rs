@@ -16,9 +16,10 @@
 //! - `mesh({format, tolerance, size, union, prove, rig})`: promise of a `Uint8Array`: the model as
 //!   a file of a triangle mesh; `format` is `"stl"` (default), `"3mf"`, `"glb"`, `"obj"` or
 //!   `"ply"`, `tolerance` the largest distance from the surface as a part of the longest side
-//!   (0.0015), `size` the longest side in millimetres (100), `union` whether bodies that overlap
-//!   become one, `prove` whether what can be proved of the mesh is, which takes ten times as long
-//!   (false), `rig` (GLB only) whether skeletons become joints and the film an animation
+//!   (0.0015), `size` the longest side in millimetres (100; 0 keeps the text's units), `union`
+//!   whether bodies that overlap become one, `prove` whether what can be proved of the mesh is,
+//!   which takes ten times as long (false), `rig` (GLB only) whether skeletons become joints and
+//!   the film an animation
 //! - `link()`: the full address that Share copies
 //! - `camera()`: `{eye, target, up, fov}` in use
 //! - `setCamera(camera)`: looks from there; `null` goes back to the camera of the text
