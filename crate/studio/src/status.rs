@@ -235,3 +235,20 @@ fn name_meshed(meshed: &[String], most: usize) -> String {
     }
     format!("{} bodies as meshes: {}", meshed.len(), names.join(", "))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meshed_bodies_are_named_and_of_many_some() {
+        let names = ["A", "", "C", "D"].map(String::from);
+        assert_eq!(name_meshed(&names[1..2], 3), "as a mesh");
+        assert_eq!(name_meshed(&names[..1], 3), "A as a mesh");
+        let some = "4 bodies as meshes: A, an unnamed body, C, …";
+        assert_eq!(name_meshed(&names, 3), some);
+        let (text, tip) = describe_draft(Some(60), &names, true);
+        assert_eq!(text, "draft, 60 fps");
+        assert!(tip.ends_with("C, D"), "{tip}");
+    }
+}
