@@ -241,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn meshed_bodies_are_named_and_of_many_some() {
+    fn bodies_drawn_as_meshes_have_names() {
         let names = ["A", "", "C", "D"].map(String::from);
         assert_eq!(name_meshed(&names[1..2], 3), "as a mesh");
         assert_eq!(name_meshed(&names[..1], 3), "A as a mesh");
