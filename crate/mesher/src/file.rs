@@ -6,6 +6,7 @@
 //! from the surface it is [mended](crate::mend). Where it cuts itself, or that does not help, it is
 //! decimated once more with more care, at last with finer cells.
 
+use crate::cages::Cage;
 use crate::certify::{Vertex, at, descend};
 use crate::decimate::{Decimated, Decimation};
 use crate::dual::dual;
@@ -20,6 +21,7 @@ use crate::parallel::{LARGE, map_by, map_told};
 use crate::refine::crossing;
 use crate::space::Space;
 use crate::surface::{LARGEST, LEAST_CELLS, MOST_CROSSINGS, SurfaceMesh, check};
+use crate::tubes::{are_limbs, estimate_cells, unite_tubes};
 use field::{Implicit, THRESHOLD};
 use glam::DVec3;
 use mesh::{Aabb, Bvh, TriangleMesh, closest_point, self_intersections};
@@ -67,12 +69,14 @@ const SAMPLES: [[f64; 3]; 7] = [
 ];
 
 /// Meshes the surface of a function within a domain, which it must not leave but where it is to be
-/// cut off. Nothing is proved: the error is measured.
+/// cut off. Nothing is proved: the error is measured. The cages are those of its limbs and balls if
+/// it is the sum of such; else there are none.
 ///
 /// # Errors
 /// See [`MeshError`]; [`MeshError::Failed`] also where the error stays larger than the tolerance.
 pub fn approximate(
     function: &dyn Implicit,
+    cages: &[Cage],
     domain: &Aabb,
     options: &Options,
     progress: &mut Progress<'_>,
@@ -92,6 +96,20 @@ pub fn approximate(
     let size = domain.size().max_element();
     let tolerance = tolerance.min(LARGEST * size);
     let most = max_triangles.saturating_mul(2).max(LEAST_CELLS);
+    if are_limbs(cages) && estimate_cells(cages) > most as f64 {
+        let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
+        let mut space = Space::new(function, forest, tolerance / size);
+        let sizes = Sizes {
+            tolerance,
+            hiding: f64::INFINITY,
+            most,
+            threads,
+        };
+        let made = mesh_limbs(&mut space, cages, domain, &sizes, progress)?;
+        if let Some(surface) = made.filter(|made| made.mesh.triangles.len() <= max_triangles) {
+            return Ok(surface);
+        }
+    }
     let mut grown = None;
     for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
         let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
@@ -167,7 +185,7 @@ pub fn approximate(
                     fine.raw = &moved;
                     fine.coarsen(&mut progress.part(0.5, 1.0))?
                 }
-                Untangled::Not(places) => Err(places),
+                Untangled::Not(places) => Err(Left { places, mesh: None }),
             };
         }
         match made {
@@ -195,10 +213,59 @@ pub fn approximate(
                     evaluations: space.evaluations(),
                 });
             }
-            Err(places) => refine(&mut space, &places),
+            Err(left) => refine(&mut space, &left.places),
         }
     }
     Err(too_rough())
+}
+
+/// Meshes limbs that are so thin that they need too many cells. Where the mesh is not within the
+/// tolerance, as where limbs touch, the places are told. `None` if that fails.
+fn mesh_limbs(
+    space: &mut Space<'_>,
+    cages: &[Cage],
+    domain: &Aabb,
+    sizes: &Sizes,
+    progress: &mut Progress<'_>,
+) -> Result<Option<SurfaceMesh>, MeshError> {
+    let cells = &mut progress.part(0.0, 0.5).in_phase(Phase::Cells);
+    let raw = match unite_tubes(space, cages, sizes, cells) {
+        Err(MeshError::Failed(_)) => return Ok(None),
+        raw => raw?,
+    };
+    if !find_crossings(&raw)?.is_empty() {
+        return Ok(None);
+    }
+    let mut progress = progress.part(0.5, 1.0).in_phase(Phase::Triangles);
+    let fine = Fine {
+        space,
+        raw: &raw,
+        seen: &raw,
+        domain,
+        tolerance: sizes.tolerance,
+        threads: sizes.threads,
+    };
+    let (mesh, measured, undecided) = match fine.coarsen(&mut progress.part(0.0, 0.8))? {
+        Ok((mesh, measured)) => (mesh, measured, Vec::new()),
+        Err(Left { mesh: None, .. }) => return Ok(None),
+        Err(Left {
+            mesh: Some(mesh), ..
+        }) => fine.measure_farther(mesh, &mut progress)?,
+    };
+    let forest = &fine.space.forest;
+    Ok(Some(SurfaceMesh {
+        error: measured.largest[0].max(measured.largest[1]),
+        mesh,
+        unproved: 0,
+        measured,
+        crossings: 0,
+        undecided,
+        finest: forest.size(forest.deepest).max_element(),
+        cells: forest.cells.len(),
+        raw_triangles: raw.triangles.len(),
+        is_cut: false,
+        evaluations: fine.space.evaluations(),
+    }))
 }
 
 /// Makes the mesh that is dual to cells, of smaller cells where it cuts itself.
@@ -355,6 +422,15 @@ struct Fine<'a> {
     threads: usize,
 }
 
+/// What is left of an attempt that fails.
+#[derive(Default)]
+struct Left {
+    /// Places where the mesh cuts itself, or is too far from the surface.
+    places: Vec<DVec3>,
+    /// The last mesh, if it does not cut itself.
+    mesh: Option<TriangleMesh>,
+}
+
 /// A mesh with distances between it and the surface.
 struct Survey {
     mesh: TriangleMesh,
@@ -422,7 +498,7 @@ impl Fine<'_> {
     fn coarsen(
         &self,
         progress: &mut Progress<'_>,
-    ) -> Result<Result<(TriangleMesh, Measured), Vec<DVec3>>, MeshError> {
+    ) -> Result<Result<(TriangleMesh, Measured), Left>, MeshError> {
         let count = self.raw.vertices.len();
         let mut shares = vec![1.0; count];
         let mut is_guarded = vec![false; count];
@@ -433,7 +509,7 @@ impl Fine<'_> {
             .map(|v| Aabb::of_points([v.position]));
         let points = Bvh::new(&points.collect::<Vec<Aabb>>());
         let places = self.places(progress)?;
-        let mut left = Vec::new();
+        let mut left = Left::default();
         for attempt in 0..ATTEMPTS {
             let [start, end] = [0, 1].map(|i| (attempt + i) as f32 / ATTEMPTS as f32);
             let progress = &mut progress.part(start, end);
@@ -450,16 +526,16 @@ impl Fine<'_> {
             let crossings = self_intersections(&mesh, MOST_CROSSINGS)
                 .map_err(|error| MeshError::Failed(error.to_string()))?;
             if !crossings.is_free() {
-                left.clear();
+                left.places.clear();
                 if attempt == 0 && !find_crossings(self.raw)?.is_empty() {
-                    return Ok(Err(Vec::new()));
+                    return Ok(Err(Left::default()));
                 }
                 let faces = crossings.pairs.as_flattened().iter().chain(&crossings.flat);
                 for i in faces {
                     let corners = mesh.corners(*i as usize);
                     let bounds = Aabb::of_points(corners);
                     let reach = 0.5 * bounds.size().max_element();
-                    left.push(bounds.center());
+                    left.places.push(bounds.center());
                     for i in points.overlapping(&cube(bounds.center(), reach)) {
                         is_guarded[i as usize] = true;
                     }
@@ -498,9 +574,37 @@ impl Fine<'_> {
                     };
                 }
             }
-            left = far.into_iter().map(|far| far.place).collect();
+            left = Left {
+                places: far.into_iter().map(|far| far.place).collect(),
+                mesh: Some(survey.mesh),
+            };
         }
         Ok(Err(left))
+    }
+
+    /// Measures a mesh some places of which may not be within the tolerance, and returns those that
+    /// are not: places are no farther from the surface than from the nearest vertex on it.
+    fn measure_farther(
+        &self,
+        mesh: TriangleMesh,
+        progress: &mut Progress<'_>,
+    ) -> Result<(TriangleMesh, Measured, Vec<DVec3>), MeshError> {
+        let places = self.places(progress)?;
+        let mut survey = self.survey(mesh, &places, progress)?;
+        let points: Vec<Aabb> = places.iter().map(|p| Aabb::of_points([*p])).collect();
+        let points = Bvh::new(&points);
+        for (place, distance) in survey.there.iter_mut().flatten() {
+            if *distance > self.tolerance {
+                let nearest = points.nearest(*place, f64::INFINITY, |i| {
+                    places[i as usize].distance_squared(*place)
+                });
+                *distance = distance.min(root_of(nearest));
+            }
+        }
+        let far = survey.far(&places, self.tolerance).into_iter();
+        let far = far.map(|far| far.place).collect();
+        let measured = survey.sum_up();
+        Ok((survey.mesh, measured, far))
     }
 
     /// The places of the surface that are looked for on meshes.

@@ -27,7 +27,7 @@ pub const HIDING: [f64; 3] = [6.0, 60.0, 600.0];
 /// Nor if they are no larger than this share of the width of the kernels that matter there.
 const WIDTHS: f64 = 0.8;
 /// Largest height of the surface's arc between two of its places in a cell, in tolerances.
-const SAG: f64 = 0.8;
+pub const SAG: f64 = 0.8;
 /// Largest distance from the surface, in tolerances, of a crease and of places on both sides of it.
 const CREASED: f64 = 0.4;
 /// Largest height of a bulge of the surface that a cell hides between samples, in tolerances.

@@ -31,7 +31,8 @@
 //! A mesh for a file ([`approximate`]): `grow.rs` finds cells of the size that curvature asks for,
 //! `dual.rs` makes a mesh of them (`march.rs` where the box cuts the surface off), `decimate.rs`
 //! makes its triangles fewer, and `file.rs` measures the error both ways, mends what is too far
-//! with `mend.rs`, and begins anew with more care where that is not enough.
+//! with `mend.rs`, and begins anew with more care where that is not enough. Limbs so thin that they
+//! would take too many cells get a fine mesh of `tubes.rs` in their place.
 //!
 //! A mesh for the eye ([`look`]) is made the same way of coarse cells, which are found from the
 //! skeletons by samples alone.
@@ -100,6 +101,7 @@ mod solids;
 mod space;
 mod surface;
 mod thin;
+mod tubes;
 mod unite;
 
 pub use cages::{Cage, Spoke};

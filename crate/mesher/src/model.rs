@@ -471,6 +471,22 @@ fn only_adds(scene: &Scene, surface: &Surface) -> bool {
         })
 }
 
+/// Whether all bones of a surface are points and lines, which [`Cage`]s surround.
+fn are_lines(scene: &Scene, surface: &Surface) -> bool {
+    surface.element().iter().all(|element| {
+        let bone = scene.elements[*element as usize].shape.bone();
+        bone.is_none_or(|bone| {
+            bone.normals.is_none()
+                && !matches!(
+                    bone.skeleton,
+                    field::Skeleton::Triangle { .. }
+                        | field::Skeleton::Polygon { .. }
+                        | field::Skeleton::Plane { .. }
+                )
+        })
+    })
+}
+
 fn soft_part(
     scene: &Scene,
     wishes: &Wishes,
@@ -490,7 +506,17 @@ fn soft_part(
     let mut is_measured = !wishes.prove;
     let function = surface.function();
     let mut made = if is_measured {
-        approximate(function, domain, &options, &mut progress.part(0.0, 0.5))
+        let limbs = match options.only_adds && are_lines(scene, surface) {
+            true => Cage::of_surface(scene, surface),
+            false => Vec::new(),
+        };
+        approximate(
+            function,
+            &limbs,
+            domain,
+            &options,
+            &mut progress.part(0.0, 0.5),
+        )
     } else {
         polygonize(function, domain, &options, progress)
     };
@@ -550,7 +576,16 @@ fn soft_part(
             "{name}: cut off by the box and closed by flat faces"
         ));
     }
-    if let Some(first) = undecided.first() {
+    if let (true, Some(first)) = (is_measured, undecided.first()) {
+        model.notes.push(format!(
+            "{name}: {} places are farther from the surface than the tolerance, up to {error:.2e}, \
+             the first near {:.4} {:.4} {:.4}: limbs may touch there; a smaller tolerance may help",
+            undecided.len(),
+            first.x,
+            first.y,
+            first.z,
+        ));
+    } else if let Some(first) = undecided.first() {
         model.notes.push(format!(
             "{name}: the topology is not proved in {} cells, the first near {:.4} {:.4} {:.4}: the \
              surface may touch itself or have a kink there",

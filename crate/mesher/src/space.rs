@@ -185,6 +185,12 @@ impl<'a> Space<'a> {
         self.evaluations.load(Ordering::Relaxed)
     }
 
+    /// Whether a part has so many terms that smaller ones are worth their while.
+    pub fn has_many_terms(&self, part: u32) -> bool {
+        self.part(part)
+            .is_none_or(|part| part.terms.len() > FEW_TERMS)
+    }
+
     /// A smaller part for the children of a cell; `None` if that of the cell will do.
     pub fn narrow(&self, cell: &Cell) -> Option<Part> {
         let part = self.part(cell.part);

@@ -62,6 +62,7 @@ fn build_for(
     let mut step = 0;
     let result = approximate(
         sum,
+        &[],
         domain,
         options,
         &mut Progress::new(&mut |_| {
@@ -404,6 +405,41 @@ fn struts_take_few_cells() {
     assert!(topology.is_closed_manifold());
     assert_eq!(topology.genera, [20 - 9 + 1]);
     assert!(part.raw_triangles < 100_000, "{}", part.raw_triangles);
+}
+
+/// Limbs that are thousands of times longer than thick take no cells along them: branches, bends, a
+/// ring, and limbs that are thinner than the tolerance.
+#[test]
+fn thin_limbs_are_one_shell_of_few_triangles() {
+    for tolerance in [0.003, 0.05, 0.15] {
+        let text = String::from(
+            "surface S, radius 0.05, kernel compact6, blobbiness -8\n\
+             skeleton S, TREE subdivide 0 {\n\
+             node A <0 0 0> node B <200 9 0> node C <310 60 20> node D <290 -70 10>\n\
+             node E <420 10 -30> node F <-150 30 40> node G <-160 200 -9> node H <500 200 90>\n\
+             node I <150 300 -20>\n",
+        );
+        let limbs = "AB BC BD CE DE AF AG EH CI".split(' ');
+        let limbs = limbs.map(|limb| limb.split_at(1));
+        let limbs: String = limbs.map(|(a, b)| format!("curve {a} {b}\n")).collect();
+        let name = format!("within {tolerance}");
+        let scene = compile(text + &limbs + "}\n");
+        let model = mesh(&scene, Tolerance::Absolute(tolerance)).unwrap();
+        let part = &model.parts[0];
+        println!(
+            "{name}: {} of {} triangles, {:?}",
+            part.mesh.triangles.len(),
+            part.raw_triangles,
+            part.error
+        );
+        assert!(part.is_measured && part.error <= model.tolerance, "{name}");
+        assert!(part.undecided.is_empty(), "{name}");
+        assert_manifold(&name, &part.mesh);
+        assert_embedded(&name, &part.mesh);
+        // Edges less nodes, plus one.
+        assert_eq!(Topology::of(&part.mesh).unwrap().genera, [1], "{name}");
+        assert!(part.raw_triangles < 20_000, "{name}");
+    }
 }
 
 /// A ball that carves another leaves a cavity far smaller than the cells that its kernel asks for.
