@@ -118,6 +118,7 @@ mod body;
 mod cast;
 mod cells;
 mod clusters;
+mod convex;
 mod exposure;
 mod far_march;
 mod free;

@@ -7,6 +7,7 @@
 //! slab is left at once; where nothing is pending, the cubics' roots are the crossings. The
 //! traversal ends when every ray has its crossing, so that nothing behind the first hit is
 //! interpolated.
+use crate::convex::{log_above, log_below, most_between};
 use crate::lanes::{Lanes, spread};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator, STEEP};
@@ -72,10 +73,29 @@ pub struct Walk<'w, 's, L> {
     memory: &'w mut Memories<L>,
     isolator: RootIsolator,
     found: Vec<Found>,
+    /// Primitives of the [`Bells`] of the slabs being visited, with bounds on their profiles.
+    bells: Vec<(u32, L)>,
     /// Work so far, see [`MOST_WORK`].
     work: usize,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
+}
+
+/// The sum of the Gaussians pending in a slab, on a part of the slab.
+#[derive(Clone, Copy, Debug)]
+struct Bells<L> {
+    /// First of its primitives in the list, which ends with them, and their number.
+    list: [usize; 2],
+    /// Largest [`field::Bound::log_bend`].
+    log_bend: f64,
+    /// Rounding of the sum: a part of it, and what is added.
+    rounding: [f64; 2],
+    /// Error of the slab's spans.
+    error: f64,
+    /// The spans of the slab's other terms.
+    rest: Span<L>,
+    /// Upper bounds on the sum's logarithm at the ends.
+    ends: [L; 2],
 }
 
 /// The last node at which a primitive was evaluated, which adjacent slabs share.
@@ -177,6 +197,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             memory,
             isolator: RootIsolator::default(),
             found: Vec::new(),
+            bells: Vec::new(),
             work: 0,
             evaluations: 0,
         }
@@ -187,13 +208,19 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     #[must_use]
     pub fn run(mut self) -> (Vec<Found>, u64) {
         let root = self.slabs.root();
-        self.visit(root, Span::zero(), Span::zero());
+        self.visit(root, Span::zero(), Span::zero(), None);
         (self.found, self.evaluations)
     }
 
     /// Visits a slab, given the sums of the shared and of the resolved primitives of the longer
     /// slabs that contain it.
-    fn visit(&mut self, index: u32, mut shared: Span<L>, mut base: Span<L>) {
+    fn visit(
+        &mut self,
+        index: u32,
+        mut shared: Span<L>,
+        mut base: Span<L>,
+        bells: Option<Bells<L>>,
+    ) {
         let slab = self.slabs.slab(index);
         let (error, depth, from) = (slab.error, slab.depth, slab.from);
         let (above, below) = (slab.above, slab.below);
@@ -230,11 +257,27 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             self.isolate(index, self.alive);
             return;
         }
+        let count = self.bells.len();
+        let bells = bells.or_else(|| self.ring(index, span));
+        if bells.is_some_and(|bells| self.reject_by_bells(index, &bells)) {
+            self.bells.truncate(count);
+            return;
+        }
+        self.divide(index, shared, base, bells);
+        self.bells.truncate(count);
+    }
+
+    /// Visits the parts of a slab, or finds the crossings if nothing is pending.
+    fn divide(&mut self, index: u32, shared: Span<L>, base: Span<L>, bells: Option<Bells<L>>) {
+        let slab = self.slabs.slab(index);
+        let (error, done) = (slab.error, slab.pending.is_empty());
+        let middle = 0.5 * (slab.from + slab.to);
         if done {
+            let span = shared.plus(base);
             let doubtful = self.doubtful(span, error);
             if doubtful != 0 && !self.slabs.is_final(index) {
                 let finer = self.slabs.refine(index);
-                self.visit(finer, shared, Span::zero());
+                self.visit(finer, shared, Span::zero(), bells);
             } else {
                 self.cross(index, span, !doubtful);
                 self.isolate(index, doubtful);
@@ -245,13 +288,115 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             Parts::Halves(left, right) => {
                 let [near, far] = base.halves();
                 let [shared_near, shared_far] = shared.halves();
-                self.visit(left, shared_near, near);
+                let [before, behind] = self.halve_bells(index, bells, middle);
+                self.visit(left, shared_near, near, before);
                 if self.alive != 0 {
-                    self.visit(right, shared_far, far);
+                    self.visit(right, shared_far, far, behind);
                 }
             }
-            Parts::Narrower(same) => self.visit(same, shared, base),
+            Parts::Narrower(same) => self.visit(same, shared, base, bells),
         }
+    }
+
+    /// Returns the sum of the Gaussians pending in a slab, if they are many and all that is pending,
+    /// and the slab is so short that the ends tell of what is between; `rest` is the span of the
+    /// other terms.
+    fn ring(&mut self, index: u32, rest: Span<L>) -> Option<Bells<L>> {
+        let slab = self.slabs.slab(index);
+        let (from, to, log_bend, error) = (slab.from, slab.to, slab.log_bend, slab.error);
+        let bend = log_bend * (to - from) * (to - from);
+        // NaN is no bend.
+        let is_short = bend <= t_bend();
+        if !is_short || slab.pending.len() < t_few() || self.slabs.levels_below(index) > t_levels() {
+            return None;
+        }
+        let first = self.bells.len();
+        let ends = [from, to].map(|t| self.point(t));
+        let (primitives, bells) = (self.sight.primitives, &mut self.bells);
+        let rounding = self.slabs.list_pending(index, |p| {
+            if self.sight.bounds[p as usize].adds() {
+                bells.push((p, primitives[p as usize].factor_between(ends)));
+            }
+        });
+        let mut bells = Bells {
+            list: [first, self.bells.len() - first],
+            log_bend,
+            rounding,
+            error,
+            rest,
+            ends: [L::splat(0.0); 2],
+        };
+        bells.ends = [from, to].map(|t| self.log_sum(index, &bells, t));
+        if std::env::var("T_DBG").is_ok() {
+            let own = most_between(bells.ends, bend);
+            let out = self.outside_by_bells(&bells, own);
+            let [a, b] = bells.ends.map(|e| self.outside_by_bells(&bells, e));
+            eprintln!("RING n={} done={} bend={:.2} err={:.4} above={:.2} alive={} out={} a={} b={} rest={:.3} lv={}", bells.list[1], self.slabs.slab(index).resolved.len(), bend, error, self.slabs.slab(index).pending_above, self.alive.count_ones(), (out & self.alive).count_ones(), (a & self.alive).count_ones(), (b & self.alive).count_ones(), rest.max().lane(0), self.slabs.levels_below(index));
+        }
+        Some(bells)
+    }
+
+    /// Returns the rays' points at t.
+    fn point(&self, t: f64) -> [L; 3] {
+        let t = L::splat(t);
+        core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
+    }
+
+    /// Returns upper bounds on the logarithm of a sum of Gaussians at t, a parameter in a slab.
+    fn log_sum(&mut self, index: u32, bells: &Bells<L>, t: f64) -> L {
+        let (center, radius) = self.slabs.ball(index, t);
+        let point = self.point(t);
+        let [first, count] = bells.list;
+        let (mut sum, mut faint, mut evaluated) = (L::splat(0.0), 0.0, 0);
+        for &(p, factor) in &self.bells[first..first + count] {
+            let bound = &self.sight.bounds[p as usize];
+            let magnitude = bound.magnitude(bound.nearness(center, radius));
+            if magnitude <= t_faint() {
+                faint += magnitude;
+                continue;
+            }
+            sum = sum + factor * self.sight.primitives[p as usize].plain_value(point);
+            evaluated += 1;
+        }
+        self.evaluations += L::LANES as u64 * evaluated;
+        self.work += count;
+        let [part, more] = bells.rounding;
+        log_above(sum * L::splat(1.0 + 2.0 * part) + L::splat(more + faint))
+    }
+
+    /// Returns the rays that a sum of Gaussians with these logarithms leaves outside, a bit each.
+    fn outside_by_bells(&self, bells: &Bells<L>, logarithm: L) -> u32 {
+        let room = L::splat(THRESHOLD - bells.error) - bells.rest.max();
+        logarithm.less(log_below(room)) & L::splat(0.0).less(room)
+    }
+
+    /// Returns whether a sum of Gaussians proves that all rays stay outside in a slab, and records
+    /// that.
+    fn reject_by_bells(&mut self, index: u32, bells: &Bells<L>) -> bool {
+        let slab = self.slabs.slab(index);
+        let (from, length) = (slab.from, slab.to - slab.from);
+        let most = most_between(bells.ends, bells.log_bend * length * length);
+        let outside = self.outside_by_bells(bells, most);
+        if self.alive & !outside != 0 {
+            return false;
+        }
+        self.arrive(index, from, outside, 0, false);
+        true
+    }
+
+    /// Returns a sum of Gaussians on the halves of its span, where it may tell something.
+    fn halve_bells(&mut self, index: u32, bells: Option<Bells<L>>, middle: f64) -> [Option<Bells<L>>; 2] {
+        let Some(bells) = bells else {
+            return [None; 2];
+        };
+        let [near, far] = bells.ends.map(|end| self.outside_by_bells(&bells, end));
+        if self.alive & !near != 0 && self.alive & !far != 0 {
+            return [None; 2];
+        }
+        let between = self.log_sum(index, &bells, middle);
+        let rests = bells.rest.halves();
+        let ends = [[bells.ends[0], between], [between, bells.ends[1]]];
+        [0, 1].map(|i| Some(Bells { rest: rests[i], ends: ends[i], ..bells }))
     }
 
     /// Returns the span of the primitives with a common interpolant.
@@ -478,10 +623,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let s = self.slabs.slab(index);
         let range = &s.resolved;
         let (from, to) = (s.from, s.to);
-        let places: [[L; 3]; 2] = [from, to].map(|t| {
-            let t = L::splat(t);
-            core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
-        });
+        let places = [from, to].map(|t| self.point(t));
         let (mut left, mut right) = (Node::zero(), Node::zero());
         self.memory.hold(self.slabs.len());
         for &local in self.slabs.locals(range) {
@@ -511,4 +653,24 @@ fn node<L: Lanes>(primitive: &Primitive, point: [L; 3], direction: [L; 3]) -> No
         value: jet.value,
         slope: gx * direction[0] + gy * direction[1] + gz * direction[2],
     }
+}
+
+fn tune(name: &str, default: f64) -> f64 {
+    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
+}
+fn t_bend() -> f64 {
+    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
+    *V.get_or_init(|| tune("T_BEND", 4.0))
+}
+fn t_faint() -> f64 {
+    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
+    *V.get_or_init(|| tune("T_FAINT", 0.0005))
+}
+fn t_few() -> usize {
+    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
+    *V.get_or_init(|| tune("T_FEW", 6.0)) as usize
+}
+fn t_levels() -> u32 {
+    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
+    *V.get_or_init(|| tune("T_LEVELS", 2.0)) as u32
 }
