@@ -156,10 +156,13 @@ impl Bound {
         let profile = primitive.profile.as_ref();
         let ripple = profile.and_then(|p| Ripple::of(p, skeleton));
         let variation = ripple.as_ref().map_or(0.0, |r| r.derivatives(0.0)[0]);
-        let is_bell = kernel == Kernel::Gauss
-            && primitive.height > 0.0
-            && primitive.tapered.is_none();
-        let log_bend = if is_bell { finest * finest } else { f64::INFINITY };
+        let is_bell =
+            kernel == Kernel::Gauss && primitive.height > 0.0 && primitive.tapered.is_none();
+        let log_bend = if is_bell {
+            finest * finest
+        } else {
+            f64::INFINITY
+        };
         let size = match dimension {
             0 => 0.0,
             1 => (measure * finest) * (measure * finest),

@@ -99,9 +99,13 @@ mod tests {
                         influence: 1e-3,
                         taper: None,
                     };
-                    Primitive::new(skeleton, &shaping, None).into_iter().collect()
+                    Primitive::new(skeleton, &shaping, None)
+                        .into_iter()
+                        .collect()
                 }
-                _ => (0..1 + random.below(30)).map(|_| bone(&mut random)).collect(),
+                _ => (0..1 + random.below(30))
+                    .map(|_| bone(&mut random))
+                    .collect(),
             };
             let bends = bones.iter().map(|p| Bound::new(p).log_bend());
             let bend = bends.fold(0.0, f64::max);

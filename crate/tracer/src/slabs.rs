@@ -795,12 +795,6 @@ impl<'a> Slabs<'a> {
         self.beams.get(self.slab(index).beam).ball(t, t)
     }
 
-    /// Returns the number of levels of division below a slab's beam.
-    #[must_use]
-    pub fn levels_below(&self, index: u32) -> u32 {
-        self.beams.levels_below(self.slab(index).beam)
-    }
-
     /// Returns the length below which intervals of rays are not subdivided.
     #[must_use]
     pub fn resolution(&self) -> f64 {
@@ -864,7 +858,10 @@ impl<'a> Slabs<'a> {
             cancelled += self.cancels(id);
             self.each_of(id, &mut f);
         }
-        [4.0 * rounding + misplaced * steep, 2.0 * rounding * cancelled]
+        [
+            4.0 * rounding + misplaced * steep,
+            2.0 * rounding * cancelled,
+        ]
     }
 
     /// Returns the number of primitives that count in a slab, with the shared and dropped ones.

@@ -73,28 +73,30 @@ pub struct Walk<'w, 's, L> {
     memory: &'w mut Memories<L>,
     isolator: RootIsolator,
     found: Vec<Found>,
-    /// Primitives of the [`Bells`] of the slabs being visited, with bounds on their profiles.
-    bells: Vec<(u32, L)>,
+    /// Primitives of the sums of Gaussians of the slabs being visited, with bounds on their
+    /// profiles.
+    gaussians: Vec<(u32, L)>,
     /// Work so far, see [`MOST_WORK`].
     work: usize,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
 
-/// The sum of the Gaussians pending in a slab, on a part of the slab.
+/// The sum of the Gaussians pending in a slab, on a part of that slab: there the field is at most
+/// this and `rest`, up to an error.
 #[derive(Clone, Copy, Debug)]
-struct Bells<L> {
-    /// First of its primitives in the list, which ends with them, and their number.
+struct GaussianSum<L> {
+    /// Range of the walk's list of Gaussians.
     list: [usize; 2],
     /// Largest [`field::Bound::log_bend`].
     log_bend: f64,
-    /// Rounding of the sum: a part of it, and what is added.
+    /// Bounds on the rounding of the sum: a part of it, and what is added to that.
     rounding: [f64; 2],
     /// Error of the slab's spans.
     error: f64,
     /// The spans of the slab's other terms.
     rest: Span<L>,
-    /// Upper bounds on the sum's logarithm at the ends.
+    /// Upper bounds on the sum's logarithm at the part's ends.
     ends: [L; 2],
 }
 
@@ -155,6 +157,14 @@ const FEW_PRIMITIVES: usize = 64;
 /// in place of the others.
 const WORTH: usize = 4;
 
+/// Fewest pending entries of a slab whose Gaussians are added up at its ends.
+const FEWEST_GAUSSIANS: usize = 6;
+/// Largest square of a slab's length, in widths of the sharpest Gaussian, for which Gaussians are
+/// added up: their sum may be e^(¼·this) times larger between the ends than there.
+const LONGEST_BEND: f64 = 8.0;
+/// Largest field of a Gaussian for which the bound counts instead of the value.
+const FAINT: f64 = 4e-3 * THRESHOLD;
+
 /// Number of halvings of a slab's cubics to isolate their crossings.
 const CUTS: u32 = 4;
 
@@ -197,7 +207,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             memory,
             isolator: RootIsolator::default(),
             found: Vec::new(),
-            bells: Vec::new(),
+            gaussians: Vec::new(),
             work: 0,
             evaluations: 0,
         }
@@ -213,13 +223,13 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     }
 
     /// Visits a slab, given the sums of the shared and of the resolved primitives of the longer
-    /// slabs that contain it.
+    /// slabs that contain it, and of the Gaussians pending in one of them.
     fn visit(
         &mut self,
         index: u32,
         mut shared: Span<L>,
         mut base: Span<L>,
-        bells: Option<Bells<L>>,
+        sum: Option<GaussianSum<L>>,
     ) {
         let slab = self.slabs.slab(index);
         let (error, depth, from) = (slab.error, slab.depth, slab.from);
@@ -227,7 +237,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let pending = [slab.pending_above, slab.pending_below];
         let resolves = !slab.resolved.is_empty();
         let (shares, joins) = (!slab.shared.is_empty(), !slab.joined.is_empty());
-        let (done, kinked) = (slab.pending.is_empty(), slab.kinked);
+        let kinked = slab.kinked;
         self.work += 1 + slab.joined.len() + slab.resolved.len() + slab.pending.len();
         // Rays that end before this slab have no crossing.
         self.alive &= L::splat(from).less(self.limit);
@@ -257,18 +267,16 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             self.isolate(index, self.alive);
             return;
         }
-        let count = self.bells.len();
-        let bells = bells.or_else(|| self.ring(index, span));
-        if bells.is_some_and(|bells| self.reject_by_bells(index, &bells)) {
-            self.bells.truncate(count);
-            return;
+        let count = self.gaussians.len();
+        let sum = sum.or_else(|| self.add_gaussians(index, span));
+        if !sum.is_some_and(|sum| self.reject_sum(index, &sum)) {
+            self.divide(index, shared, base, sum);
         }
-        self.divide(index, shared, base, bells);
-        self.bells.truncate(count);
+        self.gaussians.truncate(count);
     }
 
     /// Visits the parts of a slab, or finds the crossings if nothing is pending.
-    fn divide(&mut self, index: u32, shared: Span<L>, base: Span<L>, bells: Option<Bells<L>>) {
+    fn divide(&mut self, index: u32, shared: Span<L>, base: Span<L>, sum: Option<GaussianSum<L>>) {
         let slab = self.slabs.slab(index);
         let (error, done) = (slab.error, slab.pending.is_empty());
         let middle = 0.5 * (slab.from + slab.to);
@@ -277,7 +285,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             let doubtful = self.doubtful(span, error);
             if doubtful != 0 && !self.slabs.is_final(index) {
                 let finer = self.slabs.refine(index);
-                self.visit(finer, shared, Span::zero(), bells);
+                self.visit(finer, shared, Span::zero(), sum);
             } else {
                 self.cross(index, span, !doubtful);
                 self.isolate(index, doubtful);
@@ -288,95 +296,83 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             Parts::Halves(left, right) => {
                 let [near, far] = base.halves();
                 let [shared_near, shared_far] = shared.halves();
-                let [before, behind] = self.halve_bells(index, bells, middle);
+                let sums = sum.map(|sum| self.halve_sum(index, &sum, middle));
+                let [before, behind] = sums.map_or([None; 2], |sums| sums.map(Some));
                 self.visit(left, shared_near, near, before);
                 if self.alive != 0 {
                     self.visit(right, shared_far, far, behind);
                 }
             }
-            Parts::Narrower(same) => self.visit(same, shared, base, bells),
+            Parts::Narrower(same) => self.visit(same, shared, base, sum),
         }
     }
 
-    /// Returns the sum of the Gaussians pending in a slab, if they are many and all that is pending,
-    /// and the slab is so short that the ends tell of what is between; `rest` is the span of the
-    /// other terms.
-    fn ring(&mut self, index: u32, rest: Span<L>) -> Option<Bells<L>> {
+    /// Lists the Gaussians pending in a slab and adds them up at its ends, if they are all that is
+    /// pending, and the slab is so short that the ends tell of what is between; `rest` is the span
+    /// of the other terms.
+    fn add_gaussians(&mut self, index: u32, rest: Span<L>) -> Option<GaussianSum<L>> {
         let slab = self.slabs.slab(index);
         let (from, to, log_bend, error) = (slab.from, slab.to, slab.log_bend, slab.error);
-        let bend = log_bend * (to - from) * (to - from);
-        // NaN is no bend.
-        let is_short = bend <= t_bend();
-        if !is_short || slab.pending.len() < t_few() || self.slabs.levels_below(index) > t_levels() {
+        let is_short = log_bend * (to - from) * (to - from) <= LONGEST_BEND;
+        if !is_short || slab.pending.len() < FEWEST_GAUSSIANS {
             return None;
         }
-        let first = self.bells.len();
+        let first = self.gaussians.len();
         let ends = [from, to].map(|t| self.point(t));
-        let (primitives, bells) = (self.sight.primitives, &mut self.bells);
+        let (sight, list) = (self.sight, &mut self.gaussians);
         let rounding = self.slabs.list_pending(index, |p| {
-            if self.sight.bounds[p as usize].adds() {
-                bells.push((p, primitives[p as usize].factor_between(ends)));
+            if sight.bounds[p as usize].adds() {
+                list.push((p, sight.primitives[p as usize].factor_between(ends)));
             }
         });
-        let mut bells = Bells {
-            list: [first, self.bells.len() - first],
+        let mut sum = GaussianSum {
+            list: [first, self.gaussians.len()],
             log_bend,
             rounding,
             error,
             rest,
             ends: [L::splat(0.0); 2],
         };
-        bells.ends = [from, to].map(|t| self.log_sum(index, &bells, t));
-        if std::env::var("T_DBG").is_ok() {
-            let own = most_between(bells.ends, bend);
-            let out = self.outside_by_bells(&bells, own);
-            let [a, b] = bells.ends.map(|e| self.outside_by_bells(&bells, e));
-            eprintln!("RING n={} done={} bend={:.2} err={:.4} above={:.2} alive={} out={} a={} b={} rest={:.3} lv={}", bells.list[1], self.slabs.slab(index).resolved.len(), bend, error, self.slabs.slab(index).pending_above, self.alive.count_ones(), (out & self.alive).count_ones(), (a & self.alive).count_ones(), (b & self.alive).count_ones(), rest.max().lane(0), self.slabs.levels_below(index));
-        }
-        Some(bells)
-    }
-
-    /// Returns the rays' points at t.
-    fn point(&self, t: f64) -> [L; 3] {
-        let t = L::splat(t);
-        core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
+        sum.ends = [from, to].map(|t| self.log_sum(index, &sum, t));
+        Some(sum)
     }
 
     /// Returns upper bounds on the logarithm of a sum of Gaussians at t, a parameter in a slab.
-    fn log_sum(&mut self, index: u32, bells: &Bells<L>, t: f64) -> L {
+    fn log_sum(&mut self, index: u32, sum: &GaussianSum<L>, t: f64) -> L {
         let (center, radius) = self.slabs.ball(index, t);
         let point = self.point(t);
-        let [first, count] = bells.list;
-        let (mut sum, mut faint, mut evaluated) = (L::splat(0.0), 0.0, 0);
-        for &(p, factor) in &self.bells[first..first + count] {
+        let [first, end] = sum.list;
+        let (mut total, mut faint, mut evaluated) = (L::splat(0.0), 0.0, 0);
+        for &(p, factor) in &self.gaussians[first..end] {
             let bound = &self.sight.bounds[p as usize];
             let magnitude = bound.magnitude(bound.nearness(center, radius));
-            if magnitude <= t_faint() {
+            if magnitude <= FAINT {
                 faint += magnitude;
                 continue;
             }
-            sum = sum + factor * self.sight.primitives[p as usize].plain_value(point);
+            total = total + factor * self.sight.primitives[p as usize].plain_value(point);
             evaluated += 1;
         }
         self.evaluations += L::LANES as u64 * evaluated;
-        self.work += count;
-        let [part, more] = bells.rounding;
-        log_above(sum * L::splat(1.0 + 2.0 * part) + L::splat(more + faint))
+        self.work += end - first;
+        let [part, more] = sum.rounding;
+        log_above(total * L::splat(1.0 + 2.0 * part) + L::splat(more + faint))
     }
 
-    /// Returns the rays that a sum of Gaussians with these logarithms leaves outside, a bit each.
-    fn outside_by_bells(&self, bells: &Bells<L>, logarithm: L) -> u32 {
-        let room = L::splat(THRESHOLD - bells.error) - bells.rest.max();
+    /// Returns the rays that are outside where a sum of Gaussians has these logarithms at most, a
+    /// bit each.
+    fn outside(sum: &GaussianSum<L>, logarithm: L) -> u32 {
+        let room = L::splat(THRESHOLD - sum.error) - sum.rest.max();
         logarithm.less(log_below(room)) & L::splat(0.0).less(room)
     }
 
-    /// Returns whether a sum of Gaussians proves that all rays stay outside in a slab, and records
-    /// that.
-    fn reject_by_bells(&mut self, index: u32, bells: &Bells<L>) -> bool {
+    /// Returns whether a sum of Gaussians proves that all rays stay outside in the whole slab;
+    /// records that.
+    fn reject_sum(&mut self, index: u32, sum: &GaussianSum<L>) -> bool {
         let slab = self.slabs.slab(index);
         let (from, length) = (slab.from, slab.to - slab.from);
-        let most = most_between(bells.ends, bells.log_bend * length * length);
-        let outside = self.outside_by_bells(bells, most);
+        let most = most_between(sum.ends, sum.log_bend * length * length);
+        let outside = Self::outside(sum, most);
         if self.alive & !outside != 0 {
             return false;
         }
@@ -384,19 +380,28 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         true
     }
 
-    /// Returns a sum of Gaussians on the halves of its span, where it may tell something.
-    fn halve_bells(&mut self, index: u32, bells: Option<Bells<L>>, middle: f64) -> [Option<Bells<L>>; 2] {
-        let Some(bells) = bells else {
-            return [None; 2];
+    /// Returns a sum of Gaussians on the halves of its slab.
+    fn halve_sum(&mut self, index: u32, sum: &GaussianSum<L>, t: f64) -> [GaussianSum<L>; 2] {
+        let [near, far] = sum.ends.map(|end| Self::outside(sum, end));
+        // Where rays are not outside at either end, neither half will be rejected.
+        let between = if self.alive & !near != 0 && self.alive & !far != 0 {
+            L::splat(f64::INFINITY)
+        } else {
+            self.log_sum(index, sum, t)
         };
-        let [near, far] = bells.ends.map(|end| self.outside_by_bells(&bells, end));
-        if self.alive & !near != 0 && self.alive & !far != 0 {
-            return [None; 2];
-        }
-        let between = self.log_sum(index, &bells, middle);
-        let rests = bells.rest.halves();
-        let ends = [[bells.ends[0], between], [between, bells.ends[1]]];
-        [0, 1].map(|i| Some(Bells { rest: rests[i], ends: ends[i], ..bells }))
+        let rests = sum.rest.halves();
+        let ends = [[sum.ends[0], between], [between, sum.ends[1]]];
+        core::array::from_fn(|i| GaussianSum {
+            rest: rests[i],
+            ends: ends[i],
+            ..*sum
+        })
+    }
+
+    /// Returns the rays' points at t.
+    fn point(&self, t: f64) -> [L; 3] {
+        let t = L::splat(t);
+        core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
     }
 
     /// Returns the span of the primitives with a common interpolant.
@@ -653,24 +658,4 @@ fn node<L: Lanes>(primitive: &Primitive, point: [L; 3], direction: [L; 3]) -> No
         value: jet.value,
         slope: gx * direction[0] + gy * direction[1] + gz * direction[2],
     }
-}
-
-fn tune(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
-}
-fn t_bend() -> f64 {
-    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-    *V.get_or_init(|| tune("T_BEND", 4.0))
-}
-fn t_faint() -> f64 {
-    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-    *V.get_or_init(|| tune("T_FAINT", 0.0005))
-}
-fn t_few() -> usize {
-    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-    *V.get_or_init(|| tune("T_FEW", 6.0)) as usize
-}
-fn t_levels() -> u32 {
-    static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-    *V.get_or_init(|| tune("T_LEVELS", 2.0)) as u32
 }
