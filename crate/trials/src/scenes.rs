@@ -165,9 +165,11 @@ pub enum Kind {
     Cluster,
     /// A hundred or two points that add up.
     Cloud,
+    /// A few dozen bones beside each other that add up, most of them triangles, some restricted.
+    Patch,
 }
 
-/// Every kind.
+/// Every kind but patches.
 pub const KINDS: [Kind; 14] = [
     Kind::Point,
     Kind::Segment,
@@ -233,6 +235,7 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
         Kind::Cluster => n.range(60.0, 300.0) as usize,
         Kind::Cloud => n.range(64.0, 300.0) as usize,
         Kind::Mixed => n.range(4.0, 16.0) as usize,
+        Kind::Patch => n.range(24.0, 48.0) as usize,
         _ if n.chance(0.4) => 1,
         _ => n.range(2.0, 6.0) as usize,
     };
@@ -245,12 +248,15 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
             Kind::Mixed => n.pick(&KINDS[..7]),
             Kind::Cluster => n.pick(&KINDS[..2]),
             Kind::Cloud => Kind::Point,
+            Kind::Patch if n.chance(0.8) => Kind::Triangle,
+            Kind::Patch => n.pick(&KINDS[..3]),
             _ => kind,
         };
         // Now and then a thin spike.
         let thin = n.chance(0.15);
         let radius = match kind {
             Kind::Cluster | Kind::Cloud => n.range(0.02, 0.12),
+            Kind::Patch => n.range(0.1, 0.3),
             _ if thin => n.range(0.008, 0.03),
             _ => n.range(0.05, 0.4),
         };
@@ -283,7 +289,10 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
                 flesh.end_blobbiness = Some(blobbiness * n.range(0.3, 3.0));
             }
         }
-        if kind == Kind::Restricted {
+        if kind == Kind::Patch {
+            flesh.strength = n.range(0.1, 0.8);
+        }
+        if kind == Kind::Restricted || kind == Kind::Patch && n.chance(0.4) {
             flesh.restriction = n.range(0.2, 1.0);
         }
         if matches!(kind, Kind::Waves | Kind::Kinks) {
