@@ -19,17 +19,18 @@ const ROUNDING: f64 = 5e-5;
 const LEAST: f64 = 1e-30;
 
 /// Returns an upper bound on the logarithm of a number, or of [`LEAST`] if that is larger.
-#[inline]
+#[inline(never)]
 #[must_use]
 pub fn log_above<L: Lanes>(value: L) -> L {
     value.max(L::splat(LEAST)).ln() + L::splat(ROUNDING)
 }
 
-/// Returns a lower bound on the logarithm of a number of at least [`LEAST`].
+/// Returns a lower bound on the logarithm of a number; that of smaller ones than [`LEAST`] is -∞.
 #[inline]
 #[must_use]
 pub fn log_below<L: Lanes>(value: L) -> L {
-    value.max(L::splat(LEAST)).ln() - L::splat(ROUNDING)
+    let log = log_above(value) - L::splat(2.0 * ROUNDING);
+    L::select(value.lt(L::splat(LEAST)), L::splat(f64::NEG_INFINITY), log)
 }
 
 /// Returns an upper bound on ln f on a span, given upper bounds on ln f at its ends and `c·h²`.

@@ -82,8 +82,7 @@ pub struct Walk<'w, 's, L> {
     pub evaluations: u64,
 }
 
-/// The sum of the Gaussians pending in a slab, on a part of that slab: there the field is at most
-/// this and `rest`, up to an error.
+/// The sum of the Gaussians pending in a slab, on a part of that slab.
 #[derive(Clone, Copy, Debug)]
 struct GaussianSum<L> {
     /// Range of the walk's list of Gaussians.
@@ -92,10 +91,8 @@ struct GaussianSum<L> {
     log_bend: f64,
     /// Bounds on the rounding of the sum: a part of it, and what is added to that.
     rounding: [f64; 2],
-    /// Error of the slab's spans.
-    error: f64,
-    /// The spans of the slab's other terms.
-    rest: Span<L>,
+    /// Lower bounds on the logarithm of what the slab's other terms leave up to T.
+    room: L,
     /// Upper bounds on the sum's logarithm at the part's ends.
     ends: [L; 2],
 }
@@ -329,8 +326,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             list: [first, self.gaussians.len()],
             log_bend,
             rounding,
-            error,
-            rest,
+            room: log_below(L::splat(THRESHOLD - error) - rest.max()),
             ends: [L::splat(0.0); 2],
         };
         sum.ends = [from, to].map(|t| self.log_sum(index, &sum, t));
@@ -359,20 +355,13 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         log_above(total * L::splat(1.0 + 2.0 * part) + L::splat(more + faint))
     }
 
-    /// Returns the rays that are outside where a sum of Gaussians has these logarithms at most, a
-    /// bit each.
-    fn outside(sum: &GaussianSum<L>, logarithm: L) -> u32 {
-        let room = L::splat(THRESHOLD - sum.error) - sum.rest.max();
-        logarithm.less(log_below(room)) & L::splat(0.0).less(room)
-    }
-
     /// Returns whether a sum of Gaussians proves that all rays stay outside in the whole slab;
     /// records that.
     fn reject_sum(&mut self, index: u32, sum: &GaussianSum<L>) -> bool {
         let slab = self.slabs.slab(index);
         let (from, length) = (slab.from, slab.to - slab.from);
         let most = most_between(sum.ends, sum.log_bend * length * length);
-        let outside = Self::outside(sum, most);
+        let outside = most.less(sum.room);
         if self.alive & !outside != 0 {
             return false;
         }
@@ -382,20 +371,17 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
 
     /// Returns a sum of Gaussians on the halves of its slab.
     fn halve_sum(&mut self, index: u32, sum: &GaussianSum<L>, t: f64) -> [GaussianSum<L>; 2] {
-        let [near, far] = sum.ends.map(|end| Self::outside(sum, end));
+        let [from, to] = sum.ends;
         // Where rays are not outside at either end, neither half will be rejected.
-        let between = if self.alive & !near != 0 && self.alive & !far != 0 {
+        let hopeless = [from, to]
+            .iter()
+            .all(|end| self.alive & !end.less(sum.room) != 0);
+        let between = if hopeless {
             L::splat(f64::INFINITY)
         } else {
             self.log_sum(index, sum, t)
         };
-        let rests = sum.rest.halves();
-        let ends = [[sum.ends[0], between], [between, sum.ends[1]]];
-        core::array::from_fn(|i| GaussianSum {
-            rest: rests[i],
-            ends: ends[i],
-            ..*sum
-        })
+        [[from, between], [between, to]].map(|ends| GaussianSum { ends, ..*sum })
     }
 
     /// Returns the rays' points at t.
