@@ -175,10 +175,7 @@ impl Primitive {
     #[must_use]
     pub fn plain_value<R: Evaluate>(&self, point: [R; 3]) -> R {
         let term = R::term_of(&self.prepared);
-        match self.profile {
-            None => term.jet(point).value,
-            Some(_) => R::evaluate(term, false, term.frame.local(point)).value,
-        }
+        R::evaluate(term, false, term.frame.local(point)).value
     }
 
     /// Returns an upper bound on the profile's factor between two points, at least 0; 1 without a

@@ -73,28 +73,25 @@ pub struct Walk<'w, 's, L> {
     memory: &'w mut Memories<L>,
     isolator: RootIsolator,
     found: Vec<Found>,
-    /// Primitives of the sums of Gaussians of the slabs being visited, with bounds on their
-    /// profiles.
-    gaussians: Vec<(u32, L)>,
+    /// The sum of the slab being visited, or of one that contains it.
+    sum: GaussianSum<L>,
     /// Work so far, see [`MOST_WORK`].
     work: usize,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
 }
 
-/// The sum of the Gaussians pending in a slab, on a part of that slab.
-#[derive(Clone, Copy, Debug)]
+/// The sum of the Gaussians pending in a slab.
+#[derive(Debug)]
 struct GaussianSum<L> {
-    /// Range of the walk's list of Gaussians.
-    list: [usize; 2],
+    /// The primitives, with bounds on their profiles.
+    list: Vec<(u32, L)>,
     /// Largest [`field::Bound::log_bend`].
     log_bend: f64,
     /// Bounds on the rounding of the sum: a part of it, and what is added to that.
     rounding: [f64; 2],
     /// Lower bounds on the logarithm of what the slab's other terms leave up to T.
     room: L,
-    /// Upper bounds on the sum's logarithm at the part's ends.
-    ends: [L; 2],
 }
 
 /// The last node at which a primitive was evaluated, which adjacent slabs share.
@@ -204,7 +201,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             memory,
             isolator: RootIsolator::default(),
             found: Vec::new(),
-            gaussians: Vec::new(),
+            sum: GaussianSum {
+                list: Vec::new(),
+                log_bend: 0.0,
+                rounding: [0.0; 2],
+                room: L::splat(0.0),
+            },
             work: 0,
             evaluations: 0,
         }
@@ -221,13 +223,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
 
     /// Visits a slab, given the sums of the shared and of the resolved primitives of the longer
     /// slabs that contain it, and of the Gaussians pending in one of them.
-    fn visit(
-        &mut self,
-        index: u32,
-        mut shared: Span<L>,
-        mut base: Span<L>,
-        sum: Option<GaussianSum<L>>,
-    ) {
+    fn visit(&mut self, index: u32, mut shared: Span<L>, mut base: Span<L>, sum: Option<[L; 2]>) {
         let slab = self.slabs.slab(index);
         let (error, depth, from) = (slab.error, slab.depth, slab.from);
         let (above, below) = (slab.above, slab.below);
@@ -264,16 +260,14 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             self.isolate(index, self.alive);
             return;
         }
-        let count = self.gaussians.len();
         let sum = sum.or_else(|| self.add_gaussians(index, span));
-        if !sum.is_some_and(|sum| self.reject_sum(index, &sum)) {
+        if !sum.is_some_and(|sum| self.reject_sum(index, sum)) {
             self.divide(index, shared, base, sum);
         }
-        self.gaussians.truncate(count);
     }
 
     /// Visits the parts of a slab, or finds the crossings if nothing is pending.
-    fn divide(&mut self, index: u32, shared: Span<L>, base: Span<L>, sum: Option<GaussianSum<L>>) {
+    fn divide(&mut self, index: u32, shared: Span<L>, base: Span<L>, sum: Option<[L; 2]>) {
         let slab = self.slabs.slab(index);
         let (error, done) = (slab.error, slab.pending.is_empty());
         let middle = 0.5 * (slab.from + slab.to);
@@ -293,8 +287,8 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             Parts::Halves(left, right) => {
                 let [near, far] = base.halves();
                 let [shared_near, shared_far] = shared.halves();
-                let sums = sum.map(|sum| self.halve_sum(index, &sum, middle));
-                let [before, behind] = sums.map_or([None; 2], |sums| sums.map(Some));
+                let sums = sum.map(|sum| self.halve_sum(index, sum, middle));
+                let [before, behind] = sums.unwrap_or_default();
                 self.visit(left, shared_near, near, before);
                 if self.alive != 0 {
                     self.visit(right, shared_far, far, behind);
@@ -304,42 +298,37 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         }
     }
 
-    /// Lists the Gaussians pending in a slab and adds them up at its ends, if they are all that is
-    /// pending, and the slab is so short that the ends tell of what is between; `rest` is the span
-    /// of the other terms.
-    fn add_gaussians(&mut self, index: u32, rest: Span<L>) -> Option<GaussianSum<L>> {
+    /// Lists the Gaussians pending in a slab and returns upper bounds on the logarithm of their sum
+    /// at its ends, if they are all that is pending, and the slab is so short that the ends tell of
+    /// what is between; `rest` is the span of the other terms.
+    fn add_gaussians(&mut self, index: u32, rest: Span<L>) -> Option<[L; 2]> {
         let slab = self.slabs.slab(index);
-        let (from, to, log_bend, error) = (slab.from, slab.to, slab.log_bend, slab.error);
+        let (from, to, log_bend) = (slab.from, slab.to, slab.log_bend);
         let is_short = log_bend * (to - from) * (to - from) <= LONGEST_BEND;
         if !is_short || slab.pending.len() < FEWEST_GAUSSIANS {
             return None;
         }
-        let first = self.gaussians.len();
+        let room = log_below(L::splat(THRESHOLD - slab.error) - rest.max());
         let ends = [from, to].map(|t| self.point(t));
-        let (sight, list) = (self.sight, &mut self.gaussians);
-        let rounding = self.slabs.list_pending(index, |p| {
+        let (sight, sum) = (self.sight, &mut self.sum);
+        sum.list.clear();
+        sum.rounding = self.slabs.list_pending(index, |p| {
             if sight.bounds[p as usize].adds() {
-                list.push((p, sight.primitives[p as usize].factor_between(ends)));
+                let factor = sight.primitives[p as usize].factor_between(ends);
+                sum.list.push((p, factor));
             }
         });
-        let mut sum = GaussianSum {
-            list: [first, self.gaussians.len()],
-            log_bend,
-            rounding,
-            room: log_below(L::splat(THRESHOLD - error) - rest.max()),
-            ends: [L::splat(0.0); 2],
-        };
-        sum.ends = [from, to].map(|t| self.log_sum(index, &sum, t));
-        Some(sum)
+        (sum.log_bend, sum.room) = (log_bend, room);
+        Some([from, to].map(|t| self.log_sum(index, t)))
     }
 
-    /// Returns upper bounds on the logarithm of a sum of Gaussians at t, a parameter in a slab.
-    fn log_sum(&mut self, index: u32, sum: &GaussianSum<L>, t: f64) -> L {
+    /// Returns upper bounds on the logarithm of the sum of Gaussians at t, a parameter in a slab.
+    #[inline(never)]
+    fn log_sum(&mut self, index: u32, t: f64) -> L {
         let (center, radius) = self.slabs.ball(index, t);
         let point = self.point(t);
-        let [first, end] = sum.list;
         let (mut total, mut faint, mut evaluated) = (L::splat(0.0), 0.0, 0);
-        for &(p, factor) in &self.gaussians[first..end] {
+        for &(p, factor) in &self.sum.list {
             let bound = &self.sight.bounds[p as usize];
             let magnitude = bound.magnitude(bound.nearness(center, radius));
             if magnitude <= FAINT {
@@ -350,18 +339,18 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             evaluated += 1;
         }
         self.evaluations += L::LANES as u64 * evaluated;
-        self.work += end - first;
-        let [part, more] = sum.rounding;
+        self.work += self.sum.list.len();
+        let [part, more] = self.sum.rounding;
         log_above(total * L::splat(1.0 + 2.0 * part) + L::splat(more + faint))
     }
 
-    /// Returns whether a sum of Gaussians proves that all rays stay outside in the whole slab;
-    /// records that.
-    fn reject_sum(&mut self, index: u32, sum: &GaussianSum<L>) -> bool {
+    /// Returns whether the sum of Gaussians, given its logarithm's bounds at a slab's ends, proves
+    /// that all rays stay outside in the whole slab; records that.
+    fn reject_sum(&mut self, index: u32, ends: [L; 2]) -> bool {
         let slab = self.slabs.slab(index);
         let (from, length) = (slab.from, slab.to - slab.from);
-        let most = most_between(sum.ends, sum.log_bend * length * length);
-        let outside = most.less(sum.room);
+        let most = most_between(ends, self.sum.log_bend * length * length);
+        let outside = most.less(self.sum.room);
         if self.alive & !outside != 0 {
             return false;
         }
@@ -369,19 +358,16 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         true
     }
 
-    /// Returns a sum of Gaussians on the halves of its slab.
-    fn halve_sum(&mut self, index: u32, sum: &GaussianSum<L>, t: f64) -> [GaussianSum<L>; 2] {
-        let [from, to] = sum.ends;
+    /// Returns the bounds of [`Walk::reject_sum`] for the halves of a slab.
+    fn halve_sum(&mut self, index: u32, [from, to]: [L; 2], t: f64) -> [Option<[L; 2]>; 2] {
+        let crossed = |end: L| self.alive & !end.less(self.sum.room) != 0;
         // Where rays are not outside at either end, neither half will be rejected.
-        let hopeless = [from, to]
-            .iter()
-            .all(|end| self.alive & !end.less(sum.room) != 0);
-        let between = if hopeless {
+        let between = if crossed(from) && crossed(to) {
             L::splat(f64::INFINITY)
         } else {
-            self.log_sum(index, sum, t)
+            self.log_sum(index, t)
         };
-        [[from, between], [between, to]].map(|ends| GaussianSum { ends, ..*sum })
+        [Some([from, between]), Some([between, to])]
     }
 
     /// Returns the rays' points at t.
