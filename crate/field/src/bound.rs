@@ -48,6 +48,8 @@ pub struct Bound {
     ripple: Option<Box<Ripple>>,
     /// Largest slope of the profile over its size, per unit of length.
     variation: f64,
+    /// See [`Bound::log_bend`].
+    log_bend: f64,
 }
 
 /// Position of a ball relative to a skeleton.
@@ -154,6 +156,13 @@ impl Bound {
         let profile = primitive.profile.as_ref();
         let ripple = profile.and_then(|p| Ripple::of(p, skeleton));
         let variation = ripple.as_ref().map_or(0.0, |r| r.derivatives(0.0)[0]);
+        let is_bell =
+            kernel == Kernel::Gauss && primitive.height > 0.0 && primitive.tapered.is_none();
+        let log_bend = if is_bell {
+            finest * finest
+        } else {
+            f64::INFINITY
+        };
         let size = match dimension {
             0 => 0.0,
             1 => (measure * finest) * (measure * finest),
@@ -174,6 +183,7 @@ impl Bound {
             positive: high > 0.0,
             negative: low < 0.0,
             influence: primitive.influence,
+            log_bend: if high > 0.0 { log_bend } else { 0.0 },
             ripple: ripple.map(Box::new),
             variation,
         }
@@ -570,6 +580,15 @@ impl Bound {
     #[must_use]
     pub fn kernel_width(&self) -> f64 {
         1.0 / self.finest
+    }
+
+    /// Returns a c such that `ln f + c·t²` is convex along any line of unit speed, for the field f
+    /// without the profile: the square of a Gaussian's width parameter; 0 if the field is nowhere
+    /// above 0, infinite for other kernels and with a taper.
+    #[inline]
+    #[must_use]
+    pub fn log_bend(&self) -> f64 {
+        self.log_bend
     }
 
     /// Whether the term can be above zero.

@@ -10,8 +10,8 @@ impl Evaluate for f64 {
     }
 
     #[inline(never)]
-    fn evaluate(term: &Term<f64>, local: [Self; 3]) -> Jet<Self> {
-        term.local_jet_inline(local)
+    fn evaluate(term: &Term<f64>, profiled: bool, local: [Self; 3]) -> Jet<Self> {
+        term.local_jet_inline(profiled, local)
     }
 
     #[inline(never)]
@@ -28,8 +28,8 @@ impl Evaluate for f32 {
 
     #[inline(never)]
     #[cfg(not(target_arch = "wasm32"))]
-    fn evaluate(term: &Term<f32>, local: [Self; 3]) -> Jet<Self> {
-        term.local_jet_inline(local)
+    fn evaluate(term: &Term<f32>, profiled: bool, local: [Self; 3]) -> Jet<Self> {
+        term.local_jet_inline(profiled, local)
     }
 
     #[inline(never)]
@@ -41,8 +41,8 @@ impl Evaluate for f32 {
     // A visitor waits for each formula that is compiled, and in the page nothing is traced by one
     // lane of single precision: it is the first of eight, which has the same bits.
     #[cfg(target_arch = "wasm32")]
-    fn evaluate(term: &Term<f32>, local: [Self; 3]) -> Jet<Self> {
-        first(f32x8::evaluate(term, local.map(f32x8::splat)))
+    fn evaluate(term: &Term<f32>, profiled: bool, local: [Self; 3]) -> Jet<Self> {
+        first(f32x8::evaluate(term, profiled, local.map(f32x8::splat)))
     }
 
     #[cfg(target_arch = "wasm32")]
@@ -67,8 +67,8 @@ impl Evaluate for f32x8 {
     }
 
     #[inline(never)]
-    fn evaluate(term: &Term<f32>, local: [Self; 3]) -> Jet<Self> {
-        term.local_jet_inline(local)
+    fn evaluate(term: &Term<f32>, profiled: bool, local: [Self; 3]) -> Jet<Self> {
+        term.local_jet_inline(profiled, local)
     }
 
     #[inline(never)]

@@ -170,6 +170,22 @@ impl Primitive {
         self.jet(point).value
     }
 
+    /// Value without the profile.
+    #[inline]
+    #[must_use]
+    pub fn plain_value<R: Evaluate>(&self, point: [R; 3]) -> R {
+        let term = R::term_of(&self.prepared);
+        R::evaluate(term, false, term.frame.local(point)).value
+    }
+
+    /// Returns an upper bound on the profile's factor between two points, at least 0; 1 without a
+    /// profile.
+    #[inline]
+    #[must_use]
+    pub fn factor_between<R: Evaluate>(&self, ends: [[R; 3]; 2]) -> R {
+        R::term_of(&self.prepared).factor_between(ends)
+    }
+
     /// Returns the ray interval outside which the primitive is beyond its depth of influence:
     /// parameters t of `origin + t·direction`, conservative. `None` if the ray misses it.
     ///

@@ -63,9 +63,9 @@ pub trait Evaluate: Real {
     /// Selects the precision of a term prepared in both.
     #[doc(hidden)]
     fn term_of(term: &Prepared) -> &Term<Self::Scalar>;
-    /// Computes a term's value and local gradient at a local position.
+    /// Computes a term's value and local gradient at a local position, with its profile or without.
     #[doc(hidden)]
-    fn evaluate(term: &Term<Self::Scalar>, local: [Self; 3]) -> Jet<Self>;
+    fn evaluate(term: &Term<Self::Scalar>, profiled: bool, local: [Self; 3]) -> Jet<Self>;
     /// Value and gradient of a point primitive at a position in world coordinates, see [`Term`].
     #[doc(hidden)]
     fn evaluate_point(term: &Term<Self::Scalar>, position: [Self; 3]) -> Jet<Self>;
@@ -148,18 +148,22 @@ impl<S: Copy> Term<S> {
     /// Value and local gradient at a local position.
     #[inline(always)]
     pub(crate) fn local_jet<R: Evaluate<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
-        R::evaluate(self, p)
+        R::evaluate(self, true, p)
     }
 
     #[inline(always)]
-    pub(crate) fn local_jet_inline<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {
+    pub(crate) fn local_jet_inline<R: Real<Scalar = S>>(
+        &self,
+        profiled: bool,
+        p: [R; 3],
+    ) -> Jet<R> {
         let jet = self.form.jet(p);
         let amplitude = R::lift(self.amplitude);
         let jet = Jet {
             value: amplitude * jet.value,
             gradient: jet.gradient.map(|g| amplitude * g),
         };
-        match &self.waves {
+        match self.waves.as_ref().filter(|_| profiled) {
             None => jet,
             Some(waves) => {
                 let factor = waves.jet(p);
@@ -191,6 +195,16 @@ impl<S: Copy> Term<S> {
             value: amplitude * jet.value,
             gradient: jet.gradient.map(|g| steep * g),
         }
+    }
+
+    /// Returns an upper bound on the value between two positions in the world, as a factor on the
+    /// value without the profile.
+    #[inline(always)]
+    pub(crate) fn factor_between<R: Real<Scalar = S>>(&self, ends: [[R; 3]; 2]) -> R {
+        let Some(waves) = &self.waves else {
+            return R::splat(1.0);
+        };
+        waves.most_between(ends.map(|p| self.frame.local(p)))
     }
 
     /// Value and gradient at a position in the world.

@@ -152,6 +152,29 @@ impl<S: Copy> Waves<S> {
         }
     }
 
+    /// Returns an upper bound on the factor between two local positions, at least 0. On a triangle
+    /// each barycentric coordinate is linear between them.
+    #[inline(always)]
+    pub fn most_between<R: Real<Scalar = S>>(&self, ends: [[R; 3]; 2]) -> R {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let low = R::lift(self.low);
+        let most = low.max(low + R::lift(self.rise)).max(zero);
+        let Parameters::Linear { gradient, start } = &self.parameters else {
+            return most;
+        };
+        let [near, far] = ends.map(|p| {
+            let [u, v] = [0, 1].map(|i| {
+                let [x, y] = gradient[i].map(R::lift);
+                x * p[0] + y * p[1] + R::lift(start[i])
+            });
+            [u, v, one - u - v]
+        });
+        let [u, v, w] = core::array::from_fn(|i| near[i].max(far[i]).max(zero));
+        // 1 − restriction·(1−b), where b = 27·uvw is at most 1.
+        let lost = R::lift(self.restriction) * (one - (R::splat(27.0) * u * v * w).min(one));
+        most * (one - lost)
+    }
+
     /// The factor and its local gradient at a local position.
     #[inline(always)]
     pub fn jet<R: Real<Scalar = S>>(&self, p: [R; 3]) -> Jet<R> {

@@ -21,7 +21,7 @@ pub fn judge(
     let mut faults = String::new();
     let mut total = Row::default();
     for &kind in kinds {
-        let many = matches!(kind, Kind::Cluster | Kind::Cloud);
+        let many = matches!(kind, Kind::Cluster | Kind::Cloud | Kind::Patch);
         let packets = if many { 2 } else { packets };
         for (seed, &kernel) in (7_000_000..).zip(kernels.iter().cycle().take(count(scenes))) {
             // The seeds differ from those of the large run.
@@ -107,7 +107,14 @@ pub fn clouds(method: Method<'_>) {
     ];
     let (row, faults) = judge(&endless, &[Kind::Cloud], 48, 4, method);
     assert!(row.faults() == 0, "{row:?}\n{faults}");
-    assert!(row.hits > count(300) as u64, "{row:?}");
+    assert!(row.hits > count(700) as u64, "{row:?}");
+}
+
+/// Checks sums of dozens of Gaussians, which packets of rays evaluate at few places.
+pub fn patches(method: Method<'_>) {
+    let (row, faults) = judge(&[Kernel::Gauss], &[Kind::Patch], 100, 2, method);
+    assert!(row.faults() == 0, "{row:?}\n{faults}");
+    assert!(row.hits > count(700) as u64, "{row:?}");
 }
 
 /// Checks that a ray that starts close to a cloud's surface is as exact as its own distance asks,

@@ -18,11 +18,16 @@ use trials::scenes::{KINDS, Kind};
 /// Returns the number of packets of eight rays in each scene; fewer if there are hundreds of
 /// primitives.
 fn packets(kind: Kind) -> usize {
-    if matches!(kind, Kind::Cluster | Kind::Cloud) {
+    if matches!(kind, Kind::Cluster | Kind::Cloud | Kind::Patch) {
         3
     } else {
         8
     }
+}
+
+/// Returns every kind of scene.
+fn all_kinds() -> impl Iterator<Item = Kind> {
+    KINDS.into_iter().chain([Kind::Patch])
 }
 
 /// Finds the first crossings of rays as pictures do.
@@ -52,8 +57,7 @@ fn main() {
     let (rays, threads) = (number(0, 1_000_000), number(1, 1));
     if let (Some(kernel), Some(kind)) = (args.get(2), args.get(3)) {
         let kernel = Kernel::named(kernel).expect("a kernel");
-        let kind = *KINDS
-            .iter()
+        let kind = all_kinds()
             .find(|k| format!("{k:?}").eq_ignore_ascii_case(kind))
             .expect("a kind");
         let mut faults = String::new();
@@ -67,9 +71,7 @@ fn main() {
     let kernels = Kernel::ALL.into_iter();
     let kernels =
         kernels.filter(|kernel| !(endless || clouds) || field::far_field::power(*kernel).is_some());
-    let kinds = KINDS
-        .into_iter()
-        .filter(|kind| !clouds || matches!(kind, Kind::Cloud));
+    let kinds = all_kinds().filter(|kind| !clouds || matches!(kind, Kind::Cloud));
     let kinds: Vec<Kind> = kinds.collect();
     let cells = kernels.flat_map(|kernel| kinds.iter().map(move |&kind| (kernel, kind)));
     let cells: Vec<(Kernel, Kind)> = cells.collect();

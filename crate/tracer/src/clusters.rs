@@ -43,6 +43,8 @@ struct Facts {
     power: f32,
     /// Sum of the members' [`Bound::cancels`].
     cancels: f32,
+    /// Largest [`Bound::log_bend`] of a member.
+    log_bend: f32,
     adds: bool,
     carves: bool,
 }
@@ -137,6 +139,12 @@ impl Clusters {
         f64::from(self.facts[cluster as usize].cancels)
     }
 
+    /// Returns the largest [`Bound::log_bend`] of a group's members, or little more.
+    #[must_use]
+    pub fn log_bend(&self, cluster: u32) -> f64 {
+        f64::from(self.facts[cluster as usize].log_bend)
+    }
+
     /// Returns a group's parts.
     #[must_use]
     pub fn members(&self, cluster: u32) -> Members<'_> {
@@ -184,6 +192,7 @@ impl Facts {
         steep: 0.0,
         power: 0.0,
         cancels: 0.0,
+        log_bend: 0.0,
         adds: false,
         carves: false,
     };
@@ -195,6 +204,7 @@ impl Facts {
                 steep: bound.relative_slope(Nearness::at(0.0)) as f32,
                 power: bound.power() as f32,
                 cancels: bound.cancels() as f32 * (1.0 + 1e-6),
+                log_bend: bound.log_bend() as f32 * (1.0 + 1e-6),
                 adds: bound.adds(),
                 carves: bound.carves(),
                 ..Self::NONE
@@ -217,6 +227,7 @@ impl Facts {
             steep: self.steep.max(other.steep),
             power: self.power.max(other.power),
             cancels: add_upwards(self.cancels, other.cancels),
+            log_bend: self.log_bend.max(other.log_bend),
             adds: self.adds || other.adds,
             carves: self.carves || other.carves,
         }

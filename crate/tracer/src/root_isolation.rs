@@ -124,10 +124,10 @@ impl RootIsolator {
         &mut self,
         along: &Along<'_>,
         interval: [f64; 2],
-        tell: impl FnMut(f64, bool) -> bool,
+        mut tell: impl FnMut(f64, bool) -> bool,
     ) {
         self.off = Off::default();
-        self.follow(along, interval, &|_| Node::zero(), tell);
+        self.follow(along, interval, &|_| Node::zero(), &mut tell);
     }
 
     /// Returns the crossings of the sum of a known part and the listed primitives, after the start
@@ -146,7 +146,7 @@ impl RootIsolator {
         self.unsure = false;
         let pieces = self.pieces;
         let mut crossings = Vec::new();
-        self.follow(along, interval, known.node, |t, inside| {
+        self.follow(along, interval, known.node, &mut |t, inside| {
             crossings.push((t, inside));
             true
         });
@@ -165,7 +165,7 @@ impl RootIsolator {
         along: &Along<'_>,
         [from, to]: [f64; 2],
         known: &dyn Fn(f64) -> Node<f64>,
-        mut tell: impl FnMut(f64, bool) -> bool,
+        tell: &mut dyn FnMut(f64, bool) -> bool,
     ) {
         // Error up to which a primitive counts as resolved.
         let share = RESOLVED * THRESHOLD / self.list.len().max(1) as f64;
@@ -203,7 +203,7 @@ impl RootIsolator {
                 ends,
             };
             if !tell(first, resolved.0[0] + ends[0].value >= 0.0)
-                || !self.between(along, share, piece, &mut tell)
+                || !self.between(along, share, piece, tell)
             {
                 return;
             }
@@ -246,7 +246,7 @@ impl RootIsolator {
         along: &Along<'_>,
         share: f64,
         mut piece: Subinterval,
-        tell: &mut impl FnMut(f64, bool) -> bool,
+        tell: &mut dyn FnMut(f64, bool) -> bool,
     ) -> bool {
         let cost = 1 + piece.rest.len() as u32 / PRIMITIVES_A_PIECE;
         if piece.most < cost {
@@ -313,7 +313,7 @@ impl RootIsolator {
         piece: &Subinterval,
         above: f64,
         error: f64,
-        tell: &mut impl FnMut(f64, bool) -> bool,
+        tell: &mut dyn FnMut(f64, bool) -> bool,
     ) -> bool {
         let length = piece.to - piece.from;
         let steep = STEEP * (error + self.off.steep * length);
@@ -371,7 +371,7 @@ impl RootIsolator {
         &mut self,
         along: &Along<'_>,
         piece: &Subinterval,
-        tell: &mut impl FnMut(f64, bool) -> bool,
+        tell: &mut dyn FnMut(f64, bool) -> bool,
     ) -> bool {
         if self.off.value > 0.0 {
             self.unsure = true;
@@ -385,7 +385,7 @@ impl RootIsolator {
         &mut self,
         along: &Along<'_>,
         piece: &Subinterval,
-        tell: &mut impl FnMut(f64, bool) -> bool,
+        tell: &mut dyn FnMut(f64, bool) -> bool,
     ) -> bool {
         let Subinterval {
             from, to, resolved, ..

@@ -248,6 +248,8 @@ pub struct Slab {
     anew: bool,
     /// Whether all pending primitives have kinks here.
     pub kinked: bool,
+    /// Largest [`Bound::log_bend`] of a pending primitive.
+    pub log_bend: f64,
     /// Whether rounding of a pending primitive may be as large as T.
     blurring: bool,
     /// Whether a pending primitive's pole is so near that bounds say nothing.
@@ -414,6 +416,8 @@ struct Sorted {
     kinked: bool,
     blurring: bool,
     polar: bool,
+    /// Largest [`Bound::log_bend`] of a pending candidate.
+    log_bend: f64,
     /// Rounding of the shared interpolant.
     of_shared: Rounding,
 }
@@ -785,6 +789,12 @@ impl<'a> Slabs<'a> {
         slab.spent.spans <= last || slab.budget <= last
     }
 
+    /// Returns a ball around the points at t of all rays of a slab's beam.
+    #[must_use]
+    pub fn ball(&self, index: u32, t: f64) -> (DVec3, f64) {
+        self.beams.get(self.slab(index).beam).ball(t, t)
+    }
+
     /// Returns the length below which intervals of rays are not subdivided.
     #[must_use]
     pub fn resolution(&self) -> f64 {
@@ -834,6 +844,24 @@ impl<'a> Slabs<'a> {
     /// dropped ones.
     pub fn each(&self, index: u32, all: bool, mut f: impl FnMut(u32)) {
         self.each_local(index, all, |id| self.each_of(id, &mut f));
+    }
+
+    /// Calls `f` with each pending primitive of a slab; returns bounds on the rounding of their sum:
+    /// a part of it, and what is added to that.
+    pub fn list_pending(&self, index: u32, mut f: impl FnMut(u32)) -> [f64; 2] {
+        let slab = self.slab(index);
+        let misplaced = self.geometry(slab.beam, slab.from, slab.to).misplaced;
+        let rounding = self.precision.rounding;
+        let (mut steep, mut cancelled) = (0.0, 0.0);
+        for &id in self.locals(&slab.pending) {
+            steep = self.relative_slope(id, 0.0).at_least(steep);
+            cancelled += self.cancels(id);
+            self.each_of(id, &mut f);
+        }
+        [
+            4.0 * rounding + misplaced * steep,
+            2.0 * rounding * cancelled,
+        ]
     }
 
     /// Returns the number of primitives that count in a slab, with the shared and dropped ones.
@@ -903,6 +931,14 @@ impl<'a> Slabs<'a> {
         match self.terms.clusters {
             Some(clusters) if id & GROUP != 0 => clusters.cancels(id & !GROUP),
             _ => self.terms.bounds[self.list[id as usize] as usize].cancels(),
+        }
+    }
+
+    /// Returns the largest [`Bound::log_bend`] of a list entry.
+    fn log_bend(&self, id: u32) -> f64 {
+        match self.terms.clusters {
+            Some(clusters) if id & GROUP != 0 => clusters.log_bend(id & !GROUP),
+            _ => self.terms.bounds[self.list[id as usize] as usize].log_bend(),
         }
     }
 
@@ -984,6 +1020,7 @@ impl<'a> Slabs<'a> {
             parent: heritage.parent,
             anew: heritage.anew,
             kinked: sorted.kinked && !sorted.smooth && plan.resolves,
+            log_bend: sorted.log_bend,
             blurring: sorted.blurring && plan.resolves,
             polar: sorted.polar && plan.resolves,
             blocks: [NONE; 2],
@@ -1195,6 +1232,7 @@ impl<'a> Slabs<'a> {
                 Fate::Pending => {
                     sorted.smooth |= !candidate.kinked;
                     sorted.kinked |= candidate.kinked;
+                    sorted.log_bend = sorted.log_bend.at_least(self.log_bend(id));
                     if candidate.adds {
                         sorted.pending_above += magnitude;
                     }

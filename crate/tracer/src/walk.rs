@@ -7,6 +7,7 @@
 //! slab is left at once; where nothing is pending, the cubics' roots are the crossings. The
 //! traversal ends when every ray has its crossing, so that nothing behind the first hit is
 //! interpolated.
+use crate::convex::{log_above, log_below, most_between};
 use crate::lanes::{Lanes, spread};
 use crate::ray::Ray;
 use crate::root_isolation::{Along, BoundedTerms, RootIsolator, STEEP};
@@ -72,10 +73,25 @@ pub struct Walk<'w, 's, L> {
     memory: &'w mut Memories<L>,
     isolator: RootIsolator,
     found: Vec<Found>,
+    /// The sum of the slab being visited, or of one that contains it.
+    sum: GaussianSum<L>,
     /// Work so far, see [`MOST_WORK`].
     work: usize,
     /// Evaluations of one primitive's field at one point.
     pub evaluations: u64,
+}
+
+/// The sum of the Gaussians pending in a slab.
+#[derive(Debug)]
+struct GaussianSum<L> {
+    /// The primitives, with bounds on their profiles.
+    list: Vec<(u32, L)>,
+    /// Largest [`field::Bound::log_bend`].
+    log_bend: f64,
+    /// Bounds on the rounding of the sum: a part of it, and what is added to that.
+    rounding: [f64; 2],
+    /// Lower bounds on the logarithm of what the slab's other terms leave up to T.
+    room: L,
 }
 
 /// The last node at which a primitive was evaluated, which adjacent slabs share.
@@ -135,6 +151,14 @@ const FEW_PRIMITIVES: usize = 64;
 /// in place of the others.
 const WORTH: usize = 4;
 
+/// Fewest pending entries of a slab whose Gaussians are added up at its ends.
+const FEWEST_GAUSSIANS: usize = 6;
+/// Largest square of a slab's length, in widths of the sharpest Gaussian, for which Gaussians are
+/// added up: their sum may be e^(¼·this) times larger between the ends than there.
+const LONGEST_BEND: f64 = 8.0;
+/// Largest field of a Gaussian for which the bound counts instead of the value.
+const FAINT: f64 = 4e-3 * THRESHOLD;
+
 /// Number of halvings of a slab's cubics to isolate their crossings.
 const CUTS: u32 = 4;
 
@@ -177,6 +201,12 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             memory,
             isolator: RootIsolator::default(),
             found: Vec::new(),
+            sum: GaussianSum {
+                list: Vec::new(),
+                log_bend: 0.0,
+                rounding: [0.0; 2],
+                room: L::splat(0.0),
+            },
             work: 0,
             evaluations: 0,
         }
@@ -187,20 +217,20 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     #[must_use]
     pub fn run(mut self) -> (Vec<Found>, u64) {
         let root = self.slabs.root();
-        self.visit(root, Span::zero(), Span::zero());
+        self.visit(root, Span::zero(), Span::zero(), None);
         (self.found, self.evaluations)
     }
 
     /// Visits a slab, given the sums of the shared and of the resolved primitives of the longer
-    /// slabs that contain it.
-    fn visit(&mut self, index: u32, mut shared: Span<L>, mut base: Span<L>) {
+    /// slabs that contain it, and of the Gaussians pending in one of them.
+    fn visit(&mut self, index: u32, mut shared: Span<L>, mut base: Span<L>, sum: Option<[L; 2]>) {
         let slab = self.slabs.slab(index);
         let (error, depth, from) = (slab.error, slab.depth, slab.from);
         let (above, below) = (slab.above, slab.below);
         let pending = [slab.pending_above, slab.pending_below];
         let resolves = !slab.resolved.is_empty();
         let (shares, joins) = (!slab.shared.is_empty(), !slab.joined.is_empty());
-        let (done, kinked) = (slab.pending.is_empty(), slab.kinked);
+        let kinked = slab.kinked;
         self.work += 1 + slab.joined.len() + slab.resolved.len() + slab.pending.len();
         // Rays that end before this slab have no crossing.
         self.alive &= L::splat(from).less(self.limit);
@@ -230,11 +260,23 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             self.isolate(index, self.alive);
             return;
         }
+        let sum = sum.or_else(|| self.add_gaussians(index, span));
+        if !sum.is_some_and(|sum| self.reject_sum(index, sum)) {
+            self.divide(index, shared, base, sum);
+        }
+    }
+
+    /// Visits the parts of a slab, or finds the crossings if nothing is pending.
+    fn divide(&mut self, index: u32, shared: Span<L>, base: Span<L>, sum: Option<[L; 2]>) {
+        let slab = self.slabs.slab(index);
+        let (error, done) = (slab.error, slab.pending.is_empty());
+        let middle = 0.5 * (slab.from + slab.to);
         if done {
+            let span = shared.plus(base);
             let doubtful = self.doubtful(span, error);
             if doubtful != 0 && !self.slabs.is_final(index) {
                 let finer = self.slabs.refine(index);
-                self.visit(finer, shared, Span::zero());
+                self.visit(finer, shared, Span::zero(), sum);
             } else {
                 self.cross(index, span, !doubtful);
                 self.isolate(index, doubtful);
@@ -245,13 +287,93 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
             Parts::Halves(left, right) => {
                 let [near, far] = base.halves();
                 let [shared_near, shared_far] = shared.halves();
-                self.visit(left, shared_near, near);
+                let sums = sum.map(|sum| self.halve_sum(index, sum, middle));
+                let [before, behind] = sums.unwrap_or_default();
+                self.visit(left, shared_near, near, before);
                 if self.alive != 0 {
-                    self.visit(right, shared_far, far);
+                    self.visit(right, shared_far, far, behind);
                 }
             }
-            Parts::Narrower(same) => self.visit(same, shared, base),
+            Parts::Narrower(same) => self.visit(same, shared, base, sum),
         }
+    }
+
+    /// Lists the Gaussians pending in a slab and returns upper bounds on the logarithm of their sum
+    /// at its ends, if they are all that is pending, and the slab is so short that the ends tell of
+    /// what is between; `rest` is the span of the other terms.
+    fn add_gaussians(&mut self, index: u32, rest: Span<L>) -> Option<[L; 2]> {
+        let slab = self.slabs.slab(index);
+        let (from, to, log_bend) = (slab.from, slab.to, slab.log_bend);
+        let is_short = log_bend * (to - from) * (to - from) <= LONGEST_BEND;
+        if !is_short || slab.pending.len() < FEWEST_GAUSSIANS {
+            return None;
+        }
+        let room = log_below(L::splat(THRESHOLD - slab.error) - rest.max());
+        let ends = [from, to].map(|t| self.point(t));
+        let (sight, sum) = (self.sight, &mut self.sum);
+        sum.list.clear();
+        sum.rounding = self.slabs.list_pending(index, |p| {
+            if sight.bounds[p as usize].adds() {
+                let factor = sight.primitives[p as usize].factor_between(ends);
+                sum.list.push((p, factor));
+            }
+        });
+        (sum.log_bend, sum.room) = (log_bend, room);
+        Some([from, to].map(|t| self.log_sum(index, t)))
+    }
+
+    /// Returns upper bounds on the logarithm of the sum of Gaussians at t, a parameter in a slab.
+    #[inline(never)]
+    fn log_sum(&mut self, index: u32, t: f64) -> L {
+        let (center, radius) = self.slabs.ball(index, t);
+        let point = self.point(t);
+        let (mut total, mut faint, mut evaluated) = (L::splat(0.0), 0.0, 0);
+        for &(p, factor) in &self.sum.list {
+            let bound = &self.sight.bounds[p as usize];
+            let magnitude = bound.magnitude(bound.nearness(center, radius));
+            if magnitude <= FAINT {
+                faint += magnitude;
+                continue;
+            }
+            total = total + factor * self.sight.primitives[p as usize].plain_value(point);
+            evaluated += 1;
+        }
+        self.evaluations += L::LANES as u64 * evaluated;
+        self.work += self.sum.list.len();
+        let [part, more] = self.sum.rounding;
+        log_above(total * L::splat(1.0 + 2.0 * part) + L::splat(more + faint))
+    }
+
+    /// Returns whether the sum of Gaussians, given its logarithm's bounds at a slab's ends, proves
+    /// that all rays stay outside in the whole slab; records that.
+    fn reject_sum(&mut self, index: u32, ends: [L; 2]) -> bool {
+        let slab = self.slabs.slab(index);
+        let (from, length) = (slab.from, slab.to - slab.from);
+        let most = most_between(ends, self.sum.log_bend * length * length);
+        let outside = most.less(self.sum.room);
+        if self.alive & !outside != 0 {
+            return false;
+        }
+        self.arrive(index, from, outside, 0, false);
+        true
+    }
+
+    /// Returns the bounds of [`Walk::reject_sum`] for the halves of a slab.
+    fn halve_sum(&mut self, index: u32, [from, to]: [L; 2], t: f64) -> [Option<[L; 2]>; 2] {
+        let crossed = |end: L| self.alive & !end.less(self.sum.room) != 0;
+        // Where rays are not outside at either end, neither half will be rejected.
+        let between = if crossed(from) && crossed(to) {
+            L::splat(f64::INFINITY)
+        } else {
+            self.log_sum(index, t)
+        };
+        [Some([from, between]), Some([between, to])]
+    }
+
+    /// Returns the rays' points at t.
+    fn point(&self, t: f64) -> [L; 3] {
+        let t = L::splat(t);
+        core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
     }
 
     /// Returns the span of the primitives with a common interpolant.
@@ -478,10 +600,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
         let s = self.slabs.slab(index);
         let range = &s.resolved;
         let (from, to) = (s.from, s.to);
-        let places: [[L; 3]; 2] = [from, to].map(|t| {
-            let t = L::splat(t);
-            core::array::from_fn(|k| self.origin[k] + self.direction[k] * t)
-        });
+        let places = [from, to].map(|t| self.point(t));
         let (mut left, mut right) = (Node::zero(), Node::zero());
         self.memory.hold(self.slabs.len());
         for &local in self.slabs.locals(range) {

@@ -165,9 +165,12 @@ pub enum Kind {
     Cluster,
     /// A hundred or two points that add up.
     Cloud,
+    /// A few dozen bones beside each other that add up, most of them triangles near one plane, some
+    /// restricted.
+    Patch,
 }
 
-/// Every kind.
+/// Every kind but patches.
 pub const KINDS: [Kind; 14] = [
     Kind::Point,
     Kind::Segment,
@@ -233,10 +236,13 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
         Kind::Cluster => n.range(60.0, 300.0) as usize,
         Kind::Cloud => n.range(64.0, 300.0) as usize,
         Kind::Mixed => n.range(4.0, 16.0) as usize,
+        Kind::Patch => n.range(24.0, 48.0) as usize,
         _ if n.chance(0.4) => 1,
         _ => n.range(2.0, 6.0) as usize,
     };
-    let crisp = n.power(-1.0, 1.5);
+    // Meshes of crisp faces are rough.
+    let crispest = if kind == Kind::Patch { 0.3 } else { 1.5 };
+    let crisp = n.power(-1.0, crispest);
     for i in 0..count {
         let alone = match kind {
             Kind::Taper => n.pick(&[Kind::Segment, Kind::Arc, Kind::Curve]),
@@ -245,18 +251,20 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
             Kind::Mixed => n.pick(&KINDS[..7]),
             Kind::Cluster => n.pick(&KINDS[..2]),
             Kind::Cloud => Kind::Point,
+            Kind::Patch if n.chance(0.1) => n.pick(&KINDS[..3]),
             _ => kind,
         };
         // Now and then a thin spike.
         let thin = n.chance(0.15);
         let radius = match kind {
             Kind::Cluster | Kind::Cloud => n.range(0.02, 0.12),
+            Kind::Patch => n.range(0.05, 0.15),
             _ if thin => n.range(0.008, 0.03),
             _ => n.range(0.05, 0.4),
         };
         let blobbiness = match scene.settings.blob_scale {
             BlobScale::Relative if n.chance(0.7) => crisp,
-            BlobScale::Relative => n.power(-1.0, 1.5),
+            BlobScale::Relative => n.power(-1.0, crispest),
             BlobScale::Absolute => crisp / (radius * radius * world.scale * world.scale),
         };
         let mut flesh = Flesh {
@@ -283,7 +291,10 @@ fn scene_in(world: World, kernel: Kernel, kind: Kind, n: &mut Random) -> Scene {
                 flesh.end_blobbiness = Some(blobbiness * n.range(0.3, 3.0));
             }
         }
-        if kind == Kind::Restricted {
+        if kind == Kind::Patch {
+            flesh.strength = n.range(0.5, 1.2);
+        }
+        if kind == Kind::Restricted || kind == Kind::Patch && n.chance(0.4) {
             flesh.restriction = n.range(0.2, 1.0);
         }
         if matches!(kind, Kind::Waves | Kind::Kinks) {
@@ -337,6 +348,12 @@ fn shape(kind: Kind, radius: f64, thin: bool, n: &mut Random, world: World) -> S
                 n.vector(1.0)
             };
             Shape::triangle([a, b, c].map(|p| world.at(p)), radius)
+        }
+        Kind::Patch => {
+            let center = n.vector(0.8);
+            let corners = [0; 3].map(|_| center + n.vector(0.4));
+            let flat = corners.map(|p| world.at(p * DVec3::new(1.0, 1.0, 0.03)));
+            Shape::triangle(flat, radius)
         }
         Kind::Polygon => {
             let x = n.vector(1.0).normalize();

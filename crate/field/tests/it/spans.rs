@@ -215,3 +215,42 @@ fn compact6() {
 fn cubed() {
     bounds_hold(Kernel::Cubed);
 }
+
+/// With a profile the field is nowhere above that without one times the factor between two points,
+/// and as large on restricted triangles.
+#[test]
+fn a_profile_is_nowhere_above_its_bound_between_two_points() {
+    let mut random = Random::new(17);
+    let (mut nearest, mut plain_differs) = (0.0_f64, 0);
+    for case in 0..count(600) {
+        let kind = random.pick(Dress::Wavy.kinds());
+        let skeleton = random.skeleton(kind, 1.0);
+        let shaping = Shaping {
+            strength: 1.0,
+            ..random.shaping(1.0)
+        };
+        let profile = match case % 3 {
+            0 => Profile {
+                restriction: random.range(0.1, 1.0),
+                ..Profile::default()
+            },
+            _ => smooth_profile(&mut random),
+        };
+        let bare = primitive(skeleton.clone(), &shaping, None);
+        let wavy = primitive(skeleton, &shaping, Some(profile));
+        let ends = [0; 2].map(|_| random.vector(1.0));
+        let most = wavy.factor_between(ends.map(|end| end.to_array()));
+        for i in 0..=20 {
+            let point = ends[0].lerp(ends[1], f64::from(i) / 20.0).to_array();
+            let (value, plain): (f64, f64) = (wavy.value(point), wavy.plain_value(point));
+            plain_differs += usize::from(plain != bare.value(point));
+            let bound = most * plain * (1.0 + 1e-12);
+            assert!(value <= bound, "{case} {kind:?}: {value} > {bound}");
+            if case % 3 == 0 && kind == Kind::Triangle {
+                nearest = nearest.max(value / bound);
+            }
+        }
+    }
+    assert_eq!(plain_differs, 0);
+    assert!(nearest > 0.99, "{nearest}");
+}

@@ -35,9 +35,9 @@ macro_rules! hold {
 }
 
 hold! {
-    pictures: PICTURES, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds,
+    pictures: PICTURES, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds, patches,
         starts_beside_a_cloud, earlier_faults, earlier_faults_that_are_hard_to_judge;
-    exact: EXACT, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds;
+    exact: EXACT, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds, patches;
 }
 
 /// Kinds in whose pictures each of the following faults would show.
