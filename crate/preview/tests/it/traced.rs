@@ -64,12 +64,12 @@ fn quick_drafts_keep_thin_limbs() {
     let Some(card) = open() else { return };
     let [(name, text)] = examples!["sea-urchin"];
     let scene = compile(name, text);
-    let (mut tracer, packed) = card.prepare(&scene, Detail::Quick, Stage::Fragment);
+    let (mut tracer, packed) = card.prepare(&scene, Detail::Quick, Stage::Compute);
     assert_eq!(packed.meshed, [0]);
     let pixels = card.read(&mut tracer, &scene.camera, [256, 256]);
     let found = compare(&scene, [256, 256], &pixels);
     println!("{name}: {found:?}");
-    assert!(found.coverage <= 0.02, "{found:?}");
+    assert!(found.coverage <= 0.03, "{found:?}");
 }
 
 #[test]
