@@ -85,10 +85,10 @@ describe('a card that is lost', () => {
 
   test('soon after the start is gone without, and nothing is lost', async () => {
     const sinew = await opened();
+    const { name } = await sinew.until(({ saved }) => saved);
     await sinew.click('show draft');
     await sinew.until(({ standIn }) => standIn === 'draft');
     await type(sinew, ' and more');
-    const { name } = await sinew.status();
     await lose(sinew, 0);
     await sinew.until(({ backend }) => backend === 'none');
     await sinew.place('notice');

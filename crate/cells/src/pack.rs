@@ -367,8 +367,8 @@ impl Packer<'_> {
         triangles.count() > MANY_TRIANGLES
     }
 
-    /// Appends the hard shapes of a body's elements that are thinner than a radius, as many as there
-    /// is room for: of all if it is infinite, else of bones whose flesh has that radius.
+    /// Appends the hard shapes of a body's elements that are thinner than a radius, as many as
+    /// there is room for: of all if it is infinite, else of bones whose flesh has that radius.
     fn add_skin(&self, elements: &BTreeSet<u32>, thin: f64, room: usize, facets: &mut Vec<Facet>) {
         let most = facets.len() + room;
         for element in elements {

@@ -27,7 +27,7 @@ pub fn draw(names: &[String]) -> Result<()> {
     let mut datasets = files(&root().join("www/examples"), "rat")?;
     let folder = root().join("www/examples");
     let list = root().join(SLOW);
-    let mut slow = named(&fs::read_to_string(&list)?, &datasets);
+    let mut slow = keep_names(&fs::read_to_string(&list)?, &datasets);
     for name in names {
         if !datasets.contains(&folder.join(name).with_extension("rat")) {
             bail!("there is no www/examples/{name}.rat");
@@ -53,7 +53,7 @@ pub fn draw(names: &[String]) -> Result<()> {
 }
 
 /// Returns those names of a list, one a line, that files have without their extension.
-fn named(list: &str, files: &[PathBuf]) -> BTreeSet<String> {
+fn keep_names(list: &str, files: &[PathBuf]) -> BTreeSet<String> {
     let lines = list.lines().filter(|line| {
         let mut stems = files.iter().filter_map(|file| file.file_stem());
         stems.any(|stem| stem == *line)
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn an_example_that_is_gone_leaves_the_list() {
         let files = ["examples/coils.rat", "examples/tide.rat"].map(PathBuf::from);
-        let kept = named("coils\ngone\ntid\n", &files);
+        let kept = keep_names("coils\ngone\ntid\n", &files);
         assert_eq!(kept, BTreeSet::from([String::from("coils")]));
     }
 }

@@ -108,12 +108,13 @@ mod tests {
     use super::*;
     use egui::pos2;
 
+    fn row(number: usize, right: f32, height: f32) -> Rect {
+        let top = 20.0 * number as f32;
+        Rect::from_min_max(pos2(40.0, top), pos2(right, top + height))
+    }
+
     #[test]
     fn colours_lie_over_no_text() {
-        let row = |number: usize, right: f32, height: f32| {
-            let top = 20.0 * number as f32;
-            Rect::from_min_max(pos2(40.0, top), pos2(right, top + height))
-        };
         // A line of three rows between two others; the one above is folded.
         let rows = [
             row(0, 90.0, 20.0),
@@ -123,12 +124,11 @@ mod tests {
             row(4, 120.0, 20.0),
             row(5, 200.0, 20.0),
         ];
-        let at = |row: Rect| Rect::from_min_size(row.left_top(), vec2(1.0, 20.0));
         for (caret, own) in [(0, 0), (2, 4), (3, 4), (4, 4), (5, 5)] {
-            let found = roomy(rows.into_iter(), at(rows[caret]), 280.0);
+            let found = roomy(rows.into_iter(), row(caret, 41.0, 20.0), 280.0);
             assert_eq!(found, rows[own], "{caret}");
         }
-        let caret = at(rows[2]);
+        let caret = row(2, 41.0, 20.0);
         assert_eq!(roomy(rows.into_iter(), caret, 310.0), rows[2]);
         let full = rows[2..4].iter().copied();
         assert_eq!(roomy(full, caret, 280.0).top(), rows[4].top());
