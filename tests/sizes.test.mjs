@@ -88,6 +88,39 @@ test('a menu that is higher than the window is reached to its end, and sliders k
   await sinew.close();
 });
 
+test('a low window shows as many rows of the menu as fit', async () => {
+  for (const [width, height] of [[720, 450], [320, 568]]) {
+    const sinew = await browser.open({ viewport: { width, height } });
+    await sinew.click('more');
+    await sinew.still();
+    await sinew.keep(`menu opened ${width}x${height}`);
+    const { x, y } = await sinew.place('work new');
+    const screen = await sinew.screen();
+    // The menu's ground, left of its rows.
+    const ground = (row) => screen.data.slice(4 * (row * screen.width + Math.round(x) - 3)).slice(0, 3).join();
+    assert.equal(ground(height - 60), ground(Math.round(y)), `${width}×${height}`);
+    await sinew.close();
+  }
+});
+
+test('the pencil’s tools stand side by side', async () => {
+  for (const [width, height] of [[1440, 900], [720, 450], [390, 844], [320, 568]]) {
+    const sinew = await browser.open({ viewport: { width, height } });
+    await sinew.click('draw');
+    await sinew.until(({ drawing }) => drawing === 'draw');
+    await sinew.still();
+    await sinew.keep(`draw ${width}x${height}`);
+    const places = await sinew.places();
+    const names = ['tool draw', 'tool move', 'tool cut', 'draw mirror', 'draw colour', 'draw thickness', 'draw done'];
+    const tools = names.map((name) => places[name]);
+    for (const [i, tool] of tools.entries()) {
+      const next = tools[i + 1]?.x ?? width;
+      assert.ok(tool.x + tool.w <= next + 1, `${width}×${height}: ${names[i]} ${JSON.stringify([tool, next])}`);
+    }
+    await sinew.close();
+  }
+});
+
 test('the split keeps its share, and the way back leads to the same', async () => {
   const sinew = await browser.open({ viewport: { width: 1440, height: 900 } });
   const share = async (width, height) => {

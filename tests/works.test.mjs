@@ -70,6 +70,28 @@ test('one tab writes a work; another one makes a copy or takes it over, and each
 });
 
 
+test('a busy page does not take its own work for that of another tab', async () => {
+  const sinew = await own();
+  const tab = await sinew.page.context().newPage();
+  await tab.goto(new URL('icon.svg', sinew.page.url()).href);
+  const told = await tab.evaluate(async (keeper) => {
+    const { claim, listen } = await import(keeper);
+    const told = [];
+    listen((kind, about) => told.push(`${kind} ${about}`));
+    const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+    claim('own');
+    const end = performance.now() + 1500;
+    while (performance.now() < end);
+    await pause(1000);
+    // The program starts anew.
+    claim('own');
+    await pause(1000);
+    return told;
+  }, new URL('keep.js', sinew.page.url()).href);
+  assert.deepEqual(told, ['mine own', 'mine own']);
+  await sinew.close();
+});
+
 test('a tab that does not answer is not waited for', async () => {
   const deaf = () => {
     BroadcastChannel.prototype.addEventListener = () => {};

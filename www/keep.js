@@ -195,13 +195,22 @@ let claimed = null;
 
 /** Asks to be the only one who writes a work, and lets go of the one before. Tells `mine`, or `theirs` while another tab is. */
 export function claim(id) {
+  if (claimed?.has && claimed.id === id) {
+    // The program was started anew in this tab.
+    tell('mine', id);
+    return;
+  }
   claimed?.drop();
   claimed = null;
   if (id === undefined || !navigator.locks) return;
   const abort = new AbortController();
   // After a reload the page before may still hold it.
   const mine = { id, has: false, drop: () => abort.abort() };
-  const timer = setTimeout(() => claimed === mine && tell('theirs', id), 600);
+  const timer = setTimeout(async () => {
+    // A page that was busy finds the answer behind this question's.
+    await navigator.locks.query().catch(() => {});
+    if (claimed === mine && !mine.has) tell('theirs', id);
+  }, 600);
   claimed = mine;
   hold(mine, timer, { signal: abort.signal });
 }
@@ -226,6 +235,8 @@ async function hold(mine, timer, options) {
 
 /** Lets another tab go on with a work. */
 function lose(id) {
+  claimed?.drop();
+  claimed = null;
   tell('lost', id);
   claim(id);
 }

@@ -5,7 +5,7 @@ use crate::octree::Told;
 use crate::pack::{Detail, Share};
 use core::ops::ControlFlow;
 use mesh::{Aabb, TriangleMesh};
-use mesher::{Cage, MeshError, Progress, Spoke, look};
+use mesher::{Cage, MeshError, Progress, Spoke, THINNEST, look};
 use scene::{Scene, Surface};
 
 /// Most side of cells where a surface bends, in diagonals of its skeleton's box.
@@ -42,7 +42,8 @@ fn sizes(detail: Detail) -> [f64; 3] {
     }
 }
 
-/// Meshes a body, coarsely at first, and then as finely as its share allows.
+/// Meshes a body, coarsely at first, and then as finely as its share allows. Returns the mesh and
+/// the radius of flesh below which parts of it may be missing.
 pub(crate) fn mesh(
     scene: &Scene,
     surface: &Surface,
@@ -50,7 +51,7 @@ pub(crate) fn mesh(
     share: Share,
     detail: Detail,
     told: &mut Told<'_>,
-) -> Result<TriangleMesh, NoMesh> {
+) -> Result<(TriangleMesh, f64), NoMesh> {
     let cages = Cage::of_surface(scene, surface);
     let spokes = cages.iter().flat_map(|cage| &cage.spokes);
     let radii = spokes.clone().map(Spoke::radius);
@@ -97,7 +98,7 @@ pub(crate) fn mesh(
                 let mut work = left.saturating_sub(used) as f64 / used as f64;
                 let mut room = share.triangles as f64 / count as f64;
                 if count <= share.triangles {
-                    best = Some(mesh);
+                    best = Some((mesh, THINNEST * step));
                 }
                 // Cells are halved: between two halves there is nothing.
                 let mut factor = if room < 1.0 { COARSER } else { 1.0 };

@@ -14,7 +14,7 @@ use bytemuck::{Pod, Zeroable};
 use field::{Implicit, Primitive, Skeleton};
 use glam::{DVec3, Vec3};
 use mesh::TriangleMesh;
-use scene::{Finish, Rgb, Scene, Shape, Surface, Unit};
+use scene::{Element, Finish, Form, Rgb, Scene, Shape, Surface, Unit};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -286,7 +286,7 @@ impl Packer<'_> {
         if detail == Detail::Quick && self.is_skin(surface) {
             self.out.is_cut = true;
             self.out.meshed.push(surface.body());
-            self.add_skin(&own, share.triangles, facets);
+            self.add_skin(&own, f64::INFINITY, share.triangles, facets);
             return Ok(None);
         }
         let mut limits = Limits {
@@ -313,8 +313,12 @@ impl Packer<'_> {
         self.out.is_cut = true;
         let before = facets.len();
         match facade::mesh(self.scene, surface, function, share, detail, told) {
-            Ok(mesh) => self.add_facets(surface, function, &mesh, facets),
-            Err(NoMesh::Dear) => self.add_skin(&own, share.triangles, facets),
+            Ok((mesh, thin)) => {
+                self.add_facets(surface, function, &mesh, facets);
+                let left = share.triangles.saturating_sub(facets.len() - before);
+                self.add_skin(&own, thin, left, facets);
+            }
+            Err(NoMesh::Dear) => self.add_skin(&own, f64::INFINITY, share.triangles, facets),
             Err(NoMesh::Endless) => {}
             Err(NoMesh::Cancelled) => return Err(Cancelled),
         }
@@ -363,20 +367,40 @@ impl Packer<'_> {
         triangles.count() > MANY_TRIANGLES
     }
 
-    /// Appends the hard shapes of a body's elements, as many as there is room for.
-    fn add_skin(&self, elements: &BTreeSet<u32>, room: usize, facets: &mut Vec<Facet>) {
+    /// Appends the hard shapes of a body's elements that are thinner than a radius, as many as
+    /// there is room for: of all if it is infinite, else of bones whose flesh has that radius.
+    fn add_skin(&self, elements: &BTreeSet<u32>, thin: f64, room: usize, facets: &mut Vec<Facet>) {
         let most = facets.len() + room;
         for element in elements {
             let element = &self.scene.elements[*element as usize];
-            let solids = Solid::of(self.scene, element, 0).into_iter();
+            if thin.is_finite() && !self.is_plain(element) {
+                continue;
+            }
             // A plane is drawn by itself.
-            let solids = solids.filter(|solid| solid.kind != Kind::Plane);
+            let solids = Solid::of(self.scene, element, 0).into_iter();
+            let solids = solids.filter(|solid| match solid.thinnest() {
+                Some(radius) => radius < thin,
+                None => thin.is_infinite() && solid.kind != Kind::Plane,
+            });
             facets.extend(solids.map(|solid| (solid, self.slot(element.finish))));
             if facets.len() >= most {
                 facets.truncate(most);
                 return;
             }
         }
+    }
+
+    /// Whether the flesh of an element is about as thick as its radius says.
+    fn is_plain(&self, element: &Element) -> bool {
+        let flesh = element.flesh.map(|flesh| flesh as usize);
+        let flesh = flesh.and_then(|flesh| self.scene.flesh.get(flesh));
+        let is_shaped = flesh.is_some_and(|flesh| flesh.whole_profile().is_some());
+        let is_chain = match &element.shape {
+            Shape::Bone(_) => true,
+            Shape::Function(function) => matches!(function.form, Form::Skeleton(_)),
+            Shape::Box(_) | Shape::Quadric(_) => false,
+        };
+        is_chain && !is_shaped
     }
 
     /// Appends the triangles of a body's mesh.
@@ -542,4 +566,59 @@ fn looks(scene: &Scene, mixture: &[(u32, [f64; 8])], around: Rgb) -> [[[f32; 4];
         }
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formulas::Cubics;
+
+    /// Limbs that end thinner than a cell of their body's mesh, beside thick ones.
+    #[test]
+    fn thin_limbs_are_whole_beside_a_coarse_mesh() {
+        let mut text = String::from(
+            "surface core diffuse Red, blob -1.2, radius 0.6\n\
+             surface thin diffuse Red, blob -1, radius 0.03 0.004\n\
+             surface thick diffuse Red, blob -1, radius 0.3\n\
+             gauss core <0 0 0>\nline thick <0 0 0> <0 0 -1.5>\n",
+        );
+        for i in 0..300 {
+            let z = 1.0 - f64::from(2 * i + 1) / 600.0;
+            let (sine, cosine) = libm::sincos(2.4 * f64::from(i));
+            let way = DVec3::from([cosine, sine, 0.0]) * libm::sqrt(1.0 - z * z);
+            let [base, tip] = [0.3, 1.4].map(|far| far * (way + z * DVec3::Z));
+            let [base, tip] = [base, tip].map(|p| format!("<{} {} {}>", p.x, p.y, p.z));
+            text += &format!("line thin {base} {tip}\n");
+        }
+        let file = rats::File {
+            name: "main.rat".into(),
+            text,
+        };
+        let scene = rats::compile(&rats::Project { files: vec![file] }).scene;
+        let mut packer = Packer {
+            scene: &scene,
+            chart: &Cubics,
+            data: Vec::new(),
+            out: Packed::default(),
+        };
+        let facets = packer.add_bodies(Detail::Quick, &mut |_| true);
+        let facets = facets.expect("wanted");
+        assert_eq!(packer.out.meshed, [0]);
+        let cones = facets.iter().map(|(solid, _)| solid);
+        let cones: Vec<&Solid> = cones.filter(|solid| solid.kind != Kind::Patch).collect();
+        assert!(cones.iter().all(|cone| cone.kind == Kind::Cylinder));
+        let lines = scene.elements.iter().skip(2);
+        let lines = lines.filter_map(|element| match element.shape.skeleton()? {
+            Skeleton::Segment { base, apex } => Some([*base, *apex]),
+            _ => None,
+        });
+        let lines: Vec<[DVec3; 2]> = lines.collect();
+        assert_eq!((lines.len(), cones.len()), (300, 300));
+        for (cone, [base, apex]) in cones.iter().zip(lines) {
+            let half = cone.rotation * DVec3::Z * cone.a[1] * cone.unit;
+            assert!((cone.origin - half).distance(base) < 1e-9);
+            assert!((cone.origin + half).distance(apex) < 1e-9);
+            assert!((cone.thinnest().expect("round") - 0.004).abs() < 1e-9);
+        }
+    }
 }

@@ -57,9 +57,18 @@ impl Solid {
             ref other => other.parts(radius),
         };
         let paint = element.paint.as_ref().map(|paint| paint.corners);
-        let solids = parts.iter().filter_map(|part| {
+        // A soft line's radius changes with its flesh.
+        let end_radius = flesh
+            .filter(|_| is_flesh)
+            .and_then(|flesh| flesh.end_radius);
+        let solids = parts.into_iter().filter_map(|mut part| {
+            if let (Some(_), Shape::Bone(bone)) = (end_radius, &mut part)
+                && bone.end_radius.is_none()
+            {
+                (bone.radius, bone.end_radius) = (radius, end_radius);
+            }
             let radius = if is_function { part.radius() } else { radius };
-            Self::new(part, radius, paint)
+            Self::new(&part, radius, paint)
         });
         solids.collect()
     }
@@ -122,6 +131,19 @@ impl Solid {
         let reach =
             axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
         Some((middle - reach, middle + reach))
+    }
+
+    /// Returns the least radius of a ball, a cylinder or an arc, or half a triangle's thickness;
+    /// `None` for planes and patches.
+    pub(crate) fn thinnest(&self) -> Option<f64> {
+        let own = match self.kind {
+            Kind::Sphere => 1.0,
+            Kind::Cylinder => self.a[0] - self.a[1] * self.a[2].abs(),
+            Kind::Arc => self.a[1],
+            Kind::Triangle => self.b[2],
+            Kind::Plane | Kind::Patch => return None,
+        };
+        Some(own * self.unit)
     }
 
     /// Moves the origin, where that is free, as near to a point as possible: a plane looks the same

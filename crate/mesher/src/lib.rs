@@ -107,7 +107,7 @@ mod unite;
 pub use cages::{Cage, Spoke};
 pub use coating::{Coat, Coating};
 pub use file::approximate;
-pub use look::look;
+pub use look::{THINNEST, look};
 pub use measure::Measured;
 pub use model::{CoatedBody, Model, ModelPart, Tolerance, Wishes, coat_scene, mesh_scene};
 pub use options::{MeshError, Options, Phase, Progress, Step};

@@ -15,6 +15,8 @@ use mesh::{Aabb, TriangleMesh};
 
 /// Levels below the usual one, for limbs that are thinner.
 const LEVELS: u32 = 2;
+/// Radius of flesh over `step` of [`look`], below which parts of the mesh may be missing.
+pub const THINNEST: f64 = 1.0 / (1 << LEVELS) as f64;
 /// Side of the cells around a skeleton, in radii of its flesh, with which one of their corners is
 /// inside: less than 2/√3.
 const OF_RADIUS: f64 = 1.0;
@@ -55,7 +57,7 @@ pub fn look(
     }
     let forest = Forest::new(&domain, step, LEVELS);
     let mut space = Space::new(function, forest, tolerance / domain.size().max_element());
-    let thinnest = step / f64::from(1 << LEVELS);
+    let thinnest = THINNEST * step;
     let own = cages.iter().flat_map(|cage| &cage.lines);
     let lines = own.filter(|line| line.is_own);
     let along = lines.flat_map(|line| places_along(line, thinnest));

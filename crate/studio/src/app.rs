@@ -202,6 +202,16 @@ impl App {
         }
     }
 
+    /// Says that the graphics card was lost, and what draws now.
+    pub fn tell_loss(&mut self) {
+        let next = match self.page.screen.backend {
+            Backend::None => "the processor draws now",
+            Backend::WebGpu | Backend::WebGl2 => "it draws again",
+        };
+        let text = format!("The graphics card was lost; {next}. Nothing of your work is lost.");
+        self.page.warn(text);
+    }
+
     fn welcome_link(&mut self) {
         let is_replaced = self.page.work.before().is_some();
         let notice = Notice {

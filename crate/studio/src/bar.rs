@@ -209,6 +209,8 @@ fn more(page: &Page, film: &FilmPanel, ui: &mut Ui, wishes: &mut Wishes) {
     let room = ui.ctx().content_rect().bottom() - button.rect.bottom() - 24.0;
     egui::Popup::menu(&button).show(|ui| {
         if room < LOW {
+            // Else a menu is no higher than usual windows of egui.
+            ui.set_max_height(room);
             let rows = ScrollArea::vertical().max_height(room);
             rows.show(ui, |ui| rest(page, film, ui, wishes));
         } else {

@@ -28,12 +28,17 @@ pub fn start() -> Result<(), JsValue> {
         emulation::mend(CANVAS).await;
         let again = Cell::new(false);
         let create = move |context: &eframe::CreationContext<'_>, backend| {
-            if again.replace(true) {
+            let is_lost = again.replace(true);
+            if is_lost {
                 // The GPU was lost, not because of the text: go on drawing it.
                 browser::set_stopped(false);
             }
             let state = context.wgpu_render_state.clone();
-            App::new(&context.egui_ctx, state, backend, parts.clone())
+            let mut app = App::new(&context.egui_ctx, state, backend, parts.clone());
+            if is_lost {
+                app.tell_loss();
+            }
+            app
         };
         let files = browser::fetch_all(fonts::FILES).await;
         let started = match files.and_then(fonts::set) {

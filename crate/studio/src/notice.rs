@@ -35,7 +35,11 @@ pub fn show(ui: &mut Ui, place: Rect, notice: &Notice, wishes: &mut Wishes) {
                 buttons(ui, notice, wishes);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(Label::new(RichText::new(&notice.text).color(palette.text)).wrap());
+                let words = RichText::new(&notice.text).color(palette.text);
+                let words = ui.add(Label::new(words).wrap());
+                ui.ctx().accesskit_node_builder(words.id, |node| {
+                    node.set_live(egui::accesskit::Live::Polite);
+                });
             });
         });
         if is_below {

@@ -5,7 +5,7 @@ use crate::shell::{cargo, command, files, root, run, target, words};
 use anyhow::{Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// The pixels that a thumbnail fits into: those of the gallery's cards, 4:3.
@@ -26,6 +26,8 @@ const REFERENCE: [u32; 2] = [240, 180];
 pub fn draw(names: &[String]) -> Result<()> {
     let mut datasets = files(&root().join("www/examples"), "rat")?;
     let folder = root().join("www/examples");
+    let list = root().join(SLOW);
+    let mut slow = keep_names(&fs::read_to_string(&list)?, &datasets);
     for name in names {
         if !datasets.contains(&folder.join(name).with_extension("rat")) {
             bail!("there is no www/examples/{name}.rat");
@@ -36,9 +38,6 @@ pub fn draw(names: &[String]) -> Result<()> {
         names.is_empty() || names.iter().any(|name| stem == name.as_str())
     });
     let sinew = program()?;
-    let list = root().join(SLOW);
-    let known = fs::read_to_string(&list)?;
-    let mut slow: BTreeSet<String> = known.lines().map(str::to_owned).collect();
     for dataset in datasets {
         let size = size_within(&sinew, &dataset, THUMBNAIL)?;
         pictures::draw(&sinew, &dataset, &dataset.with_extension("png"), size, "4")?;
@@ -51,6 +50,15 @@ pub fn draw(names: &[String]) -> Result<()> {
     }
     let lines: String = slow.iter().map(|name| format!("{name}\n")).collect();
     Ok(fs::write(list, lines)?)
+}
+
+/// Returns those names of a list, one a line, that files have without their extension.
+fn keep_names(list: &str, files: &[PathBuf]) -> BTreeSet<String> {
+    let lines = list.lines().filter(|line| {
+        let mut stems = files.iter().filter_map(|file| file.file_stem());
+        stems.any(|stem| stem == *line)
+    });
+    lines.map(str::to_owned).collect()
 }
 
 /// Measures how long one thread takes to draw a dataset at [`HALF`] the size, as finely as its text
@@ -82,4 +90,16 @@ pub fn reference() -> Result<()> {
     }
     let page = words("test --package assist --test it reference::");
     run(cargo(&page).env("UPDATE_EXPECT", "1"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_example_that_is_gone_leaves_the_list() {
+        let files = ["examples/coils.rat", "examples/tide.rat"].map(PathBuf::from);
+        let kept = keep_names("coils\ngone\ntid\n", &files);
+        assert_eq!(kept, BTreeSet::from([String::from("coils")]));
+    }
 }

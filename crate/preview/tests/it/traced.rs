@@ -57,6 +57,21 @@ fn examples_are_as_traced() {
     assert!(failed.is_empty(), "{failed:?}");
 }
 
+/// The quick draft of a body with limbs that are thinner than the cells of its mesh: they are not
+/// lost.
+#[test]
+fn quick_drafts_keep_thin_limbs() {
+    let Some(card) = open() else { return };
+    let [(name, text)] = examples!["sea-urchin"];
+    let scene = compile(name, text);
+    let (mut tracer, packed) = card.prepare(&scene, Detail::Quick, Stage::Compute);
+    assert_eq!(packed.meshed, [0]);
+    let pixels = card.read(&mut tracer, &scene.camera, [256, 256]);
+    let found = compare(&scene, [256, 256], &pixels);
+    println!("{name}: {found:?}");
+    assert!(found.coverage <= 0.03, "{found:?}");
+}
+
 #[test]
 fn both_stages_draw_the_same() {
     let Some(card) = open() else { return };

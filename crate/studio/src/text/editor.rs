@@ -203,11 +203,6 @@ impl Editor {
                         .signature
                         .show(ui, session, place, self.cursor.line, caret);
                 }
-                if let Some((caret, place)) = caret {
-                    let right = ui.max_rect().right() - 10.0;
-                    let row = Rect::from_x_y_ranges(caret.left()..=right, caret.y_range());
-                    self.cards.tints.show(ui, session, place, row, wishes);
-                }
                 caret
             })
             .inner;
@@ -372,7 +367,12 @@ impl Editor {
         let rect = galley.pos_from_cursor(caret).translate(origin.to_vec2());
         let byte = to_bytes(&self.buffer.text, caret.index.0);
         let file = self.file;
-        Some((rect, Place { file, byte }))
+        let place = Place { file, byte };
+        let rows = galley.rows.iter();
+        let rows = rows.map(|row| row.rect().translate(origin.to_vec2()));
+        let room = (rows, ui.max_rect().right() - 10.0);
+        (self.cards.tints).show(ui, session, (rect, place), room, wishes);
+        Some((rect, place))
     }
 
     /// Acts on F8, Tab, Shift+Tab, Enter, `}` and Ctrl+/ while the text has the focus. Returns

@@ -229,10 +229,10 @@ fn caption(ui: &Ui, rect: Rect, text: &str, colour: Color32) {
 
 /// Shows a button with an icon above its word.
 fn tool_button(ui: &mut Ui, sign: Icon, text: &str, chosen: bool) -> Response {
-    let width = if ui.ctx().content_rect().width() < 560.0 {
-        46.0
-    } else {
-        56.0
+    let width = match ui.ctx().content_rect().width() {
+        ..360.0 => 38.0,
+        ..560.0 => 46.0,
+        _ => 56.0,
     };
     let (rect, response) = ui.allocate_exact_size(vec2(width, HEIGHT - 8.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, text));

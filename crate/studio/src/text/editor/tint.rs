@@ -1,5 +1,5 @@
-//! Colours of the command at the caret, shown behind its line: a click on one opens the colour
-//! picker, which writes into the text.
+//! Colours of the command at the caret, shown behind its line, or where a row beside it has room: a
+//! click on one opens the colour picker, which writes into the text.
 
 use super::place::Place;
 use crate::places;
@@ -29,13 +29,14 @@ pub struct Tints {
 }
 
 impl Tints {
-    /// Shows the colours at the right end of the caret's line, whose rows span `row`.
+    /// Shows the colours at the end `right` of the row nearest to the caret's that has room for
+    /// them, of the `rows` of the text.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        place: Place,
-        row: Rect,
+        (caret, place): (Rect, Place),
+        (rows, right): (impl Iterator<Item = Rect>, f32),
         wishes: &mut Wishes,
     ) {
         if !Popup::is_any_open(ui.ctx()) {
@@ -49,8 +50,8 @@ impl Tints {
             self.tints.truncate(MOST);
         }
         let mut dragging = false;
-        let count = self.tints.len() as f32;
-        let mut left = row.right() - count * (SIDE + GAP);
+        let mut left = right - self.tints.len() as f32 * (SIDE + GAP);
+        let row = roomy(rows, caret, left - GAP);
         for (index, tint) in self.tints.iter().enumerate() {
             let rect = Rect::from_min_size(
                 egui::pos2(left, row.center().y - 0.5 * SIDE),
@@ -82,5 +83,54 @@ impl Tints {
             }
         }
         wishes.hold_while(dragging, &mut self.dragging);
+    }
+}
+
+/// Returns the row nearest to the caret's whose text ends left of a place: the lower one of two.
+/// Below the last row there is one without text. A folded row has no height, and no room.
+fn roomy(rows: impl Iterator<Item = Rect>, caret: Rect, left: f32) -> Rect {
+    let mut found = None;
+    let mut end = caret;
+    for row in rows {
+        let distance = (row.center().y - caret.center().y).abs();
+        let has_room = row.right() <= left && row.height() > 2.0;
+        if has_room && found.is_none_or(|(_, nearest)| distance <= nearest) {
+            found = Some((row, distance));
+        }
+        end = row;
+    }
+    let below = end.translate(vec2(0.0, caret.height()));
+    found.map_or(below, |(row, _)| row)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    fn row(number: usize, right: f32, height: f32) -> Rect {
+        let top = 20.0 * number as f32;
+        Rect::from_min_max(pos2(40.0, top), pos2(right, top + height))
+    }
+
+    #[test]
+    fn colours_lie_over_no_text() {
+        // A line of three rows between two others; the one above is folded.
+        let rows = [
+            row(0, 90.0, 20.0),
+            row(1, 60.0, 0.5),
+            row(2, 300.0, 20.0),
+            row(3, 295.0, 20.0),
+            row(4, 120.0, 20.0),
+            row(5, 200.0, 20.0),
+        ];
+        for (caret, own) in [(0, 0), (2, 4), (3, 4), (4, 4), (5, 5)] {
+            let found = roomy(rows.into_iter(), row(caret, 41.0, 20.0), 280.0);
+            assert_eq!(found, rows[own], "{caret}");
+        }
+        let caret = row(2, 41.0, 20.0);
+        assert_eq!(roomy(rows.into_iter(), caret, 310.0), rows[2]);
+        let full = rows[2..4].iter().copied();
+        assert_eq!(roomy(full, caret, 280.0).top(), rows[4].top());
     }
 }
