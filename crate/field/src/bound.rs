@@ -48,7 +48,7 @@ pub struct Bound {
     ripple: Option<Box<Ripple>>,
     /// Largest slope of the profile over its size, per unit of length.
     variation: f64,
-    /// See [`Bound::log_bend`].
+    /// Value of [`Bound::log_bend`].
     log_bend: f64,
 }
 

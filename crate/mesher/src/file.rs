@@ -422,7 +422,7 @@ struct Fine<'a> {
     threads: usize,
 }
 
-/// What is left of an attempt that fails.
+/// Rest of an attempt that fails.
 #[derive(Default)]
 struct Left {
     /// Places where the mesh cuts itself, or is too far from the surface.

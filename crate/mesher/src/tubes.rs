@@ -27,9 +27,9 @@ const STEPS: usize = 24;
 const STRIDE: f64 = 0.3;
 /// Shares of a step that are tried, the largest first that turns no triangle over.
 const SHARES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
-/// Largest distance by a first-order estimate, in tolerances, at which a vertex stays …
+/// Largest distance by a first-order estimate, in tolerances, at which a vertex stays.
 const LANDED: f64 = 1e-3;
-/// … and at which it counts as on the surface.
+/// Largest one at which a vertex counts as on the surface.
 const ON: f64 = 0.1;
 /// Shortest edges of the united tubes, as a share of the radius there.
 const SHORT: f64 = 0.35;
@@ -44,15 +44,18 @@ const HALVINGS: usize = 12;
 /// Edges are not halved below so many tolerances.
 const LEAST: f64 = 0.5;
 
-/// Whether cages are those of limbs and balls alone.
+/// Returns whether cages are those of limbs and balls alone.
 pub fn are_limbs(cages: &[Cage]) -> bool {
-    let is_ball = |cage: &Cage| {
-        let mut origins = cage.spokes.iter().map(|spoke| spoke.origin);
-        let first = origins.next();
-        origins.all(|origin| Some(origin) == first)
-    };
-    let is_limb = |cage: &Cage| !cage.lines.is_empty() || is_ball(cage);
-    !cages.is_empty() && cages.iter().all(is_limb)
+    !cages.is_empty()
+        && cages
+            .iter()
+            .all(|cage| !cage.lines.is_empty() || is_ball(cage))
+}
+
+/// Returns whether all rays of a cage start from one point.
+fn is_ball(cage: &Cage) -> bool {
+    let mut spokes = cage.spokes.windows(2);
+    spokes.all(|pair| pair[0].origin == pair[1].origin)
 }
 
 /// Estimates the number of cubic cells that limbs would need.
@@ -92,7 +95,7 @@ pub fn unite_tubes(
     let united = union(&shells, progress)?;
     progress.at(0.3)?;
     let colors = united.colors.as_deref().unwrap_or_default();
-    let mesh = HalfEdgeMesh::from_triangles(&united).map_err(failed)?;
+    let mesh = HalfEdgeMesh::from_triangles(&united).map_err(fail)?;
     let mut skin = Skin {
         space,
         sizes,
@@ -116,7 +119,7 @@ pub fn unite_tubes(
     }
     skin.climb(fresh, progress)?;
     let vertices = skin.mesh.vertices().map(|v| skin.vertices[v.index()]);
-    let triangles = skin.mesh.to_triangles().map_err(failed)?.triangles;
+    let triangles = skin.mesh.to_triangles().map_err(fail)?.triangles;
     Ok(Raw {
         is_lid: vec![false; triangles.len()],
         vertices: vertices.collect(),
@@ -125,7 +128,7 @@ pub fn unite_tubes(
     })
 }
 
-fn failed(error: impl core::fmt::Display) -> MeshError {
+fn fail(error: impl core::fmt::Display) -> MeshError {
     MeshError::Failed(error.to_string())
 }
 
@@ -191,9 +194,8 @@ impl Skin<'_, '_> {
                 self.step(*v)?;
             }
             self.collapse(SHORT * 0.8)?;
-            let is_new = |v: &VertexId| self.vertices[v.index()].value.is_nan();
-            open.retain(|v| self.mesh.has_vertex(*v) && !is_new(v));
-            open.extend(self.mesh.vertices().filter(is_new));
+            open.retain(|v| self.mesh.has_vertex(*v) && !self.is_new(*v));
+            open.extend(self.mesh.vertices().filter(|v| self.is_new(*v)));
             open.sort_unstable();
         }
         Ok(())
@@ -234,25 +236,40 @@ impl Skin<'_, '_> {
             .into_iter()
             .find(|place| self.stays_turned(&[v], *place) && self.is_free(&[v], v, *place));
         if let Some(place) = place {
-            self.mesh.set_position(v, place).map_err(failed)?;
+            self.mesh.set_position(v, place).map_err(fail)?;
             self.vertices[v.index()] = start(place);
             self.guard_again(v, &[]);
         }
         Ok(())
     }
 
+    /// Returns whether the function is not known at a vertex.
+    fn is_new(&self, v: VertexId) -> bool {
+        self.vertices[v.index()].value.is_nan()
+    }
+
+    /// Returns whether an edge is shorter than a share of the radius.
+    fn is_short(&self, h: HalfEdgeId, share: f64) -> bool {
+        let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
+        let radius = self.radii[a.index()].min(self.radii[b.index()]);
+        self.length(h) < share * radius
+    }
+
+    /// Returns a vertex as a corner of triangles.
+    fn corner(&self, v: VertexId) -> Corner {
+        Corner {
+            number: v.index() as u32,
+            position: self.mesh.position(v),
+        }
+    }
+
     /// Collapses edges shorter than a share of the radius.
     fn collapse(&mut self, share: f64) -> Result<(), MeshError> {
-        let is_short = |skin: &Self, h: HalfEdgeId| {
-            let [a, b] = [skin.mesh.origin(h), skin.mesh.target(h)];
-            let radius = skin.radii[a.index()].min(skin.radii[b.index()]);
-            skin.length(h) < share * radius
-        };
-        let edges = self.mesh.edges().filter(|h| is_short(self, *h));
+        let edges = self.mesh.edges().filter(|h| self.is_short(*h, share));
         let mut edges: Vec<(f64, HalfEdgeId)> = edges.map(|h| (self.length(h), h)).collect();
         edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, h) in edges {
-            if !self.mesh.has_half_edge(h) || !is_short(self, h) {
+            if !self.mesh.has_half_edge(h) || !self.is_short(h, share) {
                 continue;
             }
             let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
@@ -276,7 +293,7 @@ impl Skin<'_, '_> {
         let gone: Vec<FaceId> = self.mesh.vertex_faces(a).collect();
         self.mesh
             .collapse_edge(h, self.mesh.position(kept))
-            .map_err(failed)?;
+            .map_err(fail)?;
         self.vertices[b.index()] = self.vertices[kept.index()];
         self.radii[b.index()] = self.radii[kept.index()];
         self.guard_again(b, &gone);
@@ -293,7 +310,7 @@ impl Skin<'_, '_> {
         }
     }
 
-    /// Whether the mesh does not cut itself if some vertices become one at a place.
+    /// Returns whether the mesh does not cut itself if some vertices become one at a place.
     fn is_free(&self, own: &[VertexId], kept: VertexId, place: DVec3) -> bool {
         let mesh = &self.mesh;
         let mut gone: Vec<FaceId> = own.iter().flat_map(|v| mesh.vertex_faces(*v)).collect();
@@ -316,12 +333,8 @@ impl Skin<'_, '_> {
         self.guard.is_free(mesh, &new, &gone)
     }
 
-    /// Whether the triangles beside an edge stay apart from others if a vertex is put on it.
+    /// Returns whether the triangles beside an edge stay apart from others if it gets a vertex.
     fn is_half_free(&self, h: HalfEdgeId, place: DVec3) -> bool {
-        let corner = |v: VertexId| Corner {
-            number: v.index() as u32,
-            position: self.mesh.position(v),
-        };
         let middle = Corner {
             number: u32::MAX,
             position: place,
@@ -329,14 +342,15 @@ impl Skin<'_, '_> {
         let sides = [h, self.mesh.twin(h)];
         let new = sides.map(|h| {
             let opposite = self.mesh.origin(self.mesh.previous(h));
-            let [a, b, c] = [self.mesh.origin(h), self.mesh.target(h), opposite].map(corner);
+            let [a, b, c] =
+                [self.mesh.origin(h), self.mesh.target(h), opposite].map(|v| self.corner(v));
             [[a, middle, c], [middle, b, c]]
         });
         let faces: Vec<FaceId> = sides.iter().filter_map(|h| self.mesh.face(*h)).collect();
         self.guard.is_free(&self.mesh, new.as_flattened(), &faces)
     }
 
-    /// Whether no triangle around some vertices turns over if they move to a place.
+    /// Returns whether no triangle around some vertices turns over if they move to a place.
     fn stays_turned(&self, own: &[VertexId], place: DVec3) -> bool {
         let mesh = &self.mesh;
         own.iter().all(|v| {
@@ -346,7 +360,6 @@ impl Skin<'_, '_> {
                 if corners.iter().filter(|corner| own.contains(corner)).count() > 1 {
                     return true;
                 }
-                let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
                 let old = area(corners.map(|c| mesh.position(c)));
                 let new = corners.map(|c| {
                     if own.contains(&c) {
@@ -376,7 +389,7 @@ impl Skin<'_, '_> {
         Ok(())
     }
 
-    /// Whether a triangle looks along the surface's normals at its corners.
+    /// Returns whether a triangle looks along the surface's normals at its corners.
     fn looks_out(&self, f: FaceId) -> bool {
         let mut corners = self.mesh.face_vertices(f);
         let corners: [Option<VertexId>; 3] = core::array::from_fn(|_| corners.next());
@@ -395,11 +408,7 @@ impl Skin<'_, '_> {
             let [c, d] = [*h, self.mesh.twin(*h)].map(|h| self.mesh.origin(self.mesh.previous(h)));
             let numbers = [a, b, c, d];
             let [a, b, c, d] = numbers.map(|v| &self.vertices[v.index()]);
-            let corner = |i: usize| Corner {
-                number: numbers[i].index() as u32,
-                position: self.mesh.position(numbers[i]),
-            };
-            let new = [[2, 0, 3].map(corner), [3, 1, 2].map(corner)];
+            let new = [[2, 0, 3], [3, 1, 2]].map(|t| t.map(|i| self.corner(numbers[i])));
             let faces = [*h, self.mesh.twin(*h)].map(|h| self.mesh.face(h));
             let faces: Vec<FaceId> = faces.into_iter().flatten().collect();
             if faces_out([c, a, d])
@@ -443,6 +452,17 @@ impl Skin<'_, '_> {
         Ok(())
     }
 
+    /// Returns whether an edge is to be halved: one beside a triangle that is far from the surface,
+    /// or from which the surface bends too far.
+    fn is_long(&self, h: HalfEdgeId, is_marked: bool) -> bool {
+        let tolerance = self.sizes.tolerance;
+        let ends = [self.mesh.origin(h), self.mesh.target(h)];
+        let [a, b] = ends.map(|v| &self.vertices[v.index()]);
+        let are_on = [a, b].iter().all(|v| v.distance() <= ON * tolerance);
+        let is_bent = is_marked || sag(a, b) > SAG * tolerance;
+        are_on && is_bent && self.length(h) > LEAST * tolerance
+    }
+
     /// Halves edges whose surface bends too far from them, and returns the new vertices.
     fn halve(&mut self, progress: &mut Progress<'_>) -> Result<Vec<VertexId>, MeshError> {
         let tolerance = self.sizes.tolerance;
@@ -473,15 +493,10 @@ impl Skin<'_, '_> {
                 }
             }
         }
-        let is_long = |skin: &Self, h: HalfEdgeId| {
-            let [a, b] = [skin.mesh.origin(h), skin.mesh.target(h)];
-            let [a, b] = [a, b].map(|v| &skin.vertices[v.index()]);
-            let are_on = [a, b].iter().all(|v| v.distance() <= ON * tolerance);
-            are_on
-                && skin.length(h) > LEAST * tolerance
-                && (sag(a, b) > SAG * tolerance || marked[h.index()])
-        };
-        let edges = self.mesh.edges().filter(|h| is_long(self, *h));
+        let edges = self
+            .mesh
+            .edges()
+            .filter(|h| self.is_long(*h, marked[h.index()]));
         let mut edges: Vec<(f64, HalfEdgeId)> = edges.map(|h| (self.length(h), h)).collect();
         edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut fresh = Vec::new();
@@ -509,6 +524,11 @@ fn faces_out([a, b, c]: [&Vertex; 3]) -> bool {
     let area = (b.position - a.position).cross(c.position - a.position);
     let mean = a.normal() + b.normal() + c.normal();
     area.dot(mean) > OUTWARD * area.length() * mean.length()
+}
+
+/// Returns twice the area of a triangle, along its normal.
+fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
 }
 
 /// Splits the cells of places as long as fewer terms matter in their children.

@@ -112,17 +112,20 @@ mod tests {
             let bend = bends.fold(0.0, f64::max);
             let (start, direction) = (random.vector(1.0), random.direction());
             let length = random.range(0.05, 3.0) / bend.sqrt();
-            let value = |x: f64| {
-                let point = (start + direction * (x * length)).to_array();
-                bones.iter().map(|p| p.value(point)).sum::<f64>()
-            };
-            let ends = [0.0, 1.0].map(|x| log_above(value(x)));
+            let values: Vec<f64> = (0..=40)
+                .map(|i| {
+                    let share = f64::from(i) / 40.0;
+                    let point = (start + direction * (share * length)).to_array();
+                    bones.iter().map(|p| p.value(point)).sum()
+                })
+                .collect();
+            let ends = [0, 40].map(|i| log_above(values[i]));
             if ends.iter().any(|end| *end < -40.0) {
                 continue;
             }
             let most = most_between(ends, bend * length * length);
-            for i in 0..=40 {
-                let own = libm::log(value(f64::from(i) / 40.0));
+            for value in values {
+                let own = libm::log(value);
                 assert!(own <= most, "{case}: {own} > {most}");
                 least = least.min(most - own);
             }

@@ -56,8 +56,8 @@
 //!   spans), and `walk` traverses the slabs with single packets, adds up their spans' cubics
 //!   (`spans`) and takes their roots (`roots`); `root_isolation` decides the doubtful ones. Nothing
 //!   is cut off: primitives so far away that they are smooth across the beam are interpolated once
-//!   for all its rays (`shared`), and distant primitives are bounded in groups (`clusters`); sums of
-//!   Gaussians are bounded by two values on each ray (`convex`), however many they are; rays
+//!   for all its rays (`shared`), and distant primitives are bounded in groups (`clusters`). Sums
+//!   of Gaussians are bounded by two values on each ray (`convex`), however many they are; rays
 //!   that start deep inside of many poles are followed from where they leave a ball that is wholly
 //!   inside (`inner_ball`). `refine_hits` samples the surface at the hits. This way takes packets
 //!   near anything but blobs, or with a ray that starts inside, and all packets of a square whose

@@ -846,8 +846,8 @@ impl<'a> Slabs<'a> {
         self.each_local(index, all, |id| self.each_of(id, &mut f));
     }
 
-    /// Calls `f` with each pending primitive of a slab; returns bounds on the rounding of their sum:
-    /// a part of it, and what is added to that.
+    /// Calls `f` with each pending primitive of a slab; returns bounds on the rounding of their
+    /// sum: a part of it, and what is added to that.
     pub fn list_pending(&self, index: u32, mut f: impl FnMut(u32)) -> [f64; 2] {
         let slab = self.slab(index);
         let misplaced = self.geometry(slab.beam, slab.from, slab.to).misplaced;

@@ -216,7 +216,7 @@ fn cubed() {
     bounds_hold(Kernel::Cubed);
 }
 
-/// With a profile the field is nowhere above that without one times the factor between two points,
+/// The field with a profile is nowhere above that without one times the factor between two points,
 /// and as large on restricted triangles.
 #[test]
 fn a_profile_is_nowhere_above_its_bound_between_two_points() {

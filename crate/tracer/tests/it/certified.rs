@@ -35,8 +35,8 @@ macro_rules! hold {
 }
 
 hold! {
-    pictures: PICTURES, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds, patches,
-        starts_beside_a_cloud, earlier_faults, earlier_faults_that_are_hard_to_judge;
+    pictures: PICTURES, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds,
+        patches, starts_beside_a_cloud, earlier_faults, earlier_faults_that_are_hard_to_judge;
     exact: EXACT, blobs, points_and_lines, faces, profiles, mixtures_and_clusters, clouds, patches;
 }
 
