@@ -470,7 +470,9 @@ fn coarser(places: &[Place], is_closed: bool) -> Vec<Place> {
 fn tube(places: &[Place], is_closed: bool, ends: [End; 2]) -> Option<Cage> {
     let places = coarser(places, is_closed);
     let n = places.len();
-    if n < if is_closed { 3 } else { 2 } {
+    // Two lines with the same ends are one limb.
+    let is_closed = is_closed && n > 2;
+    if n < 2 {
         return None;
     }
     let fair = places.iter().map(|p| p.1).fold(0.0, f64::max);

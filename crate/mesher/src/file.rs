@@ -96,6 +96,7 @@ pub fn approximate(
     let size = domain.size().max_element();
     let tolerance = tolerance.min(LARGEST * size);
     let most = max_triangles.saturating_mul(2).max(LEAST_CELLS);
+    let mut begun = 0.0;
     if are_limbs(cages) && estimate_cells(cages) > most as f64 {
         let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
         let mut space = Space::new(function, forest, tolerance / size);
@@ -105,11 +106,17 @@ pub fn approximate(
             most,
             threads,
         };
-        let made = mesh_limbs(&mut space, cages, domain, &sizes, progress)?;
-        if let Some(surface) = made.filter(|made| made.mesh.triangles.len() <= max_triangles) {
-            return Ok(surface);
+        begun = 0.5;
+        let progress = &mut progress.part(0.0, begun);
+        if let Some(surface) = mesh_limbs(&mut space, cages, domain, &sizes, progress)? {
+            let count = surface.mesh.triangles.len();
+            return match count <= max_triangles {
+                true => Ok(surface),
+                false => Err(too_many(tolerance, count, max_triangles)),
+            };
         }
     }
+    let progress = &mut progress.part(begun, 1.0);
     let mut grown = None;
     for (start, hiding) in [0.0, 0.1, 0.2].into_iter().zip(HIDING) {
         let forest = Forest::new(domain, FINEST * tolerance, LEVELS);
@@ -191,12 +198,7 @@ pub fn approximate(
         match made {
             Ok((mesh, measured)) => {
                 if mesh.triangles.len() > max_triangles {
-                    return Err(MeshError::TooMany {
-                        limit: max_triangles,
-                        fitting: Some(
-                            tolerance * 1.2 * mesh.triangles.len() as f64 / max_triangles as f64,
-                        ),
-                    });
+                    return Err(too_many(tolerance, mesh.triangles.len(), max_triangles));
                 }
                 let forest = &space.forest;
                 return Ok(SurfaceMesh {
@@ -233,7 +235,7 @@ fn mesh_limbs(
         Err(MeshError::Failed(_)) => return Ok(None),
         raw => raw?,
     };
-    if !find_crossings(&raw)?.is_empty() {
+    if raw.triangles.is_empty() || !find_crossings(&raw)?.is_empty() {
         return Ok(None);
     }
     let mut progress = progress.part(0.5, 1.0).in_phase(Phase::Triangles);
@@ -250,11 +252,15 @@ fn mesh_limbs(
         Err(Left { mesh: None, .. }) => return Ok(None),
         Err(Left {
             mesh: Some(mesh), ..
-        }) => fine.measure_farther(mesh, &mut progress)?,
+        }) => fine.measure_farther(mesh, &mut progress.part(0.8, 1.0))?,
     };
+    let error = measured.largest[0].max(measured.largest[1]);
+    if MENDED * undecided.len() > mesh.triangles.len() || !error.is_finite() {
+        return Ok(None);
+    }
     let forest = &fine.space.forest;
     Ok(Some(SurfaceMesh {
-        error: measured.largest[0].max(measured.largest[1]),
+        error,
         mesh,
         unproved: 0,
         measured,
@@ -373,6 +379,14 @@ fn march_all(
     )
 }
 
+/// Why a mesh has more triangles than the limit, with the tolerance at which it would not.
+fn too_many(tolerance: f64, count: usize, limit: usize) -> MeshError {
+    MeshError::TooMany {
+        limit,
+        fitting: Some(tolerance * 1.2 * count as f64 / limit as f64),
+    }
+}
+
 /// Why no mesh of a measured error was made.
 fn too_rough() -> MeshError {
     MeshError::Failed("the surface is too rough for a mesh whose error is only measured".into())
@@ -422,7 +436,7 @@ struct Fine<'a> {
     threads: usize,
 }
 
-/// Rest of an attempt that fails.
+/// Rest of a failed attempt.
 #[derive(Default)]
 struct Left {
     /// Places where the mesh cuts itself, or is too far from the surface.
@@ -583,7 +597,7 @@ impl Fine<'_> {
     }
 
     /// Measures a mesh some places of which may not be within the tolerance, and returns those that
-    /// are not: places are no farther from the surface than from the nearest vertex on it.
+    /// are not: a place is no farther from the surface than from the nearest vertex on it.
     fn measure_farther(
         &self,
         mesh: TriangleMesh,
@@ -591,14 +605,17 @@ impl Fine<'_> {
     ) -> Result<(TriangleMesh, Measured, Vec<DVec3>), MeshError> {
         let places = self.places(progress)?;
         let mut survey = self.survey(mesh, &places, progress)?;
-        let points: Vec<Aabb> = places.iter().map(|p| Aabb::of_points([*p])).collect();
+        let near = FOOT * self.tolerance;
+        let on = self.seen.vertices.iter().filter(|v| v.distance() <= near);
+        let on: Vec<DVec3> = on.map(|v| v.position).collect();
+        let points: Vec<Aabb> = on.iter().map(|p| Aabb::of_points([*p])).collect();
         let points = Bvh::new(&points);
         for (place, distance) in survey.there.iter_mut().flatten() {
             if *distance > self.tolerance {
                 let nearest = points.nearest(*place, f64::INFINITY, |i| {
-                    places[i as usize].distance_squared(*place)
+                    on[i as usize].distance_squared(*place)
                 });
-                *distance = distance.min(root_of(nearest));
+                *distance = distance.min(root_of(nearest) + near);
             }
         }
         let far = survey.far(&places, self.tolerance).into_iter();

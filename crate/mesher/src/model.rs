@@ -13,6 +13,7 @@ use crate::refine::EXCESS;
 use crate::solids::{Solid, tessellate};
 use crate::surface::{MOST_CROSSINGS, SurfaceMesh as Mesh, box_of, extent, polygonize};
 use crate::unite;
+use field::Skeleton;
 use glam::{DMat3, DVec3};
 use mesh::{Aabb, Topology, TriangleMesh, self_intersections};
 use scene::{Element, Form, Scene, Shape, Surface};
@@ -471,19 +472,33 @@ fn only_adds(scene: &Scene, surface: &Surface) -> bool {
         })
 }
 
-/// Whether all bones of a surface are points and lines, which [`Cage`]s surround.
+/// Whether all elements of a surface are points and lines of their own thickness, which [`Cage`]s
+/// surround.
 fn are_lines(scene: &Scene, surface: &Surface) -> bool {
     surface.element().iter().all(|element| {
-        let bone = scene.elements[*element as usize].shape.bone();
-        bone.is_none_or(|bone| {
-            bone.normals.is_none()
-                && !matches!(
-                    bone.skeleton,
-                    field::Skeleton::Triangle { .. }
-                        | field::Skeleton::Polygon { .. }
-                        | field::Skeleton::Plane { .. }
-                )
-        })
+        let element = &scene.elements[*element as usize];
+        let flesh = element.flesh.and_then(|i| scene.flesh.get(i as usize));
+        match &element.shape {
+            Shape::Bone(bone) => {
+                let is_even = flesh.is_some_and(|flesh| flesh.end_radius.is_none());
+                let is_line = match &bone.skeleton {
+                    Skeleton::Segment { base, apex } => base != apex,
+                    Skeleton::Triangle { .. }
+                    | Skeleton::Polygon { .. }
+                    | Skeleton::Plane { .. } => false,
+                    _ => true,
+                };
+                is_even && is_line && bone.normals.is_none() && scene.radius(element) > 0.0
+            }
+            Shape::Function(function) => match &function.form {
+                Form::Skeleton(curves) => {
+                    let mut pieces = curves.pieces();
+                    pieces.all(|[(a, from), (b, to)]| a != b && from > 0.0 && to > 0.0)
+                }
+                _ => false,
+            },
+            _ => false,
+        }
     })
 }
 
@@ -577,13 +592,14 @@ fn soft_part(
         ));
     }
     if let (true, Some(first)) = (is_measured, undecided.first()) {
+        let places = match undecided.len() {
+            1 => "one place is".into(),
+            count => format!("{count} places are"),
+        };
         model.notes.push(format!(
-            "{name}: {} places are farther from the surface than the tolerance, up to {error:.2e}, \
-             the first near {:.4} {:.4} {:.4}: limbs may touch there; a smaller tolerance may help",
-            undecided.len(),
-            first.x,
-            first.y,
-            first.z,
+            "{name}: {places} farther from the surface than the tolerance, up to {error:.2e}, the \
+             first near {:.4} {:.4} {:.4}: limbs may touch there; a smaller tolerance may help",
+            first.x, first.y, first.z,
         ));
     } else if let Some(first) = undecided.first() {
         model.notes.push(format!(

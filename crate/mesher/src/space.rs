@@ -185,7 +185,7 @@ impl<'a> Space<'a> {
         self.evaluations.load(Ordering::Relaxed)
     }
 
-    /// Whether a part has so many terms that smaller ones are worth their while.
+    /// Returns whether a part has so many terms that smaller ones are worthwhile.
     pub fn has_many_terms(&self, part: u32) -> bool {
         self.part(part)
             .is_none_or(|part| part.terms.len() > FEW_TERMS)

@@ -15,11 +15,11 @@ use crate::march::Raw;
 use crate::options::{MeshError, Progress};
 use crate::space::Space;
 use crate::unite::union;
-use field::THRESHOLD;
+use field::{Ball, THRESHOLD};
 use glam::DVec3;
 use mesh::{FaceId, HalfEdgeId, HalfEdgeMesh, TriangleMesh, VertexId, self_intersections};
 
-/// Cubic cells along a limb for each radius of its length, those beside the surface among them.
+/// Cubic cells that a limb needs for each radius of its length, with those beside the surface.
 const CELLS: f64 = 120.0;
 /// Most steps along gradients that bring a vertex to the surface.
 const STEPS: usize = 24;
@@ -29,7 +29,7 @@ const STRIDE: f64 = 0.3;
 const SHARES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 /// Largest distance by a first-order estimate, in tolerances, at which a vertex stays.
 const LANDED: f64 = 1e-3;
-/// Largest one at which a vertex counts as on the surface.
+/// Largest such distance at which a vertex counts as on the surface.
 const ON: f64 = 0.1;
 /// Shortest edges of the united tubes, as a share of the radius there.
 const SHORT: f64 = 0.35;
@@ -37,6 +37,10 @@ const SHORT: f64 = 0.35;
 const TURNED: f64 = 0.3;
 /// Least cosine of the angle between a triangle and the surface at its corners.
 const OUTWARD: f64 = 0.1;
+/// Smallest cells with terms of their own, in radii of the flesh.
+const WIDTHS: f64 = 0.5;
+/// Edits between two questions to the caller.
+const BETWEEN: usize = 2000;
 /// Most rounds of repairs.
 const REPAIRS: usize = 6;
 /// Most times that edges are halved.
@@ -63,10 +67,9 @@ pub fn estimate_cells(cages: &[Cage]) -> f64 {
     let lines = cages.iter().flat_map(|cage| &cage.lines);
     let lengths = lines.filter(|line| line.is_own).map(|line| {
         let [a, b] = line.ends;
-        let [one, other] = line.radii;
-        a.distance(b) / (0.5 * (one + other))
+        a.distance(b) / (0.5 * (line.radii[0] + line.radii[1]))
     });
-    CELLS * lengths.sum::<f64>()
+    CELLS * lengths.filter(|length| length.is_finite()).sum::<f64>()
 }
 
 /// Returns the fine mesh of limbs and balls: closed, and it does not cut itself.
@@ -105,13 +108,14 @@ pub fn unite_tubes(
         radii: colors.iter().map(|color| f64::from(color[0])).collect(),
     };
     for share in [0.03 * SHORT, 0.3 * SHORT, SHORT] {
-        skin.collapse(share)?;
+        let all = skin.mesh.edges().collect();
+        skin.collapse(all, share, progress)?;
     }
     let mut fresh: Vec<VertexId> = skin.mesh.vertices().collect();
     for round in 0..HALVINGS {
         progress.at(0.3 + 0.7 * round as f32 / HALVINGS as f32)?;
         skin.climb(fresh, progress)?;
-        skin.repair()?;
+        skin.repair(progress)?;
         fresh = skin.halve(progress)?;
         if fresh.is_empty() {
             break;
@@ -174,6 +178,14 @@ impl Skin<'_, '_> {
         self.mesh.position(a).distance(self.mesh.position(b))
     }
 
+    /// Sorts edges, the shortest first.
+    fn sort_by_length(&self, edges: &mut [HalfEdgeId]) {
+        edges.sort_by(|a, b| {
+            let lengths = [*a, *b].map(|h| self.length(h));
+            lengths[0].total_cmp(&lengths[1]).then(a.cmp(b))
+        });
+    }
+
     /// Brings vertices to the surface along gradients.
     fn climb(
         &mut self,
@@ -187,13 +199,22 @@ impl Skin<'_, '_> {
                 let is_there = self.vertices[v.index()].distance() <= near;
                 !is_there
             });
-            if open.is_empty() || step == STEPS {
+            if open.is_empty() {
+                break;
+            }
+            if step == STEPS {
+                self.drop_stuck(&open)?;
                 break;
             }
             for v in &open {
                 self.step(*v)?;
             }
-            self.collapse(SHORT * 0.8)?;
+            let around = open.iter();
+            let around = around.flat_map(|v| self.mesh.vertex_half_edges(*v));
+            let mut around: Vec<HalfEdgeId> = around.collect();
+            around.sort_unstable();
+            around.dedup();
+            self.collapse(around, SHORT * 0.8, progress)?;
             open.retain(|v| self.mesh.has_vertex(*v) && !self.is_new(*v));
             open.extend(self.mesh.vertices().filter(|v| self.is_new(*v)));
             open.sort_unstable();
@@ -203,11 +224,17 @@ impl Skin<'_, '_> {
 
     /// Evaluates the function at vertices.
     fn evaluate(&mut self, own: &[VertexId], progress: &mut Progress<'_>) -> Result<(), MeshError> {
-        let positions: Vec<DVec3> = own.iter().map(|v| self.mesh.position(*v)).collect();
-        narrow(self.space, &positions, self.sizes, progress)?;
-        let forest = &self.space.forest;
-        let places = positions.into_iter();
-        let places = places.map(|p| (forest.cells[forest.leaf_at(p) as usize].part, p));
+        let places = own.iter();
+        let places = places.map(|v| (self.mesh.position(*v), self.radii[v.index()]));
+        let places: Vec<(DVec3, f64)> = places.collect();
+        narrow(self.space, &places, self.sizes, progress)?;
+        let places = places.into_iter().map(|(center, _)| {
+            let ball = Ball {
+                center,
+                radius: 0.0,
+            };
+            (self.space.part_for(ball), center)
+        });
         let places: Vec<(u32, DVec3)> = places.collect();
         let Sizes {
             tolerance, threads, ..
@@ -263,12 +290,19 @@ impl Skin<'_, '_> {
         }
     }
 
-    /// Collapses edges shorter than a share of the radius.
-    fn collapse(&mut self, share: f64) -> Result<(), MeshError> {
-        let edges = self.mesh.edges().filter(|h| self.is_short(*h, share));
-        let mut edges: Vec<(f64, HalfEdgeId)> = edges.map(|h| (self.length(h), h)).collect();
-        edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for (_, h) in edges {
+    /// Collapses those of some edges that are shorter than a share of the radius.
+    fn collapse(
+        &mut self,
+        mut edges: Vec<HalfEdgeId>,
+        share: f64,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), MeshError> {
+        edges.retain(|h| self.is_short(*h, share));
+        self.sort_by_length(&mut edges);
+        for (i, h) in edges.into_iter().enumerate() {
+            if i % BETWEEN == 0 {
+                progress.again()?;
+            }
             if !self.mesh.has_half_edge(h) || !self.is_short(h, share) {
                 continue;
             }
@@ -375,14 +409,17 @@ impl Skin<'_, '_> {
     }
 
     /// Flips or collapses edges of triangles that look away from the surface.
-    fn repair(&mut self) -> Result<(), MeshError> {
+    fn repair(&mut self, progress: &mut Progress<'_>) -> Result<(), MeshError> {
         for _ in 0..REPAIRS {
             let faces: Vec<FaceId> = self.mesh.faces().collect();
             let bad: Vec<FaceId> = faces.into_iter().filter(|f| !self.looks_out(*f)).collect();
             if bad.is_empty() {
                 break;
             }
-            for f in bad {
+            for (i, f) in bad.into_iter().enumerate() {
+                if i % BETWEEN == 0 {
+                    progress.again()?;
+                }
                 self.mend(f)?;
             }
         }
@@ -420,36 +457,64 @@ impl Skin<'_, '_> {
                 return Ok(());
             }
         }
-        for h in &sides {
-            for h in [*h, self.mesh.twin(*h)] {
-                let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
-                let kept = self.vertices[b.index()];
-                let mut is_good = true;
-                for f in self.mesh.vertex_faces(a) {
-                    let corners: Vec<VertexId> = self.mesh.face_vertices(f).collect();
-                    if corners.contains(&b) {
-                        continue;
-                    }
-                    let corners = corners.iter().map(|v| {
-                        if *v == a {
-                            &kept
-                        } else {
-                            &self.vertices[v.index()]
-                        }
-                    });
-                    let corners: Vec<&Vertex> = corners.collect();
-                    is_good &= faces_out([corners[0], corners[1], corners[2]]);
-                }
-                if is_good
-                    && self.mesh.can_collapse(h).is_ok()
-                    && self.is_free(&[a, b], b, kept.position)
-                {
-                    self.merge(h, b)?;
-                    return Ok(());
+        for h in sides {
+            if self.merge_well(h)? || self.merge_well(self.mesh.twin(h))? {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    /// Collapses an edge into its target if all triangles there look out then, and returns whether
+    /// it did.
+    fn merge_well(&mut self, h: HalfEdgeId) -> Result<bool, MeshError> {
+        let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
+        let kept = self.vertices[b.index()];
+        for f in self.mesh.vertex_faces(a) {
+            let mut corners = self.mesh.face_vertices(f);
+            let corners: [VertexId; 3] = core::array::from_fn(|_| corners.next().unwrap_or(a));
+            if corners.contains(&b) {
+                continue;
+            }
+            let corners = corners.each_ref().map(|v| match *v == a {
+                true => &kept,
+                false => &self.vertices[v.index()],
+            });
+            if !faces_out(corners) {
+                return Ok(false);
+            }
+        }
+        let may_merge =
+            self.mesh.can_collapse(h).is_ok() && self.is_free(&[a, b], b, kept.position);
+        if may_merge {
+            self.merge(h, b)?;
+        }
+        Ok(may_merge)
+    }
+
+    /// Takes away vertices that do not reach the surface, where the triangles around them look out
+    /// without them.
+    fn drop_stuck(&mut self, open: &[VertexId]) -> Result<(), MeshError> {
+        for v in open {
+            if !self.mesh.has_vertex(*v) || self.is_on(*v) {
+                continue;
+            }
+            let sides = self.mesh.vertex_half_edges(*v);
+            let sides = sides.filter(|h| self.is_on(self.mesh.target(*h)));
+            let mut sides: Vec<HalfEdgeId> = sides.collect();
+            self.sort_by_length(&mut sides);
+            for h in sides {
+                if self.merge_well(h)? {
+                    break;
                 }
             }
         }
         Ok(())
+    }
+
+    /// Returns whether a vertex is on the surface.
+    fn is_on(&self, v: VertexId) -> bool {
+        self.vertices[v.index()].distance() <= ON * self.sizes.tolerance
     }
 
     /// Returns whether an edge is to be halved: one beside a triangle that is far from the surface,
@@ -457,8 +522,8 @@ impl Skin<'_, '_> {
     fn is_long(&self, h: HalfEdgeId, is_marked: bool) -> bool {
         let tolerance = self.sizes.tolerance;
         let ends = [self.mesh.origin(h), self.mesh.target(h)];
+        let are_on = ends.iter().all(|v| self.is_on(*v));
         let [a, b] = ends.map(|v| &self.vertices[v.index()]);
-        let are_on = [a, b].iter().all(|v| v.distance() <= ON * tolerance);
         let is_bent = is_marked || sag(a, b) > SAG * tolerance;
         are_on && is_bent && self.length(h) > LEAST * tolerance
     }
@@ -493,14 +558,16 @@ impl Skin<'_, '_> {
                 }
             }
         }
-        let edges = self
-            .mesh
-            .edges()
-            .filter(|h| self.is_long(*h, marked[h.index()]));
-        let mut edges: Vec<(f64, HalfEdgeId)> = edges.map(|h| (self.length(h), h)).collect();
-        edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let edges = self.mesh.edges();
+        let mut edges: Vec<HalfEdgeId> = edges
+            .filter(|h| self.is_long(*h, marked[h.index()]))
+            .collect();
+        self.sort_by_length(&mut edges);
         let mut fresh = Vec::new();
-        for (_, h) in edges {
+        for (i, h) in edges.into_iter().rev().enumerate() {
+            if i % BETWEEN == 0 {
+                progress.again()?;
+            }
             let [a, b] = [self.mesh.origin(h), self.mesh.target(h)];
             let place = self.mesh.position(a).midpoint(self.mesh.position(b));
             if self.is_half_free(h, place)
@@ -515,6 +582,10 @@ impl Skin<'_, '_> {
                 self.guard_again(v, &[]);
                 fresh.push(v);
             }
+        }
+        // Two triangles for each cell that there may be.
+        if self.mesh.face_count() > 2 * self.sizes.most {
+            return Err(fail("the limbs take too many triangles"));
         }
         Ok(fresh)
     }
@@ -531,26 +602,33 @@ fn area([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Splits the cells of places as long as fewer terms matter in their children.
+/// Splits the cells of places in the flesh as long as many terms matter in them, down to its
+/// radius there.
 fn narrow(
     space: &mut Space<'_>,
-    places: &[DVec3],
+    places: &[(DVec3, f64)],
     sizes: &Sizes,
     progress: &mut Progress<'_>,
 ) -> Result<(), MeshError> {
     for _ in 0..=space.forest.usual {
-        let leaves = places.iter().map(|place| space.forest.leaf_at(*place));
+        let forest = &space.forest;
+        let leaves = places.iter().filter_map(|(place, radius)| {
+            let leaf = forest.leaf_at(*place);
+            let cell = &forest.cells[leaf as usize];
+            let is_large = forest.size(cell.level).max_element() > WIDTHS * radius;
+            let may_split = cell.child == NONE && cell.level < forest.usual;
+            (may_split && is_large && space.has_many_terms(cell.part)).then_some(leaf)
+        });
         let mut leaves: Vec<u32> = leaves.collect();
         leaves.sort_unstable();
         leaves.dedup();
-        leaves.retain(|leaf| {
-            let cell = &space.forest.cells[*leaf as usize];
-            cell.child == NONE && cell.level < space.forest.usual && space.has_many_terms(cell.part)
-        });
         if leaves.is_empty() {
             return Ok(());
         }
         split_all(space, &leaves, sizes.threads, progress)?;
+        if space.forest.cells.len() > sizes.most {
+            return Err(fail("the limbs take too many cells"));
+        }
     }
     Ok(())
 }
