@@ -9,7 +9,7 @@ use crate::hierarchy;
 use crate::look::{draft_colours, finite, with};
 use crate::octree::{Cell, ENDLESS, Halt, Leaf, Limits, Octree, Told, corners};
 use crate::paint::paint;
-use crate::solid::{Kind, Solid};
+use crate::solid::{Kind, Solid, soft_end};
 use bytemuck::{Pod, Zeroable};
 use field::{Implicit, Primitive, Skeleton};
 use glam::{DVec3, Vec3};
@@ -394,7 +394,11 @@ impl Packer<'_> {
     fn is_plain(&self, element: &Element) -> bool {
         let flesh = element.flesh.map(|flesh| flesh as usize);
         let flesh = flesh.and_then(|flesh| self.scene.flesh.get(flesh));
-        let is_shaped = flesh.is_some_and(|flesh| flesh.whole_profile().is_some());
+        // Of tapers only those of straight lines are drawn.
+        let is_tapered = flesh.is_some_and(|flesh| flesh.end_radius.is_some());
+        let is_cone = soft_end(self.scene, element).is_some();
+        let is_shaped = is_tapered != is_cone
+            || flesh.is_some_and(|f| f.whole_profile().is_some() || f.strength < 1.0);
         let is_chain = match &element.shape {
             Shape::Bone(_) => true,
             Shape::Function(function) => matches!(function.form, Form::Skeleton(_)),
@@ -595,6 +599,9 @@ mod tests {
             text,
         };
         let scene = rats::compile(&rats::Project { files: vec![file] }).scene;
+        // The scene in another unit.
+        let unit = Unit::of_ball(DVec3::ZERO, 20.0);
+        let scene = unit.map_scene(&scene);
         let mut packer = Packer {
             scene: &scene,
             chart: &Cubics,
@@ -618,7 +625,8 @@ mod tests {
             let half = cone.rotation * DVec3::Z * cone.a[1] * cone.unit;
             assert!((cone.origin - half).distance(base) < 1e-9);
             assert!((cone.origin + half).distance(apex) < 1e-9);
-            assert!((cone.thinnest().expect("round") - 0.004).abs() < 1e-9);
+            let thinnest = unit.length(cone.thinnest().expect("round"));
+            assert!((thinnest - 0.004).abs() < 1e-9);
         }
     }
 }

@@ -37,6 +37,16 @@ pub(crate) struct Solid {
     pub(crate) normals: [DVec3; 3],
 }
 
+/// Returns the radius at the end of a soft line whose flesh tapers; `None` for other shapes.
+pub(crate) fn soft_end(scene: &Scene, element: &Element) -> Option<f64> {
+    let is_line = element
+        .shape
+        .bone()
+        .is_some_and(|bone| matches!(bone.skeleton, Skeleton::Segment { .. }));
+    let flesh = scene.flesh_in_world(element).filter(|_| is_line);
+    flesh.and_then(|flesh| flesh.end_radius)
+}
+
 impl Solid {
     /// The solids that the draft shows for an element of a scene; none where there is nothing to
     /// see: no radius, no length, numbers that are not finite, or a soft element that adds no
@@ -46,8 +56,8 @@ impl Solid {
             .flesh
             .and_then(|flesh| scene.flesh.get(flesh as usize));
         let is_function = matches!(element.shape, Shape::Function(_));
-        let is_flesh = scene.is_soft(element) && !is_function;
-        if is_flesh && flesh.is_none_or(|flesh| flesh.strength <= 0.0) {
+        let adds = flesh.map_or(is_function, |flesh| flesh.strength > 0.0);
+        if scene.is_soft(element) && !adds {
             return Vec::new();
         }
         let radius = scene.radius(element);
@@ -57,10 +67,7 @@ impl Solid {
             ref other => other.parts(radius),
         };
         let paint = element.paint.as_ref().map(|paint| paint.corners);
-        // A soft line's radius changes with its flesh.
-        let end_radius = flesh
-            .filter(|_| is_flesh)
-            .and_then(|flesh| flesh.end_radius);
+        let end_radius = soft_end(scene, element);
         let solids = parts.into_iter().filter_map(|mut part| {
             if let (Some(_), Shape::Bone(bone)) = (end_radius, &mut part)
                 && bone.end_radius.is_none()
