@@ -562,3 +562,24 @@ fn tube(places: &[Place], is_closed: bool, ends: [End; 2]) -> Option<Cage> {
     }
     Some(cage)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two lines between the same ends, which are no ring, have a cage.
+    #[test]
+    fn doubled_lines_are_one_limb() {
+        let [a, b] = [(DVec3::ZERO, 0.1), (DVec3::X, 0.2)];
+        let cages = Cage::around_lines(&[[a, b], [b, a]]);
+        let [cage] = &cages[..] else {
+            panic!("{} cages", cages.len());
+        };
+        let ends = cage.spokes.iter();
+        let ends = ends.map(|s| s.origin + s.direction * s.radius());
+        let mesh = TriangleMesh::new(ends.collect(), cage.triangles.clone());
+        let topology = mesh::Topology::of(&mesh).expect("it has triangles");
+        assert!(topology.is_closed_manifold());
+        assert!(mesh.signed_volume() > 0.03);
+    }
+}
