@@ -567,9 +567,9 @@ fn tube(places: &[Place], is_closed: bool, ends: [End; 2]) -> Option<Cage> {
 mod tests {
     use super::*;
 
-    /// Two lines between the same ends, which are no ring, have a cage.
+    /// A pair of lines between the same ends is no ring, and has a cage.
     #[test]
-    fn doubled_lines_are_one_limb() {
+    fn lines_with_the_same_ends_are_one_limb() {
         let [a, b] = [(DVec3::ZERO, 0.1), (DVec3::X, 0.2)];
         let cages = Cage::around_lines(&[[a, b], [b, a]]);
         let [cage] = &cages[..] else {
