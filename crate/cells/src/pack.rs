@@ -394,7 +394,7 @@ impl Packer<'_> {
     fn is_plain(&self, element: &Element) -> bool {
         let flesh = element.flesh.map(|flesh| flesh as usize);
         let flesh = flesh.and_then(|flesh| self.scene.flesh.get(flesh));
-        // Of tapers only those of straight lines are drawn.
+        // Tapers of straight lines are drawn, no others.
         let is_tapered = flesh.is_some_and(|flesh| flesh.end_radius.is_some());
         let is_cone = soft_end(self.scene, element).is_some();
         let is_shaped = is_tapered != is_cone

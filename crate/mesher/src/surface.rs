@@ -30,7 +30,7 @@ pub struct SurfaceMesh {
     pub crossings: usize,
     /// Centres of the cells in which the topology of the surface is not proved before it is meshed:
     /// none if all is. Components of the surface may be missing there that are as small as a cell.
-    /// Of a mesh that is only measured: places that are not within the tolerance.
+    /// Places that are not within the tolerance, if the mesh is only measured.
     pub undecided: Vec<DVec3>,
     /// The least edge length that cells may have.
     pub finest: f64,

@@ -9,8 +9,8 @@
 //!
 //! `ln f ≤ (1−x)·ln A + x·ln B + c·h²·x(1−x)`.
 //!
-//! That is largest at `x = ½ + ln(B/A)/(2ch²)`, or at an end where this is beyond it. Two values
-//! bound any number of terms, whose own bounds may add up to many times their sum.
+//! The right side is largest at `x = ½ + ln(B/A)/(2ch²)`, or at an end where this is beyond it.
+//! Two values bound any number of terms, whose own bounds may add up to many times their sum.
 use crate::lanes::Lanes;
 
 /// Rounding of logarithms of single precision down to [`LEAST`], and of the bound.

@@ -361,7 +361,7 @@ impl<'w, 's, L: Lanes> Walk<'w, 's, L> {
     /// Returns the bounds of [`Walk::reject_sum`] for the halves of a slab.
     fn halve_sum(&mut self, index: u32, [from, to]: [L; 2], t: f64) -> [Option<[L; 2]>; 2] {
         let are_outside = [from, to].map(|end| self.alive & !end.less(self.sum.room) == 0);
-        // Where rays are not outside at either end, neither half will be rejected.
+        // Neither half will be rejected where rays are not outside at either end.
         let between = if are_outside == [false; 2] {
             L::splat(f64::INFINITY)
         } else {
